@@ -11,7 +11,7 @@ use base64::prelude::BASE64_STANDARD;
 use serde::Deserialize;
 use serde_json::{Map, Value, json};
 
-use glint_config::{self as config, Key, Kind, Problems};
+use glint_config::{self as config, Key, KeyKind, Problems};
 use glint_core::core::Core;
 use glint_core::cosim::batch::Golden;
 use glint_core::package::{self, OutputFile};
@@ -167,12 +167,12 @@ fn plain(value: &config::Value) -> Value {
 /// Returns a key for the form.
 fn key(core: &Core, key: &Key) -> Value {
     let kind = match &key.kind {
-        Kind::Integer { min, max } => json!({ "is": "integer", "min": min, "max": max }),
-        Kind::Number { min, max, .. } => json!({ "is": "number", "min": min, "max": max }),
-        Kind::Choice(options) => json!({ "is": "choice", "options": options }),
-        Kind::Flag => json!({ "is": "flag" }),
-        Kind::Text(_) => json!({ "is": "text" }),
-        Kind::Integers { .. } => json!({ "is": "integers" }),
+        KeyKind::Integer { min, max } => json!({ "is": "integer", "min": min, "max": max }),
+        KeyKind::Number { min, max, .. } => json!({ "is": "number", "min": min, "max": max }),
+        KeyKind::Choice(options) => json!({ "is": "choice", "options": options }),
+        KeyKind::Flag => json!({ "is": "flag" }),
+        KeyKind::Text(_) => json!({ "is": "text" }),
+        KeyKind::Integers { .. } => json!({ "is": "integers" }),
     };
     json!({
         "name": key.name,

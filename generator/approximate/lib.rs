@@ -25,12 +25,12 @@ use std::sync::{Arc, LazyLock, Mutex};
 use rayon::prelude::*;
 
 use glint_base::fixed::{Format, exp2};
-use glint_formula::{Enclosure, Fault, Formula, RBig};
+use glint_formula::{Enclosure, Expression, Fault, RBig};
 
 pub use reduction::{Identity, Reduction, Restore, Rule};
 pub use samples::Samples;
 pub use search::Wish;
-pub use segments::{Layout, Place, Segments};
+pub use segments::{Layout, SegmentOffset, Segments};
 
 /// The coefficients of a polynomial of the largest degree.
 const MOST_SUMS: usize = 4;
@@ -60,14 +60,14 @@ glint_config::choices! {
 #[derive(Clone, Debug)]
 pub enum Curve {
     /// The values of a formula of the operand x.
-    Formula(Formula),
+    Formula(Expression),
     /// The values of the curve through samples.
     Samples(Samples),
 }
 
 /// A function on a domain, and the formats that its operand and result have.
 #[derive(Clone, Debug)]
-pub struct Function {
+pub struct TargetFunction {
     /// The values that are approximated.
     pub curve: Curve,
     /// The raw operands, first and last.
@@ -104,14 +104,14 @@ impl Refusal {
 
 /// The bits that are cut off before and after a product.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Step {
+pub struct HornerStep {
     /// Leading bits of the offset that are multiplied.
     pub offset: u32,
     /// Low bits of the product that are dropped.
     pub dropped: u32,
 }
 
-impl Step {
+impl HornerStep {
     /// Returns the addend of the next coefficient: the product of a sum and an offset of `rest` bits, both cut.
     #[inline]
     pub fn product(self, sum: i64, offset: i64, rest: u32) -> i64 {
@@ -140,7 +140,7 @@ pub struct Piecewise {
     /// The words of the table, each with its coefficients.
     pub words: Vec<Vec<i64>>,
     /// The cuts of the product that is added to coefficient k.
-    pub steps: Vec<Step>,
+    pub steps: Vec<HornerStep>,
     /// The formats of the sums from coefficient k on. The first is the format of the polynomial.
     pub sums: Vec<Format>,
     /// The format of the result, which is the polynomial where nothing is reduced.
@@ -149,7 +149,7 @@ pub struct Piecewise {
     pub bound: f64,
 }
 
-impl Function {
+impl TargetFunction {
     /// Returns an interval that contains the value at a raw operand, in units of the last place of the result.
     ///
     /// A formula is evaluated in `f64`. Where that leaves a step or a sign undecided, is beyond the range of `f64`, or is not exact
@@ -267,13 +267,13 @@ impl Piecewise {
     }
 
     /// Returns where a raw operand lies. Beyond the words that the domain reads it is the last.
-    pub fn place(&self, raw: i64) -> Place {
-        let Place { word, offset } = self.segments.place(self.number(raw));
-        Place { word: word.min(self.words.len() - 1), offset }
+    pub fn place(&self, raw: i64) -> SegmentOffset {
+        let SegmentOffset { word, offset } = self.segments.place(self.number(raw));
+        SegmentOffset { word: word.min(self.words.len() - 1), offset }
     }
 
     /// Returns the sum from coefficient k on, without cutting off upper bits. `above` is the sum from coefficient k + 1 on.
-    pub fn sum(&self, k: usize, place: Place, above: i64) -> i64 {
+    pub fn sum(&self, k: usize, place: SegmentOffset, above: i64) -> i64 {
         let coefficient = self.words[place.word][k];
         let Some(step) = self.steps.get(k) else { return coefficient };
         coefficient + step.product(above, place.offset, self.segments.rest())
@@ -319,7 +319,7 @@ impl Piecewise {
     /// # Errors
     /// Fails if the sums of an operand leave their formats, if its result is further off than the function allows, or if the
     /// function has no value there. Fails also if the proof takes too long.
-    pub fn prove(&self, function: &Function) -> Result<f64, Refusal> {
+    pub fn prove(&self, function: &TargetFunction) -> Result<f64, Refusal> {
         let (first, last) = self.domain;
         let of = |raw: i64| self.error_at(function, raw);
         let larger = |a: f64, b: f64| Ok(a.max(b));
@@ -330,7 +330,7 @@ impl Piecewise {
     }
 
     /// Returns the largest error of the result of a raw operand.
-    fn error_at(&self, function: &Function, raw: i64) -> Result<f64, Refusal> {
+    fn error_at(&self, function: &TargetFunction, raw: i64) -> Result<f64, Refusal> {
         let sums = self.sums_of(raw);
         let result = self.restored(raw, sums[0]);
         let mut all = sums.iter().zip(&self.sums).chain([(&result, &self.result)]);
@@ -351,15 +351,15 @@ impl Piecewise {
     }
 }
 
-type Found = Result<Arc<Piecewise>, Refusal>;
+type SearchResult = Result<Arc<Piecewise>, Refusal>;
 
 /// Returns the approximation of a function with the least cost, and with a proved bound. A search that was already made is
 /// not repeated.
 ///
 /// # Errors
 /// Fails if no approximation can be found and proved. The error says why.
-pub fn find(function: &Function, wish: Wish) -> Found {
-    static FOUND: LazyLock<Mutex<HashMap<String, Found>>> = LazyLock::new(Mutex::default);
+pub fn find(function: &TargetFunction, wish: Wish) -> SearchResult {
+    static FOUND: LazyLock<Mutex<HashMap<String, SearchResult>>> = LazyLock::new(Mutex::default);
     let key = format!("{function:?} {wish:?}");
     let known = || FOUND.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
     if let Some(found) = known().get(&key) {

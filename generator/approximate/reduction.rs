@@ -5,10 +5,10 @@
 //! [`super::Piecewise::prove`] compares the result of every operand of the whole domain with the formula. The search refuses
 //! a domain that is too large for that.
 
-use super::{Curve, Function, Outside, Refusal};
+use super::{Curve, Outside, Refusal, TargetFunction};
 use glint_base::fixed::{Format, exp2};
 use glint_formula::Function::Log2;
-use glint_formula::{Enclosure, Formula, Kind, RBig, parse};
+use glint_formula::{Enclosure, Expression, Kind, RBig, parse};
 
 glint_config::choices! {
     /// The identity with which values elsewhere are computed from values on a short domain. For example, `Even` computes
@@ -171,10 +171,10 @@ impl Reduction {
     /// Fails if the formula does not look as if the identity holds, or if the domain does not suit the identity.
     pub(super) fn of(
         identity: Identity,
-        function: &Function,
+        function: &TargetFunction,
         guard: u32,
         wider: bool,
-    ) -> Result<(Self, Function), Refusal> {
+    ) -> Result<(Self, TargetFunction), Refusal> {
         let Curve::Formula(formula) = &function.curve else {
             return refused("samples have no identity", "\"none\"");
         };
@@ -194,12 +194,12 @@ impl Reduction {
         let place = formula.span.clone();
         let (fraction, text) = text;
         let inner = parse(&text).map_err(|fault| Refusal::new(KEY, fault.message, "\"none\""))?;
-        let formula = formula.substitute(&Formula::operand("x"), &inner, &place);
+        let formula = formula.substitute(&Expression::operand("x"), &inner, &place);
         let last = match rule {
             Rule::Size(_) if wider => function.domain.0.abs().max(function.domain.1),
             _ => (1 << bits) - 1,
         };
-        let inner = Function {
+        let inner = TargetFunction {
             curve: Curve::Formula(formula),
             domain: (0, last),
             operand: Format::unsigned(bits as i32 - fraction, fraction),
@@ -243,12 +243,12 @@ fn near(a: f64, b: f64) -> bool {
 
 /// A rule, the bits of a number, and the number's fraction bits with the operand that the number denotes, as a formula of the
 /// number's value.
-type Found = Result<(Rule, u32, (i32, String)), Refusal>;
+type ReductionResult = Result<(Rule, u32, (i32, String)), Refusal>;
 
 /// A function that is to be reduced.
 struct Whole<'f> {
-    function: &'f Function,
-    formula: &'f Formula,
+    function: &'f TargetFunction,
+    formula: &'f Expression,
     guard: u32,
 }
 
@@ -260,10 +260,10 @@ impl Whole<'_> {
     /// Returns the binary logarithm of the formula's value, which may be beyond the range of `f64` itself.
     fn logarithm_at(&self, x: f64) -> Result<f64, Refusal> {
         let kind = Kind::Unary(Log2, Box::new(self.formula.clone()));
-        self.value_of(&Formula::new(kind, self.formula.span.clone()), x)
+        self.value_of(&Expression::new(kind, self.formula.span.clone()), x)
     }
 
-    fn value_of(&self, formula: &Formula, x: f64) -> Result<f64, Refusal> {
+    fn value_of(&self, formula: &Expression, x: f64) -> Result<f64, Refusal> {
         let raw = (x * exp2(self.function.operand.frac)) as i64;
         let value = match RBig::try_from(x) {
             Ok(exact) => formula.evaluate_exactly(&[("x", exact)]),
@@ -272,8 +272,9 @@ impl Whole<'_> {
         value.map(Enclosure::middle).map_err(|fault| self.function.refusal(raw, &fault))
     }
 
-    fn size(&self, odd: bool, wider: bool) -> Found {
-        let Function { domain: (first, last), operand: Format { frac, .. }, .. } = *self.function;
+    fn size(&self, odd: bool, wider: bool) -> ReductionResult {
+        let TargetFunction { domain: (first, last), operand: Format { frac, .. }, .. } =
+            *self.function;
         if first >= 0 || last < 0 {
             return refused("the domain is on one side of 0", "\"none\", or change function.from");
         }
@@ -296,8 +297,9 @@ impl Whole<'_> {
         Ok((Rule::Size(odd.then_some(centre)), bits, (frac, "x".to_owned())))
     }
 
-    fn quadrants(&self) -> Found {
-        let Function { domain: (first, last), operand: Format { frac, .. }, .. } = *self.function;
+    fn quadrants(&self) -> ReductionResult {
+        let TargetFunction { domain: (first, last), operand: Format { frac, .. }, .. } =
+            *self.function;
         let count = last - first + 1;
         let quarter = count / 4;
         if count < 8 || !(count as u64).is_power_of_two() || first % quarter != 0 {
@@ -328,8 +330,8 @@ impl Whole<'_> {
         Ok((Rule::Quadrants(phase as u32), quarter.ilog2(), (frac, text)))
     }
 
-    fn octaves(&self) -> Found {
-        let Function { domain: (first, last), operand: format, .. } = *self.function;
+    fn octaves(&self) -> ReductionResult {
+        let TargetFunction { domain: (first, last), operand: format, .. } = *self.function;
         if first < 0 || last < 8 || last.ilog2() < first.max(1).ilog2() + 2 {
             return refused("the domain has not three octaves above 0", "\"none\"");
         }
@@ -388,8 +390,9 @@ impl Whole<'_> {
         })
     }
 
-    fn exponent(&self) -> Found {
-        let Function { domain: (first, last), operand: Format { frac, .. }, .. } = *self.function;
+    fn exponent(&self) -> ReductionResult {
+        let TargetFunction { domain: (first, last), operand: Format { frac, .. }, .. } =
+            *self.function;
         let value = |raw: f64| raw * exp2(-frac);
         let (from, to) = (value(first as f64), value(last as f64));
         let slope = (self.logarithm_at(to)? - self.logarithm_at(from)?) / (to - from);

@@ -5,7 +5,7 @@
 
 use super::Refusal;
 use glint_base::fixed::exp2;
-use glint_formula::{Enclosure, Formula, parse};
+use glint_formula::{Enclosure, Expression, parse};
 
 /// How many times the longer of the steps beside it a step between samples may be.
 const GAP: i64 = 4;
@@ -98,7 +98,7 @@ impl Samples {
 }
 
 /// Returns the raw operand that a number is: exactly, or as the `f64` that its many digits were printed from.
-fn raw_operand(x: &Formula, fraction: u32) -> Option<i128> {
+fn raw_operand(x: &Expression, fraction: u32) -> Option<i128> {
     match x.ceiling(fraction) {
         Ok((raw, true)) => Some(raw),
         _ => {

@@ -1,10 +1,10 @@
 //! Searches for the degree, the segments, the coefficients and the widths of the cheapest approximation of a function.
 
 use super::reduction::KEY;
-use super::seen::Seen;
+use super::seen::AllowedResults;
 use super::table::{BITS_A_CELL, Table, Widths};
 use super::{
-    Curve, Function, Identity, Layout, MOST_BITS, Piecewise, Reduction, Refusal, Segments,
+    Curve, Identity, Layout, MOST_BITS, Piecewise, Reduction, Refusal, Segments, TargetFunction,
 };
 use glint_base::fixed::MAX_WIDTH;
 
@@ -53,7 +53,7 @@ const NEAREST: [f64; 14] =
 /// # Errors
 /// Fails if the domain has too many operands, or if no approximation that keeps the error is found and proved. The error
 /// names a key and a remedy.
-pub(super) fn search(function: &Function, wish: Wish) -> Result<Piecewise, Refusal> {
+pub(super) fn search(function: &TargetFunction, wish: Wish) -> Result<Piecewise, Refusal> {
     let span = function.domain.1.abs_diff(function.domain.0);
     if span >> WIDEST != 0 {
         let bits = u64::BITS - span.leading_zeros();
@@ -72,7 +72,7 @@ pub(super) fn search(function: &Function, wish: Wish) -> Result<Piecewise, Refus
         return Ok(found);
     }
     let misses = |error: &f64| {
-        let larger = Function { error: *error, ..function.clone() };
+        let larger = TargetFunction { error: *error, ..function.clone() };
         *error <= function.error || !matches!(attempt(&larger, wish), Ok(Some(_)))
     };
     let reached = NEAREST.get(NEAREST.partition_point(misses));
@@ -95,14 +95,14 @@ pub(super) fn search(function: &Function, wish: Wish) -> Result<Piecewise, Refus
 }
 
 /// Gives the approximation of least cost, proved, if there is one.
-fn attempt(function: &Function, wish: Wish) -> Result<Option<Piecewise>, Refusal> {
+fn attempt(function: &TargetFunction, wish: Wish) -> Result<Option<Piecewise>, Refusal> {
     if wish.identity != Identity::None {
         return attempt_reduced(function, wish);
     }
     let mut unproved = None;
     for stricter in STRICTER {
         let stricter = stricter * (function.error - 0.5);
-        let Some(seen) = Seen::new(function, stricter)? else { break };
+        let Some(seen) = AllowedResults::new(function, stricter)? else { break };
         let Some(found) = cheapest(&seen, wish) else { break };
         match found.prove(function) {
             Ok(bound) => return Ok(Some(Piecewise { bound, ..found })),
@@ -126,14 +126,14 @@ fn variants(identity: Identity) -> &'static [(u32, bool)] {
 }
 
 /// Gives the first approximation, proved, that one of the [`variants`] of reduced operands has, if there is one.
-fn attempt_reduced(function: &Function, wish: Wish) -> Result<Option<Piecewise>, Refusal> {
+fn attempt_reduced(function: &TargetFunction, wish: Wish) -> Result<Option<Piecewise>, Refusal> {
     if function.is_wide() {
         let message = format!("the domain has more than 2^{MOST_BITS} operands to be computed");
         return Err(Refusal::new(KEY, message, "\"none\", or fewer operand.fraction bits"));
     }
     for &(guard, wider) in variants(wish.identity) {
         let (reduction, inner) = Reduction::of(wish.identity, function, guard, wider)?;
-        let Some(seen) = Seen::reduced(function, &reduction, &inner)? else { continue };
+        let Some(seen) = AllowedResults::reduced(function, &reduction, &inner)? else { continue };
         if let Some(found) = cheapest(&seen, wish) {
             return found.prove(function).map(|bound| Some(Piecewise { bound, ..found }));
         }
@@ -142,7 +142,7 @@ fn attempt_reduced(function: &Function, wish: Wish) -> Result<Option<Piecewise>,
 }
 
 /// Gives the approximation of least cost that is right at every operand that is looked at.
-fn cheapest(seen: &Seen, wish: Wish) -> Option<Piecewise> {
+fn cheapest(seen: &AllowedResults, wish: Wish) -> Option<Piecewise> {
     let few = seen.thinned(CHOOSING);
     let mut found: Vec<(f64, Segments, Widths, Widths)> = Vec::new();
     let mut least = f64::INFINITY;
@@ -187,7 +187,7 @@ fn cheapest(seen: &Seen, wish: Wish) -> Option<Piecewise> {
 
 /// Returns the ways to cut the domain, into no more than `most` segments, that are fine enough for polynomials of the degree,
 /// before anything is rounded.
-fn cuts(seen: &Seen, degree: u32, layout: Option<Layout>, most: usize) -> Vec<Segments> {
+fn cuts(seen: &AllowedResults, degree: u32, layout: Option<Layout>, most: usize) -> Vec<Segments> {
     let possible = |cut: &Segments| {
         cut.words() <= most.min(1 << ADDRESS)
             && cut.octaves + cut.prefix + u32::from(degree > 0) <= seen.bits

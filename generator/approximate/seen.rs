@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 
-use super::{Function, Reduction, Refusal};
+use super::{Reduction, Refusal, TargetFunction};
 use glint_base::fixed::{Format, exp2, nearest};
 
 /// The most operands that the search looks at. If there are more, the search takes evenly spread ones.
@@ -15,8 +15,8 @@ const HELD_OF_MANY: u64 = 1 << 18;
 const BLOCK: usize = 1 << 16;
 
 /// The values of a function at the operands that the search looks at.
-pub(super) struct Seen<'f> {
-    pub(super) function: &'f Function,
+pub(super) struct AllowedResults<'f> {
+    pub(super) function: &'f TargetFunction,
     pub(super) origin: i64,
     pub(super) bits: u32,
     /// From an operand to the next that is looked at.
@@ -26,7 +26,7 @@ pub(super) struct Seen<'f> {
     /// The polynomial's format.
     pub(super) result: Format,
     /// The function of the operands that were reduced to these, and the format of its results.
-    pub(super) whole: Option<(&'f Function, &'f Reduction, Format)>,
+    pub(super) whole: Option<(&'f TargetFunction, &'f Reduction, Format)>,
 }
 
 /// The results that are right of some operands, and between which numbers the nearest are.
@@ -56,7 +56,7 @@ impl Nearest {
     }
 }
 
-impl Function {
+impl TargetFunction {
     /// Returns the result that is nearest at a raw operand, and the lowest and the highest that are right where less error is
     /// allowed by `stricter`.
     fn right(&self, raw: i64, stricter: f64) -> Result<(i64, i64, i64), Refusal> {
@@ -75,10 +75,13 @@ impl Function {
     }
 }
 
-impl<'f> Seen<'f> {
+impl<'f> AllowedResults<'f> {
     /// Evaluates the function; none if an operand has no result that is right. Where it does not look at every operand, less
     /// error is allowed by `stricter`.
-    pub(super) fn new(function: &'f Function, stricter: f64) -> Result<Option<Self>, Refusal> {
+    pub(super) fn new(
+        function: &'f TargetFunction,
+        stricter: f64,
+    ) -> Result<Option<Self>, Refusal> {
         let (first, last) = function.domain;
         let (origin, bits) = function.numbering();
         let count = (last - first) as u64 + 1;
@@ -104,9 +107,9 @@ impl<'f> Seen<'f> {
     /// Evaluates a function whose operands are reduced: a polynomial is right with which the results of all operands are that
     /// are reduced to its own.
     pub(super) fn reduced(
-        whole: &'f Function,
+        whole: &'f TargetFunction,
         reduction: &'f Reduction,
-        inner: &'f Function,
+        inner: &'f TargetFunction,
     ) -> Result<Option<Self>, Refusal> {
         let Some(mut seen) = Self::new(inner, 0.0)? else { return Ok(None) };
         let all = (seen.result.min_raw() as i64, seen.result.max_raw() as i64);

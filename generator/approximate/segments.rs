@@ -38,7 +38,7 @@ pub struct Segments {
 
 /// A segment and the place of an operand in it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Place {
+pub struct SegmentOffset {
     /// The word of the table.
     pub word: usize,
     /// From the middle of the segment, in parts of 2^−[`Segments::rest`] of its length: from −1/2 to below 1/2.
@@ -72,7 +72,7 @@ impl Segments {
 
     /// Returns where the operand of a number lies.
     #[inline]
-    pub fn place(&self, number: u64) -> Place {
+    pub fn place(&self, number: u64) -> SegmentOffset {
         let number = self.turned(number);
         let below = self.bits - self.octaves;
         let (block, within) = if self.octaves > 0 && number >> below != 0 {
@@ -86,7 +86,7 @@ impl Segments {
         let word = ((block as usize) << self.prefix) + (within >> rest) as usize;
         let places = self.rest() - rest;
         let middle = (1 << self.rest()) / 2;
-        Place { word, offset: ((low << places) as i64) - middle }
+        SegmentOffset { word, offset: ((low << places) as i64) - middle }
     }
 
     /// Returns the numbers that read a word: the lowest and how many there are.
@@ -111,7 +111,7 @@ mod tests {
                 for prefix in 0..=3 {
                     let cut = Segments { bits: 6, layout, octaves, prefix };
                     for number in 0..64 {
-                        let Place { word, offset } = cut.place(number);
+                        let SegmentOffset { word, offset } = cut.place(number);
                         let (first, count) = cut.numbers(word);
                         assert!(word < cut.words() && (first..first + count).contains(&number));
                         let half = (1i64 << cut.rest()) / 2;

@@ -8,8 +8,8 @@
 use rayon::prelude::*;
 
 use super::minimax::minimax;
-use super::seen::Seen;
-use super::{MOST_SUMS, Piecewise, Segments, Step};
+use super::seen::AllowedResults;
+use super::{HornerStep, MOST_SUMS, Piecewise, Segments};
 use glint_base::fixed::{Format, MAX_WIDTH, exp2};
 use glint_base::interval::Interval;
 
@@ -32,7 +32,7 @@ const PARTIAL: f64 = 2.0;
 pub(super) const BITS_A_CELL: f64 = 16.0;
 
 /// A segment in the search.
-pub(super) struct Piece {
+pub(super) struct CandidateSegment {
     /// Its operands that are looked at, by their numbers among all such.
     seen: std::ops::Range<usize>,
     /// The points to which polynomials are fitted: offsets, the same as fractions of the segment, and values.
@@ -51,10 +51,10 @@ pub(super) struct Widths {
 
 impl Widths {
     /// Returns the cuts of the products; none if one would have to gain bits.
-    fn steps(&self) -> Option<Vec<Step>> {
+    fn steps(&self) -> Option<Vec<HornerStep>> {
         let of = |(k, &offset): (usize, &u32)| {
             let dropped = self.guard[k + 1] + offset as i32 - self.guard[k];
-            u32::try_from(dropped).ok().map(|dropped| Step { offset, dropped })
+            u32::try_from(dropped).ok().map(|dropped| HornerStep { offset, dropped })
         };
         self.offset.iter().enumerate().map(of).collect()
     }
@@ -93,16 +93,16 @@ impl Widths {
 
 /// The segments of a domain, in the search for the words of their table.
 pub(super) struct Table<'s> {
-    seen: &'s Seen<'s>,
+    seen: &'s AllowedResults<'s>,
     cut: Segments,
-    pieces: Vec<Option<Piece>>,
+    pieces: Vec<Option<CandidateSegment>>,
 }
 
 /// The words of a table. `None` is a word that no operand reads.
 pub(super) type Words = Vec<Option<Vec<i64>>>;
 
 impl<'s> Table<'s> {
-    pub(super) fn new(seen: &'s Seen<'s>, cut: Segments) -> Self {
+    pub(super) fn new(seen: &'s AllowedResults<'s>, cut: Segments) -> Self {
         let mut table = Self { seen, cut, pieces: Vec::new() };
         table.pieces = table.words().map(|word| table.piece(word)).collect();
         table
@@ -116,7 +116,7 @@ impl<'s> Table<'s> {
     }
 
     /// Returns the samples in the segment of a word; none without an operand of the domain.
-    fn piece(&self, word: usize) -> Option<Piece> {
+    fn piece(&self, word: usize) -> Option<CandidateSegment> {
         let Self { seen, cut, .. } = self;
         let (first, last) = seen.function.domain;
         let (from, count) = cut.numbers(word);
@@ -138,7 +138,7 @@ impl<'s> Table<'s> {
         // Halving segments run the other way.
         points.sort_by_key(|it| it.0);
         let unit = exp2(-(cut.rest() as i32));
-        Some(Piece {
+        Some(CandidateSegment {
             seen: before(low)..before(high + 1).min(seen.right.len()),
             at: points.iter().map(|it| it.0 as f64 * unit).collect(),
             values: points.iter().map(|it| it.1).collect(),
@@ -150,13 +150,13 @@ impl<'s> Table<'s> {
     /// segment of the operand `worst` is looked at first, and one that is too long leaves an operand there: where one cut is too
     /// coarse, others mostly are.
     pub(super) fn may_fit(
-        seen: &'s Seen<'s>,
+        seen: &'s AllowedResults<'s>,
         cut: Segments,
         degree: u32,
         worst: &mut Option<i64>,
     ) -> bool {
         let table = Self { seen, cut, pieces: Vec::new() };
-        let fits = |piece: &Piece| match degree {
+        let fits = |piece: &CandidateSegment| match degree {
             0 => table.constant(piece, &[], &[], 0).is_some(),
             _ => minimax(&piece.at, &piece.values, degree as usize).1 < seen.function.error - 0.5,
         };
@@ -246,7 +246,7 @@ impl<'s> Table<'s> {
     /// Returns the words of a table with these widths, if there are such with which every operand that is looked at is right.
     fn fitted(&self, widths: &Widths) -> Option<Words> {
         let steps = widths.steps()?;
-        let fit = |piece: &Option<Piece>| match piece {
+        let fit = |piece: &Option<CandidateSegment>| match piece {
             None => Some(None),
             Some(piece) => {
                 let mut coefficients = vec![0; widths.guard.len()];
@@ -263,8 +263,8 @@ impl<'s> Table<'s> {
     /// fit.
     fn place(
         &self,
-        piece: &Piece,
-        shape: (&Widths, &[Step]),
+        piece: &CandidateSegment,
+        shape: (&Widths, &[HornerStep]),
         product: &[i64],
         coefficients: &mut Vec<i64>,
         k: usize,
@@ -295,7 +295,13 @@ impl<'s> Table<'s> {
 
     /// Returns the constant with which every operand of the segment is right: the middle of all such. `above` are the other
     /// coefficients.
-    fn constant(&self, piece: &Piece, above: &[i64], steps: &[Step], guard: u32) -> Option<i64> {
+    fn constant(
+        &self,
+        piece: &CandidateSegment,
+        above: &[i64],
+        steps: &[HornerStep],
+        guard: u32,
+    ) -> Option<i64> {
         let (mut least, mut most) = (i64::MIN, i64::MAX);
         for (at, &(low, high)) in piece.seen.clone().zip(&self.seen.right[piece.seen.clone()]) {
             let offset = self.cut.place(self.seen.number(self.seen.raw(at))).offset;
@@ -364,7 +370,7 @@ impl<'s> Table<'s> {
 
     /// Returns the approximation with these words, if its nets are not too wide.
     pub(super) fn finished(&self, widths: &Widths, words: Words) -> Option<Piecewise> {
-        let Seen { result: polynomial, whole, .. } = self.seen;
+        let AllowedResults { result: polynomial, whole, .. } = self.seen;
         let function = whole.map_or(self.seen.function, |it| it.0);
         let coefficients = self.formats(widths, &words);
         // A word that no operand of the domain reads gets the word before it, or the first known word if there is none before

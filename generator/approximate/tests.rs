@@ -1,15 +1,15 @@
 //! Tests that approximations are proved, and that a wrong coefficient is refused.
 
-use super::{Curve, Function, Identity, Layout, Outside, Samples, Wish, find};
+use super::{Curve, Identity, Layout, Outside, Samples, TargetFunction, Wish, find};
 use glint_base::fixed::{Format, exp2};
 use glint_formula::parse;
 
 /// Returns a function with as many fraction bits in its result as its operand has, from one value to another that does not belong
 /// to it.
-fn function(text: &str, (from, to): (f64, f64), fraction: i32, error: f64) -> Function {
+fn function(text: &str, (from, to): (f64, f64), fraction: i32, error: f64) -> TargetFunction {
     let raw = |value: f64| (value * exp2(fraction)) as i64;
     let domain = (raw(from), raw(to) - 1);
-    Function {
+    TargetFunction {
         curve: Curve::Formula(parse(text).unwrap()),
         domain,
         operand: Format::holding(domain.0.into(), domain.1.into(), fraction),
@@ -79,7 +79,7 @@ fn steep_ends_are_cut_into_octaves() {
 
 #[test]
 fn what_cannot_be_had_is_refused_with_what_can() {
-    let refused = |it: &Function, wish| find(it, wish).unwrap_err();
+    let refused = |it: &TargetFunction, wish| find(it, wish).unwrap_err();
     let pole = refused(&function("2 + 1 / x", (-1.0, 1.0), 8, 1.0), Wish::default());
     assert_eq!((pole.key, pole.place), ("function.formula", Some(4..9)));
     let near = refused(
@@ -89,7 +89,7 @@ fn what_cannot_be_had_is_refused_with_what_can() {
     assert_eq!(near.key, "result.error");
     assert!(near.message.starts_with("degree 1 does not keep an error of 0.5 units"), "{near:?}");
     assert!(near.remedy.starts_with("0.51 is reached"), "{near:?}");
-    let wide = Function { domain: (0, 1 << 48), ..function("x", (0.0, 4.0), 26, 1.0) };
+    let wide = TargetFunction { domain: (0, 1 << 48), ..function("x", (0.0, 4.0), 26, 1.0) };
     let wide = refused(&wide, Wish::default());
     assert_eq!((wide.key, wide.remedy.as_str()), ("operand.fraction", "at most 23"));
 }
@@ -106,7 +106,7 @@ fn a_bound_over_intervals_holds_at_every_operand() {
         ("cos(x) - sqrt(x + 0.01) + ln(x + 2) / tan(x + 0.1)", 2),
         ("if(x < 0.5, x, 1 - x) + 2 ^ -x", 1),
     ] {
-        let it = Function { fraction: 8, ..function(text, (0.0, 1.0), 13, 1.0) };
+        let it = TargetFunction { fraction: 8, ..function(text, (0.0, 1.0), 13, 1.0) };
         let found = find(&it, Wish { degree: Some(degree), ..Wish::default() }).unwrap();
         let bound = found.prove_by_segments(&it).unwrap();
         assert!((found.bound..=1.0).contains(&bound), "{text}: {bound} for {}", found.bound);
@@ -122,7 +122,7 @@ fn a_bound_over_intervals_holds_at_every_operand() {
 
 #[test]
 fn more_operands_than_can_be_computed_have_a_bound() {
-    let it = Function { fraction: 14, ..function("exp(-x)", (0.0, 1.0), 28, 1.0) };
+    let it = TargetFunction { fraction: 14, ..function("exp(-x)", (0.0, 1.0), 28, 1.0) };
     let found =
         find(&it, Wish { degree: Some(2), layout: Some(Layout::Uniform), ..Wish::default() })
             .unwrap();
@@ -140,7 +140,7 @@ fn more_operands_than_can_be_computed_have_a_bound() {
 fn the_curve_of_samples_is_met_and_a_wrong_coefficient_is_refused() {
     let points: Vec<String> =
         (0..=85).map(|k| format!("{},{}", 3 * k, f64::from(9 * k * k) / 65536.0)).collect();
-    let samples = |error| Function {
+    let samples = |error| TargetFunction {
         curve: Curve::Samples(Samples::read(&points.join(" "), 0, (0, 255)).unwrap()),
         fraction: 10,
         error,

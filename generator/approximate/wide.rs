@@ -9,7 +9,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 use rayon::prelude::*;
 
-use super::{Curve, Function, Piecewise, Refusal};
+use super::{Curve, Piecewise, Refusal, TargetFunction};
 use glint_base::fixed::exp2;
 use glint_base::interval::{self, Interval};
 use glint_formula::Enclosure;
@@ -90,7 +90,7 @@ impl Piecewise {
     ///
     /// # Errors
     /// As of [`Piecewise::prove`]; or the proof takes too long.
-    pub(super) fn prove_by_segments(&self, function: &Function) -> Result<f64, Refusal> {
+    pub(super) fn prove_by_segments(&self, function: &TargetFunction) -> Result<f64, Refusal> {
         let left = AtomicU64::new(MOST);
         let of = |word: usize| {
             let Some(walk) = self.walk(word) else { return Ok(0.0) };
@@ -130,7 +130,7 @@ impl Piecewise {
     /// where a result may leave its format.
     fn error_between(
         &self,
-        function: &Function,
+        function: &TargetFunction,
         word: usize,
         (low, high): (i64, i64),
         lag: Enclosure,

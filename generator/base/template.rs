@@ -22,11 +22,11 @@ pub fn render(template: &impl Template) -> Result<String> {
 macro_rules! fill {
     ($path:tt { $($field:ident: $kind:ty $(= $value:expr)?),* $(,)? }) => {{
         #[$crate::template::template($path)]
-        struct View<'a> {
+        struct TemplateFields<'a> {
             $($field: $kind,)*
             lifetime: std::marker::PhantomData<&'a ()>,
         }
-        $crate::template::render(&View {
+        $crate::template::render(&TemplateFields {
             $($field: $crate::fill!(@value $field $($value)?),)*
             lifetime: std::marker::PhantomData,
         })

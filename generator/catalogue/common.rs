@@ -4,31 +4,35 @@ use glint_base::fixed::{Format, Rounding};
 use glint_keys::common as keys;
 use glint_rtl::blocks::colour::{ChannelBlocks, Colours};
 use glint_rtl::blocks::line::{LineBlocks, OperandBlocks};
-use glint_rtl::dsl::{Designer, Note, Operand, Signal, Step, Topic, end, step, valid};
+use glint_rtl::dsl::{Designer, InputOperand, Note, Signal, Step, Topic, end, step, valid};
 
 /// Returns the operand `cos_gamma`, limited to 0 … 1.0.
 #[track_caller]
-pub fn cosine<'d>(d: &'d Designer, keys: &keys::Cosine) -> Operand<'d> {
+pub fn cosine<'d>(d: &'d Designer, keys: &keys::Cosine) -> InputOperand<'d> {
     d.operand_clamped("cos_gamma", keys.format(), 0.0, 1.0)
         .doc("cosine of the angle between normal and half vector")
 }
 
 /// Returns the operand `exponent` with `bits` bits.
 #[track_caller]
-pub fn exponent(d: &Designer, bits: u32) -> Operand<'_> {
+pub fn exponent(d: &Designer, bits: u32) -> InputOperand<'_> {
     d.operand("exponent", Format::unsigned(bits as i32, 0)).doc("specular exponent n")
 }
 
 /// The colours with as many multipliers as the keys say.
-pub struct Products<'d> {
+pub struct ColourProducts<'d> {
     colours: Colours<'d>,
     in_turn: bool,
 }
 
-impl<'d> Products<'d> {
+impl<'d> ColourProducts<'d> {
     /// Makes the operands, with the source's numbers where it has some.
     #[track_caller]
-    pub fn new(d: &'d Designer, keys: &keys::Colours, blocks: Option<[ChannelBlocks; 3]>) -> Self {
+    pub fn new(
+        d: &'d Designer,
+        keys: &keys::ColourKeys,
+        blocks: Option<[ChannelBlocks; 3]>,
+    ) -> Self {
         Self { colours: Colours::new(d, keys.bits as i32, blocks), in_turn: keys.in_turn() }
     }
 
@@ -54,7 +58,7 @@ impl<'d> Products<'d> {
 
 /// Returns the note on writes while the device is busy and on how long its outputs hold, where each colour has a
 /// multiplier of its own behind the register that `follow` names, until `until`.
-pub fn outputs_note(keys: &keys::Colours, follow: &str, until: &str) -> Note {
+pub fn outputs_note(keys: &keys::ColourKeys, follow: &str, until: &str) -> Note {
     if keys.in_turn() {
         return Topic::Writes.note(
             "Writes while busy are ignored. One multiplier multiplies f by the colours, one after the other, and the \

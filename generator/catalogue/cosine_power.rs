@@ -11,7 +11,7 @@ use glint_rtl::blocks::squaring::Squarings;
 use glint_rtl::dsl::{Designer, Signal, step};
 use glint_rtl::netlist::{About, Topic};
 
-use super::common::{self, Products};
+use super::common::{self, ColourProducts};
 
 /// Describes `cosine-power`: W(n,γ) by one multiplier and one accumulator.
 pub fn describe(d: &Designer, config: &Config) {
@@ -22,7 +22,7 @@ pub fn describe(d: &Designer, config: &Config) {
 
     let cos_gamma = common::cosine(d, &keys.operands.cosine).q();
     let exponent = common::exponent(d, keys.operands.exponent_bits).q();
-    let colours = Products::new(d, &keys.operands.colours, None);
+    let colours = ColourProducts::new(d, &keys.operands.colours, None);
 
     // With power = 2 there is no power to square again.
     let operand_select = d.select("operand_select", &["distance", "base", "power"]).partly_used();

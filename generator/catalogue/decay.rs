@@ -10,8 +10,8 @@ use glint_keys::decay::{Decay, Keys};
 use glint_rtl::blocks::exponential;
 use glint_rtl::dsl::{Designer, Note, Signal, Topic, step};
 
-use super::common::{self, Products};
-use super::piecewise::{Multiplier, Polynomial, Tables};
+use super::common::{self, ColourProducts};
+use super::piecewise::{PolynomialDatapath, StepMultiplier, Tables};
 
 /// The distance of cos γ from 1, as each of the two devices has it.
 pub struct Distance<'d> {
@@ -34,7 +34,7 @@ pub fn describe<'d>(
 ) {
     let keys = &Keys::of(config);
     let exponent = common::exponent(d, keys.operands.exponent_bits).q();
-    let colours = Products::new(d, &keys.operands.colours, None);
+    let colours = ColourProducts::new(d, &keys.operands.colours, None);
     let f = keys.f.format();
     let ratios = keys.ratio(of).expect("a configuration that is checked");
     let powers = keys.power().expect("a configuration that is checked");
@@ -44,7 +44,7 @@ pub fn describe<'d>(
     let bits = u.format().width() as i32;
     let sums = ["ratio", "ratio_sum1", "ratio_sum2"];
     let number = u.bits(keys.unseen(), Format::unsigned(bits - keys.unseen() as i32, 0));
-    let ratio = Polynomial::new(d, "ratio_", &sums, number, &ratios, tables);
+    let ratio = PolynomialDatapath::new(d, "ratio_", &sums, number, &ratios, tables);
     let _ = ratio.q().doc("decay over 1 - cos gamma");
     let ulp = d.raw_constant("ulp", 1, Format::unsigned(1 - fraction, fraction));
     let whole =
@@ -87,7 +87,7 @@ pub fn describe<'d>(
 
     let sums = ["power", "power_sum1", "power_sum2"];
     let number = halvings.q().bits(0, Format::unsigned(keys.argument as i32, 0));
-    let exp2 = Polynomial::new(d, "power_", &sums, number, &powers, tables);
+    let exp2 = PolynomialDatapath::new(d, "power_", &sums, number, &powers, tables);
     let _ = exp2.q().doc("2^-x of the fraction x of halvings");
     // An integer part that shifts every bit of f out, and no larger.
     let most = integer((f.frac as u32 + 2).ilog2() + 1);
@@ -101,8 +101,8 @@ pub fn describe<'d>(
     let outputs = colours.results(reflectance.q(), keys.f.output_rounding);
 
     let names = ["polynomial_select", "factor_of_offset", "offset_of_step", "polynomial_product"];
-    let multiplier = Multiplier::new(d, names, &[&ratio, &exp2]);
-    let horner = |it: &Polynomial<'d, '_>, k: usize, name: &str| {
+    let multiplier = StepMultiplier::new(d, names, &[&ratio, &exp2]);
+    let horner = |it: &PolynomialDatapath<'d, '_>, k: usize, name: &str| {
         let what =
             if k == 0 { "all coefficients".to_owned() } else { format!("those from {k} on") };
         step(&format!("{name} <- {what}"), multiplier.step(it, k))

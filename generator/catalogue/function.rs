@@ -11,7 +11,7 @@ use glint_keys::function::{Keys, found};
 use glint_rtl::dsl::{Designer, Signal, end, step, valid};
 use glint_rtl::netlist::About;
 
-use crate::piecewise::{Multiplier, Polynomial, Tables, flipped};
+use crate::piecewise::{PolynomialDatapath, StepMultiplier, Tables, flipped};
 
 /// Describes `function`: a table of coefficients, and Horner's rule on one multiplier.
 ///
@@ -37,9 +37,9 @@ pub fn describe(d: &Designer, config: &Config) {
         }
     };
     let tables = Tables { split: is_split(config, &it), synchronous: true };
-    let polynomial = Polynomial::new(d, "", &it.registers(), number, &it, tables);
+    let polynomial = PolynomialDatapath::new(d, "", &it.registers(), number, &it, tables);
     let names = ["factors_select", "factor", "offset_of_step", "product"];
-    let multiplier = Multiplier::new(d, names, &[&polynomial]);
+    let multiplier = StepMultiplier::new(d, names, &[&polynomial]);
     let mut steps = vec![step("operand; table addressed", [])];
     for k in polynomial.steps() {
         let name = match k {

@@ -8,18 +8,18 @@ use glint_base::fixed::{Format, Overflow, Rounding};
 use glint_config::{Config, Shared};
 use glint_keys::lyon::{Keys, Scale};
 use glint_rtl::blocks::squaring::Squarings;
-use glint_rtl::dsl::{Designer, Setting, Signal, Step, loop_while, step};
+use glint_rtl::dsl::{Designer, Signal, Step, StepSetting, loop_while, step};
 use glint_rtl::netlist::{About, Note, Topic};
 
-use super::common::{self, Products};
+use super::common::{self, ColourProducts};
 
 /// How D² is formed, to the fraction bits of the register that takes it.
-struct Distance<'d> {
+struct SquaredDistance<'d> {
     value: Signal<'d>,
     /// The microinstructions before the one that takes it.
     steps: Vec<Step>,
     /// The settings of that one.
-    settings: Vec<Setting>,
+    settings: Vec<StepSetting>,
 }
 
 /// How beta·D² is formed: the words that do it, and the result.
@@ -51,7 +51,7 @@ pub fn describe(d: &Designer, config: &Config) {
         Scale::Shift => by_shift(d, &keys, distance),
         Scale::Multiplier => by_multiplier(d, &keys, distance),
     };
-    let colours = Products::new(d, &keys.colours, None);
+    let colours = ColourProducts::new(d, &keys.colours, None);
     let accumulator = d.register("accumulator", f).doc("the powers of the base, in the end f");
 
     let format = Format::unsigned(1, f.frac);
@@ -71,7 +71,7 @@ pub fn describe(d: &Designer, config: &Config) {
 }
 
 /// Returns D² = dx² + dy² + dz², 0 … 12.0, with a multiplier for each square.
-fn distance<'d>(d: &'d Designer, keys: &Keys, components: [Signal<'d>; 3]) -> Distance<'d> {
+fn distance<'d>(d: &'d Designer, keys: &Keys, components: [Signal<'d>; 3]) -> SquaredDistance<'d> {
     let mut number = 0;
     let squares = components.map(|component| {
         number += 1;
@@ -79,11 +79,19 @@ fn distance<'d>(d: &'d Designer, keys: &Keys, components: [Signal<'d>; 3]) -> Di
     });
     let adder1 = d.add("adder1", squares[0], squares[1]).block(1);
     let adder2 = d.add("adder2", adder1, squares[2]).block(2).doc("D^2");
-    Distance { value: rounded_distance(d, keys, adder2), steps: Vec::new(), settings: Vec::new() }
+    SquaredDistance {
+        value: rounded_distance(d, keys, adder2),
+        steps: Vec::new(),
+        settings: Vec::new(),
+    }
 }
 
 /// Makes the distance by one multiplier and one adder: two squares to a register, before the third comes to them.
-fn distance_in_turn<'d>(d: &'d Designer, keys: &Keys, components: [Signal<'d>; 3]) -> Distance<'d> {
+fn distance_in_turn<'d>(
+    d: &'d Designer,
+    keys: &Keys,
+    components: [Signal<'d>; 3],
+) -> SquaredDistance<'d> {
     let sum = d
         .register("distance_sum", Format::unsigned(4, 2 * components[0].format().frac))
         .doc("dx^2, then dx^2 + dy^2");
@@ -96,7 +104,7 @@ fn distance_in_turn<'d>(d: &'d Designer, keys: &Keys, components: [Signal<'d>; 3
     let (rounding, overflow) = (Rounding::Truncate, Overflow::Wrap);
     sum.takes(d.narrow("sum_next", adder1, sum.format(), rounding, overflow));
     let [x, y, z] = components.map(|it| component.pick(it));
-    Distance {
+    SquaredDistance {
         value: rounded_distance(d, keys, adder1),
         steps: vec![
             step("distance_sum <- dx^2", [x, addend.pick(zero), sum.load()]),
@@ -116,7 +124,7 @@ fn rounded_distance<'d>(d: &'d Designer, keys: &Keys, sum: Signal<'d>) -> Signal
 ///
 /// It starts from half of D²/2^(s+1), by wiring, so that it shifts at least once. A value that has left the range saturates
 /// to the largest word, above 1.0.
-fn by_shift<'d>(d: &'d Designer, keys: &Keys, distance: Distance<'d>) -> Scaled<'d> {
+fn by_shift<'d>(d: &'d Designer, keys: &Keys, distance: SquaredDistance<'d>) -> Scaled<'d> {
     let count = keys.squarings();
     let half_down = count as i32 + 2;
     // It holds every log2 of an exponent, rounded: 0 … `exponent.bits`.
@@ -140,7 +148,7 @@ fn by_shift<'d>(d: &'d Designer, keys: &Keys, distance: Distance<'d>) -> Scaled<
     let more = d.any("more_shifts", counter.q()).doc("not the last shift");
     let name = "shift_register <- 2 * shift_register";
     let load = [input.pick(small), register.load()];
-    let shift_on: [Setting; 4] =
+    let shift_on: [StepSetting; 4] =
         [input.pick(doubled), register.load(), counter.count(), loop_while(more, name)];
     let load = load.into_iter().chain(load_shift).chain(distance.settings);
     let mut steps = vec![step("operands dx, dy, dz", [])];
@@ -150,7 +158,7 @@ fn by_shift<'d>(d: &'d Designer, keys: &Keys, distance: Distance<'d>) -> Scaled<
 }
 
 /// Returns the exact β·D², from a multiplier that the patent does not have, and n/2^(s+1) by wiring.
-fn by_multiplier<'d>(d: &'d Designer, keys: &Keys, distance: Distance<'d>) -> Scaled<'d> {
+fn by_multiplier<'d>(d: &'d Designer, keys: &Keys, distance: SquaredDistance<'d>) -> Scaled<'d> {
     let count = keys.squarings();
     let exponent = common::exponent(d, keys.exponent_bits).q();
     let register = d.register("distance", distance.value.format()).doc("D^2");

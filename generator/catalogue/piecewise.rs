@@ -5,26 +5,26 @@
 
 use std::ops::Range;
 
-use glint_approximate::{Layout, Piecewise, Step};
+use glint_approximate::{HornerStep, Layout, Piecewise};
 use glint_base::fixed::{Format, MAX_WIDTH, Overflow, Rounding};
-use glint_rtl::dsl::{Designer, OperandMux, Register, Setting, SharedProduct, Signal};
+use glint_rtl::dsl::{Designer, OperandMux, Register, SharedProduct, Signal, StepSetting};
 
 /// The multiplier of the steps of polynomials. Each step has a microinstruction of its own.
-pub struct Multiplier<'d> {
+pub struct StepMultiplier<'d> {
     d: &'d Designer,
     name: &'d str,
     /// The mux of the sums and the product, where there is more than one step.
     shared: Option<(OperandMux<'d>, SharedProduct<'d>)>,
 }
 
-impl<'d> Multiplier<'d> {
+impl<'d> StepMultiplier<'d> {
     /// Makes a multiplier with names for its select lines, its two operands and its product.
     pub fn new(
         d: &'d Designer,
         [select, sums, offsets, product]: [&'d str; 4],
-        polynomials: &[&Polynomial<'d, '_>],
+        polynomials: &[&PolynomialDatapath<'d, '_>],
     ) -> Self {
-        let factors = |it: &Polynomial<'d, '_>| {
+        let factors = |it: &PolynomialDatapath<'d, '_>| {
             let factors = |k| Some((format!("{}x{}", it.prefix, k + 1), it.factors(k)?));
             it.steps().filter_map(factors).collect::<Vec<_>>()
         };
@@ -41,7 +41,7 @@ impl<'d> Multiplier<'d> {
     }
 
     /// Returns the settings of a step of one of the polynomials, which is carried out once.
-    pub fn step(&self, polynomial: &Polynomial<'d, '_>, step: usize) -> Vec<Setting> {
+    pub fn step(&self, polynomial: &PolynomialDatapath<'d, '_>, step: usize) -> Vec<StepSetting> {
         let factors = polynomial.factors(step);
         let product = factors.map(|[sum, offset]| match &self.shared {
             Some((_, product)) => product.of(sum, offset),
@@ -64,7 +64,7 @@ pub struct Tables {
 }
 
 /// A piecewise polynomial in a datapath.
-pub struct Polynomial<'d, 'p> {
+pub struct PolynomialDatapath<'d, 'p> {
     d: &'d Designer,
     it: &'p Piecewise,
     prefix: String,
@@ -76,7 +76,7 @@ pub struct Polynomial<'d, 'p> {
     registers: Vec<Register<'d>>,
 }
 
-impl<'d, 'p> Polynomial<'d, 'p> {
+impl<'d, 'p> PolynomialDatapath<'d, 'p> {
     /// Makes the table and the registers of the sums. `registers` names these registers, the polynomial's first. `number` is
     /// the operand's number within the domain, an integer of as many bits as [`glint_approximate::Segments::bits`] says. It
     /// must be stable while the sums are loaded, and a clock earlier if the table is read on the clock edge. Names of other
@@ -91,7 +91,7 @@ impl<'d, 'p> Polynomial<'d, 'p> {
     ) -> Self {
         let (address, offset) = place(d, prefix, number, it);
         let coefficients = table(d, prefix, address, it, tables);
-        let cut = |step: &Step| {
+        let cut = |step: &HornerStep| {
             let offset = offset.expect("a polynomial has an offset");
             let width = step.offset as i32;
             offset.bits(it.segments.rest() - step.offset, Format::signed(-1, width))
@@ -116,7 +116,7 @@ impl<'d, 'p> Polynomial<'d, 'p> {
     }
 
     /// Lets the register of a step take the sum with its product, and returns the setting that loads it.
-    fn add(&self, step: usize, product: Option<Signal<'d>>) -> Setting {
+    fn add(&self, step: usize, product: Option<Signal<'d>>) -> StepSetting {
         let Self { d, it, prefix, .. } = self;
         let coefficient = self.coefficients[step];
         let sum = product.map_or(coefficient, |product| {

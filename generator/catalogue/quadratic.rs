@@ -13,7 +13,7 @@ use glint_rtl::blocks::colour::ChannelBlocks;
 use glint_rtl::dsl::{Designer, Rom, Signal, step};
 use glint_rtl::netlist::About;
 
-use super::common::{self, Products};
+use super::common::{self, ColourProducts};
 
 /// The seed's numbers of the colour channels.
 const CHANNELS: [ChannelBlocks; 3] = [channel(1), channel(2), channel(3)];
@@ -38,7 +38,7 @@ pub fn describe(d: &Designer, config: &Config) {
         .inputs(2, 2)
         .doc("c, the cosine of the angle between normal and half vector")
         .q();
-    let colours = Products::new(d, &keys.operands.colours, Some(CHANNELS));
+    let colours = ColourProducts::new(d, &keys.operands.colours, Some(CHANNELS));
 
     let difference = d
         .register("difference", Format::signed(-2, keys.difference_fraction as i32))

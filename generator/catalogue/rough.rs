@@ -12,7 +12,7 @@ use glint_rtl::blocks::colour::ChannelBlocks;
 use glint_rtl::dsl::{Designer, Register, Signal, end, hold, step, valid};
 use glint_rtl::netlist::{About, Note, Topic};
 
-use super::common::{self, Products};
+use super::common::{self, ColourProducts};
 use sine::sine_rom;
 
 /// The patent's numbers of the colour channels.
@@ -82,7 +82,7 @@ pub fn describe(d: &Designer, config: &Config) {
         .block(4)
         .inputs(61, 62)
         .doc("sign of dgamma: 0 for cos(gamma + dgamma), 1 for cos(gamma - dgamma)");
-    let colours = Products::new(d, &keys.operands.colours, Some(CHANNELS));
+    let colours = ColourProducts::new(d, &keys.operands.colours, Some(CHANNELS));
 
     // V1 V2, then V3, then the load lines V4 to V7: in the order of the patent's table.
     let operand_select =

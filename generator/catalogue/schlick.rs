@@ -11,7 +11,7 @@ use glint_rtl::blocks::divider::Divider;
 use glint_rtl::dsl::{Designer, Signal, loop_while, step};
 use glint_rtl::netlist::{About, Topic};
 
-use super::common::{self, Products};
+use super::common::{self, ColourProducts};
 
 /// Describes `schlick`: `c / (n − n·c + c)` by a multiplier and an iterative divider.
 pub fn describe(d: &Designer, config: &Config) {
@@ -20,7 +20,7 @@ pub fn describe(d: &Designer, config: &Config) {
 
     let cos_gamma = common::cosine(d, &keys.operands.cosine).q();
     let exponent = common::exponent(d, keys.operands.exponent_bits).q();
-    let colours = Products::new(d, &keys.operands.colours, None);
+    let colours = ColourProducts::new(d, &keys.operands.colours, None);
 
     let divisor = divisor(d, cos_gamma, exponent);
     let quotient = Divider::new(d, "quotient", cos_gamma, divisor, keys.fraction as i32);

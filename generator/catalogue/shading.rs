@@ -5,7 +5,7 @@
 use super::{blinn, cosine_power, dot_product, function, gauss, quadratic, schlick, threshold};
 use glint_base::fixed::{Overflow, Rounding};
 use glint_config::Config;
-use glint_keys::shading::{Highlight, Keys};
+use glint_keys::shading::{HighlightDevice, Keys};
 use glint_rtl::dsl::{About, Designer, Signal};
 
 /// Describes `shading`: colours from normals, by parts that are other devices.
@@ -17,13 +17,13 @@ pub fn describe<'d>(d: &'d Designer, config: &Config) {
     let parts = keys.parts().unwrap_or_else(|(part, _)| panic!("`{part}` is checked"));
     d.about(about(&keys));
     let describe = match keys.highlight {
-        Highlight::CosinePower => cosine_power::describe,
-        Highlight::Blinn => blinn::describe,
-        Highlight::Schlick => schlick::describe,
-        Highlight::Gauss => gauss::describe,
-        Highlight::Quadratic => quadratic::describe,
-        Highlight::Threshold => threshold::describe,
-        Highlight::Function => function::describe,
+        HighlightDevice::CosinePower => cosine_power::describe,
+        HighlightDevice::Blinn => blinn::describe,
+        HighlightDevice::Schlick => schlick::describe,
+        HighlightDevice::Gauss => gauss::describe,
+        HighlightDevice::Quadratic => quadratic::describe,
+        HighlightDevice::Threshold => threshold::describe,
+        HighlightDevice::Function => function::describe,
     };
     let vector = |name: &str, suffix: &str, doc: &str, format| {
         ["x", "y", "z"].map(|axis| {
@@ -108,17 +108,17 @@ pub fn describe<'d>(d: &'d Designer, config: &Config) {
 fn about(keys: &Keys) -> About {
     let Keys { power, formula, .. } = keys;
     let f = match keys.highlight {
-        Highlight::CosinePower => {
+        HighlightDevice::CosinePower => {
             format!("max(0, n/{power}*(c - 1) + 1)^{power} where c > 0, else 0")
         }
-        Highlight::Blinn => "c^n".to_owned(),
-        Highlight::Schlick => "c/(n - n*c + c)".to_owned(),
-        Highlight::Gauss => "exp(-n*acos(c)^2/2) where c > 0, else 0".to_owned(),
-        Highlight::Quadratic => "max(0, c - a(n)*(c - c^2))".to_owned(),
-        Highlight::Threshold => {
+        HighlightDevice::Blinn => "c^n".to_owned(),
+        HighlightDevice::Schlick => "c/(n - n*c + c)".to_owned(),
+        HighlightDevice::Gauss => "exp(-n*acos(c)^2/2) where c > 0, else 0".to_owned(),
+        HighlightDevice::Quadratic => "max(0, c - a(n)*(c - c^2))".to_owned(),
+        HighlightDevice::Threshold => {
             "max(0, n/2*(c - 1) + 1)^2 where that reaches ROM(n) and c > 0, else 0".to_owned()
         }
-        Highlight::Function => format!("{formula} with x = c"),
+        HighlightDevice::Function => format!("{formula} with x = c"),
     };
     let cosine = |other: &str| match keys.two_sided {
         true => format!("min(1, abs(N.{other}))"),

@@ -12,7 +12,7 @@ use glint_rtl::blocks::colour::ChannelBlocks;
 use glint_rtl::dsl::{Designer, Rom, Signal, step};
 use glint_rtl::netlist::About;
 
-use super::common::{self, Products};
+use super::common::{self, ColourProducts};
 
 /// The seed's numbers of the colour channels.
 const CHANNELS: [ChannelBlocks; 3] = [channel(3), channel(4), channel(5)];
@@ -35,7 +35,7 @@ pub fn describe(d: &Designer, config: &Config) {
 
     let cos_gamma = common::cosine(d, &keys.operands.cosine).block(1).inputs(1, 1).q();
     let exponent = common::exponent(d, keys.operands.exponent_bits).block(2).inputs(2, 2).q();
-    let colours = Products::new(d, &keys.operands.colours, Some(CHANNELS));
+    let colours = ColourProducts::new(d, &keys.operands.colours, Some(CHANNELS));
 
     // From -1.0, where the parabola has its zero: the saturation of the product is the clamp.
     let scaled =

@@ -1,7 +1,7 @@
 //! Finds mistakes in a schema itself, for the tests of devices.
 
 use super::problems::Problems;
-use super::schema::{Condition, Key, Kind, Schema};
+use super::schema::{Condition, Key, KeyKind, Schema};
 use super::shared::shared_keys;
 use super::values::Config;
 
@@ -61,13 +61,13 @@ impl Key {
     /// Returns whether some accepted value displays as `bare`.
     fn can_be(&self, bare: &str) -> bool {
         match &self.kind {
-            Kind::Choice(options) => options.contains(&bare),
-            Kind::Flag => bare == "true" || bare == "false",
-            Kind::Integer { min, max } => {
+            KeyKind::Choice(options) => options.contains(&bare),
+            KeyKind::Flag => bare == "true" || bare == "false",
+            KeyKind::Integer { min, max } => {
                 bare.parse().is_ok_and(|value: i64| (*min..=*max).contains(&value))
             }
             // Conditions on fractions, lists and texts would hang on how they are written.
-            Kind::Number { .. } | Kind::Integers { .. } | Kind::Text(_) => false,
+            KeyKind::Number { .. } | KeyKind::Integers { .. } | KeyKind::Text(_) => false,
         }
     }
 }

@@ -7,7 +7,7 @@
 use std::collections::BTreeSet;
 
 use super::problems::Problems;
-use super::schema::{Key, Kind, Schema};
+use super::schema::{Key, KeyKind, Schema};
 use super::values::{Config, Value};
 
 /// Returns the configuration with adjusted defaults: every key outside `given` moves, one after the other, to the value that meets
@@ -66,12 +66,12 @@ fn complaints(schema: &Schema, config: &Config) -> Vec<String> {
 /// first.
 fn neighbours(key: &Key) -> Vec<Value> {
     match (&key.kind, &key.default) {
-        (Kind::Integer { min, max }, Value::Integer(default)) => {
+        (KeyKind::Integer { min, max }, Value::Integer(default)) => {
             let farthest = (default - min).max(max - default);
             let pairs = (1..=farthest).flat_map(|by| [default - by, default + by]);
             pairs.filter(|value| (min..=max).contains(&value)).map(Value::Integer).collect()
         }
-        (Kind::Integers { min, max, len_min, len_max }, Value::Integers(default)) => {
+        (KeyKind::Integers { min, max, len_min, len_max }, Value::Integers(default)) => {
             let lists = lists(default, (*min, *max), (*len_min, *len_max));
             lists.into_iter().map(Value::Integers).collect()
         }

@@ -2,7 +2,7 @@
 
 use serde_json::{Map, Value as Json, json};
 
-use super::schema::{Key, Kind, Schema};
+use super::schema::{Key, KeyKind, Schema};
 use super::values::Value;
 
 /// Returns a JSON Schema (draft 7) of a configuration of any of these devices: names, types, ranges, defaults and the
@@ -63,21 +63,21 @@ fn properties(table: &mut Json) -> &mut Map<String, Json> {
 
 fn of_key(key: &Key) -> Json {
     let mut entry = match &key.kind {
-        Kind::Integer { min, max } => {
+        KeyKind::Integer { min, max } => {
             json!({ "type": "integer", "minimum": min, "maximum": max })
         }
-        Kind::Number { min, max, or_zero: false } => {
+        KeyKind::Number { min, max, or_zero: false } => {
             json!({ "type": "number", "minimum": min, "maximum": max })
         }
-        Kind::Number { min, max, or_zero: true } => json!({
+        KeyKind::Number { min, max, or_zero: true } => json!({
             "type": "number",
             "anyOf": [{ "minimum": 0, "maximum": 0 }, { "minimum": min, "maximum": max }],
         }),
-        Kind::Choice(options) => {
+        KeyKind::Choice(options) => {
             json!({ "enum": options.iter().map(|option| choice(key, option)).collect::<Vec<_>>() })
         }
-        Kind::Flag => json!({ "type": "boolean" }),
-        Kind::Text(pattern) => {
+        KeyKind::Flag => json!({ "type": "boolean" }),
+        KeyKind::Text(pattern) => {
             let types = if key.kind.takes_integers() {
                 json!(["string", "number"])
             } else {
@@ -85,7 +85,7 @@ fn of_key(key: &Key) -> Json {
             };
             json!({ "type": types, "pattern": pattern.regex() })
         }
-        Kind::Integers { min, max, len_min, len_max } => json!({
+        KeyKind::Integers { min, max, len_min, len_max } => json!({
             "type": "array",
             "items": { "type": "integer", "minimum": min, "maximum": max },
             "minItems": len_min,

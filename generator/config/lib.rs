@@ -30,7 +30,7 @@ pub use parse::parse;
 pub use problems::{Problem, Problems};
 pub use read::{read, read_located};
 pub use sample::sample;
-pub use schema::{Key, Kind, Schema};
+pub use schema::{Key, KeyKind, Schema};
 pub use shared::{Shared, shared_keys};
 pub use text_pattern::TextPattern;
 pub use values::{Config, Value};

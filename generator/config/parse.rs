@@ -11,7 +11,7 @@ use super::module_name;
 use super::nearest::{listed, nearest};
 use super::points;
 use super::problems::{Problems, STANDARD_INPUT, Violation, out_of_range, quoted, shown};
-use super::schema::{Key, Kind, Schema};
+use super::schema::{Key, KeyKind, Schema};
 use super::text_pattern::{TextPattern, is_path_of_points};
 use super::validate::{Draft, keys_of};
 use super::values::{Config, Value};
@@ -45,7 +45,7 @@ pub(super) fn located(
         return Err(problems);
     }
     let (document, errors) = DeTable::parse_recoverable(text);
-    let mut reader = Reader {
+    let mut reader = TomlReader {
         text,
         directory: Path::new(file_name).parent().unwrap_or(Path::new("")),
         newlines: text.match_indices('\n').map(|(offset, _)| offset).collect(),
@@ -60,7 +60,7 @@ pub(super) fn located(
     reader.read(document.get_ref(), file_name, schemas)
 }
 
-struct Reader<'t> {
+struct TomlReader<'t> {
     text: &'t str,
     /// Where the files are that it names.
     directory: &'t Path,
@@ -72,7 +72,7 @@ struct Reader<'t> {
     valid_toml: bool,
 }
 
-impl Reader<'_> {
+impl TomlReader<'_> {
     fn syntax_error(&mut self, error: &Error) {
         let span = error.span().unwrap_or(0..0);
         let lines = self.line(span.start)..=self.line(span.end);
@@ -269,7 +269,7 @@ impl Reader<'_> {
     ) {
         self.problems.locate(key.name, span.clone());
         let found = match (&key.kind, value.get_ref()) {
-            (Kind::Text(TextPattern::Samples), DeValue::String(path))
+            (KeyKind::Text(TextPattern::Samples), DeValue::String(path))
                 if is_path_of_points(path) =>
             {
                 let points = points::read(&self.directory.join(&**path));
@@ -348,27 +348,27 @@ fn converted(key: &Key, value: &Spanned<DeValue>) -> Result<Value, Vec<Violation
     let wrong_type = || vec![key.wrong_type(&described(value))];
     let too_large = || vec![key.violation(out_of_range(key.name, written(value)))];
     let converted = match (&key.kind, value.get_ref()) {
-        (Kind::Integer { .. }, DeValue::Integer(_)) => {
+        (KeyKind::Integer { .. }, DeValue::Integer(_)) => {
             Value::Integer(integer(value).ok_or_else(too_large)?)
         }
-        (Kind::Number { .. }, DeValue::Integer(_)) => {
+        (KeyKind::Number { .. }, DeValue::Integer(_)) => {
             Value::Number(integer(value).ok_or_else(too_large)? as f64)
         }
-        (Kind::Number { .. }, DeValue::Float(number)) => {
+        (KeyKind::Number { .. }, DeValue::Float(number)) => {
             Value::Number(number.as_str().parse().map_err(|_| too_large())?)
         }
-        (Kind::Choice(_), DeValue::String(text)) if !key.kind.is_integer_choice() => {
+        (KeyKind::Choice(_), DeValue::String(text)) if !key.kind.is_integer_choice() => {
             Value::Text(text.clone().into_owned())
         }
-        (Kind::Text(_), DeValue::String(text)) => Value::Text(text.clone().into_owned()),
+        (KeyKind::Text(_), DeValue::String(text)) => Value::Text(text.clone().into_owned()),
         (_, DeValue::Integer(_)) if key.kind.takes_integers() => {
             Value::Text(integer(value).ok_or_else(too_large)?.to_string())
         }
-        (Kind::Text(TextPattern::Formula), DeValue::Float(number)) => {
+        (KeyKind::Text(TextPattern::Formula), DeValue::Float(number)) => {
             Value::Text(number.as_str().to_owned())
         }
-        (Kind::Flag, DeValue::Boolean(flag)) => Value::Flag(*flag),
-        (Kind::Integers { .. }, DeValue::Array(entries)) => {
+        (KeyKind::Flag, DeValue::Boolean(flag)) => Value::Flag(*flag),
+        (KeyKind::Integers { .. }, DeValue::Array(entries)) => {
             let mut values = Vec::new();
             let mut violations = Vec::new();
             for (index, entry) in entries.iter().enumerate() {

@@ -4,7 +4,7 @@ use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{RngCore, SeedableRng};
 
 use super::problems::Problems;
-use super::schema::{Key, Kind, Schema};
+use super::schema::{Key, KeyKind, Schema};
 use super::values::{Config, Value};
 
 /// Draws of a whole configuration before the search for a valid one is given up.
@@ -62,22 +62,22 @@ fn settle(schema: &Schema, config: &mut Config) {
 
 fn draw(key: &Key, rng: &mut ChaCha8Rng) -> Value {
     match &key.kind {
-        Kind::Integer { min, max } => {
+        KeyKind::Integer { min, max } => {
             let (min, max) = key.drawn.unwrap_or((*min, *max));
             Value::Integer(integer(min, max, rng))
         }
-        Kind::Number { min, max, or_zero } => {
+        KeyKind::Number { min, max, or_zero } => {
             let drawn = number(*min, *max, rng);
             Value::Number(if *or_zero && drawn == *min { 0.0 } else { drawn })
         }
-        Kind::Choice(options) => {
+        KeyKind::Choice(options) => {
             let index = integer(0, options.len() as i64 - 1, rng) as usize;
             Value::Text(options[index].to_owned())
         }
-        Kind::Flag => Value::Flag(rng.next_u32() & 1 == 1),
+        KeyKind::Flag => Value::Flag(rng.next_u32() & 1 == 1),
         // Any other says as little.
-        Kind::Text(_) => key.default.clone(),
-        Kind::Integers { min, max, len_min, len_max } => {
+        KeyKind::Text(_) => key.default.clone(),
+        KeyKind::Integers { min, max, len_min, len_max } => {
             let len = integer(*len_min as i64, *len_max as i64, rng);
             Value::Integers((0..len).map(|_| integer(*min, *max, rng)).collect())
         }

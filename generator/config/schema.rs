@@ -35,7 +35,7 @@ pub struct Key {
     /// The dotted name, as `cosine.fraction`: everything before the last dot is a TOML table.
     pub name: &'static str,
     /// Type and range.
-    pub kind: Kind,
+    pub kind: KeyKind,
     /// The value when a file does not give one.
     pub default: Value,
     /// The meaning, in one or two sentences.
@@ -80,7 +80,7 @@ impl Condition {
 
 /// The type of a key, and which of its values are accepted.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Kind {
+pub enum KeyKind {
     /// An integer, both limits included.
     Integer { min: i64, max: i64 },
     /// A finite number, both limits included, or 0 too. A file may write it as an integer.
@@ -96,7 +96,7 @@ pub enum Kind {
 }
 
 impl Key {
-    fn new(name: &'static str, kind: Kind, default: Value, doc: &'static str) -> Self {
+    fn new(name: &'static str, kind: KeyKind, default: Value, doc: &'static str) -> Self {
         Key { name, kind, default, doc, condition: None, joined_later: false, drawn: None }
     }
 
@@ -108,7 +108,7 @@ impl Key {
         doc: &'static str,
     ) -> Self {
         let (min, max) = range.into_inner();
-        Self::new(name, Kind::Integer { min, max }, Value::Integer(default), doc)
+        Self::new(name, KeyKind::Integer { min, max }, Value::Integer(default), doc)
     }
 
     /// Makes a key of a number in a range.
@@ -119,7 +119,7 @@ impl Key {
         doc: &'static str,
     ) -> Self {
         let (min, max) = range.into_inner();
-        Self::new(name, Kind::Number { min, max, or_zero: false }, Value::Number(default), doc)
+        Self::new(name, KeyKind::Number { min, max, or_zero: false }, Value::Number(default), doc)
     }
 
     /// Makes a key of a number in a range above 0, or 0, its default, which says that none is given.
@@ -129,7 +129,7 @@ impl Key {
         doc: &'static str,
     ) -> Self {
         let (min, max) = range.into_inner();
-        Self::new(name, Kind::Number { min, max, or_zero: true }, Value::Number(0.0), doc)
+        Self::new(name, KeyKind::Number { min, max, or_zero: true }, Value::Number(0.0), doc)
     }
 
     /// Makes a key whose value is one of some texts. With options that are all decimal integers, as `["2", "4"]`, a
@@ -141,12 +141,12 @@ impl Key {
         doc: &'static str,
     ) -> Self {
         let default = Value::Text(default.to_owned());
-        Self::new(name, Kind::Choice(options), default, doc)
+        Self::new(name, KeyKind::Choice(options), default, doc)
     }
 
     /// Makes a key that is `true` or `false`.
     pub fn flag(name: &'static str, default: bool, doc: &'static str) -> Self {
-        Self::new(name, Kind::Flag, Value::Flag(default), doc)
+        Self::new(name, KeyKind::Flag, Value::Flag(default), doc)
     }
 
     /// Makes a key of text of a pattern.
@@ -156,7 +156,7 @@ impl Key {
         pattern: TextPattern,
         doc: &'static str,
     ) -> Self {
-        Self::new(name, Kind::Text(pattern), Value::Text(default.to_owned()), doc)
+        Self::new(name, KeyKind::Text(pattern), Value::Text(default.to_owned()), doc)
     }
 
     /// Makes a key of a list of `len` integers, each in a range.
@@ -169,7 +169,7 @@ impl Key {
     ) -> Self {
         let (min, max) = range.into_inner();
         let (len_min, len_max) = len.into_inner();
-        let kind = Kind::Integers { min, max, len_min, len_max };
+        let kind = KeyKind::Integers { min, max, len_min, len_max };
         Self::new(name, kind, Value::Integers(default.to_vec()), doc)
     }
 
@@ -204,16 +204,16 @@ impl Key {
     }
 }
 
-impl Kind {
+impl KeyKind {
     /// Returns whether this is a choice among integers, which TOML writes without quotes.
     pub fn is_integer_choice(&self) -> bool {
-        matches!(self, Kind::Choice(options) if options.iter().all(|option| is_integer(option)))
+        matches!(self, KeyKind::Choice(options) if options.iter().all(|option| is_integer(option)))
     }
 
     /// Returns whether a file may write an integer. Among words and integers of a choice, the integers are written without
     /// quotes.
     pub(super) fn takes_integers(&self) -> bool {
-        matches!(self, Kind::Choice(options) if options.iter().any(|option| is_integer(option)))
-            || *self == Kind::Text(TextPattern::Formula)
+        matches!(self, KeyKind::Choice(options) if options.iter().any(|option| is_integer(option)))
+            || *self == KeyKind::Text(TextPattern::Formula)
     }
 }

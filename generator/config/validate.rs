@@ -7,7 +7,7 @@ use super::follow::follow;
 use super::module_name;
 use super::nearest::nearest;
 use super::problems::{Problem, Problems, Violation, out_of_range, quoted, shown};
-use super::schema::{Condition, Key, Kind, Schema};
+use super::schema::{Condition, Key, KeyKind, Schema};
 use super::shared::Shared;
 use super::values::{Config, Value, is_integer};
 use super::write::tables;
@@ -17,14 +17,14 @@ impl Key {
     pub(super) fn violations_of(&self, value: &Value) -> Vec<Violation> {
         let name = self.name;
         match (&self.kind, value) {
-            (Kind::Integer { min, max }, Value::Integer(given)) => {
+            (KeyKind::Integer { min, max }, Value::Integer(given)) => {
                 self.required((min..=max).contains(&given), || out_of_range(name, given))
             }
-            (Kind::Number { min, max, or_zero }, Value::Number(given)) => {
+            (KeyKind::Number { min, max, or_zero }, Value::Number(given)) => {
                 let good = (min..=max).contains(&given) || *or_zero && *given == 0.0;
                 self.required(good, || out_of_range(name, value.bare()))
             }
-            (Kind::Choice(options), Value::Text(given)) => self
+            (KeyKind::Choice(options), Value::Text(given)) => self
                 .required(options.contains(&given.as_str()), || {
                     if is_integer(given) {
                         format!("`{name}` cannot be {}", shown(given))
@@ -35,10 +35,10 @@ impl Key {
                 .into_iter()
                 .map(|violation| self.with_suggestion(violation, given))
                 .collect(),
-            (Kind::Flag, Value::Flag(_)) => Vec::new(),
-            (Kind::Text(pattern), Value::Text(given)) => self
+            (KeyKind::Flag, Value::Flag(_)) => Vec::new(),
+            (KeyKind::Text(pattern), Value::Text(given)) => self
                 .required(pattern.fits(given), || format!("`{name}` cannot be {}", quoted(given))),
-            (Kind::Integers { min, max, len_min, len_max }, Value::Integers(given)) => {
+            (KeyKind::Integers { min, max, len_min, len_max }, Value::Integers(given)) => {
                 let mut all = self.required((len_min..=len_max).contains(&&given.len()), || {
                     let plural = if given.len() == 1 { "y" } else { "ies" };
                     format!("`{name}` has {} entr{plural}", given.len())
@@ -58,15 +58,15 @@ impl Key {
     /// Returns the violation of a value of another type, which `found` describes.
     pub(super) fn wrong_type(&self, found: &str) -> Violation {
         let wanted = match self.kind {
-            Kind::Integer { .. } => "an integer",
-            Kind::Number { .. } => "a number",
-            Kind::Choice(_) if self.kind.is_integer_choice() => "an integer",
-            Kind::Choice(words) if words.iter().any(|word| is_integer(word)) => {
+            KeyKind::Integer { .. } => "an integer",
+            KeyKind::Number { .. } => "a number",
+            KeyKind::Choice(_) if self.kind.is_integer_choice() => "an integer",
+            KeyKind::Choice(words) if words.iter().any(|word| is_integer(word)) => {
                 "an integer or a word"
             }
-            Kind::Choice(_) | Kind::Text(_) => "a string",
-            Kind::Flag => "true or false",
-            Kind::Integers { .. } => "a list of integers",
+            KeyKind::Choice(_) | KeyKind::Text(_) => "a string",
+            KeyKind::Flag => "true or false",
+            KeyKind::Integers { .. } => "a list of integers",
         };
         self.violation(format!("`{}` must be {wanted}, not {found}", self.name))
     }
@@ -85,7 +85,7 @@ impl Key {
     }
 
     fn with_suggestion(&self, violation: Violation, given: &str) -> Violation {
-        let Kind::Choice(options) = self.kind else {
+        let KeyKind::Choice(options) = self.kind else {
             return violation;
         };
         // Among numbers the nearest spelling means nothing.
@@ -102,12 +102,12 @@ impl Key {
     /// Returns the values that the key accepts, in words: `an integer from 4 to 30`.
     pub fn accepts(&self) -> String {
         match &self.kind {
-            Kind::Integer { min, max } => format!("an integer from {min} to {max}"),
-            Kind::Number { min, max, or_zero } => {
+            KeyKind::Integer { min, max } => format!("an integer from {min} to {max}"),
+            KeyKind::Number { min, max, or_zero } => {
                 let zero = if *or_zero { "0, or " } else { "" };
                 format!("{zero}a number from {min:?} to {max:?}")
             }
-            Kind::Choice(options) => {
+            KeyKind::Choice(options) => {
                 let (numbers, words): (Vec<&str>, Vec<&str>) =
                     options.iter().copied().partition(|option| is_integer(option));
                 let text = |option: &&str| Value::Text((*option).to_owned()).toml();
@@ -125,9 +125,9 @@ impl Key {
                     [] => "nothing".to_owned(),
                 }
             }
-            Kind::Flag => "true or false".to_owned(),
-            Kind::Text(pattern) => pattern.text().to_owned(),
-            Kind::Integers { min, max, len_min, len_max } => {
+            KeyKind::Flag => "true or false".to_owned(),
+            KeyKind::Text(pattern) => pattern.text().to_owned(),
+            KeyKind::Integers { min, max, len_min, len_max } => {
                 if len_min == len_max {
                     format!("{len_min} integers from {min} to {max}")
                 } else {
@@ -140,14 +140,14 @@ impl Key {
     /// Returns values that replace an unknown value in trial runs of a check.
     fn stand_ins(&self) -> Vec<Value> {
         let ends: Vec<Value> = match &self.kind {
-            Kind::Integer { min, max } => vec![Value::Integer(*min), Value::Integer(*max)],
-            Kind::Number { min, max, .. } => vec![Value::Number(*min), Value::Number(*max)],
-            Kind::Choice(options) => {
+            KeyKind::Integer { min, max } => vec![Value::Integer(*min), Value::Integer(*max)],
+            KeyKind::Number { min, max, .. } => vec![Value::Number(*min), Value::Number(*max)],
+            KeyKind::Choice(options) => {
                 options.iter().map(|option| Value::Text((*option).to_owned())).collect()
             }
-            Kind::Flag => vec![Value::Flag(false), Value::Flag(true)],
-            Kind::Text(_) => Vec::new(),
-            Kind::Integers { min, max, len_min, len_max } => {
+            KeyKind::Flag => vec![Value::Flag(false), Value::Flag(true)],
+            KeyKind::Text(_) => Vec::new(),
+            KeyKind::Integers { min, max, len_min, len_max } => {
                 vec![Value::Integers(vec![*min; *len_min]), Value::Integers(vec![*max; *len_max])]
             }
         };

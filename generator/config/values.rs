@@ -6,15 +6,15 @@ use serde::Serialize;
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(untagged)]
 pub enum Value {
-    /// A value of [`super::Kind::Integer`].
+    /// A value of [`super::KeyKind::Integer`].
     Integer(i64),
-    /// A value of [`super::Kind::Number`].
+    /// A value of [`super::KeyKind::Number`].
     Number(f64),
-    /// A value of [`super::Kind::Choice`] and [`super::Kind::Text`].
+    /// A value of [`super::KeyKind::Choice`] and [`super::KeyKind::Text`].
     Text(String),
-    /// A value of [`super::Kind::Flag`].
+    /// A value of [`super::KeyKind::Flag`].
     Flag(bool),
-    /// A value of [`super::Kind::Integers`].
+    /// A value of [`super::KeyKind::Integers`].
     Integers(Vec<i64>),
 }
 

@@ -1,6 +1,6 @@
 //! Writes configurations as TOML text.
 
-use super::schema::{Key, Kind, Schema};
+use super::schema::{Key, KeyKind, Schema};
 use super::shared::shared_keys;
 use super::values::Config;
 
@@ -56,7 +56,7 @@ fn remark(key: &Key) -> String {
     let ends = [". ", ": ", "; "].map(|mark| key.doc.find(mark).unwrap_or(key.doc.len()));
     let end = ends.into_iter().min().unwrap_or(key.doc.len());
     let clause = key.doc[..end].trim_end_matches('.');
-    let Kind::Choice(options) = key.kind else {
+    let KeyKind::Choice(options) = key.kind else {
         return clause.to_owned();
     };
     let values = key.accepts();

@@ -8,8 +8,8 @@ use anyhow::{Context, Result};
 use crate::cosim::exhaustive::{Backing, Clocks, Job, Places};
 use crate::cosim::{Lockstep, directed, trial};
 use crate::package::{
-    self, ContractFacts, EmitInputs, InstanceExample, LineClocks, OutputFile, Surroundings, Timing,
-    Vectors, WorkedExample,
+    self, ContractFacts, EmitInputs, HandshakeTiming, InstanceExample, LineClocks, OutputFile,
+    Surroundings, Vectors, WorkedExample,
 };
 use crate::registry::Device;
 use glint_base::input;
@@ -185,7 +185,7 @@ impl Core {
     ///
     /// # Errors
     /// Fails if the device does not end.
-    pub fn timing(&self) -> Result<Timing> {
+    pub fn timing(&self) -> Result<HandshakeTiming> {
         trial::timing(&self.design, self.contract.as_ref())
     }
 
@@ -219,7 +219,7 @@ impl Core {
     /// # Errors
     /// As of [`Core::vectors`].
     pub fn shipped_vectors(&self) -> Result<Vectors> {
-        self.shipped_vectors_of(&directed::Known::default())
+        self.shipped_vectors_of(&directed::ComputationCache::default())
     }
 
     /// Returns the same as [`Core::shipped_vectors`], but takes directed computations that are already in `known` from there,
@@ -227,7 +227,7 @@ impl Core {
     ///
     /// # Errors
     /// As of [`Core::vectors`].
-    pub fn shipped_vectors_of(&self, known: &directed::Known) -> Result<Vectors> {
+    pub fn shipped_vectors_of(&self, known: &directed::ComputationCache) -> Result<Vectors> {
         let contract = self.contract.as_ref();
         // A pipeline has the datapath of the microprogram that it was made of.
         let sequential = self.microprogram(true)?;

@@ -102,7 +102,7 @@ pub struct Computation {
     /// Raw, in the order of [`ContractFacts::domain`].
     pub operands: Vec<i64>,
     /// The outputs in every clock in which `valid` is high.
-    pub results: Vec<Shown>,
+    pub results: Vec<TimedResult>,
     /// The clock in which `done` is high.
     pub done: u32,
 }
@@ -117,7 +117,7 @@ impl Computation {
 
 /// A result.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Shown {
+pub struct TimedResult {
     /// The clock in which `valid` is high.
     pub clock: u32,
     /// Raw, in the order of [`ContractFacts::outputs`].

@@ -237,9 +237,9 @@ fn pipelining(config: &Config) -> Option<pipeline::Options> {
             stages => pipeline::Goal::Stages(stages as usize),
         },
         interval: match keys.interval.parse() {
-            Ok(clocks) => pipeline::Interval::Clocks(clocks),
-            Err(_) if keys.rate != 0.0 => pipeline::Interval::Rate(keys.rate),
-            Err(_) => pipeline::Interval::Multipliers(keys.max_multipliers as usize),
+            Ok(clocks) => pipeline::IntervalGoal::Clocks(clocks),
+            Err(_) if keys.rate != 0.0 => pipeline::IntervalGoal::Rate(keys.rate),
+            Err(_) => pipeline::IntervalGoal::Multipliers(keys.max_multipliers as usize),
         },
         registered: keys.multipliers == "registered",
         stall: keys.stall == "ready",

@@ -6,7 +6,7 @@ use dashu_ratio::RBig;
 
 use super::arithmetic::{Arithmetic, Double};
 use super::precise::{Precise, PreciseValue};
-use super::{Comparison, Enclosure, Fault, Formula, Function, Kind, Operator};
+use super::{Comparison, Enclosure, Expression, Fault, Function, Kind, Operator};
 
 /// Integer exponents up to this are repeated products, which may have a negative base; larger ones are computed with logarithms.
 const LARGEST_PRODUCT: u32 = 64;
@@ -14,7 +14,7 @@ const LARGEST_PRODUCT: u32 = 64;
 /// The precisions, in bits, that are tried one after the other until every comparison and every step is decided.
 const PRECISIONS: [usize; 3] = [128, 320, 1024];
 
-impl Formula {
+impl Expression {
     /// Evaluates the formula in `f64` for operands within intervals. Errors of rounding are inside the returned interval.
     ///
     /// Where a comparison or a step is undecided, the interval contains the values on both sides.
@@ -30,10 +30,10 @@ impl Formula {
     /// much that the `f64` limits of the result are neighbours or equal.
     ///
     /// For example, `floor(x * 0.1)` is 3 for x = 30, although 0.1 is no `f64`. It is about a thousand times slower than
-    /// [`Formula::enclose`].
+    /// [`Expression::enclose`].
     ///
     /// # Errors
-    /// Fails as [`Formula::enclose`] does, and where 1024 bits do not decide a comparison or a step.
+    /// Fails as [`Expression::enclose`] does, and where 1024 bits do not decide a comparison or a step.
     pub fn evaluate_exactly(&self, operands: &[(&str, RBig)]) -> Result<Enclosure, Fault> {
         let is_narrow = |precise: &Precise, value: &PreciseValue| {
             let Enclosure { low, high } = precise.enclosure(value);
@@ -49,7 +49,7 @@ impl Formula {
     /// For example, `0.3` with two fraction bits gives (2, false), and `log2(16)` with none gives (4, true).
     ///
     /// # Errors
-    /// Fails as [`Formula::evaluate_exactly`] does, and where 1024 bits do not tell the value from an integer.
+    /// Fails as [`Expression::evaluate_exactly`] does, and where 1024 bits do not tell the value from an integer.
     pub fn ceiling(&self, fraction: u32) -> Result<(i128, bool), Fault> {
         let (precise, value) =
             self.decided(&[], |precise, value| precise.ceiling(value, fraction).is_some())?;

@@ -24,7 +24,7 @@ pub use parse::{FUNCTIONS, parse};
 
 /// A part of a formula. Two parts are equal if their kinds are equal, wherever they come from.
 #[derive(Clone, Debug)]
-pub struct Formula {
+pub struct Expression {
     /// The kind of the part.
     pub kind: Kind,
     /// The bytes of the text that it came from.
@@ -44,22 +44,22 @@ pub enum Kind {
     /// An operand, as a value and not raw.
     Operand(String),
     /// A word of a ROM, as a value: the name of the ROM, and the formula of the word's number.
-    Word(String, Box<Formula>),
+    Word(String, Box<Expression>),
     /// A function of one number.
-    Unary(Function, Box<Formula>),
+    Unary(Function, Box<Expression>),
     /// A function of two.
-    Binary(Operator, Box<Formula>, Box<Formula>),
+    Binary(Operator, Box<Expression>, Box<Expression>),
     /// The first where the comparison holds, else the second.
-    If(Comparison, Box<Formula>, Box<Formula>),
+    If(Comparison, Box<Expression>, Box<Expression>),
 }
 
 /// Whether one number exceeds another.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Comparison {
     /// The number that may exceed the other.
-    pub left: Box<Formula>,
+    pub left: Box<Expression>,
     /// The number that it is compared with.
-    pub right: Box<Formula>,
+    pub right: Box<Expression>,
     /// Whether the comparison also holds of equal numbers.
     pub or_equal: bool,
 }
@@ -129,13 +129,13 @@ impl Fault {
     }
 }
 
-impl PartialEq for Formula {
+impl PartialEq for Expression {
     fn eq(&self, other: &Self) -> bool {
         self.kind == other.kind
     }
 }
 
-impl Formula {
+impl Expression {
     /// Makes the operand of this name, which comes from no text.
     pub fn operand(name: &str) -> Self {
         Self::new(Kind::Operand(name.to_owned()), 0..0)

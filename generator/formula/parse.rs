@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use super::{Comparison, Fault, Formula, Function, Kind, Literal, Operator};
+use super::{Comparison, Expression, Fault, Function, Kind, Literal, Operator};
 
 /// The functions of one number, by the names that a formula may use.
 pub const FUNCTIONS: [(&str, Function); 13] = [
@@ -70,7 +70,7 @@ const MOST_PARTS: usize = 4096;
 ///
 /// # Errors
 /// Fails at the first mistake. The error has its place.
-pub fn parse(text: &str) -> Result<Formula, Fault> {
+pub fn parse(text: &str) -> Result<Expression, Fault> {
     let mut parser = Parser { text, tokens: tokens(text)?, at: 0, depth: 0 };
     let formula = parser.choice()?;
     match parser.tokens.get(parser.at) {
@@ -188,11 +188,11 @@ impl Parser<'_> {
     }
 
     /// Returns a part from the token `from` to the last that was read.
-    fn made(&self, from: usize, kind: Kind) -> Formula {
-        Formula::new(kind, self.tokens[from].start..self.tokens[self.at - 1].end)
+    fn made(&self, from: usize, kind: Kind) -> Expression {
+        Expression::new(kind, self.tokens[from].start..self.tokens[self.at - 1].end)
     }
 
-    fn choice(&mut self) -> Result<Formula, Fault> {
+    fn choice(&mut self) -> Result<Expression, Fault> {
         if self.depth == DEEPEST {
             return self.fault(format!("more than {DEEPEST} parts are within each other"));
         }
@@ -225,8 +225,8 @@ impl Parser<'_> {
     fn chain(
         &mut self,
         signs: &[(&str, Operator)],
-        part: fn(&mut Self) -> Result<Formula, Fault>,
-    ) -> Result<Formula, Fault> {
+        part: fn(&mut Self) -> Result<Expression, Fault>,
+    ) -> Result<Expression, Fault> {
         let from = self.at;
         let mut all = part(self)?;
         while let Some((_, operator)) = signs.iter().find(|(sign, _)| *sign == self.peek()) {
@@ -237,19 +237,19 @@ impl Parser<'_> {
         Ok(all)
     }
 
-    fn sum(&mut self) -> Result<Formula, Fault> {
+    fn sum(&mut self) -> Result<Expression, Fault> {
         let signs = [("+", Operator::Add), ("-", Operator::Sub), ("−", Operator::Sub)];
         self.chain(&signs, Self::product)
     }
 
-    fn product(&mut self) -> Result<Formula, Fault> {
+    fn product(&mut self) -> Result<Expression, Fault> {
         use Operator::{Div, Mod, Mul};
         let signs = [("*", Mul), ("·", Mul), ("×", Mul), ("/", Div), ("%", Mod)];
         self.chain(&signs, Self::signed)
     }
 
     /// Returns a power with a sign before it, which is weaker.
-    fn signed(&mut self) -> Result<Formula, Fault> {
+    fn signed(&mut self) -> Result<Expression, Fault> {
         let from = self.at;
         let mut negations = 0;
         loop {
@@ -276,7 +276,7 @@ impl Parser<'_> {
         Ok(part)
     }
 
-    fn atom(&mut self) -> Result<Formula, Fault> {
+    fn atom(&mut self) -> Result<Expression, Fault> {
         let from = self.at;
         let token = self.peek().to_owned();
         if token.is_empty() {
@@ -320,7 +320,7 @@ impl Parser<'_> {
     }
 
     /// Parses the arguments of a call; the opening parenthesis has been consumed.
-    fn call(&mut self, from: usize, name: &str) -> Result<Formula, Fault> {
+    fn call(&mut self, from: usize, name: &str) -> Result<Expression, Fault> {
         if name == "if" {
             let comparison = self.comparison()?;
             self.expect(",")?;
@@ -355,7 +355,7 @@ impl Parser<'_> {
                 self.expect(")")?;
                 let span = self.tokens[from].start..self.tokens[self.at - 1].end;
                 let body = parse(defined.unwrap_or("u"))?;
-                let operand = Formula::operand("u");
+                let operand = Expression::operand("u");
                 let uses = body.count(&|part| *part == operand);
                 if body.count(&|_| true) + uses * first.count(&|_| true) > MOST_PARTS {
                     let message = format!(

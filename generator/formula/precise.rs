@@ -16,22 +16,22 @@ use super::exact::Exact;
 use super::{Enclosure, Function, Literal, Operator};
 
 /// A number m · 2ᵉ of any size.
-type Number = Repr<2>;
+type BigFloat = Repr<2>;
 
 /// The result of an operation of the library: a number that is rounded in the direction of the context, or an error.
-type Outcome<R> =
+type Rounded<R> =
     Result<dashu_base::Approximation<FBig<R, 2>, dashu_float::round::Rounding>, FpError>;
 
 /// An interval that contains a value, and the value itself where it is known exactly.
 #[derive(Clone, Debug)]
 pub(super) struct PreciseValue {
-    low: Number,
-    high: Number,
+    low: BigFloat,
+    high: BigFloat,
     exact: Option<Exact>,
 }
 
 impl PreciseValue {
-    fn between(low: Number, high: Number) -> Self {
+    fn between(low: BigFloat, high: BigFloat) -> Self {
         Self { low, high, exact: None }
     }
 
@@ -68,7 +68,7 @@ impl Precise {
             let scaled = exact * RBig::from(IBig::ONE << fraction as usize);
             return Some((i128::try_from(scaled.ceil()).ok()?, scaled.is_int()));
         }
-        let scaled = |number: &Number| {
+        let scaled = |number: &BigFloat| {
             FBig::<mode::Zero, 2>::from_repr(number.clone(), Context::new(self.bits))
                 << fraction as isize
         };
@@ -89,30 +89,32 @@ impl Precise {
                 let (low, high) = self.quotient(factor);
                 let pi = self.pi();
                 let product = self.corners(&PreciseValue::between(low, high), &pi, Self::product);
-                product
-                    .map_or_else(|_| (Number::zero(), Number::infinity()), |it| (it.low, it.high))
+                product.map_or_else(
+                    |_| (BigFloat::zero(), BigFloat::infinity()),
+                    |it| (it.low, it.high),
+                )
             }
             Exact::LogarithmOf(value) => {
                 let (low, high) = self.quotient(value);
                 let down = self.down.ln(&low, None).map(|it| it.value().into_repr());
                 let up = self.up.ln(&high, None).map(|it| it.value().into_repr());
                 (
-                    down.unwrap_or_else(|_| Number::neg_infinity()),
-                    up.unwrap_or_else(|_| Number::infinity()),
+                    down.unwrap_or_else(|_| BigFloat::neg_infinity()),
+                    up.unwrap_or_else(|_| BigFloat::infinity()),
                 )
             }
         };
         PreciseValue { low, high, exact: Some(exact) }
     }
 
-    fn quotient(&self, value: &RBig) -> (Number, Number) {
-        let numerator = Number::new(value.numerator().clone(), 0);
-        let denominator = Number::new(IBig::from(value.denominator().clone()), 0);
+    fn quotient(&self, value: &RBig) -> (BigFloat, BigFloat) {
+        let numerator = BigFloat::new(value.numerator().clone(), 0);
+        let denominator = BigFloat::new(IBig::from(value.denominator().clone()), 0);
         let low = self.down.div(&numerator, &denominator).map(|it| it.value().into_repr());
         let high = self.up.div(&numerator, &denominator).map(|it| it.value().into_repr());
         (
-            low.unwrap_or_else(|_| Number::neg_infinity()),
-            high.unwrap_or_else(|_| Number::infinity()),
+            low.unwrap_or_else(|_| BigFloat::neg_infinity()),
+            high.unwrap_or_else(|_| BigFloat::infinity()),
         )
     }
 
@@ -123,7 +125,7 @@ impl Precise {
     }
 
     /// Returns the interval between the results of an operation rounded down and rounded up.
-    fn rounded(down: Outcome<mode::Down>, up: Outcome<mode::Up>) -> Result<PreciseValue, String> {
+    fn rounded(down: Rounded<mode::Down>, up: Rounded<mode::Up>) -> Result<PreciseValue, String> {
         let beyond = |error: FpError| match error {
             FpError::Overflow(_) | FpError::Underflow(_) => {
                 "a value with an exponent of more than 60 bits".to_owned()
@@ -135,7 +137,7 @@ impl Precise {
         Ok(PreciseValue::between(low, high))
     }
 
-    fn product(&self, a: &Number, b: &Number) -> Result<PreciseValue, String> {
+    fn product(&self, a: &BigFloat, b: &BigFloat) -> Result<PreciseValue, String> {
         Self::rounded(self.down.mul(a, b), self.up.mul(a, b))
     }
 
@@ -145,7 +147,7 @@ impl Precise {
         &self,
         a: &PreciseValue,
         b: &PreciseValue,
-        operation: impl Fn(&Self, &Number, &Number) -> Result<PreciseValue, String>,
+        operation: impl Fn(&Self, &BigFloat, &BigFloat) -> Result<PreciseValue, String>,
     ) -> Result<PreciseValue, String> {
         let mut hull = operation(self, &a.low, &b.low)?;
         for (a, b) in [(&a.low, &b.high), (&a.high, &b.low), (&a.high, &b.high)] {
@@ -160,8 +162,8 @@ impl Precise {
     fn rising(
         &self,
         a: &PreciseValue,
-        down: impl Fn(&Context<mode::Down>, &Number) -> Outcome<mode::Down>,
-        up: impl Fn(&Context<mode::Up>, &Number) -> Outcome<mode::Up>,
+        down: impl Fn(&Context<mode::Down>, &BigFloat) -> Rounded<mode::Down>,
+        up: impl Fn(&Context<mode::Up>, &BigFloat) -> Rounded<mode::Up>,
     ) -> Result<PreciseValue, String> {
         Self::rounded(down(&self.down, &a.low), up(&self.up, &a.high))
     }
@@ -170,8 +172,8 @@ impl Precise {
     fn wave(
         &self,
         a: &PreciseValue,
-        down: impl Fn(&Context<mode::Down>, &Number) -> Outcome<mode::Down>,
-        up: impl Fn(&Context<mode::Up>, &Number) -> Outcome<mode::Up>,
+        down: impl Fn(&Context<mode::Down>, &BigFloat) -> Rounded<mode::Down>,
+        up: impl Fn(&Context<mode::Up>, &BigFloat) -> Rounded<mode::Up>,
     ) -> Result<PreciseValue, String> {
         let length = Self::rounded(self.down.sub(&a.high, &a.low), self.up.sub(&a.high, &a.low))?;
         let value = Self::rounded(down(&self.down, &a.low), up(&self.up, &a.low))?;
@@ -199,14 +201,14 @@ impl Precise {
     ///
     /// The series is erf(x) = 2x / √π · exp(−x²) · (1 + 2x²/3 + (2x²)²/(3·5) + …), whose terms are all positive. It ends where the
     /// rest is below the last term: each further term is less than half of the one before.
-    fn error_function(&self, x: &Number) -> Result<PreciseValue, String> {
+    fn error_function(&self, x: &BigFloat) -> Result<PreciseValue, String> {
         let one = self.integer(1);
         let x = PreciseValue::between(x.clone(), x.clone());
         let square = self.multiply(&x, &x)?;
         // exp(−x²) is below 2^−bits there.
-        if square.low > Number::new(IBig::from(self.bits), 0) {
-            let unit = Number::new(IBig::ONE, -(self.bits as isize));
-            return self.subtract(&one, &PreciseValue::between(Number::zero(), unit));
+        if square.low > BigFloat::new(IBig::from(self.bits), 0) {
+            let unit = BigFloat::new(IBig::ONE, -(self.bits as isize));
+            return self.subtract(&one, &PreciseValue::between(BigFloat::zero(), unit));
         }
         let doubled = self.add(&square, &square)?;
         let mut term = one.clone();
@@ -215,13 +217,13 @@ impl Precise {
             let ratio = self.divide(&doubled, &self.integer(odd))?;
             term = self.multiply(&term, &ratio)?;
             sum = self.add(&sum, &term)?;
-            let half = Number::new(IBig::ONE, -1);
-            let negligible = Number::new(IBig::ONE, -(self.bits as isize));
+            let half = BigFloat::new(IBig::ONE, -1);
+            let negligible = BigFloat::new(IBig::ONE, -(self.bits as isize));
             if ratio.high < half && term.high < negligible {
                 break;
             }
         }
-        sum = self.add(&sum, &PreciseValue::between(Number::zero(), term.high))?;
+        sum = self.add(&sum, &PreciseValue::between(BigFloat::zero(), term.high))?;
         let bell = self.function(Function::Exp, &self.function(Function::Negate, &square)?)?;
         let factor =
             self.divide(&self.add(&x, &x)?, &self.function(Function::Sqrt, &self.pi())?)?;
@@ -230,8 +232,8 @@ impl Precise {
     }
 
     /// Returns the error function of any number: it is odd.
-    fn signed_error_function(&self, x: &Number) -> Result<PreciseValue, String> {
-        if *x < Number::zero() {
+    fn signed_error_function(&self, x: &BigFloat) -> Result<PreciseValue, String> {
+        if *x < BigFloat::zero() {
             let value = self.error_function(&-x.clone())?;
             return self.function(Function::Negate, &value);
         }
@@ -256,7 +258,7 @@ fn exact_operator(operator: Operator, a: &PreciseValue, b: &PreciseValue) -> Opt
     Exact::operator(operator, a.exact.as_ref()?, b.exact.as_ref()?)
 }
 
-fn sign(number: &Number) -> Ordering {
+fn sign(number: &BigFloat) -> Ordering {
     if number.significand().is_zero() && number.is_finite() {
         return Ordering::Equal;
     }
@@ -267,7 +269,7 @@ fn sign(number: &Number) -> Ordering {
 }
 
 /// Rounds a number to an `f64` in a direction.
-fn to_f64<R: ErrorBounds>(number: &Number) -> f64 {
+fn to_f64<R: ErrorBounds>(number: &BigFloat) -> f64 {
     if number.is_infinite() {
         return if number.sign() == Sign::Negative { f64::NEG_INFINITY } else { f64::INFINITY };
     }
@@ -349,7 +351,7 @@ impl Arithmetic for Precise {
                 Ok(match self.signs(a) {
                     (Ordering::Greater | Ordering::Equal, _) => a.clone(),
                     (_, Ordering::Less | Ordering::Equal) => negative,
-                    _ => PreciseValue::between(Number::zero(), a.high.clone().max(negative.high)),
+                    _ => PreciseValue::between(BigFloat::zero(), a.high.clone().max(negative.high)),
                 })
             }
             Function::Sqrt => self.rising(a, Context::sqrt, Context::sqrt),
@@ -398,7 +400,7 @@ impl Arithmetic for Precise {
         if let Some(value) = a.rational() {
             return Some(self.rational(&value.floor().into()));
         }
-        let floor = |number: &Number| {
+        let floor = |number: &BigFloat| {
             let number = FBig::<mode::Zero, 2>::from_repr(number.clone(), Context::new(self.bits));
             IBig::try_from(number.floor()).ok()
         };

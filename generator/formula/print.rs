@@ -1,6 +1,6 @@
 //! Prints a formula as an expression of Python or of C.
 
-use super::{Comparison, Formula, Function, Kind, Operator};
+use super::{Comparison, Expression, Function, Kind, Operator};
 
 /// The precedence of a part: sums, products, signs, powers, and parts that need no parentheses.
 const SUM: u8 = 0;
@@ -9,14 +9,14 @@ const SIGN: u8 = 2;
 const POWER: u8 = 3;
 const ATOM: u8 = 4;
 
-impl Formula {
+impl Expression {
     /// Returns the text as [`super::parse()`] reads it, and Python with `from math import *`.
     pub fn python(&self) -> String {
         python(self).0
     }
 }
 
-impl Formula {
+impl Expression {
     /// Returns the calls of the functions of `templates/recompute.c`, which take and give limits.
     pub fn c(&self) -> String {
         let call = |name: &str, parts: &[&Self]| {
@@ -61,9 +61,9 @@ fn within((text, rank): (String, u8), least: u8) -> String {
     if rank < least { format!("({text})") } else { text }
 }
 
-fn python(formula: &Formula) -> (String, u8) {
-    let part = |part: &Formula, least: u8| within(python(part), least);
-    let call = |name: &str, parts: &[&Formula]| {
+fn python(formula: &Expression) -> (String, u8) {
+    let part = |part: &Expression, least: u8| within(python(part), least);
+    let call = |name: &str, parts: &[&Expression]| {
         let parts: Vec<String> = parts.iter().map(|it| part(it, SUM)).collect();
         (format!("{name}({})", parts.join(", ")), ATOM)
     };

@@ -2,16 +2,16 @@
 
 use super::arithmetic::Double;
 use super::evaluate::{binary, unary};
-use super::{Enclosure, Fault, Formula, Function, Kind, Operator};
+use super::{Enclosure, Expression, Fault, Function, Kind, Operator};
 
 /// The limits of a value and of its derivative.
 #[derive(Clone, Copy)]
-struct Pair {
+struct ValueAndSlope {
     value: Enclosure,
     slope: Enclosure,
 }
 
-impl Formula {
+impl Expression {
     /// Returns the limits of the value and of the derivative with respect to `operand`, if the operand lies within `limits`.
     /// At a corner the derivative lies between the derivatives of both sides.
     ///
@@ -21,25 +21,26 @@ impl Formula {
         self.pair(operand, limits).map(|it| (it.value, it.slope))
     }
 
-    fn pair(&self, operand: &str, limits: Enclosure) -> Result<Pair, Fault> {
+    fn pair(&self, operand: &str, limits: Enclosure) -> Result<ValueAndSlope, Fault> {
         let fault = |message: String| Fault::new(self.span.clone(), message);
         let pair = match &self.kind {
             Kind::Number(..) | Kind::Constant(..) => {
-                Pair { value: self.enclose(&[])?, slope: Enclosure::exactly(0.0) }
+                ValueAndSlope { value: self.enclose(&[])?, slope: Enclosure::exactly(0.0) }
             }
-            Kind::Operand(_) | Kind::Word(..) => {
-                Pair { value: self.enclose(&[(operand, limits)])?, slope: Enclosure::exactly(1.0) }
-            }
+            Kind::Operand(_) | Kind::Word(..) => ValueAndSlope {
+                value: self.enclose(&[(operand, limits)])?,
+                slope: Enclosure::exactly(1.0),
+            },
             Kind::Unary(function, a) => {
                 let a = a.pair(operand, limits)?;
                 let value = unary(&Double, *function, &a.value).map_err(fault)?;
-                Pair { value, slope: of_unary(*function, a, value) }
+                ValueAndSlope { value, slope: of_unary(*function, a, value) }
             }
             Kind::Binary(operator, a, b) => {
                 let (a, b) = (a.pair(operand, limits)?, b.pair(operand, limits)?);
                 let value = binary(&Double, *operator, &a.value, &b.value).map_err(fault)?;
                 match of_binary(*operator, a, b, value) {
-                    Some(slope) => Pair { value, slope },
+                    Some(slope) => ValueAndSlope { value, slope },
                     None => return Err(fault("this may jump".to_owned())),
                 }
             }
@@ -60,8 +61,8 @@ impl Formula {
     }
 }
 
-fn of_unary(function: Function, a: Pair, value: Enclosure) -> Enclosure {
-    let Pair { value: at, slope } = a;
+fn of_unary(function: Function, a: ValueAndSlope, value: Enclosure) -> Enclosure {
+    let ValueAndSlope { value: at, slope } = a;
     let number = Enclosure::exactly;
     let one = number(1.0);
     // The nearest f64 and its neighbours.
@@ -91,7 +92,12 @@ fn of_unary(function: Function, a: Pair, value: Enclosure) -> Enclosure {
 }
 
 /// Returns the slope of a binary operation; none where the value may jump.
-fn of_binary(operator: Operator, a: Pair, b: Pair, value: Enclosure) -> Option<Enclosure> {
+fn of_binary(
+    operator: Operator,
+    a: ValueAndSlope,
+    b: ValueAndSlope,
+    value: Enclosure,
+) -> Option<Enclosure> {
     let number = Enclosure::exactly;
     Some(match operator {
         Operator::Add => a.slope + b.slope,

@@ -14,7 +14,7 @@ use glint_config::Config;
 use glint_keys::cosine_power::Keys;
 
 /// The arithmetic of the device, one operation a method. f is the accumulator.
-struct Arithmetic {
+struct PowerArithmetic {
     keys: Keys,
     squarings: u32,
     /// 1.0 − ulp of the accumulator.
@@ -23,7 +23,7 @@ struct Arithmetic {
     square: Narrow,
 }
 
-impl Arithmetic {
+impl PowerArithmetic {
     fn new(keys: Keys) -> Self {
         let (f, squarings) = (keys.f.fraction, keys.power.ilog2());
         let narrow = |frac| Narrow::new(frac, keys.f.format(), keys.f.rounding);
@@ -57,7 +57,7 @@ impl Arithmetic {
 
 /// Returns the golden model.
 pub fn model(config: &Config) -> Box<dyn Model> {
-    let it = Arc::new(Arithmetic::new(Keys::of(config)));
+    let it = Arc::new(PowerArithmetic::new(Keys::of(config)));
     let mut frame = Frame::default();
     let [cosine, exponent] = highlight::slots(&it.keys.operands, &mut frame);
     let accumulator = frame.register("accumulator", it.keys.f.format());
@@ -88,13 +88,13 @@ pub fn model(config: &Config) -> Box<dyn Model> {
 
 /// Returns the accuracy contract. Control operands: `cos_gamma`, `exponent`.
 pub fn contract(config: &Config) -> Box<dyn Contract> {
-    let it = Arithmetic::new(Keys::of(config));
+    let it = PowerArithmetic::new(Keys::of(config));
     let operands = highlight::operands(&it.keys.operands, &it.keys.domain);
     let products = highlight::products(&it.keys.operands.colours, &it.keys.f);
     Box::new(Highlight::new(it, operands, products))
 }
 
-impl Reflectance for Arithmetic {
+impl Reflectance for PowerArithmetic {
     #[inline]
     fn f(&self, control: &[i64]) -> i64 {
         let cosine = self.keys.operands.cosine.clamped(control[0]);

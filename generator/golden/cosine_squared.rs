@@ -15,13 +15,13 @@ use glint_config::Config;
 use glint_keys::cosine_squared::Keys;
 
 /// The arithmetic of the device, one operation a method.
-struct Arithmetic {
+struct SquaredArithmetic {
     keys: Keys,
     /// ROM 12.
     table: CosineTable,
 }
 
-impl Arithmetic {
+impl SquaredArithmetic {
     fn new(keys: Keys) -> Self {
         Self { table: CosineTable::new(2, keys.table_address, keys.fraction), keys }
     }
@@ -55,7 +55,7 @@ pub fn model(config: &Config) -> Box<dyn Model> {
     // The word that ROM 12 read at the latest edge.
     let cosine = frame.hidden();
     let products = products(&keys);
-    let it = Arithmetic::new(keys);
+    let it = SquaredArithmetic::new(keys);
     if stages == 2 {
         products.slots(&mut frame, cosine);
         frame.every_edge(move |s| s[cosine] = it.cosine_of(s[angle]));
@@ -80,10 +80,10 @@ pub fn contract(config: &Config) -> Box<dyn Contract> {
     let mut operands = line::angle_operands(keys.angle_format()).to_vec();
     operands.push(line::length_operand(keys.length_bits));
     let products = products(&keys);
-    Box::new(Highlight::new(Arithmetic::new(keys), operands, products))
+    Box::new(Highlight::new(SquaredArithmetic::new(keys), operands, products))
 }
 
-impl Reflectance for Arithmetic {
+impl Reflectance for SquaredArithmetic {
     #[inline]
     fn f(&self, control: &[i64]) -> i64 {
         self.cosine_of(control[1])

@@ -7,7 +7,7 @@ use glint_base::fixed::exp2;
 
 /// The parameters of the table.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Params {
+pub struct CurveParams {
     /// Bits of the operand, C.
     pub operand_bits: u32,
     /// Fraction bits of a value, S.
@@ -22,7 +22,7 @@ pub struct Params {
 
 /// A segment, with its stored base and slope.
 #[derive(Clone, Copy, Debug)]
-struct Segment {
+struct CurveSegment {
     start: u64,
     log_length: u32,
     base: i64,
@@ -44,19 +44,19 @@ pub struct Piece {
 
 /// The table.
 #[derive(Clone, Debug)]
-pub struct Curve {
-    params: Params,
+pub struct SegmentedCurve {
+    params: CurveParams,
     /// From the topmost range down: log₂ of a segment's length, and the index in `segments` that the range's prefix 0 would
     /// have.
     ranges: Vec<(u32, i64)>,
-    segments: Vec<Segment>,
+    segments: Vec<CurveSegment>,
     largest: i64,
     pieces: Vec<Piece>,
 }
 
-impl Curve {
+impl SegmentedCurve {
     /// Returns the table of `function`, of u as an integer: increasing from 0 to 1.
-    pub fn new(params: &Params, function: impl Fn(f64) -> f64) -> Self {
+    pub fn new(params: &CurveParams, function: impl Fn(f64) -> f64) -> Self {
         let mut curve = Self {
             params: params.clone(),
             ranges: Vec::new(),
@@ -80,7 +80,7 @@ impl Curve {
     fn cut(&mut self, log_length: u32, first: u64, end: u64) {
         let zero = self.segments.len() as i64 - first as i64;
         self.ranges.push((log_length, zero));
-        self.segments.extend((first..end).map(|number| Segment {
+        self.segments.extend((first..end).map(|number| CurveSegment {
             start: number << log_length,
             log_length,
             base: 0,
@@ -94,7 +94,7 @@ impl Curve {
     /// extremes are the ends and the point from which on it rises less, from one operand to the next, than
     /// the line. The base halves the extremes; where a segment has one operand there is no rise.
     fn fit(&mut self, at: usize, function: &impl Fn(f64) -> f64) {
-        let Segment { start, log_length, .. } = self.segments[at];
+        let CurveSegment { start, log_length, .. } = self.segments[at];
         let steps = 1u64 << log_length;
         let scale = exp2(self.params.fraction as i32);
         let value = |step: u64| function((start + step) as f64);
@@ -171,15 +171,15 @@ mod tests {
     }
 
     /// Makes the curve of the parabola with C = 4: one range, 4 … 15, in prefixes of four operands; a tail of one segment.
-    fn parabola(segments: &[u32], tail: u32) -> Curve {
-        let params = Params {
+    fn parabola(segments: &[u32], tail: u32) -> SegmentedCurve {
+        let params = CurveParams {
             operand_bits: 4,
             fraction: 8,
             slope_fraction: 8,
             segments: segments.to_vec(),
             tail,
         };
-        Curve::new(&params, lobe)
+        SegmentedCurve::new(&params, lobe)
     }
 
     #[test]

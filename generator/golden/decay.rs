@@ -23,7 +23,7 @@ use glint_keys::decay::{Decay, Keys};
 const PARTS: i64 = 32;
 
 /// The arithmetic of the device, one operation a method.
-struct Arithmetic {
+struct DecayArithmetic {
     of: Decay,
     keys: Keys,
     /// The decay over the distance, and 2^−x: data.
@@ -36,7 +36,7 @@ struct Arithmetic {
     to_result: Narrow,
 }
 
-impl Arithmetic {
+impl DecayArithmetic {
     /// Makes the tables of a configuration, and the roundings between them.
     ///
     /// # Panics
@@ -168,7 +168,7 @@ impl Arithmetic {
 
 /// Returns the golden model of one of the devices.
 pub fn model(config: &Config, of: Decay) -> Box<dyn Model> {
-    let it = Arc::new(Arithmetic::new(of, Keys::of(config)));
+    let it = Arc::new(DecayArithmetic::new(of, Keys::of(config)));
     let keys = &it.keys;
     let mut frame = Frame::default();
     let [cosine, exponent] = highlight::slots(&keys.operands, &mut frame);
@@ -204,13 +204,13 @@ pub fn model(config: &Config, of: Decay) -> Box<dyn Model> {
 
 /// Returns the accuracy contract of one of the devices. Control operands: `cos_gamma`, `exponent`.
 pub fn contract(config: &Config, of: Decay) -> Box<dyn Contract> {
-    let it = Arithmetic::new(of, Keys::of(config));
+    let it = DecayArithmetic::new(of, Keys::of(config));
     let operands = highlight::operands(&it.keys.operands, &it.keys.domain);
     let products = highlight::products(&it.keys.operands.colours, &it.keys.f);
     Box::new(Highlight::new(it, operands, products))
 }
 
-impl Reflectance for Arithmetic {
+impl Reflectance for DecayArithmetic {
     #[inline]
     fn f(&self, control: &[i64]) -> i64 {
         let cosine = self.keys.operands.cosine.clamped(control[0]);

@@ -36,7 +36,7 @@
 //! assert_eq!((raw, exact), (vec![10], vec![[0.66015625; 2]]));
 //! ```
 
-use super::frame::{Clocked, Frame, Microinstruction, idle};
+use super::frame::{ClockedModel, Frame, FrameStep, idle};
 use super::{Bound, Contract, Model, Operand, Output, Sweep, Term};
 
 /// More clocks than any computation takes.
@@ -47,7 +47,7 @@ const NEVER: i64 = i64::MAX >> 1;
 
 /// A device that is described by its microinstructions.
 pub struct Device {
-    model: Clocked,
+    model: ClockedModel,
     operands: Vec<Operand>,
     outputs: Vec<Output>,
 }
@@ -57,7 +57,7 @@ impl Frame {
     ///
     /// # Panics
     /// If there is no microinstruction.
-    pub fn device(self, program: impl IntoIterator<Item = Microinstruction>) -> Device {
+    pub fn device(self, program: impl IntoIterator<Item = FrameStep>) -> Device {
         let operands = self.operands().map(|(name, format, domain)| Operand {
             name: name.to_owned(),
             format,

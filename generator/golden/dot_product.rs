@@ -14,7 +14,7 @@ use glint_keys::dot_product::Keys;
 
 /// Returns the operations of each microinstruction.
 fn device(config: &Config) -> device::Device {
-    let it = Arc::new(Cosine::new(config));
+    let it = Arc::new(CosineFormula::new(config));
     let Keys { fraction, other, kept, .. } = it.keys;
     let mut frame = Frame::default();
     let mut component =
@@ -65,11 +65,11 @@ pub fn model(config: &Config) -> Box<dyn Model> {
 
 /// Returns the function that the device computes, and its error bound.
 pub fn contract(config: &Config) -> Box<dyn Contract> {
-    device(config).contract(Cosine::new(config))
+    device(config).contract(CosineFormula::new(config))
 }
 
 /// The formula: N·H, limited to 0 … 1, for a normal N of any length.
-struct Cosine {
+struct CosineFormula {
     keys: Keys,
     root: Root,
     /// Computes the distance from the products of both vectors, which are shifted. The distance is half of the products.
@@ -79,7 +79,7 @@ struct Cosine {
     one: i64,
 }
 
-impl Cosine {
+impl CosineFormula {
     fn new(config: &Config) -> Self {
         let keys = Keys::of(config);
         let wide = Format::unsigned(2, keys.kept as i32);
@@ -115,7 +115,7 @@ impl Cosine {
     }
 }
 
-impl Formula for Cosine {
+impl Formula for CosineFormula {
     fn exact(&self, v: &[f64]) -> Vec<f64> {
         let unit = unit_vector([v[0], v[1], v[2]]);
         let sum: f64 = (0..3).map(|axis| unit[axis] * v[3 + axis]).sum();

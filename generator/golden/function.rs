@@ -7,7 +7,7 @@ use super::device::{self, Formula};
 use super::frame::{Frame, idle, step, step_by};
 use super::polynomial::Polynomial;
 use super::{Contract, Model, Term};
-use glint_approximate::{Curve, Function, Outside, Piecewise};
+use glint_approximate::{Curve, Outside, Piecewise, TargetFunction};
 use glint_base::fixed::exp2;
 use glint_config::Config;
 use glint_formula::{Enclosure, parse};
@@ -80,7 +80,7 @@ pub(super) fn slope(config: &Config) -> Option<f64> {
 
 /// The function with the bound that was proved.
 struct Stated {
-    function: Function,
+    function: TargetFunction,
     bound: f64,
     polynomials: Arc<Piecewise>,
 }

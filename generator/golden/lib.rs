@@ -82,7 +82,7 @@ pub trait Model: CloneModel + Send + Sync {
     }
 
     /// Returns the model of a [`frame::Frame`], which alone can be a part of another.
-    fn clocked(&self) -> Option<&frame::Clocked> {
+    fn clocked(&self) -> Option<&frame::ClockedModel> {
         None
     }
 

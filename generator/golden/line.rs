@@ -6,7 +6,7 @@ use std::f64::consts::FRAC_PI_2;
 
 use super::Operand;
 use super::contract::control;
-use super::frame::{Frame, Microinstruction, Slot, idle, step};
+use super::frame::{Frame, FrameStep, Slot, idle, step};
 use glint_base::fixed::{Format, MAX_WIDTH, exp2};
 
 /// Returns the raw value of an angle operand that is nearest to `angle`, in radians, or the end of its domain.
@@ -24,7 +24,7 @@ pub fn walker(
     format: Format,
     length_bits: u32,
     stages: u32,
-) -> (Slot, Vec<Microinstruction>) {
+) -> (Slot, Vec<FrameStep>) {
     frame.delay_valid(stages);
     let [delta, start] = ["delta_zeta", "zeta_start"].map(|name| frame.operand(name, format));
     let length = frame.operand("length", length_format(length_bits));

@@ -72,7 +72,7 @@ impl Keys {
 }
 
 /// The arithmetic of the device, one operation a method.
-struct Arithmetic {
+struct LyonArithmetic {
     keys: Keys,
     squarings: u32,
     /// 1.0 in the point of f.
@@ -86,7 +86,7 @@ struct Arithmetic {
     square: Narrow,
 }
 
-impl Arithmetic {
+impl LyonArithmetic {
     fn new(keys: Keys) -> Self {
         let (f, squarings) = (keys.f.fraction, keys.squarings());
         let (distance, rounding) = (keys.distance_fraction, keys.f.rounding);
@@ -154,7 +154,7 @@ impl Arithmetic {
 
 /// Returns the golden model.
 pub fn model(config: &Config) -> Box<dyn Model> {
-    let it = Arc::new(Arithmetic::new(Keys::of(config)));
+    let it = Arc::new(LyonArithmetic::new(Keys::of(config)));
     let (keys, squarings) = (&it.keys, it.squarings);
     let (shift, in_turn) = (keys.scale == Scale::Shift, keys.squares_in_turn());
     let (vector, scale) = (keys.vector_format(), keys.scale_format());

@@ -30,7 +30,7 @@ fn range_of(n: i64) -> usize {
 const POWERS: [i64; 4] = [1, 2, 4, 16];
 
 /// The arithmetic of the device, one operation a method.
-struct Arithmetic {
+struct QuadCosineArithmetic {
     keys: Keys,
     /// ROM 9, a word for each n.
     roots: Vec<i64>,
@@ -38,7 +38,7 @@ struct Arithmetic {
     tables: [CosineTable; 4],
 }
 
-impl Arithmetic {
+impl QuadCosineArithmetic {
     fn new(keys: Keys) -> Self {
         let f = keys.fraction;
         Self {
@@ -101,7 +101,7 @@ pub fn model(config: &Config) -> Box<dyn Model> {
     // The words that ROM 9 and ROM 12 read at the latest edge.
     let (root, cosine) = (frame.hidden(), frame.hidden());
     let products = products(&keys);
-    let it = Arithmetic::new(keys);
+    let it = QuadCosineArithmetic::new(keys);
     if stages == 2 {
         products.slots(&mut frame, cosine);
         frame.every_edge(move |s| {

@@ -17,7 +17,7 @@ use glint_config::Config;
 use glint_keys::quadratic::{Keys, Scheme};
 
 /// The arithmetic of the device, one operation a method.
-struct Arithmetic {
+struct QuadraticArithmetic {
     keys: Keys,
     difference: Narrow,
     /// ROM(n), unrounded and as words.
@@ -28,7 +28,7 @@ struct Arithmetic {
     sum: Narrow,
 }
 
-impl Arithmetic {
+impl QuadraticArithmetic {
     fn new(keys: Keys) -> Self {
         let (cosine, fraction) = (keys.operands.cosine.fraction, keys.coefficient_fraction());
         let scale = f64::from(1u32 << fraction);
@@ -66,7 +66,7 @@ fn difference_format(fraction: u32) -> Format {
 
 /// Returns the golden model.
 pub fn model(config: &Config) -> Box<dyn Model> {
-    let it = Arc::new(Arithmetic::new(Keys::of(config)));
+    let it = Arc::new(QuadraticArithmetic::new(Keys::of(config)));
     let mut frame = Frame::default();
     let [cosine, exponent] = highlight::slots(&it.keys.operands, &mut frame);
     let difference = frame.register("difference", difference_format(it.keys.difference_fraction));
@@ -84,13 +84,13 @@ pub fn model(config: &Config) -> Box<dyn Model> {
 
 /// Returns the accuracy contract. Control operands: `cos_gamma`, `exponent`.
 pub fn contract(config: &Config) -> Box<dyn Contract> {
-    let it = Arithmetic::new(Keys::of(config));
+    let it = QuadraticArithmetic::new(Keys::of(config));
     let operands = highlight::operands(&it.keys.operands, &it.keys.domain);
     let products = highlight::products(&it.keys.operands.colours, &it.keys.f);
     Box::new(Highlight::new(it, operands, products))
 }
 
-impl Reflectance for Arithmetic {
+impl Reflectance for QuadraticArithmetic {
     #[inline]
     fn f(&self, control: &[i64]) -> i64 {
         let cosine = self.keys.operands.cosine.clamped(control[0]);

@@ -22,7 +22,7 @@ use super::narrow::Narrow;
 use super::sine::{self, Sine, TableScheme};
 use glint_base::fixed::{Format, exp2};
 use glint_config::Config;
-use glint_keys::rough::{Arithmetic as Kind, Keys, Scheme};
+use glint_keys::rough::{ArithmeticMode as Kind, Keys, RomLayout};
 
 /// Returns the keys of a configuration. In the patent's arithmetic f has the fraction bits of the cosine, which has no sign.
 fn keys_of(config: &Config) -> Keys {
@@ -74,14 +74,14 @@ impl Keys {
         highlight::products(&self.operands.colours, &self.f)
     }
 
-    fn sine(&self) -> sine::Params {
+    fn sine(&self) -> sine::SineParams {
         let cosine = self.operands.cosine.fraction;
-        sine::Params {
+        sine::SineParams {
             operand_fraction: cosine,
             fraction: if self.patent() { cosine } else { self.sine_fraction },
             scheme: match self.scheme {
-                Scheme::Direct => TableScheme::Direct { address: self.address },
-                Scheme::Segmented => TableScheme::Segmented {
+                RomLayout::Direct => TableScheme::Direct { address: self.address },
+                RomLayout::Segmented => TableScheme::Segmented {
                     segments: self.segments.clone(),
                     slope_fraction: self.slope_fraction,
                 },
@@ -116,7 +116,7 @@ impl Keys {
 }
 
 /// The blocks between the registers, one a method. Words are raw values.
-struct Arithmetic {
+struct RoughArithmetic {
     keys: Keys,
     sine: Sine,
     kind: Blocks,
@@ -139,7 +139,7 @@ enum Blocks {
     },
 }
 
-impl Arithmetic {
+impl RoughArithmetic {
     fn new(keys: Keys) -> Self {
         let (p, f) = (keys.product_fraction, keys.f.fraction);
         let kind = match keys.arithmetic {

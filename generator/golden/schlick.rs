@@ -11,9 +11,9 @@ use glint_keys::schlick::Keys;
 
 /// The arithmetic of the device. Cosines, divisors and remainders are in ulps of the cosine, and the quotient
 /// is f.
-struct Arithmetic(Keys);
+struct SchlickArithmetic(Keys);
 
-impl Arithmetic {
+impl SchlickArithmetic {
     /// Returns `n − n·cos γ + cos γ`, and an ulp more for a surface that faces away.
     #[inline]
     fn divisor(&self, cosine: i64, exponent: i64) -> i64 {
@@ -42,7 +42,7 @@ fn products(keys: &Keys) -> Products {
 /// The divider's registers are predicted from the division as a whole. After k steps the quotient register ends in the first
 /// k bits of the true quotient, and the remainder register holds the remainder after these bits.
 pub fn model(config: &Config) -> Box<dyn Model> {
-    let it = Arithmetic(Keys::of(config));
+    let it = SchlickArithmetic(Keys::of(config));
     let (bits, cosine_fraction) = (it.0.fraction, it.0.operands.cosine.fraction);
     let products = products(&it.0);
     let mut frame = Frame::default();
@@ -81,10 +81,10 @@ pub fn contract(config: &Config) -> Box<dyn Contract> {
     let keys = Keys::of(config);
     let operands = highlight::operands(&keys.operands, &keys.domain);
     let products = products(&keys);
-    Box::new(Highlight::new(Arithmetic(keys), operands, products))
+    Box::new(Highlight::new(SchlickArithmetic(keys), operands, products))
 }
 
-impl Reflectance for Arithmetic {
+impl Reflectance for SchlickArithmetic {
     #[inline]
     fn f(&self, control: &[i64]) -> i64 {
         let cosine = self.0.operands.cosine.clamped(control[0]);

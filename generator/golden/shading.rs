@@ -16,10 +16,10 @@ use super::{
 use glint_base::fixed::{Rounding, exp2};
 use glint_config::Config;
 use glint_formula::{Kind, parse};
-use glint_keys::shading::{Highlight, Keys, Parts};
+use glint_keys::shading::{HighlightDevice, Keys, PartConfigs};
 
 /// Returns the parts, one after the other, and the sum behind them.
-fn device(keys: &Keys, parts: &Parts) -> device::Device {
+fn device(keys: &Keys, parts: &PartConfigs) -> device::Device {
     let mut frame = Frame::default();
     let mut vector = |name: &str, suffix: &str, format| {
         ["x", "y", "z"].map(|axis| frame.operand(&format!("{name}{axis}{suffix}"), format))
@@ -95,29 +95,29 @@ fn device(keys: &Keys, parts: &Parts) -> device::Device {
 }
 
 /// The golden side of a highlight.
-struct Part {
+struct HighlightModels {
     model: fn(&Config) -> Box<dyn Model>,
     contract: fn(&Config) -> Box<dyn Contract>,
 }
 
-fn part(keys: &Keys) -> Part {
+fn part(keys: &Keys) -> HighlightModels {
     macro_rules! part {
         ($of:ident) => {
-            Part { model: $of::model, contract: $of::contract }
+            HighlightModels { model: $of::model, contract: $of::contract }
         };
     }
     match keys.highlight {
-        Highlight::CosinePower => part!(cosine_power),
-        Highlight::Blinn => part!(blinn),
-        Highlight::Schlick => part!(schlick),
-        Highlight::Gauss => part!(gauss),
-        Highlight::Quadratic => part!(quadratic),
-        Highlight::Threshold => part!(threshold),
-        Highlight::Function => part!(function),
+        HighlightDevice::CosinePower => part!(cosine_power),
+        HighlightDevice::Blinn => part!(blinn),
+        HighlightDevice::Schlick => part!(schlick),
+        HighlightDevice::Gauss => part!(gauss),
+        HighlightDevice::Quadratic => part!(quadratic),
+        HighlightDevice::Threshold => part!(threshold),
+        HighlightDevice::Function => part!(function),
     }
 }
 
-fn parts(keys: &Keys) -> Parts {
+fn parts(keys: &Keys) -> PartConfigs {
     keys.parts().unwrap_or_else(|(part, _)| panic!("`{part}` is checked"))
 }
 
@@ -140,7 +140,7 @@ pub fn contract(config: &Config) -> Box<dyn Contract> {
     let device = device(&keys, &parts);
     let highlight = (part(&keys).contract)(&parts.highlight);
     let colour = exp2(keys.colour_bits as i32) - 1.0;
-    let errors = Errors {
+    let errors = PartErrors {
         facing: error(&*dot_product::contract(&parts.facing)),
         cosine: error(&*dot_product::contract(&parts.cosine)),
         highlight: match keys.has_exponent() {
@@ -161,7 +161,7 @@ fn error(contract: &dyn Contract) -> f64 {
 }
 
 /// The proved errors of the parts.
-struct Errors {
+struct PartErrors {
     /// The error of the cosine between normal and light.
     facing: f64,
     /// The error of the cosine between normal and half vector.
@@ -177,7 +177,7 @@ struct Shading {
     keys: Keys,
     /// The contract of the highlight.
     highlight: Box<dyn Contract>,
-    errors: Errors,
+    errors: PartErrors,
 }
 
 impl Shading {
@@ -214,7 +214,7 @@ impl Formula for Shading {
     /// - A colour is diffuse·cosine + specular·f(cosine), saturated: its slopes are at most the largest colour, and that times
     ///   the slope of f. Where f jumps, cosine and exact cosine may lie on both sides.
     fn terms(&self) -> Vec<Term> {
-        let Errors { facing, cosine, highlight, variation } = self.errors;
+        let PartErrors { facing, cosine, highlight, variation } = self.errors;
         let Some(Variation { slope, jump }) = variation else { return Vec::new() };
         let colour = exp2(self.keys.colour_bits as i32) - 1.0;
         let lights = f64::from(self.keys.lights);
@@ -267,7 +267,7 @@ impl Formula for Shading {
         for suffix in self.keys.suffixes() {
             facing.push(cosine("l", suffix));
             let of = parse(&cosine("h", suffix)).expect("a formula");
-            let f = f.substitute(&glint_formula::Formula::operand(operand), &of, &(0..0));
+            let f = f.substitute(&glint_formula::Expression::operand(operand), &of, &(0..0));
             shine.push(format!("({})", f.python()));
         }
         let [facing, shine] = [facing, shine].map(|parts| parts.join(" + "));
@@ -358,7 +358,7 @@ mod tests {
         let config = Config::from_values(&schema(), "coarse", keys.into()).expect("sound keys");
         let (keys, whole) = (Keys::of(&config), contract(&config));
         let variation = Some(Variation { slope: 1000.0, jump: 0.0 });
-        let errors = Errors { facing: 2e-7, cosine: 2e-7, highlight: 0.1, variation };
+        let errors = PartErrors { facing: 2e-7, cosine: 2e-7, highlight: 0.1, variation };
         let highlight = (part(&keys).contract)(&parts(&keys).highlight);
         let claimed = Shading { highlight, errors, keys };
         let claimed = Bound::of(claimed.terms()).units;

@@ -2,7 +2,7 @@
 //!
 //! Operands are raw values with C fraction bits, 0 … 2^C; a sine is a raw u0.S.
 
-use super::curve::{self, Curve};
+use super::curve::{self, SegmentedCurve};
 use glint_base::fixed::exp2;
 
 /// How the table is organised.
@@ -25,7 +25,7 @@ pub enum TableScheme {
 
 /// The parameters of the table.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Params {
+pub struct SineParams {
     /// Fraction bits of the operand, C.
     pub operand_fraction: u32,
     /// Fraction bits of the sine, S.
@@ -36,7 +36,7 @@ pub struct Params {
 
 /// A contiguous set of operands over which the table's error is bounded.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Piece {
+pub struct ErrorRange {
     /// The smallest and largest operand, as cosines.
     pub cosines: (f64, f64),
     /// The largest `|table − √(1 − x²)|` among its operands.
@@ -51,34 +51,34 @@ pub struct Piece {
 pub struct Sine {
     operand_fraction: u32,
     fraction: u32,
-    table: Table,
+    table: SineTable,
 }
 
 #[derive(Clone, Debug)]
-enum Table {
+enum SineTable {
     Direct {
         address: u32,
         entries: Vec<i64>,
     },
     /// A segmented table of u = 1.0 − x; the tail has an entry for each, so many of them.
     Segmented {
-        curve: Curve,
+        curve: SegmentedCurve,
         rest: i64,
     },
 }
 
 impl Sine {
     /// Builds the table.
-    pub fn new(params: &Params) -> Self {
+    pub fn new(params: &SineParams) -> Self {
         let (operand, fraction) = (params.operand_fraction, params.fraction);
         let table = match &params.scheme {
-            TableScheme::Direct { address } => Table::Direct {
+            TableScheme::Direct { address } => SineTable::Direct {
                 address: *address,
                 entries: (0..1 << address).map(|a| direct_entry(a, *address, fraction)).collect(),
             },
             TableScheme::Segmented { segments, slope_fraction } => {
                 let tail = operand - 2 * segments.len() as u32;
-                let params = curve::Params {
+                let params = curve::CurveParams {
                     operand_bits: operand,
                     fraction,
                     slope_fraction: *slope_fraction,
@@ -86,7 +86,7 @@ impl Sine {
                     tail,
                 };
                 let sine = |u: f64| sine_of(operand, u as i64);
-                Table::Segmented { curve: Curve::new(&params, sine), rest: 1 << tail }
+                SineTable::Segmented { curve: SegmentedCurve::new(&params, sine), rest: 1 << tail }
             }
         };
         Self { operand_fraction: operand, fraction, table }
@@ -97,48 +97,48 @@ impl Sine {
     pub fn at(&self, x: i64) -> i64 {
         let one = 1i64 << self.operand_fraction;
         match &self.table {
-            Table::Direct { address, entries } => {
+            SineTable::Direct { address, entries } => {
                 // 1.0 has no fraction bits; it goes to the last bucket.
                 let fraction = x.min(one - 1);
                 entries[(fraction >> (self.operand_fraction - address)) as usize]
             }
-            Table::Segmented { .. } if x == 0 => (1 << self.fraction) - 1,
-            Table::Segmented { curve, .. } => curve.at(one - x),
+            SineTable::Segmented { .. } if x == 0 => (1 << self.fraction) - 1,
+            SineTable::Segmented { curve, .. } => curve.at(one - x),
         }
     }
 
     /// Visits sets of operands that together are all of 0 … 2^C, with the error of each.
     ///
     /// A bucket's sine is monotonic, and so is worst at an end.
-    pub fn for_each_piece(&self, mut visit: impl FnMut(Piece)) {
+    pub fn for_each_piece(&self, mut visit: impl FnMut(ErrorRange)) {
         let operand = self.operand_fraction;
         let (one, ulp) = (1i64 << operand, exp2(-(self.fraction as i32)));
         let cosine = |x: i64| x as f64 * exp2(-(operand as i32));
         match &self.table {
-            Table::Direct { address, entries } => {
+            SineTable::Direct { address, entries } => {
                 let bucket = one >> address;
                 for (&entry, a) in entries.iter().zip(0i64..) {
                     let first = a * bucket;
                     let last = if first + bucket == one { one } else { first + bucket - 1 };
                     let error = |x| (entry as f64 * ulp - sine_of(operand, one - x)).abs();
                     let error = error(first).max(error(last));
-                    visit(Piece {
+                    visit(ErrorRange {
                         cosines: (cosine(first), cosine(last)),
                         error,
                         shape: (error - ulp / 2.0).max(0.0),
                     });
                 }
             }
-            Table::Segmented { curve, rest } => {
+            SineTable::Segmented { curve, rest } => {
                 // x = 0 reads 1 − ulp.
-                visit(Piece { cosines: (0.0, 0.0), error: ulp, shape: 0.0 });
+                visit(ErrorRange { cosines: (0.0, 0.0), error: ulp, shape: 0.0 });
                 for piece in curve.pieces().iter().filter(|piece| piece.start as i64 >= *rest) {
                     let cosines =
                         (cosine(one - piece.last as i64), cosine(one - piece.start as i64));
-                    visit(Piece { cosines, error: piece.error, shape: piece.shape });
+                    visit(ErrorRange { cosines, error: piece.error, shape: piece.shape });
                 }
                 // These sines are below √7/4, so that no entry saturates.
-                visit(Piece {
+                visit(ErrorRange {
                     cosines: (cosine(one - rest + 1), 1.0),
                     error: ulp / 2.0,
                     shape: 0.0,
@@ -172,7 +172,7 @@ mod tests {
     use super::*;
 
     fn sine(operand_fraction: u32, fraction: u32, scheme: TableScheme) -> Sine {
-        Sine::new(&Params { operand_fraction, fraction, scheme })
+        Sine::new(&SineParams { operand_fraction, fraction, scheme })
     }
 
     fn segmented(segments: &[u32], slope_fraction: u32) -> TableScheme {
@@ -225,7 +225,8 @@ mod tests {
                 let cosine = x as f64 / one as f64;
                 let exact = (1.0 - cosine * cosine).sqrt();
                 let error = (it.at(x) as f64 * exp2(-(it.fraction as i32)) - exact).abs();
-                let holds = |piece: &&Piece| piece.cosines.0 <= cosine && cosine <= piece.cosines.1;
+                let holds =
+                    |piece: &&ErrorRange| piece.cosines.0 <= cosine && cosine <= piece.cosines.1;
                 let piece = pieces.iter().find(holds).expect("a piece");
                 assert!(error <= piece.error, "{x} of {it:?}: {error} > {}", piece.error);
                 // Not idle either: no piece allows more than the table could need.

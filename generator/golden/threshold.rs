@@ -17,7 +17,7 @@ use glint_config::Config;
 use glint_keys::threshold::Keys;
 
 /// The arithmetic of the device, one operation a method.
-struct Arithmetic {
+struct ThresholdArithmetic {
     keys: Keys,
     /// 1.0 as a base.
     base_one: i64,
@@ -29,7 +29,7 @@ struct Arithmetic {
     margin: f64,
 }
 
-impl Arithmetic {
+impl ThresholdArithmetic {
     fn new(keys: Keys) -> Self {
         let (f, rounding) = (keys.f.fraction, keys.f.rounding);
         // n/2 has one fraction bit.
@@ -91,7 +91,7 @@ impl Arithmetic {
 
 /// Returns the golden model.
 pub fn model(config: &Config) -> Box<dyn Model> {
-    let it = Arc::new(Arithmetic::new(Keys::of(config)));
+    let it = Arc::new(ThresholdArithmetic::new(Keys::of(config)));
     let mut frame = Frame::default();
     let [cosine, exponent] = highlight::slots(&it.keys.operands, &mut frame);
     let fraction = it.keys.f.fraction as i32;
@@ -108,16 +108,16 @@ pub fn model(config: &Config) -> Box<dyn Model> {
 
 /// Returns the accuracy contract. Control operands: `cos_gamma`, `exponent`.
 pub fn contract(config: &Config) -> Box<dyn Contract> {
-    Box::new(highlight(Arithmetic::new(Keys::of(config))))
+    Box::new(highlight(ThresholdArithmetic::new(Keys::of(config))))
 }
 
-fn highlight(it: Arithmetic) -> Highlight {
+fn highlight(it: ThresholdArithmetic) -> Highlight {
     let operands = highlight::operands(&it.keys.operands, &it.keys.domain);
     let products = highlight::products(&it.keys.operands.colours, &it.keys.f);
     Highlight::new(it, operands, products)
 }
 
-impl Reflectance for Arithmetic {
+impl Reflectance for ThresholdArithmetic {
     #[inline]
     fn f(&self, control: &[i64]) -> i64 {
         let cosine = self.keys.operands.cosine.clamped(control[0]);

@@ -44,7 +44,7 @@ impl Cosine {
 
 glint_config::keys! {
     /// The colours that f multiplies.
-    pub struct Colours {
+    pub struct ColourKeys {
         bits: u32 = colour_bits(),
         multipliers: u32 = Key::choice("colour.multipliers", "3", &["1", "3"],
             "Multipliers for f times the colours: one for each, or one for all, which takes three clocks a point more and saves DSP blocks. A pipeline has one for each.")
@@ -52,7 +52,7 @@ glint_config::keys! {
     }
 }
 
-impl Colours {
+impl ColourKeys {
     /// Returns whether one multiplier makes the products with all colours.
     pub fn in_turn(&self) -> bool {
         self.multipliers == 1
@@ -70,7 +70,7 @@ glint_config::keys! {
     pub struct Operands {
         cosine: Cosine = Cosine::keys(),
         exponent_bits: u32 = exponent_bits(),
-        colours: Colours = Colours::keys(),
+        colours: ColourKeys = ColourKeys::keys(),
     }
 }
 
@@ -86,7 +86,7 @@ impl Operands {
         Self {
             cosine: Cosine { fraction: 4, signed: false },
             exponent_bits: 4,
-            colours: Colours::small(),
+            colours: ColourKeys::small(),
         }
     }
 }

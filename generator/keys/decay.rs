@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::common::{self, Domain, Intensity, Operands};
-use glint_approximate::{Curve, Function, Outside, Piecewise, Refusal, Wish, find};
+use glint_approximate::{Curve, Outside, Piecewise, Refusal, TargetFunction, Wish, find};
 use glint_base::fixed::Format;
 use glint_config::{Config, Key, Problems, Schema, Value};
 use glint_formula::parse;
@@ -143,7 +143,7 @@ fn table(
     degree: &str,
     key: &'static str,
 ) -> Result<Arc<Piecewise>, Refusal> {
-    let function = Function {
+    let function = TargetFunction {
         curve: Curve::Formula(parse(formula).expect("a formula of ours")),
         domain: (0, last),
         operand: Format::unsigned(int, frac),

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use glint_approximate::{
-    Curve, Function, Identity, Layout, Outside, Piecewise, Refusal, Samples, Wish, find,
+    Curve, Identity, Layout, Outside, Piecewise, Refusal, Samples, TargetFunction, Wish, find,
 };
 use glint_base::fixed::{Format, MAX_WIDTH};
 use glint_config::{Config, Key, Problems, Schema, TextPattern};
@@ -74,7 +74,7 @@ fn check(config: &Config, problems: &mut Problems) {
 ///
 /// # Errors
 /// Fails if the formula or the domain is wrong, or if there is no approximation. The error says why.
-pub fn found(config: &Config) -> Result<(Function, Arc<Piecewise>), Refusal> {
+pub fn found(config: &Config) -> Result<(TargetFunction, Arc<Piecewise>), Refusal> {
     let keys = Keys::of(config);
     let function = function(&keys)?;
     let wish = Wish {
@@ -86,7 +86,7 @@ pub fn found(config: &Config) -> Result<(Function, Arc<Piecewise>), Refusal> {
     Ok((function, it))
 }
 
-fn function(keys: &Keys) -> Result<Function, Refusal> {
+fn function(keys: &Keys) -> Result<TargetFunction, Refusal> {
     let fraction = keys.operand as i32;
     let ends = [("function.from", &keys.from), ("function.to", &keys.to)];
     let [from, to] = ends.map(|(key, text)| End::read(key, text, keys.operand));
@@ -121,7 +121,7 @@ fn function(keys: &Keys) -> Result<Function, Refusal> {
     } else {
         Curve::Samples(Samples::read(&keys.samples, keys.operand, (first, last))?)
     };
-    Ok(Function {
+    Ok(TargetFunction {
         curve,
         domain: (first, last),
         operand: Format::holding(first.into(), last.into(), fraction),

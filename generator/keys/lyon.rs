@@ -1,6 +1,6 @@
 //! Declares the configuration keys of `lyon`, and checks that their values make a device.
 
-use super::common::{self, Colours, Domain, Intensity};
+use super::common::{self, ColourKeys, Domain, Intensity};
 use glint_base::fixed::Rounding;
 use glint_config::{Config, Key, Problems, Schema};
 
@@ -30,7 +30,7 @@ glint_config::keys! {
             "Multipliers that square the components of D: one for each, or one for all, which takes two clocks a point more and saves DSP blocks. A pipeline has one for each.")
             .only_when("architecture", "sequential").joined_later(),
         exponent_bits: u32 = common::exponent_bits(),
-        colours: Colours = Colours::keys(),
+        colours: ColourKeys = ColourKeys::keys(),
         f: Intensity = Intensity::keys(),
         domain: Domain = Domain::keys(),
     }

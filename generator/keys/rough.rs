@@ -6,7 +6,7 @@ use glint_config::{Config, Key, Problems, Schema};
 
 glint_config::choices! {
     /// How sums and products are kept.
-    pub enum Arithmetic {
+    pub enum ArithmeticMode {
         /// With integer bits and signs.
         Exact = "exact",
         /// The patent's: every word is a fraction modulo 1.0, and every "−1" a missing carry.
@@ -16,7 +16,7 @@ glint_config::choices! {
 
 glint_config::choices! {
     /// How ROM 18 is organised.
-    pub enum Scheme {
+    pub enum RomLayout {
         /// Ranges that shrink toward cos = 1, in straight segments.
         Segmented = "segmented",
         /// One entry a bucket.
@@ -30,7 +30,7 @@ glint_config::keys! {
     /// In the patent's arithmetic all words have `cosine.fraction` bits; `cosine.signed`, `clamp`,
     /// `product.*`, `intensity.*` and `sine.fraction` do not apply.
     pub struct Keys {
-        arithmetic: Arithmetic = Key::choice("arithmetic", "exact", Arithmetic::WORDS,
+        arithmetic: ArithmeticMode = Key::choice("arithmetic", "exact", ArithmeticMode::WORDS,
             "exact: numbers with an integer position. patent: numbers modulo 1.0, as in UA 60139."),
         clamp: bool = exact(Key::flag("clamp", true,
             "Clamp a negative n/2*(cos - 1) + 1 to 0; without it a ring appears around the highlight.")),
@@ -40,7 +40,7 @@ glint_config::keys! {
         product_rounding: Rounding = exact(Key::rounding("product.rounding", "truncate",
             "Rounding into registers 11 and 12.")),
         f: Intensity = exact_of(Intensity::keys(), &["intensity.fraction", "intensity.rounding"]),
-        scheme: Scheme = Key::choice("sine.scheme", "segmented", Scheme::WORDS,
+        scheme: RomLayout = Key::choice("sine.scheme", "segmented", RomLayout::WORDS,
             "ROM 18: segments that shrink toward cos = 1, with interpolation; or one entry a bucket, as in the patent."),
         sine_fraction: u32 = exact(Key::integer("sine.fraction", 22, 8..=28,
             "Fraction bits of the sine.")),
@@ -73,7 +73,7 @@ fn exact_of(keys: Vec<Key>, names: &[&str]) -> Vec<Key> {
 impl Keys {
     /// Returns whether numbers are kept as the patent does.
     pub fn patent(&self) -> bool {
-        self.arithmetic == Arithmetic::Patent
+        self.arithmetic == ArithmeticMode::Patent
     }
 }
 
@@ -99,7 +99,7 @@ fn check(config: &Config, problems: &mut Problems) {
         let message = format!("{product} fraction bits are more than the products have");
         problems.push("product.fraction", message, format!("at most {}", 2 * fraction.min(cosine)));
     }
-    if keys.scheme == Scheme::Direct {
+    if keys.scheme == RomLayout::Direct {
         if keys.address > cosine {
             let message = "more address bits than the cosine has fraction bits".to_owned();
             let remedy = format!("at most {cosine}, or a larger cosine.fraction");

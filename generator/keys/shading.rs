@@ -7,7 +7,7 @@ use glint_config::{Config, Key, Problems, Schema, TextPattern, Value};
 
 glint_config::choices! {
     /// The device that makes the highlight of a cosine.
-    pub enum Highlight {
+    pub enum HighlightDevice {
         /// W(n, γ).
         CosinePower = "cosine-power",
         /// cosⁿγ.
@@ -28,7 +28,7 @@ glint_config::choices! {
 glint_config::keys! {
     /// The keys of a configuration.
     pub struct Keys {
-        highlight: Highlight = Key::choice("highlight", "cosine-power", Highlight::WORDS,
+        highlight: HighlightDevice = Key::choice("highlight", "cosine-power", HighlightDevice::WORDS,
             "The device that makes the highlight of the cosine."),
         power: u32 = common::power().only_when("highlight", "cosine-power"),
         formula: String = Key::text(FORMULA, "x^32", TextPattern::Formula,
@@ -99,7 +99,7 @@ const FORMULA: &str = "function.formula";
 const SUFFIXES: [&str; 4] = ["", "2", "3", "4"];
 
 /// The configurations of the parts.
-pub struct Parts {
+pub struct PartConfigs {
     /// The part that computes the cosine between normal and light.
     pub facing: Config,
     /// The part that computes the cosine between normal and half vector.
@@ -142,16 +142,16 @@ impl Keys {
     /// Returns the smallest n for which the accuracy contract is stated: below it the formula jumps at a right angle.
     pub fn least(&self) -> i64 {
         match self.highlight {
-            Highlight::CosinePower => self.power.into(),
-            Highlight::Gauss => 16,
-            Highlight::Threshold => 2,
+            HighlightDevice::CosinePower => self.power.into(),
+            HighlightDevice::Gauss => 16,
+            HighlightDevice::Threshold => 2,
             _ => 1,
         }
     }
 
     /// Returns whether the highlight has an exponent.
     pub fn has_exponent(&self) -> bool {
-        self.highlight != Highlight::Function
+        self.highlight != HighlightDevice::Function
     }
 
     /// Returns the suffix of the operands and parts of each light.
@@ -163,7 +163,7 @@ impl Keys {
     ///
     /// # Errors
     /// Fails if a part refuses its configuration. The error names the part and says why.
-    pub fn parts(&self) -> Result<Parts, (&'static str, Box<Problems>)> {
+    pub fn parts(&self) -> Result<PartConfigs, (&'static str, Box<Problems>)> {
         let make = |schema: Schema, keys: Vec<(&str, Value)>| {
             let keys = keys.into_iter().map(|(key, value)| (key.to_owned(), value)).collect();
             Config::from_values(&schema, "part", keys).map_err(|why| (schema.device, Box::new(why)))
@@ -185,13 +185,13 @@ impl Keys {
         };
         let (facing, cosine) = (between(self.facing())?, between(self.cosine)?);
         let (schema, fraction) = match self.highlight {
-            Highlight::CosinePower => (cosine_power::schema(), 18),
-            Highlight::Blinn => (blinn::schema(), 18),
-            Highlight::Gauss => (gauss::schema(), 18),
-            Highlight::Quadratic => (quadratic::schema(), 16),
-            Highlight::Threshold => (threshold::schema(), 16),
-            Highlight::Schlick => (schlick::schema(), 14),
-            Highlight::Function => {
+            HighlightDevice::CosinePower => (cosine_power::schema(), 18),
+            HighlightDevice::Blinn => (blinn::schema(), 18),
+            HighlightDevice::Gauss => (gauss::schema(), 18),
+            HighlightDevice::Quadratic => (quadratic::schema(), 16),
+            HighlightDevice::Threshold => (threshold::schema(), 16),
+            HighlightDevice::Schlick => (schlick::schema(), 14),
+            HighlightDevice::Function => {
                 let text = |key, value: &str| (key, Value::Text(value.to_owned()));
                 let keys = vec![
                     text("function.formula", &self.formula),
@@ -202,7 +202,7 @@ impl Keys {
                     integer("result.fraction", 16),
                 ];
                 let highlight = make(function::schema(), keys)?;
-                return Ok(Parts { facing, cosine, highlight });
+                return Ok(PartConfigs { facing, cosine, highlight });
             }
         };
         let mut keys = vec![
@@ -213,9 +213,9 @@ impl Keys {
             integer("domain.exponent_min", self.least()),
             integer("domain.exponent_max", self.most),
         ];
-        if self.highlight == Highlight::CosinePower {
+        if self.highlight == HighlightDevice::CosinePower {
             keys.push(("power", Value::Text(self.power.to_string())));
         }
-        Ok(Parts { facing, cosine, highlight: make(schema, keys)? })
+        Ok(PartConfigs { facing, cosine, highlight: make(schema, keys)? })
     }
 }

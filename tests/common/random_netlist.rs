@@ -5,8 +5,8 @@ use std::panic::Location;
 use glint::cosim;
 use glint::fixed::{Format, mask};
 use glint::hdl::netlist::{
-    Design, Driver, Field, FieldId, FieldKind, Microinstruction, Net, NetId, Op, Partition, Port,
-    RegId, RegisterKind, Role, Rom, RomId, Sequence,
+    Design, Driver, Field, FieldId, FieldKind, Microinstruction, Net, NetId, NetlistRom, Op,
+    Partition, Port, RegId, RegisterKind, Role, RomId, Sequence,
 };
 
 /// Numbers at random.
@@ -119,8 +119,8 @@ impl Build {
     ) -> NetId {
         let data = self.net(format, Driver::Undriven, true);
         let doc = vec!["a random word".to_owned()];
-        let rom = Rom::new(name, address, data, words, Location::caller());
-        self.design.add_rom(Rom { synchronous, doc, ..rom });
+        let rom = NetlistRom::new(name, address, data, words, Location::caller());
+        self.design.add_rom(NetlistRom { synchronous, doc, ..rom });
         data
     }
 

@@ -1,7 +1,7 @@
 //! Values worked out by hand, in the files of `by_hand/` (its `README.md` says how they are written), against both
 //! the design in the built-in simulator and the golden model.
 
-use glint::config::{Config, Kind, Schema, parse};
+use glint::config::{Config, KeyKind, Schema, parse};
 use glint::golden::Model;
 use glint::hdl::netlist::Design;
 use glint::registry::{Device, Registry};
@@ -19,7 +19,7 @@ const LIMIT: u32 = 1000;
 fn widened(mut schema: Schema) -> Schema {
     schema.check = |_, _| ();
     for key in &mut schema.keys {
-        if let Kind::Integer { min, .. } | Kind::Integers { min, .. } = &mut key.kind {
+        if let KeyKind::Integer { min, .. } | KeyKind::Integers { min, .. } = &mut key.kind {
             *min = 0;
         }
     }

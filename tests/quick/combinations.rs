@@ -14,7 +14,7 @@ use crate::common::files::{paths, read};
 use crate::common::sample::sampled;
 use glint::config::Config;
 use glint::core::Core;
-use glint::cosim::exhaustive::{Clocks, Difference, Job, MOST_BITS, Proof, Shard, State};
+use glint::cosim::exhaustive::{Clocks, Difference, Job, MOST_BITS, Proof, Shard, ShardState};
 use glint::golden::Model;
 use glint::registry::{Device, Registry};
 use serde_json::Value;
@@ -100,8 +100,8 @@ fn job(core: &Core, aim: Aim) -> Job<'_> {
 }
 
 /// Returns a shard, broken off and resumed after every look.
-fn done(job: &Job<'_>, shard: Shard) -> State {
-    let mut state = State::new("digest", shard);
+fn done(job: &Job<'_>, shard: Shard) -> ShardState {
+    let mut state = ShardState::new("digest", shard);
     while job.remaining(&state) > 0 {
         let text = serde_json::to_string(&state).expect("a state");
         state = serde_json::from_str(&text).expect("a state");
@@ -113,13 +113,13 @@ fn done(job: &Job<'_>, shard: Shard) -> State {
 }
 
 /// Returns a job without a break.
-fn whole(job: &Job<'_>) -> State {
+fn whole(job: &Job<'_>) -> ShardState {
     part(job, Shard::WHOLE)
 }
 
 /// Runs a shard without a break.
-fn part(job: &Job<'_>, shard: Shard) -> State {
-    let mut state = State::new("digest", shard);
+fn part(job: &Job<'_>, shard: Shard) -> ShardState {
+    let mut state = ShardState::new("digest", shard);
     let end = job.run(&mut state, &|_| (), &mut |_| ControlFlow::Continue(()));
     assert_eq!(end.expect("it can be simulated"), ControlFlow::Continue(()));
     state
@@ -235,7 +235,7 @@ fn the_first_difference_is_the_same_however_the_work_is_divided() {
     assert_eq!(done(&job, Shard::WHOLE), whole);
     for of in [2, 3, 500] {
         let shards = (1..=of).map(|number| done(&job, Shard { number, of }));
-        let shards: Vec<State> = shards.collect();
+        let shards: Vec<ShardState> = shards.collect();
         let names: Vec<String> = (1..=of).map(|number| number.to_string()).collect();
         assert_eq!(job.merge(&shards, &names).expect("merged"), whole);
     }

@@ -1,6 +1,6 @@
 //! Keys that a file does not name follow from those that it does.
 
-use glint::config::{Config, Key, Kind, Problems, Schema, Value, parse};
+use glint::config::{Config, Key, KeyKind, Problems, Schema, Value, parse};
 use glint::core::Core;
 use glint::keys::presets::DEVICE as FUNCTION;
 use glint::registry::Registry;
@@ -52,7 +52,7 @@ fn one_key_can_be_changed_alone() {
     for device in sampled("devices of which a key is changed", devices, 4) {
         let schema = (device.schema)();
         for key in &schema.keys {
-            let Kind::Integer { min, max } = key.kind else {
+            let KeyKind::Integer { min, max } = key.kind else {
                 continue;
             };
             for value in [min, max] {

@@ -4,7 +4,7 @@ use std::ops::ControlFlow;
 
 use glint::config::{Config, Schema};
 use glint::core::Core;
-use glint::cosim::exhaustive::{Clocks, Peak, Places, Proof, Shard, State};
+use glint::cosim::exhaustive::{Clocks, Peak, Places, Proof, Shard, ShardState};
 use glint::cosim::{Random, search, trial};
 use glint::dsl::{Designer, end, step, valid};
 use glint::fixed::Format;
@@ -159,7 +159,7 @@ fn a_narrow_normaliser_is_proved() {
     let core = with_keys(device("normaliser"), keys).sure();
     let contract = core.contract.as_ref();
     let job = core.job().expect("model and design fit");
-    let mut state = State::new("", Shard::WHOLE);
+    let mut state = ShardState::new("", Shard::WHOLE);
     let whole = job.run(&mut state, &|_| (), &mut |_| ControlFlow::Continue(())).expect("it runs");
     assert!(whole.is_continue());
     assert_eq!(state.clocks.differs, None);

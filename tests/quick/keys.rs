@@ -9,7 +9,7 @@ use rayon::prelude::*;
 use crate::common::Sure;
 use crate::common::files::{paths, read};
 use crate::common::sample::sampled;
-use glint::config::{self, Key, Kind, Schema, TextPattern, shared_keys};
+use glint::config::{self, Key, KeyKind, Schema, TextPattern, shared_keys};
 use glint::core::Core;
 use glint::registry::{Device, Registry};
 
@@ -27,12 +27,12 @@ type Setting = (&'static str, String);
 fn others(key: &Key) -> Vec<String> {
     let default = key.default.toml();
     let candidates: Vec<String> = match &key.kind {
-        Kind::Flag => vec!["true".to_owned(), "false".to_owned()],
-        Kind::Choice(options) if key.kind.is_integer_choice() => {
+        KeyKind::Flag => vec!["true".to_owned(), "false".to_owned()],
+        KeyKind::Choice(options) if key.kind.is_integer_choice() => {
             options.iter().map(|option| (*option).to_owned()).collect()
         }
-        Kind::Choice(options) => options.iter().map(|option| format!("{option:?}")).collect(),
-        Kind::Integer { min, max } => {
+        KeyKind::Choice(options) => options.iter().map(|option| format!("{option:?}")).collect(),
+        KeyKind::Integer { min, max } => {
             let default: i64 = default.parse().sure();
             [default - 1, default + 1, *min, *max]
                 .into_iter()
@@ -40,7 +40,7 @@ fn others(key: &Key) -> Vec<String> {
                 .map(|value| value.to_string())
                 .collect()
         }
-        Kind::Number { min, max, .. } => {
+        KeyKind::Number { min, max, .. } => {
             let default: f64 = default.parse().sure();
             [default + 1.0, default / 2.0, *min, *max]
                 .into_iter()
@@ -48,13 +48,13 @@ fn others(key: &Key) -> Vec<String> {
                 .map(|value| format!("{value:?}"))
                 .collect()
         }
-        Kind::Text(TextPattern::Formula) => {
+        KeyKind::Text(TextPattern::Formula) => {
             vec!["\"3 / 2 + x / 16 - x / 16\"".to_owned(), "3".to_owned()]
         }
-        Kind::Text(TextPattern::Version) => vec!["\"9.8.7\"".to_owned()],
-        Kind::Text(TextPattern::Name | TextPattern::Licence) => vec!["\"Another\"".to_owned()],
-        Kind::Text(TextPattern::Samples) => vec!["\"1,0 4,1\"".to_owned()],
-        Kind::Integers { .. } => Vec::new(),
+        KeyKind::Text(TextPattern::Version) => vec!["\"9.8.7\"".to_owned()],
+        KeyKind::Text(TextPattern::Name | TextPattern::Licence) => vec!["\"Another\"".to_owned()],
+        KeyKind::Text(TextPattern::Samples) => vec!["\"1,0 4,1\"".to_owned()],
+        KeyKind::Integers { .. } => Vec::new(),
     };
     candidates
         .into_iter()
@@ -64,7 +64,7 @@ fn others(key: &Key) -> Vec<String> {
 
 /// Returns whether a key chooses between forms of a core.
 fn is_choice(key: &Key) -> bool {
-    matches!(key.kind, Kind::Flag | Kind::Choice(_))
+    matches!(key.kind, KeyKind::Flag | KeyKind::Choice(_))
 }
 
 /// Returns the emitted files, without the digest of the configuration; `None` if it is refused.

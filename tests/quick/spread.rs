@@ -1,7 +1,7 @@
 //! The points of tests lie where the function does.
 
 use crate::common::cores::{configurations, run};
-use glint::cosim::{Points, Random};
+use glint::cosim::{PointSource, Random};
 use rayon::prelude::*;
 
 /// Results of each configuration; those of lines, of which some are thousands of points long, vary most.
@@ -32,7 +32,7 @@ fn most_operands_that_are_drawn_have_a_formula_between_0_and_1() {
     let mut looked_at = 0;
     for (path, unit) in configurations() {
         let contract = unit.contract.as_ref();
-        let points = Points::new(contract);
+        let points = PointSource::new(contract);
         let mut random = Random::new(5);
         let Some(highlight) = contract.highlight() else { continue };
         let inside = (0..DRAWN).filter(|_| {

@@ -8,7 +8,7 @@ use glint::dsl::{Designer, end, step, valid};
 use glint::equality::{Open, TextVerdict, Verdict, compare, compare_text};
 use glint::fixed::Format;
 use glint::hdl::netlist::{Design, Driver, NetId, Op};
-use glint::hdl::pipeline::{Delays, Goal, Interval, Options, pipeline};
+use glint::hdl::pipeline::{Delays, Goal, IntervalGoal, Options, pipeline};
 use glint::tools::elaborate;
 
 use crate::common::Sure;
@@ -136,7 +136,7 @@ fn square(faulty: bool) -> Design {
 fn the_solver_finds_the_point_that_differs() {
     let goal = Goal::ClockMhz(100.0);
     let options = Options {
-        interval: Interval::Clocks(1),
+        interval: IntervalGoal::Clocks(1),
         target: &glint::target::TIMINGS[0],
         goal,
         registered: false,

@@ -16,7 +16,7 @@ use crate::common::json::Json;
 use crate::common::netlist::{self, POINTS, synthesise};
 use crate::common::sample::sampled;
 use crate::common::tools::{LIMIT, tool};
-use glint::hdl::netlist::{Design, Driver, Op, Rom};
+use glint::hdl::netlist::{Design, Driver, NetlistRom, Op};
 use glint::target::{ECP5, FAMILIES, Family, Kinds};
 use glint::tools::gates;
 use glint::tools::synthesis::{self, Usage};
@@ -191,8 +191,8 @@ fn warrants_block_ram(family: &Family) -> u64 {
 
 /// Synchronous ROMs of some size are in block RAM, with every 1 of their contents.
 fn memories_are_whole(design: &Design, cells: &Cells, family: &Family, what: &str) {
-    let bits = |rom: &Rom| rom.words.len() as u64 * u64::from(design.width(rom.data));
-    let large: Vec<&Rom> = design
+    let bits = |rom: &NetlistRom| rom.words.len() as u64 * u64::from(design.width(rom.data));
+    let large: Vec<&NetlistRom> = design
         .roms
         .iter()
         // A ROM whose words are all alike is wires.
@@ -202,13 +202,13 @@ fn memories_are_whole(design: &Design, cells: &Cells, family: &Family, what: &st
     let rams: Vec<_> = family.block_rams.iter().flat_map(|(kind, _)| cells.of(kind)).collect();
     assert!(rams.len() >= large.len(), "{what}: ROMs are not in block RAM");
     let ones: u64 = rams.iter().map(|cell| ones(cell, initial(family))).sum();
-    let ones_of = |rom: &Rom| -> u64 {
+    let ones_of = |rom: &NetlistRom| -> u64 {
         let ones = rom.words.iter().map(|word| u64::from(word.count_ones()));
         ones.sum()
     };
     // With any of the smaller ones, whole.
     let mut wanted = BTreeSet::from([large.iter().map(|rom| ones_of(rom)).sum::<u64>()]);
-    let small = |rom: &&Rom| rom.synchronous && bits(rom) < warrants_block_ram(family);
+    let small = |rom: &&NetlistRom| rom.synchronous && bits(rom) < warrants_block_ram(family);
     for rom in design.roms.iter().filter(small) {
         let with: Vec<u64> = wanted.iter().map(|sum| sum + ones_of(rom)).collect();
         wanted.extend(with);

@@ -2,7 +2,7 @@
 
 use super::Formats;
 use glint_base::fixed::{Format, exp2};
-use glint_keys::rough::{Keys, Scheme};
+use glint_keys::rough::{Keys, RomLayout};
 use glint_rtl::blocks::segmented::{self, Segment, Segmentation, SegmentedFormats};
 use glint_rtl::dsl::{Designer, Signal};
 
@@ -14,7 +14,7 @@ pub(super) fn sine_rom<'d>(
     cosine: Signal<'d>,
 ) -> Signal<'d> {
     let fraction = keys.operands.cosine.fraction;
-    if keys.scheme == Scheme::Direct {
+    if keys.scheme == RomLayout::Direct {
         return direct_sine(d, keys, formats, cosine);
     }
     let one = d.constant("one", 1.0, Format::unsigned(1, fraction as i32));

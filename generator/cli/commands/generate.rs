@@ -11,7 +11,7 @@ use super::{Loaded, load};
 use crate::store::{self, Written};
 use crate::{Configs, OutputOptions, failure, progress, say, tables};
 use glint_base::program::Program;
-use glint_core::cosim::directed::Known;
+use glint_core::cosim::directed::ComputationCache;
 use glint_core::package::{self, OutputFile, Seal};
 use glint_core::registry::Registry;
 use glint_prove::synth::TARGETS;
@@ -133,7 +133,7 @@ pub struct Made {
 /// Makes every file of each configuration, in parallel; the test benches too if `with_bench`.
 pub fn all_files(output: OutputOptions, loaded: &[Loaded], with_bench: bool) -> Result<Vec<Made>> {
     let bar = progress::bar(output, loaded.len() as u64, "generating");
-    let known = Known::default();
+    let known = ComputationCache::default();
     let made: Result<_> = loaded
         .par_iter()
         .map(|one| {
@@ -150,7 +150,7 @@ pub fn all_files(output: OutputOptions, loaded: &[Loaded], with_bench: bool) -> 
 }
 
 /// Makes every file of a configuration, with its bench if `with_bench`.
-fn files(one: &Loaded, known: &Known, with_bench: bool) -> Result<Made> {
+fn files(one: &Loaded, known: &ComputationCache, with_bench: bool) -> Result<Made> {
     let vectors = with_bench.then(|| one.core.shipped_vectors_of(known)).transpose();
     let vectors = vectors.with_context(|| format!("`{}`", one.path))?;
     let word_stride = vectors.as_ref().map_or(1, |vectors| vectors.word_stride);

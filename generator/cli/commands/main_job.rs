@@ -12,13 +12,13 @@ use crate::{OutputOptions, progress, say, tables};
 use glint_base::text;
 use glint_core::core::{TEST_POINTS, TEST_SEED};
 use glint_core::cosim::Outcome;
-use glint_core::package::Timing;
+use glint_core::package::HandshakeTiming;
 use glint_core::registry::Registry;
 use glint_golden::Bound;
 
 /// The result of the main job for one configuration.
 struct MainJobResult {
-    timing: Timing,
+    timing: HandshakeTiming,
     bound: Bound,
     outcome: Outcome,
     /// The failures.

@@ -10,7 +10,7 @@ use super::cosim::exhaustive::read;
 use super::cosim::exhaustive::show::{announce, report};
 use super::load;
 use crate::OutputOptions;
-use glint_core::cosim::exhaustive::{Shard, State};
+use glint_core::cosim::exhaustive::{Shard, ShardState};
 use glint_core::registry::Registry;
 
 /// Join the parts of a `cosim --exhaustive` that was divided by --shard
@@ -49,7 +49,7 @@ pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) ->
     );
     let merged = job.merge(&states, &names)?;
     if !output.json {
-        announce(one, &job, &State::new("", Shard::WHOLE));
+        announce(one, &job, &ShardState::new("", Shard::WHOLE));
     }
     let mut list = Vec::new();
     let holds = report(output, one, &job, &merged, &mut list)?;

@@ -7,16 +7,16 @@ use anyhow::Result;
 use super::combinations::Space;
 use super::measure::Measure;
 use super::pipelined::Pipe;
-use super::points::Points;
+use super::points::PointSource;
 use super::ports::Ports;
-use super::sequential::{Core, registers};
+use super::sequential::{SequentialModel, registers};
 use glint_golden::{Contract, Model};
 use glint_rtl::netlist::{Design, NetId};
 
 /// The prediction of a device, whatever its architecture.
 #[derive(Clone)]
 pub(super) enum Host {
-    Core(Core),
+    Core(SequentialModel),
     Pipe(Pipe),
 }
 
@@ -35,7 +35,7 @@ pub(super) struct Binding<'a> {
     /// The address of the microprogram.
     pub(super) address: Option<NetId>,
     pub(super) space: Arc<Space>,
-    pub(super) points: Points<'a>,
+    pub(super) points: PointSource<'a>,
 }
 
 impl<'a> Binding<'a> {
@@ -54,7 +54,7 @@ impl<'a> Binding<'a> {
             let measure = Measure::new(design, contract, &results)?;
             (Host::Pipe(pipe), compared, measure, pipeline.checkpoints.len())
         } else {
-            let (core, compared) = Core::new(design, model, &ports)?;
+            let (core, compared) = SequentialModel::new(design, model, &ports)?;
             let measure = Measure::new(design, contract, &compared)?;
             (Host::Core(core), compared, measure, registers(design).count())
         };
@@ -63,7 +63,7 @@ impl<'a> Binding<'a> {
             outputs: design.outputs().map(|port| port.net).collect(),
             address: design.pipeline.is_none().then(address),
             space: Arc::new(Space::new(&ports)),
-            points: Points::new(contract),
+            points: PointSource::new(contract),
             design,
             measure,
             ports,

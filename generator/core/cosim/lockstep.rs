@@ -15,7 +15,7 @@ use anyhow::{Result, bail, ensure};
 use rayon::prelude::*;
 
 use super::binding::Binding;
-use super::outcome::{Course, Outcome, Seen, share, stream_seed};
+use super::outcome::{Course, Outcome, StreamRecord, share, stream_seed};
 use super::recorded::Recording;
 use super::runner::Runner;
 use crate::observation::Vectors;
@@ -97,7 +97,7 @@ impl<'a> Lockstep<'a> {
         }
         let together = streams.div_ceil(2).min(LANES as u64);
         let numbers = |first: u64| -> Range<u64> { first..streams.min(first + together) };
-        let groups: Vec<Vec<Seen>> = (0..streams.div_ceil(together))
+        let groups: Vec<Vec<StreamRecord>> = (0..streams.div_ceil(together))
             .into_par_iter()
             .map(|group| {
                 let first = group * together;
@@ -115,7 +115,7 @@ impl<'a> Lockstep<'a> {
         first: u64,
         differs: &AtomicU64,
         progress: &(dyn Fn(u64) + Sync),
-    ) -> Result<Vec<Seen>> {
+    ) -> Result<Vec<StreamRecord>> {
         if differs.load(Ordering::Relaxed) < first {
             return Ok(Vec::new());
         }
@@ -241,7 +241,7 @@ impl<'a> Lockstep<'a> {
             clocks,
         };
         let nowhere = AtomicU64::new(u64::MAX);
-        let groups: Vec<Vec<Seen>> = streams
+        let groups: Vec<Vec<StreamRecord>> = streams
             .par_chunks(LANES)
             .map(|streams| self.group::<LANES>(streams.iter().map(course), 0, &nowhere, &|_| ()))
             .collect::<Result<_>>()?;
@@ -277,7 +277,7 @@ impl<'a> Lockstep<'a> {
         }
     }
 
-    fn outcome(&self, streams: impl IntoIterator<Item = Seen>) -> Outcome {
+    fn outcome(&self, streams: impl IntoIterator<Item = StreamRecord>) -> Outcome {
         Outcome::of(self.binding.registers, self.binding.outputs.len(), streams)
     }
 

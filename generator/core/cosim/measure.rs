@@ -2,7 +2,7 @@
 
 use anyhow::{Context, Result, ensure};
 
-use super::outcome::{Seen, Worst};
+use super::outcome::{StreamRecord, Worst};
 use glint_base::fixed::{Format, MAX_WIDTH, exp2};
 use glint_golden::{Contract, Output, nearer};
 use glint_rtl::netlist::{Design, NetId};
@@ -11,11 +11,11 @@ use glint_rtl::netlist::{Design, NetId};
 pub(super) struct Measure<'a> {
     pub(super) contract: &'a dyn Contract,
     /// In the order of the contract.
-    outputs: Vec<Quantity>,
+    outputs: Vec<OutputQuantity>,
 }
 
 /// A value that carries a number.
-struct Quantity {
+struct OutputQuantity {
     /// Its position.
     at: usize,
     format: Format,
@@ -24,7 +24,7 @@ struct Quantity {
     per_unit: f64,
 }
 
-impl Quantity {
+impl OutputQuantity {
     fn value(&self, bits: u64) -> f64 {
         if self.format.signed {
             let drop = MAX_WIDTH - self.format.width();
@@ -47,7 +47,12 @@ impl<'a> Measure<'a> {
                 .with_context(|| format!("the contract takes `{name}` for an output"))?;
             let real = design.net(net).format;
             ensure!(real == *format, "the contract takes `{name}` for {format}, and it is {real}");
-            Ok(Quantity { at, format: real, unit: exp2(-real.frac), per_unit: exp2(real.frac) })
+            Ok(OutputQuantity {
+                at,
+                format: real,
+                unit: exp2(-real.frac),
+                per_unit: exp2(real.frac),
+            })
         };
         let outputs = contract.outputs().iter().map(quantity).collect::<Result<_>>()?;
         Ok(Self { contract, outputs })
@@ -62,7 +67,13 @@ impl<'a> Measure<'a> {
     /// Takes note of one result: counts its word `f`, and updates the largest error. The result is in `values`, and is number
     /// `index` of the computation with these `operands` of the domain.
     #[inline]
-    pub(super) fn note(&self, seen: &mut Seen, operands: &[i64], index: u64, values: &[u64]) {
+    pub(super) fn note(
+        &self,
+        seen: &mut StreamRecord,
+        operands: &[i64],
+        index: u64,
+        values: &[u64],
+    ) {
         seen.exact.clear();
         if let Some(highlight) = self.contract.highlight() {
             let f = highlight.measured(operands, index, &mut seen.point, &mut seen.exact);

@@ -30,5 +30,5 @@ pub use driven::Driven;
 pub use histogram::{CLASSES, Histogram};
 pub use lockstep::Lockstep;
 pub use outcome::{Mismatch, Outcome, Worst};
-pub use points::Points;
+pub use points::PointSource;
 pub use random::Random;

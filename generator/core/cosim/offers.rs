@@ -7,7 +7,7 @@
 use std::collections::VecDeque;
 use std::sync::Arc;
 
-use super::points::Points;
+use super::points::PointSource;
 use super::ports::Ports;
 use super::random::Random;
 
@@ -68,7 +68,7 @@ impl Offers {
 
     /// Returns the inputs of the next clock. `taken` must say whether the pipeline took the point that was offered in the
     /// latest clock.
-    pub(super) fn next(&mut self, taken: bool, points: &Points<'_>) -> &[u64] {
+    pub(super) fn next(&mut self, taken: bool, points: &PointSource<'_>) -> &[u64] {
         let Self { ports, random, offered, listed, inputs, .. } = self;
         if taken {
             *offered = None;

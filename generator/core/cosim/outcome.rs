@@ -32,7 +32,7 @@ impl Outcome {
     pub(super) fn of(
         registers: usize,
         outputs: usize,
-        streams: impl IntoIterator<Item = Seen>,
+        streams: impl IntoIterator<Item = StreamRecord>,
     ) -> Self {
         let mut outcome = Self { registers, outputs, ..Self::default() };
         for seen in streams {
@@ -120,7 +120,7 @@ impl fmt::Display for Mismatch {
 
 /// The record of a stream.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Seen {
+pub(super) struct StreamRecord {
     pub(super) points: u64,
     pub(super) clocks: u64,
     pub(super) worst: Option<Worst>,

@@ -47,7 +47,7 @@ const SETTINGS: u32 = 8;
 const MOVED: usize = 6;
 
 /// The source of a point's operands.
-pub struct Points<'a> {
+pub struct PointSource<'a> {
     contract: &'a dyn Contract,
     /// The highlight, if the device multiplies by an f. Without a highlight there is no value by which to draw points.
     highlight: Option<&'a Highlight>,
@@ -62,7 +62,7 @@ pub struct Points<'a> {
     peak: Vec<Option<i64>>,
 }
 
-impl<'a> Points<'a> {
+impl<'a> PointSource<'a> {
     /// Prepares to draw points for a contract, and finds the peak of its highlight if it has one.
     pub fn new(contract: &'a dyn Contract) -> Self {
         let highlight = contract.highlight();
@@ -483,7 +483,7 @@ pub(super) mod tests {
 
     /// Returns the share of points with `f` between 0 and 1.
     fn share(pulse: &Highlight) -> f64 {
-        let points = Points::new(pulse);
+        let points = PointSource::new(pulse);
         let mut random = Random::new(7);
         let mut values = vec![0; 2];
         let inside = (0..4000).filter(|_| {
@@ -534,7 +534,7 @@ pub(super) mod tests {
     #[test]
     fn operands_that_are_not_free_stay_where_they_are() {
         let pulse = Pulse::pair(true);
-        let points = Points::new(&pulse);
+        let points = PointSource::new(&pulse);
         let mut random = Random::new(3);
         for _ in 0..200 {
             let mut values = vec![123, 456];
@@ -546,7 +546,7 @@ pub(super) mod tests {
     #[test]
     fn what_is_held_is_seldom_moved() {
         let pulse = Pulse::pair(true);
-        let mut points = Points::new(&pulse);
+        let mut points = PointSource::new(&pulse);
         points.hold("x", 500);
         let mut random = Random::new(3);
         let mut values = vec![0; 2];
@@ -560,7 +560,7 @@ pub(super) mod tests {
     #[test]
     fn lengths_are_small_and_at_times_the_largest() {
         let pulse = Pulse::single(true);
-        let points = Points::new(&pulse);
+        let points = PointSource::new(&pulse);
         let mut random = Random::new(1);
         let drawn: Vec<i64> = (0..10_000).map(|_| points.one(&mut random, 0)).collect();
         let count = |wanted: fn(i64) -> bool| drawn.iter().filter(|&&x| wanted(x)).count();

@@ -18,13 +18,13 @@ impl Recording {
 }
 
 /// A stream of recorded inputs.
-pub(super) struct Recorded {
+pub(super) struct RecordedInputs {
     recording: Arc<Recording>,
     /// The position at which the inputs of the next clock begin.
     next: usize,
 }
 
-impl Recorded {
+impl RecordedInputs {
     pub(super) fn new(recording: &Arc<Recording>) -> Self {
         Self { recording: Arc::clone(recording), next: 0 }
     }

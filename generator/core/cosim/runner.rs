@@ -6,7 +6,7 @@ use std::mem;
 use anyhow::Result;
 
 use super::binding::Binding;
-use super::outcome::{Course, Seen};
+use super::outcome::{Course, StreamRecord};
 use super::stream::Stream;
 use glint_rtl::sim::Simulator;
 
@@ -27,11 +27,11 @@ pub(super) struct Runner<'a, const LANES: usize> {
     /// The streams that were ahead of the simulator when something differed.
     differ: [bool; LANES],
     /// The clocks to come.
-    ahead: Vec<Clock<LANES>>,
+    ahead: Vec<PredictedClock<LANES>>,
 }
 
 /// The inputs of a clock and the values predicted after it, for each lane.
-struct Clock<const LANES: usize> {
+struct PredictedClock<const LANES: usize> {
     /// The inputs. If only a single clock is prepared, they are the simulator's own, and this list is empty.
     inputs: Vec<[u64; LANES]>,
     /// The lanes whose inputs drive nothing in this clock.
@@ -58,7 +58,7 @@ impl<'a, const LANES: usize> Runner<'a, LANES> {
         let pipeline = binding.is_pipeline();
         let ahead = if pipeline || LANES == 1 { 1 } else { AHEAD };
         let lanes = |count| vec![[0; LANES]; count];
-        let clock = || Clock {
+        let clock = || PredictedClock {
             inputs: lanes(if ahead == 1 { 0 } else { binding.ports.inputs }),
             idle: [false; LANES],
             predicted: lanes(binding.compared.len()),
@@ -175,7 +175,7 @@ impl<'a, const LANES: usize> Runner<'a, LANES> {
     ///
     /// # Errors
     /// As of [`Runner::run`].
-    pub(super) fn into_seen(self) -> Result<Vec<Seen>> {
+    pub(super) fn into_seen(self) -> Result<Vec<StreamRecord>> {
         let mut all = Vec::new();
         for (stream, differs) in self.streams.into_iter().zip(self.differ) {
             if differs {

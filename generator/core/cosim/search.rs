@@ -8,7 +8,7 @@
 
 use rayon::prelude::*;
 
-use super::points::Points;
+use super::points::PointSource;
 use super::random::Random;
 use glint_base::fixed::exp2;
 use glint_golden::{Contract, Highlight, nearer};
@@ -81,7 +81,7 @@ pub fn worst(
     seed: u64,
     progress: &(dyn Fn() + Sync),
 ) -> Option<Reached> {
-    let points = Points::new(contract);
+    let points = PointSource::new(contract);
     let climber = Climber::new(contract);
     let climb = |start: u64| {
         let mut random = Random::new(seed ^ start.wrapping_mul(0xd134_2543_de82_ef95));
@@ -89,11 +89,11 @@ pub fn worst(
         progress();
         end
     };
-    let (mut climbed, mut highest) = (None, Vec::<End>::new());
+    let (mut climbed, mut highest) = (None, Vec::<ClimbResult>::new());
     let mut first = 0;
     while first < starts {
         let next = first.saturating_add(BATCH).min(starts);
-        let ends: Vec<End> = (first..next).into_par_iter().map(climb).collect();
+        let ends: Vec<ClimbResult> = (first..next).into_par_iter().map(climb).collect();
         // If errors are equal, the error of the first start wins, whatever the order in which the errors come.
         let outputs = ends.iter().filter_map(|end| Reached::at(contract, end.operands.clone()));
         climbed = climbed.into_iter().chain(outputs).reduce(larger);
@@ -102,7 +102,7 @@ pub fn worst(
         highest.truncate(HIGHEST);
         first = next;
     }
-    let look = |end: &End| {
+    let look = |end: &ClimbResult| {
         let found = climber.look_around(end.highest.clone());
         progress();
         found
@@ -113,7 +113,7 @@ pub fn worst(
 }
 
 /// Where a climb ends.
-struct End {
+struct ClimbResult {
     /// The largest error of f of a highlight, else of an output, and the moved operands where it is.
     height: f64,
     highest: Vec<i64>,
@@ -155,18 +155,18 @@ impl<'a> Climber<'a> {
     }
 
     /// Returns the end of the climb from some operands.
-    fn from(&self, operands: Vec<i64>) -> End {
+    fn from(&self, operands: Vec<i64>) -> ClimbResult {
         // Control operands come first.
         let mut highest = operands;
         highest.truncate(self.domains.len());
         let Some(highlight) = self.contract.highlight() else {
             let height = self.climb(&mut highest, |operands| self.contract.largest_error(operands));
-            return End { height, operands: highest.clone(), highest };
+            return ClimbResult { height, operands: highest.clone(), highest };
         };
         let height = self.climb(&mut highest, |control| of_f(highlight, control));
         let mut control = highest.clone();
         self.climb(&mut control, |control| self.of_output(highlight, control).0);
-        End { height, highest, operands: self.with_colours(highlight, control) }
+        ClimbResult { height, highest, operands: self.with_colours(highlight, control) }
     }
 
     /// Returns the control operands with the colour that makes the largest error.

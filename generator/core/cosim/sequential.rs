@@ -5,14 +5,14 @@ use std::mem;
 use anyhow::{Context, Result, anyhow, ensure};
 
 use super::measure::Measure;
-use super::outcome::Seen;
+use super::outcome::StreamRecord;
 use super::ports::Ports;
 use glint_golden::Model;
 use glint_rtl::netlist::{Design, NetId, RegisterKind};
 
 /// A golden model under the inputs of a core.
 #[derive(Clone)]
-pub(super) struct Core {
+pub(super) struct SequentialModel {
     model: Box<dyn Model>,
     /// For each input of the model its position among the design's; none if the orders are the same.
     order: Option<Vec<usize>>,
@@ -31,7 +31,7 @@ pub(super) struct Core {
     inside: bool,
 }
 
-impl Core {
+impl SequentialModel {
     /// Returns the model of a core, and the nets that it predicts, in its order.
     ///
     /// # Errors
@@ -97,7 +97,12 @@ impl Core {
     /// Takes note of a result, if there is one, as predicted; `accepted` are the operands of the computation that was
     /// started last, if they are known.
     #[inline]
-    pub(super) fn note(&mut self, measure: &Measure, seen: &mut Seen, accepted: Option<&[i64]>) {
+    pub(super) fn note(
+        &mut self,
+        measure: &Measure,
+        seen: &mut StreamRecord,
+        accepted: Option<&[i64]>,
+    ) {
         let values = self.model.values();
         let deaf = values[self.busy] == 1 && self.overlaps.is_none_or(|done| values[done] == 0);
         let was_deaf = mem::replace(&mut self.deaf, deaf);

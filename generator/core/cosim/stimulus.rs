@@ -10,7 +10,7 @@
 
 use std::sync::Arc;
 
-use super::points::Points;
+use super::points::PointSource;
 use super::ports::{OperandPort, Ports};
 use super::random::Random;
 use glint_base::fixed::mask;
@@ -71,7 +71,7 @@ impl Stimulus {
     }
 
     /// Returns the inputs of the next clock. `busy` must say whether the device ignores a `start` at the next edge.
-    pub(super) fn next(&mut self, busy: bool, points: &Points) -> &[u64] {
+    pub(super) fn next(&mut self, busy: bool, points: &PointSource) -> &[u64] {
         if !self.idle {
             self.inputs.fill(0);
             self.inputs[self.ports.reset] = 1;
@@ -126,7 +126,7 @@ impl Stimulus {
 
     /// Drives a clock after `start`: until the device has ended, now and then something that it must ignore, or a
     /// reset.
-    fn run(&mut self, busy: bool, reset: Option<u64>, points: &Points) {
+    fn run(&mut self, busy: bool, reset: Option<u64>, points: &PointSource) {
         if busy {
             if self.random.once_in(6) {
                 self.noise(true, points);
@@ -150,7 +150,7 @@ impl Stimulus {
     }
 
     /// Returns the first phase of the next point.
-    fn next_point(&mut self, points: &Points) -> Phase {
+    fn next_point(&mut self, points: &PointSource) -> Phase {
         let all = (1u64 << self.ports.operands.len()) - 1;
         let written = if self.first {
             all
@@ -204,7 +204,7 @@ impl Stimulus {
     }
 
     /// Drives strobes and data at random, and while busy `start` too: the device ignores them then.
-    fn noise(&mut self, busy: bool, points: &Points) {
+    fn noise(&mut self, busy: bool, points: &PointSource) {
         self.idle = false;
         let random = &mut self.random;
         for port in &self.ports.operands {
@@ -269,7 +269,7 @@ mod tests {
 
     fn events(length: u32, clocks: u32) -> Events {
         let pulse = Pulse::single(false);
-        let points = Points::new(&pulse);
+        let points = PointSource::new(&pulse);
         let ports = Arc::new(Ports::new(&design(), &pulse).unwrap());
         let mut stimulus = Stimulus::new(&ports, 1);
         let (reset, start, strobe) = (ports.reset, ports.start, ports.operands[0].strobe);

@@ -5,8 +5,8 @@ use anyhow::Result;
 use super::binding::{Binding, Host};
 use super::combinations::{Combinations, Space};
 use super::offers::Offers;
-use super::outcome::{Course, Mismatch, Seen};
-use super::recorded::Recorded;
+use super::outcome::{Course, Mismatch, StreamRecord};
+use super::recorded::RecordedInputs;
 use super::stimulus::Stimulus;
 use glint_rtl::netlist::NetId;
 
@@ -17,7 +17,7 @@ enum Source {
     /// At random, for a pipeline.
     Offers(Offers),
     Combinations(Combinations),
-    Recorded(Recorded),
+    Recorded(RecordedInputs),
 }
 
 impl Source {
@@ -52,7 +52,7 @@ impl Source {
 
 /// A stream. It predicts signals; the caller compares them with the simulated hardware.
 pub(super) struct Stream {
-    pub(super) seen: Seen,
+    pub(super) seen: StreamRecord,
     /// Its course, for another to go the same way.
     pub(super) course: Course,
     source: Source,
@@ -76,9 +76,9 @@ impl Stream {
             Course::Combinations { first, count } => {
                 Source::Combinations(Combinations::new(binding.space.clone(), *first, *count))
             }
-            Course::Recorded { recording, .. } => Source::Recorded(Recorded::new(recording)),
+            Course::Recorded { recording, .. } => Source::Recorded(RecordedInputs::new(recording)),
         };
-        Self { seen: Seen::default(), course, source, host, since_start: 0 }
+        Self { seen: StreamRecord::default(), course, source, host, since_start: 0 }
     }
 
     /// Returns whether it has come to the end of its course, or something differs. Of combinations in a pipeline those before the

@@ -6,11 +6,11 @@ use anyhow::{Context, Result, ensure};
 use super::instances::Instances;
 use super::points::length;
 use super::ports::Ports;
-use super::{Points, Random, through};
-use crate::observation::{Computation, LineClocks, Linear, Quantity, Shown, WorkedExample};
+use super::{PointSource, Random, through};
+use crate::observation::{Computation, LineClocks, Linear, Quantity, TimedResult, WorkedExample};
 use glint_base::fixed::Format;
 use glint_golden::{Contract, Highlight, Operand};
-use glint_rtl::netlist::{self, Design, NetId, Timing};
+use glint_rtl::netlist::{self, Design, HandshakeTiming, NetId};
 use glint_rtl::sim::Simulator;
 
 /// More clocks than any device takes.
@@ -35,15 +35,15 @@ const PAUSE: usize = 2;
 const TRIES: u32 = 256;
 
 /// The record of one computation.
-struct Trial {
-    timing: Timing,
+struct ComputationTrial {
+    timing: HandshakeTiming,
     /// The raw results whenever `valid` is high.
     results: Vec<(u32, Vec<i64>)>,
     /// The first clock with a microinstruction whose successor an operand decides.
     decision: Option<u32>,
 }
 
-impl Trial {
+impl ComputationTrial {
     /// Returns the clocks from each result to the next; where it is as from the one before, it is left out.
     fn distances(&self) -> Vec<u32> {
         let pairs = self.results.windows(2);
@@ -59,9 +59,9 @@ impl Trial {
 ///
 /// # Errors
 /// Fails if the device never ends, or never raises `valid`.
-pub fn timing(design: &Design, contract: &dyn Contract) -> Result<Timing> {
+pub fn timing(design: &Design, contract: &dyn Contract) -> Result<HandshakeTiming> {
     let ports = |it: &Operand| (it.format.min_raw(), it.format.max_raw());
-    let trials: Vec<Trial> = corners(contract, ports)
+    let trials: Vec<ComputationTrial> = corners(contract, ports)
         .iter()
         .map(|operands| run(design, contract, operands, &mut |_| Ok(())))
         .collect::<Result<_>>()?;
@@ -73,9 +73,9 @@ pub fn timing(design: &Design, contract: &dyn Contract) -> Result<Timing> {
         _ => None,
     };
     let fixed = |clock: Option<u32>| clock.filter(|_| decision.is_none());
-    let mut distances: Vec<u32> = trials.iter().flat_map(Trial::distances).collect();
+    let mut distances: Vec<u32> = trials.iter().flat_map(ComputationTrial::distances).collect();
     distances.dedup();
-    Ok(Timing {
+    Ok(HandshakeTiming {
         start_to_valid: valid,
         valid_to_valid: match distances[..] {
             [only] => Some(only),
@@ -103,7 +103,7 @@ fn corners(contract: &dyn Contract, ends: fn(&Operand) -> (i128, i128)) -> [Vec<
 /// As of [`timing`]; golden model and simulation do not agree.
 pub fn computations(design: &Design, contract: &dyn Contract) -> Result<Vec<Computation>> {
     let mut random = Random::new(1);
-    let mut points = Points::new(contract);
+    let mut points = PointSource::new(contract);
     points.shorten(SHORT);
     let domain = |it: &Operand| (it.domain.0.into(), it.domain.1.into());
     let mut list = Vec::from(corners(contract, domain).map(|corner| points.clamped(corner)));
@@ -129,7 +129,7 @@ fn computation(
             listed(contract.outputs().iter().map(|output| output.name.as_str()), &right),
             listed(contract.outputs().iter().map(|output| output.name.as_str()), simulated),
         );
-        shown.push(Shown { clock: *clock, outputs: right });
+        shown.push(TimedResult { clock: *clock, outputs: right });
     }
     Ok(Computation {
         done: trial.timing.start_to_done.context("it is never done")?,
@@ -295,7 +295,7 @@ fn slow_down(
 
 /// Returns the first operands that the contract hints at for which no output is 0 or at an end of its format.
 fn hinted(contract: &dyn Contract) -> Option<Vec<i64>> {
-    let (mut random, points) = (Random::new(1), Points::new(contract));
+    let (mut random, points) = (Random::new(1), PointSource::new(contract));
     let inside = |operands: &Vec<i64>| {
         let mut raw = Vec::new();
         contract.results(operands, 0, &mut raw);
@@ -332,7 +332,7 @@ pub fn record_points(
     contract: &dyn Contract,
     nets: &[NetId],
 ) -> Result<Vec<Vec<u64>>> {
-    let (mut random, points) = (Random::new(1), Points::new(contract));
+    let (mut random, points) = (Random::new(1), PointSource::new(contract));
     let mut list = vec![typical(contract, &[])];
     list.resize_with(POINTS, || points.of_domain(&mut random));
     through::record(design, contract, (&list, PAUSE), nets, LIMIT)
@@ -347,7 +347,7 @@ fn run(
     contract: &dyn Contract,
     operands: &[i64],
     watch: Watch<'_>,
-) -> Result<Trial> {
+) -> Result<ComputationTrial> {
     let mut instance = Instances::<1>::new(design, contract)?;
     instance.offer([Some(operands)]);
     watch(&mut instance.simulator)?;
@@ -356,7 +356,11 @@ fn run(
     let Ports { valid, busy, done, overlaps, .. } = instance.ports;
     let address = |_| (design.register(design.control.address).q, netlist::decided_by_data(design));
     let decided = busy.map(address);
-    let mut trial = Trial { timing: Timing::default(), results: Vec::new(), decision: None };
+    let mut trial = ComputationTrial {
+        timing: HandshakeTiming::default(),
+        results: Vec::new(),
+        decision: None,
+    };
     // Clock 0 was the one that took `start`.
     for clock in 1..LIMIT {
         watch(&mut instance.simulator)?;

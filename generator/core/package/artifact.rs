@@ -10,7 +10,7 @@ use glint_rtl::verilog::naming::Naming;
 
 /// The purpose of a file, in the order in which files are listed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Kind {
+pub enum ArtifactKind {
     /// Verilog of the core, the top module first.
     Rtl,
     /// Verilog of a target, `<target>/<file>`, in place of the file of that name among the portable ones.
@@ -41,7 +41,7 @@ pub enum Kind {
     Software,
 }
 
-impl Kind {
+impl ArtifactKind {
     fn folder(self) -> &'static str {
         match self {
             Self::Software => "software",
@@ -55,7 +55,7 @@ impl Kind {
 
 /// A file: a plain name, and its text.
 struct Artifact {
-    kind: Kind,
+    kind: ArtifactKind,
     name: String,
     text: String,
 }
@@ -66,12 +66,12 @@ pub struct Artifacts(Vec<Artifact>);
 
 impl Artifacts {
     /// Adds a file.
-    pub fn add(&mut self, kind: Kind, name: impl Into<String>, text: String) {
+    pub fn add(&mut self, kind: ArtifactKind, name: impl Into<String>, text: String) {
         self.0.push(Artifact { kind, name: name.into(), text });
     }
 
     /// Returns the names of the files of some kinds, in the order of the kinds and, among one kind, in which they were added.
-    pub fn names(&self, kinds: &[Kind]) -> Vec<String> {
+    pub fn names(&self, kinds: &[ArtifactKind]) -> Vec<String> {
         let all = kinds.iter().flat_map(|kind| self.0.iter().filter(move |it| it.kind == *kind));
         all.map(|file| file.name.clone()).collect()
     }
@@ -80,7 +80,7 @@ impl Artifacts {
     pub fn files(mut self, design: &str) -> Vec<OutputFile> {
         self.0.sort_by_key(|file| file.kind);
         let file = |Artifact { kind, name, text }| OutputFile {
-            path: format!("{}/{design}/{name}", Kind::folder(kind)),
+            path: format!("{}/{design}/{name}", ArtifactKind::folder(kind)),
             contents: text,
         };
         self.0.into_iter().map(file).collect()
@@ -88,7 +88,7 @@ impl Artifacts {
 }
 
 /// A design with everything that its files are made of.
-pub struct Job<'a> {
+pub struct EmitJob<'a> {
     pub design: &'a Design,
     pub inputs: &'a EmitInputs,
     pub naming: &'a Naming,
@@ -96,7 +96,7 @@ pub struct Job<'a> {
     pub registers: Option<(&'static Bus, Map)>,
 }
 
-impl<'a> Job<'a> {
+impl<'a> EmitJob<'a> {
     /// Returns the name of the core.
     pub fn name(&self) -> &'a str {
         &self.design.name

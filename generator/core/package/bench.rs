@@ -3,7 +3,7 @@
 use anyhow::{Result, ensure};
 use glint_base::fill;
 
-use super::artifact::{Artifacts, Job, Kind};
+use super::artifact::{ArtifactKind, Artifacts, EmitJob};
 use crate::observation::Vectors;
 use glint_base::fixed::mask;
 use glint_rtl::netlist::{Design, Port, Role};
@@ -22,13 +22,13 @@ fresh_names!(Variables {
 });
 
 /// An output and its place in the expected word.
-struct Output {
+struct ExpectedOutput {
     name: String,
     select: String,
 }
 
 /// A microinstruction.
-struct Microinstruction {
+struct StepLabel {
     label: String,
     address: usize,
     name: String,
@@ -38,7 +38,7 @@ struct Microinstruction {
 ///
 /// # Errors
 /// Fails if the vectors do not fit the ports.
-pub fn files(job: &Job, vectors: &Vectors, files: &mut Artifacts) -> Result<()> {
+pub fn files(job: &EmitJob, vectors: &Vectors, files: &mut Artifacts) -> Result<()> {
     let design = job.design;
     let inputs: Vec<_> = design.inputs().collect();
     let outputs: Vec<_> = design.outputs().collect();
@@ -59,13 +59,13 @@ pub fn files(job: &Job, vectors: &Vectors, files: &mut Artifacts) -> Result<()> 
     let stimulus = vector_file(design, "stimulus", &inputs, &vectors.inputs)?;
     let expected = vector_file(design, "expected outputs", &outputs, &vectors.expected)?;
     let name = job.name();
-    files.add(Kind::Bench, format!("{name}_tb.v"), bench(job, vectors)?);
-    files.add(Kind::Bench, format!("{name}_stimulus.mem"), stimulus);
-    files.add(Kind::Bench, format!("{name}_expected.mem"), expected);
+    files.add(ArtifactKind::Bench, format!("{name}_tb.v"), bench(job, vectors)?);
+    files.add(ArtifactKind::Bench, format!("{name}_stimulus.mem"), stimulus);
+    files.add(ArtifactKind::Bench, format!("{name}_expected.mem"), expected);
     Ok(())
 }
 
-fn bench(job: &Job, vectors: &Vectors) -> Result<String> {
+fn bench(job: &EmitJob, vectors: &Vectors) -> Result<String> {
     let design = job.design;
     let port_name = |port: &Port| design.net(port.net).name.clone();
     let mut names = Names::of_ports(design);
@@ -85,7 +85,7 @@ fn bench(job: &Job, vectors: &Vectors) -> Result<String> {
         if design.pipeline.is_some() && port.role == Role::Valid {
             shown = Some(select.clone());
         }
-        let output = Output { name: port_name(port), select };
+        let output = ExpectedOutput { name: port_name(port), select };
         match port.role {
             role if role.is_status() => handshake.push(output),
             _ => results.push(output),
@@ -98,7 +98,7 @@ fn bench(job: &Job, vectors: &Vectors) -> Result<String> {
         .microprogram
         .iter()
         .enumerate()
-        .map(|(at, it)| Microinstruction {
+        .map(|(at, it)| StepLabel {
             label: literal(at as u64, address_width),
             address: at,
             // Within a string literal of Verilog.
@@ -125,8 +125,8 @@ fn bench(job: &Job, vectors: &Vectors) -> Result<String> {
         // The initial value of `was_reset`: without a reset there is nothing to wait for.
         reset_seen: &'a str = if reset.is_some() { "1'b0" } else { "1'b1" },
         reset: Option<String>,
-        handshake: Vec<Output>,
-        results: Vec<Output>,
+        handshake: Vec<ExpectedOutput>,
+        results: Vec<ExpectedOutput>,
         // Only in a pipeline: whether the expected word says that a point's results are shown. In a bubble the results mean
         // nothing.
         shown: Option<String>,
@@ -135,7 +135,7 @@ fn bench(job: &Job, vectors: &Vectors) -> Result<String> {
             let address = &design.net(address).name;
             format!("{}.{}.{address}", own.dut, job.naming.control_instance)
         }),
-        microprogram: Vec<Microinstruction>,
+        microprogram: Vec<StepLabel>,
         names: Variables = own,
     })
 }

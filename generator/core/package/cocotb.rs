@@ -3,7 +3,7 @@
 use anyhow::Result;
 use glint_base::fill;
 
-use super::artifact::{Artifacts, Job, Kind};
+use super::artifact::{ArtifactKind, Artifacts, EmitJob};
 use super::output_file::OutputFile;
 use super::seal::{Seal, sealed};
 use crate::observation::{ContractFacts, Quantity, WorkedExample};
@@ -33,7 +33,7 @@ const PIPELINE: [&str; 4] = [
 /// # Errors
 /// Fails if a template fails.
 pub fn file(
-    job: &Job,
+    job: &EmitJob,
     example: &WorkedExample,
     accuracy: &ContractFacts,
     files: &mut Artifacts,
@@ -57,7 +57,7 @@ pub fn file(
         // The results of the example.
         shown: &'a str = if pipeline { "shown" } else { "shown.results[0]" },
     })?;
-    files.add(Kind::Python, format!("test_{name}.py"), text);
+    files.add(ArtifactKind::Python, format!("test_{name}.py"), text);
     Ok(())
 }
 

@@ -9,7 +9,7 @@ use glint_rtl::verilog::naming::{Naming, is_control_rom};
 
 /// A port of the top module.
 #[derive(Default, Serialize)]
-pub struct Port<'a> {
+pub struct PortFacts<'a> {
     /// Its name.
     pub name: &'a str,
     /// `input` or `output`.
@@ -38,7 +38,7 @@ pub struct Port<'a> {
 
 /// A field of the control word.
 #[derive(Serialize)]
-pub struct Field<'a> {
+pub struct FieldFacts<'a> {
     /// Its name.
     pub name: &'a str,
     /// The kind of the field: `select`, `enable`, `flag` or `sequence`.
@@ -57,7 +57,7 @@ pub struct Field<'a> {
 
 /// A microinstruction.
 #[derive(Serialize)]
-pub struct Microinstruction<'a> {
+pub struct MicroinstructionFacts<'a> {
     /// Its address.
     pub address: usize,
     /// The name of the operation.
@@ -66,13 +66,13 @@ pub struct Microinstruction<'a> {
     #[serde(serialize_with = "as_map")]
     pub fields: Vec<(&'a str, u64)>,
     /// The successor.
-    pub sequence: Sequence<'a>,
+    pub sequence: SequenceFacts<'a>,
 }
 
 /// Where control goes after a microinstruction.
 #[derive(Serialize)]
 #[serde(untagged)]
-pub enum Sequence<'a> {
+pub enum SequenceFacts<'a> {
     /// `next`, `wait for start` or `end`.
     Plain(&'static str),
     /// Around a loop.
@@ -95,7 +95,7 @@ pub enum Sequence<'a> {
 
 /// A ROM.
 #[derive(Serialize)]
-pub struct Rom<'a> {
+pub struct RomFacts<'a> {
     /// Its name in the description.
     pub name: &'a str,
     /// The file of its contents, unless the Verilog contains the words.
@@ -134,9 +134,14 @@ fn as_map<S: Serializer>(pairs: &[(&str, u64)], serializer: S) -> Result<S::Ok, 
 }
 
 /// Returns the ports, the clock first.
-pub fn ports(design: &Design) -> Vec<Port<'_>> {
-    let clock =
-        Port { name: "clk", direction: "input", role: "clock", width: 1, ..Port::default() };
+pub fn ports(design: &Design) -> Vec<PortFacts<'_>> {
+    let clock = PortFacts {
+        name: "clk",
+        direction: "input",
+        role: "clock",
+        width: 1,
+        ..PortFacts::default()
+    };
     let of_port = |port: &netlist::Port| {
         let net = design.net(port.net);
         let strobe = match port.role {
@@ -145,7 +150,7 @@ pub fn ports(design: &Design) -> Vec<Port<'_>> {
         };
         let number =
             matches!(port.role, Role::Operand { .. } | Role::Point | Role::Result | Role::Status);
-        Port {
+        PortFacts {
             name: &net.name,
             direction: if port.role.is_input() { "input" } else { "output" },
             role: role(port.role),
@@ -186,7 +191,7 @@ fn role(role: Role) -> &'static str {
 }
 
 /// Returns the fields of the control word, from the top bits.
-pub fn fields(design: &Design) -> Vec<Field<'_>> {
+pub fn fields(design: &Design) -> Vec<FieldFacts<'_>> {
     let positions = design.field_positions();
     design
         .control
@@ -200,7 +205,7 @@ pub fn fields(design: &Design) -> Vec<Field<'_>> {
                 FieldKind::Flag => ("flag", &[]),
                 FieldKind::Sequence => ("sequence", &[]),
             };
-            Field {
+            FieldFacts {
                 name: &field.name,
                 kind,
                 low,
@@ -213,27 +218,27 @@ pub fn fields(design: &Design) -> Vec<Field<'_>> {
 }
 
 /// Returns the microinstructions, from address 0.
-pub fn microprogram(design: &Design) -> Vec<Microinstruction<'_>> {
+pub fn microprogram(design: &Design) -> Vec<MicroinstructionFacts<'_>> {
     let control = &design.control;
     let names = || control.fields.iter().map(|field| field.name.as_str());
     control
         .microprogram
         .iter()
         .enumerate()
-        .map(|(address, it)| Microinstruction {
+        .map(|(address, it)| MicroinstructionFacts {
             address,
             name: &it.name,
             fields: names().zip(it.values.iter().copied()).collect(),
             sequence: match &it.sequence {
-                netlist::Sequence::Next => Sequence::Plain("next"),
-                netlist::Sequence::WaitStart => Sequence::Plain("wait for start"),
-                netlist::Sequence::End => Sequence::Plain("end"),
+                netlist::Sequence::Next => SequenceFacts::Plain("next"),
+                netlist::Sequence::WaitStart => SequenceFacts::Plain("wait for start"),
+                netlist::Sequence::End => SequenceFacts::Plain("end"),
                 netlist::Sequence::LoopWhile { condition, to } => {
                     let condition = name(design, *condition);
                     if *to > address {
-                        Sequence::Jump { jump_to: *to, condition }
+                        SequenceFacts::Jump { jump_to: *to, condition }
                     } else {
-                        Sequence::Loop { loop_to: *to, condition }
+                        SequenceFacts::Loop { loop_to: *to, condition }
                     }
                 }
             },
@@ -242,12 +247,12 @@ pub fn microprogram(design: &Design) -> Vec<Microinstruction<'_>> {
 }
 
 /// Returns the ROMs, including the ROM of the microprogram.
-pub fn roms<'a>(design: &'a Design, naming: &'a Naming) -> Vec<Rom<'a>> {
+pub fn roms<'a>(design: &'a Design, naming: &'a Naming) -> Vec<RomFacts<'a>> {
     let in_file = !naming.style.inline;
-    let entry = |(at, rom): (usize, &'a netlist::Rom)| {
+    let entry = |(at, rom): (usize, &'a netlist::NetlistRom)| {
         let width = design.width(rom.data);
         let binary = is_control_rom(design, RomId(at as u32));
-        Rom {
+        RomFacts {
             name: &rom.name,
             file: in_file.then(|| naming.files[at].as_str()),
             parameter: in_file.then(|| naming.parameters[at].as_str()),

@@ -7,9 +7,9 @@
 use anyhow::Result;
 use glint_base::fill;
 
-use super::artifact::{Artifacts, Job, Kind};
+use super::artifact::{ArtifactKind, Artifacts, EmitJob};
 use crate::observation::Computation;
-use glint_rtl::netlist::Timing;
+use glint_rtl::netlist::HandshakeTiming;
 use glint_rtl::netlist::termination::{self, Left};
 use glint_rtl::netlist::{Design, Driver, NetId, Op, Partition, Port, RegId, Role, Sequence};
 use glint_rtl::verilog::naming::Naming;
@@ -39,7 +39,7 @@ struct AgeView {
 }
 
 /// When the events come, where that does not depend on the data.
-struct Exact {
+struct EventClocks {
     valid: String,
     done: String,
     last: String,
@@ -84,7 +84,8 @@ impl Script<'_> {
         files: &mut Artifacts,
     ) -> Result<()> {
         let Self { name, within, initial } = *self;
-        let (rtl, memories) = (files.names(&[Kind::Rtl]), files.names(&[Kind::Memory]));
+        let (rtl, memories) =
+            (files.names(&[ArtifactKind::Rtl]), files.names(&[ArtifactKind::Memory]));
         let script = fill!("formal.ys" {
             name: &'a str, within: &'a str, rtl: &'a [String] = &rtl, initial: bool,
         })?;
@@ -92,7 +93,7 @@ impl Script<'_> {
             name: &'a str, within: &'a str, depth: u32, engine: &'a str, rtl: Vec<String>, memories: Vec<String>,
         })?;
         for (ending, text) in [("sv", wrapper), ("ys", script), ("sby", task)] {
-            files.add(Kind::Proof, format!("{name}.{ending}"), text);
+            files.add(ArtifactKind::Proof, format!("{name}.{ending}"), text);
         }
         Ok(())
     }
@@ -120,8 +121,8 @@ fn valid_delay(design: &Design) -> u32 {
 ///
 /// # Errors
 /// Fails if a template fails.
-pub fn files(job: &Job, files: &mut Artifacts) -> Result<()> {
-    let Job { design, inputs, naming, .. } = *job;
+pub fn files(job: &EmitJob, files: &mut Artifacts) -> Result<()> {
+    let EmitJob { design, inputs, naming, .. } = *job;
     let (timing, module) = (&inputs.timing, job.name());
     let name = format!("{module}_formal");
     let mut names = Names::of_ports(design);
@@ -151,7 +152,7 @@ pub fn files(job: &Job, files: &mut Artifacts) -> Result<()> {
     // If steps are unrolled, z3 solves a few steps with much state between them at once. The same holds for a device that
     // begins a computation as another ends. It solves many steps faster if they are not unrolled.
     let unroll = exact.is_none() || design.control.overlaps;
-    let exact = exact.zip(age.as_ref()).map(|((clocks, start), age)| Exact {
+    let exact = exact.zip(age.as_ref()).map(|((clocks, start), age)| EventClocks {
         valid: age.literal(clocks[0]),
         done: age.literal(clocks[1]),
         last: age.literal(start - 1),
@@ -182,7 +183,7 @@ pub fn files(job: &Job, files: &mut Artifacts) -> Result<()> {
         straight: bool = !waits,
         // `start` is heard in the clock of `done` too.
         overlaps: bool = design.control.overlaps,
-        exact: Option<Exact>,
+        exact: Option<EventClocks>,
         bounded: Option<Bounded>,
         age: Option<AgeView> = age.as_ref().map(|age| AgeView {
             range: range(age.width),
@@ -270,7 +271,7 @@ fn bounded_view(
 
 /// Returns the clocks of `valid` and `done`, and the clock of the next start. Returns `None` unless all are known and the
 /// result is there in one clock.
-fn exact(timing: &Timing) -> Option<([u32; 2], u32)> {
+fn exact(timing: &HandshakeTiming) -> Option<([u32; 2], u32)> {
     let (valid, done) = (timing.start_to_valid?, timing.start_to_done?);
     // The clocks of a computation are counted to the last, whether the next one follows at once or not.
     Some(([valid, done], timing.start_to_start?.max(done + 1)))

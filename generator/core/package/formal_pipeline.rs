@@ -7,7 +7,7 @@
 use anyhow::Result;
 use glint_base::fill;
 
-use super::artifact::{Artifacts, Job};
+use super::artifact::{Artifacts, EmitJob};
 use super::formal::{Script, inputs_of, outputs_of};
 use glint_rtl::netlist::{NetId, Pipeline, Role};
 use glint_rtl::verilog::naming::Naming;
@@ -18,7 +18,7 @@ use glint_rtl::verilog::text::{Names, literal, range};
 const DEPTH: u32 = 2;
 
 /// The side channel.
-struct Side {
+struct SideChannel {
     range: String,
     tag: String,
     stages: Vec<SideStage>,
@@ -42,7 +42,7 @@ struct SideStage {
 ///
 /// # Errors
 /// Fails if a template fails.
-pub fn files(job: &Job, pipeline: &Pipeline, files: &mut Artifacts) -> Result<()> {
+pub fn files(job: &EmitJob, pipeline: &Pipeline, files: &mut Artifacts) -> Result<()> {
     let (module, design) = (job.name(), job.design);
     let name = format!("{module}_formal");
     let port_name = |net: NetId| design.net(net).name.clone();
@@ -75,7 +75,7 @@ pub fn files(job: &Job, pipeline: &Pipeline, files: &mut Artifacts) -> Result<()
         Some(turn) => format!("(in_valid & ({} == 0))", turn.name),
         None => "in_valid".to_owned(),
     };
-    let side = (pipeline.side > 0).then(|| Side {
+    let side = (pipeline.side > 0).then(|| SideChannel {
         range: range(pipeline.side),
         tag: names.fresh("tag"),
         stages: (1..)
@@ -124,7 +124,7 @@ pub fn files(job: &Job, pipeline: &Pipeline, files: &mut Artifacts) -> Result<()
         chosen: String,
         begins: String,
         followed: String,
-        side: Option<Side>,
+        side: Option<SideChannel>,
     })?;
     let script = Script { name: &name, within: &within, initial: false };
     script.files(wrapper, DEPTH, "smtbmc --unroll z3", files)

@@ -4,18 +4,19 @@
 use anyhow::Result;
 use glint_base::fill;
 
-use super::artifact::{Artifacts, Job, Kind};
+use super::artifact::{ArtifactKind, Artifacts, EmitJob};
 use glint_rtl::verilog::text::ascii;
 
 /// Adds `<name>.core`, with a simulation target if there is a bench, and then `<name>_tb.core`. File names are relative to them.
 ///
 /// # Errors
 /// Fails if a template fails to print.
-pub fn files(job: &Job, files: &mut Artifacts) -> Result<()> {
+pub fn files(job: &EmitJob, files: &mut Artifacts) -> Result<()> {
     let (name, around) = (job.name(), &job.inputs.around);
     let (version, licence) = (around.version.as_str(), around.licence.as_str());
-    let of = |kind: Kind| files.names(&[kind]);
-    let (rtl, primitives, benches) = (of(Kind::Rtl), of(Kind::Primitive), of(Kind::Bench));
+    let of = |kind: ArtifactKind| files.names(&[kind]);
+    let (rtl, primitives, benches) =
+        (of(ArtifactKind::Rtl), of(ArtifactKind::Primitive), of(ArtifactKind::Bench));
     let named = primitives.iter().filter_map(|file| Some(file.split_once('/')?.1.to_owned()));
     let replaced: Vec<String> = named.collect();
     let wrapper = |file: &String| {
@@ -31,8 +32,8 @@ pub fn files(job: &Job, files: &mut Artifacts) -> Result<()> {
         // The portable files that a target has its own of.
         replaced: &'a [String] = &replaced,
         primitives: &'a [String] = &primitives,
-        wrappers: Vec<String> = of(Kind::Wrapper),
-        memories: Vec<String> = of(Kind::Memory),
+        wrappers: Vec<String> = of(ArtifactKind::Wrapper),
+        memories: Vec<String> = of(ArtifactKind::Memory),
         // The benches beside the core's own, without `_tb`; none without it.
         benches: Option<Vec<String>> =
             (!benches.is_empty()).then(|| benches.iter().filter_map(wrapper).collect()),
@@ -42,14 +43,14 @@ pub fn files(job: &Job, files: &mut Artifacts) -> Result<()> {
         version: &'a str,
         licence: &'a str,
     })?;
-    files.add(Kind::Core, format!("{name}.core"), core);
+    files.add(ArtifactKind::Core, format!("{name}.core"), core);
     if let Some((bench, others)) = benches.split_first() {
         let text = fill!("testbench.core" {
             name: &'a str, vendor: &'a str = &around.vendor, version: &'a str, licence: &'a str, bench: &'a str,
             // Its vectors, and the benches of wrappers with theirs.
             others: &'a [String],
         })?;
-        files.add(Kind::BenchCore, format!("{name}_tb.core"), text);
+        files.add(ArtifactKind::BenchCore, format!("{name}_tb.core"), text);
     }
     Ok(())
 }

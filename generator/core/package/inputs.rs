@@ -2,7 +2,7 @@
 
 use super::surroundings::Surroundings;
 use crate::observation::{Computation, ContractFacts, Vectors, WorkedExample};
-use glint_rtl::netlist::{Design, Timing};
+use glint_rtl::netlist::{Design, HandshakeTiming};
 use glint_rtl::verilog::header::Origin;
 
 /// The inputs of the files beyond the design.
@@ -13,7 +13,7 @@ pub struct EmitInputs {
     /// Tells the configuration from others: SHA-256 in hexadecimal.
     pub configuration: String,
     /// Clocks, for header and manifest.
-    pub timing: Timing,
+    pub timing: HandshakeTiming,
     /// One computation with all its numbers, for the manifest.
     pub example: Option<WorkedExample>,
     /// The contract of the results, for the manifest.

@@ -2,7 +2,7 @@
 
 use anyhow::Result;
 
-use super::artifact::{Artifacts, Job};
+use super::artifact::{Artifacts, EmitJob};
 use super::inputs::EmitInputs;
 use super::map::Map;
 use super::tops::{Face, Top, TopPort, tops};
@@ -31,7 +31,7 @@ pub fn instances(design: &Design, inputs: &EmitInputs) -> Result<Vec<InstanceExa
         Some(bus) => Some((bus, Map::new(design, inputs)?)),
         None => None,
     };
-    let job = Job { design, inputs, naming: &naming, registers };
+    let job = EmitJob { design, inputs, naming: &naming, registers };
     let modules = tops(&job, &Artifacts::default())?;
     // The outermost module is what most systems use.
     Ok(modules.into_iter().rev().map(|top| instance(design, top)).collect())

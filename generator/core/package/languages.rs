@@ -4,7 +4,7 @@ use anyhow::Result;
 use glint_base::fill;
 use glint_base::fixed::{Format, exp2};
 
-use super::artifact::{Artifacts, Job, Kind};
+use super::artifact::{ArtifactKind, Artifacts, EmitJob};
 use super::tops::{Face, Top, TopPort};
 use super::wrap::fields::Transfer;
 use glint_rtl::netlist::{Port, Role};
@@ -15,14 +15,14 @@ use glint_rtl::verilog::text::{Names, ascii, comment, constant_name, literal};
 ///
 /// # Errors
 /// Fails if a template fails.
-pub fn files(job: &Job, tops: &[Top], files: &mut Artifacts) -> Result<()> {
+pub fn files(job: &EmitJob, tops: &[Top], files: &mut Artifacts) -> Result<()> {
     if job.inputs.around.vhdl {
         let text = vhdl(job, tops)?;
-        files.add(Kind::Language, format!("{}.vhd", job.name()), text);
+        files.add(ArtifactKind::Language, format!("{}.vhd", job.name()), text);
     }
     if job.inputs.around.systemverilog {
         let text = systemverilog(job)?;
-        files.add(Kind::Language, format!("{}_pkg.sv", job.name()), text);
+        files.add(ArtifactKind::Language, format!("{}_pkg.sv", job.name()), text);
     }
     Ok(())
 }
@@ -33,15 +33,15 @@ fn is_number(role: Role) -> bool {
 }
 
 /// A component of VHDL.
-struct Component<'a> {
+struct VhdlComponent<'a> {
     name: String,
     what: &'a str,
     generics: Vec<String>,
     ports: Vec<String>,
 }
 
-fn component<'a>(top: &'a Top, of_core: &[String]) -> Component<'a> {
-    Component {
+fn component<'a>(top: &'a Top, of_core: &[String]) -> VhdlComponent<'a> {
+    VhdlComponent {
         name: module_name(&top.module),
         what: &top.what,
         generics: if top.face == Face::Core { of_core.to_vec() } else { Vec::new() },
@@ -49,7 +49,7 @@ fn component<'a>(top: &'a Top, of_core: &[String]) -> Component<'a> {
     }
 }
 
-fn vhdl(job: &Job, tops: &[Top]) -> Result<String> {
+fn vhdl(job: &EmitJob, tops: &[Top]) -> Result<String> {
     let (name, design, naming) = (job.name(), job.design, job.naming);
     let memories = design.roms.iter().enumerate().filter(|(_, rom)| rom.shares.is_none());
     let memories: Vec<(String, &String)> = memories
@@ -94,7 +94,7 @@ fn vhdl(job: &Job, tops: &[Top]) -> Result<String> {
         // The label of the component.
         label: String = vhdl_name(&names.fresh("core")),
         regenerate: &'a str = job.regenerate(),
-        components: Vec<Component<'a>> = tops.iter().map(|top| component(top, &generics)).collect(),
+        components: Vec<VhdlComponent<'a>> = tops.iter().map(|top| component(top, &generics)).collect(),
         generics: Vec<String>,
         // The generics of the entity. The component has the same generics.
         passed: Vec<String> =
@@ -162,7 +162,7 @@ const VHDL_2008: &str = "
 ";
 
 /// A number of SystemVerilog.
-struct Number {
+struct VerilogConstant {
     name: String,
     constant: String,
     /// Its type.
@@ -171,7 +171,7 @@ struct Number {
     format: Format,
 }
 
-impl Number {
+impl VerilogConstant {
     fn unit(&self) -> String {
         format!("{:?}", exp2(-self.format.frac))
     }
@@ -218,7 +218,7 @@ struct Structure {
     members: Vec<String>,
 }
 
-fn systemverilog(job: &Job) -> Result<String> {
+fn systemverilog(job: &EmitJob) -> Result<String> {
     let (name, design) = (job.name(), job.design);
     let ports = || design.ports.iter().filter(|port| is_number(port.role));
     let mut names = Names::new(design.nets.iter().map(|net| net.name.as_str()));
@@ -226,7 +226,7 @@ fn systemverilog(job: &Job) -> Result<String> {
         let net = design.net(port.net);
         let colon = if net.doc.is_empty() { "" } else { ": " };
         let doc = format!("{}, {}{colon}{}", net.name, net.format, ascii(&net.doc));
-        Number {
+        VerilogConstant {
             name: net.name.clone(),
             constant: constant_name(&net.name),
             kind: names.fresh(&format!("{}_t", net.name)),
@@ -234,7 +234,7 @@ fn systemverilog(job: &Job) -> Result<String> {
             format: net.format,
         }
     };
-    let numbers: Vec<Number> = ports().map(number).collect();
+    let numbers: Vec<VerilogConstant> = ports().map(number).collect();
     let mut transfers = Vec::new();
     if job.inputs.around.stream {
         for (net, transfer) in
@@ -259,7 +259,7 @@ fn systemverilog(job: &Job) -> Result<String> {
         name: &'a str,
         package: String = format!("{name}_pkg"),
         regenerate: &'a str = job.regenerate(),
-        numbers: Vec<Number>,
+        numbers: Vec<VerilogConstant>,
         transfers: Vec<Structure>,
     })
 }

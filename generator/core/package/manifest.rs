@@ -5,14 +5,14 @@ use serde::Serialize;
 use serde_json::value::{RawValue, to_raw_value};
 use serde_json::{Value, json};
 
-use super::artifact::{Artifacts, Job, Kind};
-use super::facts::{self, Port, Rom};
+use super::artifact::{ArtifactKind, Artifacts, EmitJob};
+use super::facts::{self, PortFacts, RomFacts};
 use super::inputs::EmitInputs;
-use super::map::Register;
+use super::map::BusRegister;
 use super::output_file::{OutputFile, digest};
-use super::wrap::fields::{Field, Transfer};
+use super::wrap::fields::{StreamField, Transfer};
 use crate::observation::{Computation, ContractFacts, Quantity};
-use glint_rtl::netlist::Timing;
+use glint_rtl::netlist::HandshakeTiming;
 use glint_rtl::netlist::{Design, Pipeline, RegId};
 
 /// The version of the manifest's structure, for programs that read it. It is increased when a name is renamed, moved, or gets
@@ -32,13 +32,13 @@ struct Manifest<'a> {
     notes: Vec<&'a str>,
     regenerate: String,
     scale: &'static str,
-    ports: Vec<Port<'a>>,
-    timing: &'a Timing,
+    ports: Vec<PortFacts<'a>>,
+    timing: &'a HandshakeTiming,
     #[serde(skip_serializing_if = "Option::is_none")]
     control: Option<Value>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pipeline: Option<Value>,
-    roms: Vec<Rom<'a>>,
+    roms: Vec<RomFacts<'a>>,
     files: &'a serde_json::Map<String, Value>,
     sha256: serde_json::Map<String, Value>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -46,7 +46,7 @@ struct Manifest<'a> {
     #[serde(skip_serializing_if = "Option::is_none")]
     accuracy: Option<Value>,
     #[serde(skip_serializing_if = "Option::is_none")]
-    computations: Option<Computations<'a>>,
+    computations: Option<ComputationNames<'a>>,
     #[serde(skip_serializing_if = "Option::is_none")]
     registers: Option<Vec<Value>>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -55,7 +55,7 @@ struct Manifest<'a> {
 
 /// Computations, with the names of the numbers in each.
 #[derive(Serialize)]
-struct Computations<'a> {
+struct ComputationNames<'a> {
     /// The operands of each point, in the order of the ports.
     operands: Vec<&'a str>,
     /// The results, in the order of the ports.
@@ -65,23 +65,25 @@ struct Computations<'a> {
 }
 
 /// The names of the files that the manifest lists, by purpose.
-pub struct Names(serde_json::Map<String, Value>);
+pub struct FileNames(serde_json::Map<String, Value>);
 
-impl Names {
+impl FileNames {
     /// Lists the names of all files but the manifest itself, by purpose.
     pub fn new(files: &Artifacts) -> Self {
-        use Kind::{Bench, BenchCore, Core, Primitive, Proof, Python, Wrapper, WrapperProof};
-        let lists: [(&str, &[Kind]); 10] = [
-            ("rtl", &[Kind::Rtl]),
-            ("memories", &[Kind::Memory]),
+        use ArtifactKind::{
+            Bench, BenchCore, Core, Primitive, Proof, Python, Wrapper, WrapperProof,
+        };
+        let lists: [(&str, &[ArtifactKind]); 10] = [
+            ("rtl", &[ArtifactKind::Rtl]),
+            ("memories", &[ArtifactKind::Memory]),
             ("cores", &[Core, BenchCore]),
             ("testbench", &[Python, WrapperProof, Proof, Bench]),
             ("primitives", &[Primitive]),
             ("wrappers", &[Wrapper]),
-            ("software", &[Kind::Software]),
-            ("constraints", &[Kind::Constraint]),
-            ("scripts", &[Kind::Script]),
-            ("languages", &[Kind::Language]),
+            ("software", &[ArtifactKind::Software]),
+            ("constraints", &[ArtifactKind::Constraint]),
+            ("scripts", &[ArtifactKind::Script]),
+            ("languages", &[ArtifactKind::Language]),
         ];
         let named = lists.into_iter().map(|(list, kinds)| (list, files.names(kinds))).enumerate();
         // The first four are there even if they are empty.
@@ -94,8 +96,8 @@ impl Names {
 ///
 /// # Errors
 /// Fails if a number is not finite, because JSON cannot represent it.
-pub fn contents(job: &Job, names: &Names, others: &[OutputFile]) -> Result<String> {
-    let Job { design, inputs, naming, .. } = *job;
+pub fn contents(job: &EmitJob, names: &FileNames, others: &[OutputFile]) -> Result<String> {
+    let EmitJob { design, inputs, naming, .. } = *job;
     let about = &design.about;
     let manifest = Manifest {
         schema: SCHEMA,
@@ -140,9 +142,9 @@ pub fn contents(job: &Job, names: &Names, others: &[OutputFile]) -> Result<Strin
 }
 
 /// Returns the layout of a transfer on each stream.
-fn stream(job: &Job) -> Result<Value> {
+fn stream(job: &EmitJob) -> Result<Value> {
     let layout = |transfer: Transfer| {
-        let field = |it: &Field| json!({ "name": it.name, "low": it.low, "width": it.width });
+        let field = |it: &StreamField| json!({ "name": it.name, "low": it.low, "width": it.width });
         let fields: Vec<Value> = transfer.fields.iter().map(field).collect();
         json!({ "bits": transfer.bits, "fields": fields })
     };
@@ -155,7 +157,7 @@ fn stream(job: &Job) -> Result<Value> {
     }))
 }
 
-fn register(register: &Register) -> Value {
+fn register(register: &BusRegister) -> Value {
     let bits = register.bits.iter();
     let bits = bits.map(|it| json!({ "name": it.name, "low": it.low, "width": it.width }));
     json!({
@@ -193,7 +195,7 @@ fn accuracy(accuracy: &ContractFacts) -> Value {
 fn computations<'a>(
     design: &'a Design,
     inputs: &'a EmitInputs,
-) -> Result<Option<Computations<'a>>> {
+) -> Result<Option<ComputationNames<'a>>> {
     let Some(accuracy) = inputs.accuracy.as_ref().filter(|_| !inputs.computations.is_empty())
     else {
         return Ok(None);
@@ -207,7 +209,7 @@ fn computations<'a>(
         .map(|computation| line(computation, &operand_at, &result_at))
         .collect::<Result<_>>()?;
     let names = |ordered: Vec<(usize, &'a str)>| ordered.into_iter().map(|(_, name)| name);
-    Ok(Some(Computations {
+    Ok(Some(ComputationNames {
         operands: names(operands).collect(),
         results: names(results).collect(),
         points,

@@ -46,7 +46,7 @@ pub enum Access {
 
 /// Bits of a register.
 #[derive(Clone, Debug, Deserialize)]
-pub struct Bits {
+pub struct RegisterBits {
     /// Plain lower-case words.
     pub name: String,
     /// The lowest of them.
@@ -65,7 +65,7 @@ pub struct Bits {
 
 /// A register of 32 bits.
 #[derive(Clone, Debug, Deserialize)]
-pub struct Register {
+pub struct BusRegister {
     /// Plain lower-case words.
     pub name: String,
     /// In words.
@@ -74,10 +74,10 @@ pub struct Register {
     /// One sentence without its full stop.
     pub doc: String,
     /// From the lowest on.
-    pub bits: Vec<Bits>,
+    pub bits: Vec<RegisterBits>,
 }
 
-impl Register {
+impl BusRegister {
     /// Returns the address offset in bytes.
     pub fn offset(&self) -> u32 {
         4 * self.place
@@ -86,7 +86,7 @@ impl Register {
 
 /// A port of the core in the registers that hold it, the lowest bits first.
 #[derive(Clone, Debug)]
-pub struct Placed {
+pub struct PortPlacement {
     /// The name of the port.
     pub name: String,
     /// Its format.
@@ -94,12 +94,12 @@ pub struct Placed {
     /// The name of the port that writes an operand.
     pub strobe: String,
     /// The parts of it.
-    pub parts: Vec<Part>,
+    pub parts: Vec<PortBits>,
 }
 
 /// Bits of a port in a register.
 #[derive(Clone, Copy, Debug)]
-pub struct Part {
+pub struct PortBits {
     /// The register, in words.
     pub place: u32,
     /// The lowest bit in the register.
@@ -114,11 +114,11 @@ pub struct Part {
 #[derive(Clone, Debug)]
 pub struct Map {
     /// In the order of their places, which have no gap.
-    pub registers: Vec<Register>,
+    pub registers: Vec<BusRegister>,
     /// In the order of the ports.
-    pub operands: Vec<Placed>,
+    pub operands: Vec<PortPlacement>,
     /// In the order of the ports.
-    pub results: Vec<Placed>,
+    pub results: Vec<PortPlacement>,
 }
 
 impl Map {
@@ -203,27 +203,27 @@ fn unfit(message: String, remedy: &str) -> Unfit {
     Unfit::new("interface.registers", message, remedy)
 }
 
-fn last_place(ports: &[Placed]) -> u32 {
+fn last_place(ports: &[PortPlacement]) -> u32 {
     let parts = ports.iter().flat_map(|port| &port.parts);
     parts.map(|part| part.place).max().unwrap_or_default()
 }
 
 /// Returns a port in registers of its own.
-fn placed(design: &Design, port: &Port, strobe: String, place: &mut u32) -> Placed {
+fn placed(design: &Design, port: &Port, strobe: String, place: &mut u32) -> PortPlacement {
     let net = design.net(port.net);
     let width = net.format.width();
-    let parts: Vec<Part> = (0..width.div_ceil(WORD))
+    let parts: Vec<PortBits> = (0..width.div_ceil(WORD))
         .map(|number| {
             let low = number * WORD;
-            Part { place: *place + number, at: 0, low, width: (width - low).min(WORD) }
+            PortBits { place: *place + number, at: 0, low, width: (width - low).min(WORD) }
         })
         .collect();
     *place += parts.len() as u32;
-    Placed { name: net.name.clone(), format: net.format, strobe, parts }
+    PortPlacement { name: net.name.clone(), format: net.format, strobe, parts }
 }
 
 /// Returns all results in one register, each in whole bytes, where they fit; else each in its own.
-fn results(design: &Design, place: &mut u32) -> Vec<Placed> {
+fn results(design: &Design, place: &mut u32) -> Vec<PortPlacement> {
     let ports: Vec<&Port> = design.outputs().filter(|port| port.role == Role::Result).collect();
     let padded = |port: &Port| design.width(port.net).next_multiple_of(8);
     if ports.iter().map(|port| padded(port)).sum::<u32>() > WORD {
@@ -232,9 +232,9 @@ fn results(design: &Design, place: &mut u32) -> Vec<Placed> {
     let mut at = 0;
     let together = |port: &&Port| {
         let net = design.net(port.net);
-        let part = Part { place: *place, at, low: 0, width: net.format.width() };
+        let part = PortBits { place: *place, at, low: 0, width: net.format.width() };
         at += padded(port);
-        Placed {
+        PortPlacement {
             name: net.name.clone(),
             format: net.format,
             strobe: String::new(),
@@ -248,8 +248,8 @@ fn results(design: &Design, place: &mut u32) -> Vec<Placed> {
 
 /// The registers that every core has, in `registers.toml`.
 #[derive(Deserialize)]
-struct Fixed {
-    register: Vec<Register>,
+struct CommonRegisters {
+    register: Vec<BusRegister>,
 }
 
 /// Returns the registers that every core has, in this one.
@@ -257,14 +257,15 @@ fn fixed(
     inputs: &EmitInputs,
     (operands, results): (usize, usize),
     (last_operand, last): (u32, u32),
-) -> Result<Vec<Register>> {
+) -> Result<Vec<BusRegister>> {
     let version = |part: &str| part.parse::<u64>().unwrap_or_default();
     let version = version(env!("CARGO_PKG_VERSION_MAJOR")) << 16
         | version(env!("CARGO_PKG_VERSION_MINOR")) << 8
         | version(env!("CARGO_PKG_VERSION_PATCH"));
     let hash = inputs.configuration.get(..8).unwrap_or_default();
     let hash = u64::from_str_radix(hash, 16).unwrap_or_default();
-    let Fixed { register: mut registers } = toml::from_str(include_str!("registers.toml"))?;
+    let CommonRegisters { register: mut registers } =
+        toml::from_str(include_str!("registers.toml"))?;
     for (place, register) in (0..).zip(&mut registers) {
         register.place = place;
         for bits in &mut register.bits {
@@ -283,24 +284,30 @@ fn fixed(
     Ok(registers)
 }
 
-fn bits(name: &str, (low, width): (u32, u32), access: Access, reset: u64, doc: &str) -> Bits {
-    Bits { name: name.to_owned(), low, width, access, reset, doc: doc.to_owned() }
+fn bits(
+    name: &str,
+    (low, width): (u32, u32),
+    access: Access,
+    reset: u64,
+    doc: &str,
+) -> RegisterBits {
+    RegisterBits { name: name.to_owned(), low, width, access, reset, doc: doc.to_owned() }
 }
 
-fn of_results(results: &[Placed], design: &Design) -> Vec<Register> {
+fn of_results(results: &[PortPlacement], design: &Design) -> Vec<BusRegister> {
     let alone = results.len() == 1;
     let places: BTreeSet<u32> =
         results.iter().flat_map(|result| &result.parts).map(|part| part.place).collect();
     if alone || places.len() > 1 {
-        let own = |result: &Placed| own(result, Access::Read, &doc(design, &result.name));
+        let own = |result: &PortPlacement| own(result, Access::Read, &doc(design, &result.name));
         return results.iter().flat_map(own).collect();
     }
-    let of_result = |result: &Placed| {
+    let of_result = |result: &PortPlacement| {
         let part = result.parts[0];
         let width = if result.format.signed { part.width.next_multiple_of(8) } else { part.width };
         bits(&result.name, (part.at, width), Access::Read, 0, &doc(design, &result.name))
     };
-    vec![Register {
+    vec![BusRegister {
         name: "results".to_owned(),
         place: results[0].parts[0].place,
         doc: "All results; a read waits for the computation that is under way".to_owned(),
@@ -309,8 +316,8 @@ fn of_results(results: &[Placed], design: &Design) -> Vec<Register> {
 }
 
 /// Returns the registers of a port, which no other port has a part in.
-fn own(port: &Placed, access: Access, doc: &str) -> Vec<Register> {
-    let register = |(number, part): (usize, &Part)| {
+fn own(port: &PortPlacement, access: Access, doc: &str) -> Vec<BusRegister> {
+    let register = |(number, part): (usize, &PortBits)| {
         let (name, doc) = match port.parts.len() {
             1 => (port.name.clone(), doc.to_owned()),
             _ => (
@@ -324,7 +331,7 @@ fn own(port: &Placed, access: Access, doc: &str) -> Vec<Register> {
             _ => (part.width, "raw"),
         };
         let value = bits("value", (0, width), access, 0, raw);
-        Register { name, place: part.place, doc, bits: vec![value] }
+        BusRegister { name, place: part.place, doc, bits: vec![value] }
     };
     port.parts.iter().enumerate().map(register).collect()
 }

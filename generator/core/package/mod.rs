@@ -47,17 +47,17 @@ mod wrap;
 
 use anyhow::{Result, ensure};
 
-use artifact::{Artifacts, Job, Kind};
+use artifact::{ArtifactKind, Artifacts, EmitJob};
 use glint_rtl::netlist::Design;
 use glint_rtl::verilog;
 use glint_rtl::verilog::naming::Naming;
 use glint_rtl::verilog::plan::Plan;
 
 pub use crate::observation::{
-    Computation, ContractFacts, LineClocks, Linear, Quantity, Shown, Vectors, WorkedExample,
+    Computation, ContractFacts, LineClocks, Linear, Quantity, TimedResult, Vectors, WorkedExample,
 };
 pub use cocotb::driver;
-pub use glint_rtl::netlist::Timing;
+pub use glint_rtl::netlist::HandshakeTiming;
 pub use inputs::EmitInputs;
 pub use instance::{InstanceExample, instances};
 pub use output_file::{OutputFile, digest, sources, sources_for};
@@ -91,14 +91,14 @@ pub fn emit(design: &Design, inputs: &EmitInputs) -> Result<Vec<OutputFile>> {
         Some(bus) => Some((bus, map::Map::new(design, inputs)?)),
         None => None,
     };
-    let job = Job { design, inputs, naming: &naming, registers };
+    let job = EmitJob { design, inputs, naming: &naming, registers };
     let mut files = Artifacts::default();
     for (file, module) in verilog::modules(&plan, &naming, &inputs.origin()) {
-        files.add(Kind::Rtl, file, module);
+        files.add(ArtifactKind::Rtl, file, module);
     }
     multiplier::files(&job, &mut files)?;
     for (file, contents) in verilog::memories(design, &naming)? {
-        files.add(Kind::Memory, file, contents);
+        files.add(ArtifactKind::Memory, file, contents);
     }
     if let (Some(_), Some(example), Some(accuracy)) =
         (&inputs.vectors, &inputs.example, &inputs.accuracy)
@@ -118,7 +118,7 @@ pub fn emit(design: &Design, inputs: &EmitInputs) -> Result<Vec<OutputFile>> {
     languages::files(&job, &tops, &mut files)?;
     software::files(&job, &tops, &mut files)?;
     fusesoc::files(&job, &mut files)?;
-    let names = manifest::Names::new(&files);
+    let names = manifest::FileNames::new(&files);
     let mut files = files.files(&design.name);
     module_names::check(&files)?;
     // The manifest has the digests of all other files.

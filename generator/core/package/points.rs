@@ -30,7 +30,7 @@ pub struct PointsBench {
 }
 
 /// The view of a list of points in templates, whatever the architecture.
-struct List {
+struct PointList {
     name: String,
     module: String,
     points_file: &'static str,
@@ -47,7 +47,7 @@ struct List {
     print: String,
 }
 
-impl List {
+impl PointList {
     /// Returns the list by the input ports that are operands; reset and `valid` are nets of the design.
     fn new(
         design: &Design,
@@ -96,13 +96,13 @@ pub fn points_bench(design: &Design, limit: u32) -> Result<PointsBench> {
     let handshake = design.handshake()?;
     let name_of = |net: NetId| design.net(net).name.clone();
     let is_operand = |role| matches!(role, Role::Operand { .. });
-    let list = List::new(design, limit, is_operand, [handshake.reset, handshake.valid]);
+    let list = PointList::new(design, limit, is_operand, [handshake.reset, handshake.valid]);
     let strobe = |port: &Port| match port.role {
         Role::Operand { strobe } => Some(name_of(strobe)),
         _ => None,
     };
     let text = fill!("points.v" {
-        list: &'a List = &list,
+        list: &'a PointList = &list,
         names: Variables = Variables::new(&mut Names::of_ports(design)),
         start: String = name_of(handshake.start),
         busy: String = name_of(handshake.busy),

@@ -2,7 +2,7 @@
 
 use anyhow::Result;
 
-use super::artifact::{Artifacts, Job, Kind};
+use super::artifact::{ArtifactKind, Artifacts, EmitJob};
 use super::bus::{Bus, Protocol, STREAMS};
 use super::wrap::fields::Transfer;
 use glint_rtl::netlist::{Design, Role};
@@ -88,7 +88,7 @@ impl Top {
 ///
 /// # Errors
 /// Fails if a stream surrounds a core without operands or results.
-pub fn tops(job: &Job, files: &Artifacts) -> Result<Vec<Top>> {
+pub fn tops(job: &EmitJob, files: &Artifacts) -> Result<Vec<Top>> {
     let (name, design) = (job.name(), job.design);
     let reset = design.port(|role| role == Role::Reset);
     let mut tops = vec![Top {
@@ -100,13 +100,13 @@ pub fn tops(job: &Job, files: &Artifacts) -> Result<Vec<Top>> {
         reset_level: 0,
         ports: core_ports(design),
         protocols: &[],
-        verilog: files.names(&[Kind::Rtl]),
+        verilog: files.names(&[ArtifactKind::Rtl]),
     }];
     let mut add = |suffix: &str, face: Face, what: String, level: u8, ports: Vec<TopPort>| {
         // The files of the stream with its buffer, or the files of the registers with their bus.
         let streamed = format!("{name}_axis");
         let of_core = |file: &String| file.starts_with(&streamed) == (face == Face::Stream);
-        let own = files.names(&[Kind::Wrapper]).into_iter().filter(of_core);
+        let own = files.names(&[ArtifactKind::Wrapper]).into_iter().filter(of_core);
         tops.push(Top {
             module: format!("{name}_{suffix}"),
             face,
@@ -120,7 +120,7 @@ pub fn tops(job: &Job, files: &Artifacts) -> Result<Vec<Top>> {
                 Face::Stream => &STREAMS,
                 Face::Registers(bus) => bus.protocol,
             },
-            verilog: own.chain(files.names(&[Kind::Rtl])).collect(),
+            verilog: own.chain(files.names(&[ArtifactKind::Rtl])).collect(),
         });
     };
     if job.inputs.around.stream {
@@ -150,7 +150,7 @@ fn core_ports(design: &Design) -> Vec<TopPort> {
     listed("in clk").into_iter().chain(design.ports.iter().map(port)).collect()
 }
 
-fn stream_ports(job: &Job) -> Result<Vec<TopPort>> {
+fn stream_ports(job: &EmitJob) -> Result<Vec<TopPort>> {
     let (input, output) = (Transfer::sent(job)?.bits, Transfer::received(job)?.bits);
     let keep = |port: &str, bits: u32| match job.inputs.around.keep {
         true => format!("{port}_axis_tkeep {}, ", bits / 8),

@@ -4,7 +4,7 @@ use super::*;
 use glint_keys::common::{Domain, Intensity, Operands};
 
 /// C = 4; the ratio and the decay with 6 fraction bits; y with 1 + 2 fraction bits; F = 6.
-fn small(of: Decay) -> Arithmetic {
+fn small(of: Decay) -> DecayArithmetic {
     let f = Intensity { fraction: 6, ..Intensity::small() };
     let degree = || "auto".to_owned();
     let keys = Keys {
@@ -19,7 +19,7 @@ fn small(of: Decay) -> Arithmetic {
         f,
         domain: Domain::small(),
     };
-    Arithmetic::new(of, keys)
+    DecayArithmetic::new(of, keys)
 }
 
 #[test]

@@ -3,7 +3,7 @@
 use std::mem;
 use std::sync::Arc;
 
-use super::{Does, Frame, Microinstruction, Next, Operand, Slot, State, Value, idle};
+use super::{Does, Frame, FrameOperand, FrameStep, Next, Slot, State, Value, idle};
 use crate::Model;
 use glint_base::fixed::mask;
 
@@ -12,9 +12,9 @@ const HANDSHAKE: [&str; 5] = ["valid", "busy", "done", "run", "word_address"];
 
 /// The constant part of a model.
 #[derive(Clone)]
-pub(super) struct Fixed {
-    pub(super) program: Vec<Microinstruction>,
-    pub(super) operands: Vec<Operand>,
+pub(super) struct ModelConstants {
+    pub(super) program: Vec<FrameStep>,
+    pub(super) operands: Vec<FrameOperand>,
     /// The outputs first.
     pub(super) shown: Vec<(Slot, u64)>,
     pub(super) outputs: usize,
@@ -39,8 +39,8 @@ pub(super) struct Fixed {
 /// that a microinstruction loads takes its value at the rising edge that ends it, whether `rst_n` is low at that edge or
 /// not.
 #[derive(Clone)]
-pub struct Clocked {
-    pub(super) fixed: Arc<Fixed>,
+pub struct ClockedModel {
+    pub(super) fixed: Arc<ModelConstants>,
     /// A point is in flight: also the output `busy`.
     run: bool,
     /// The microinstruction in force; 0 when idle.
@@ -57,7 +57,7 @@ impl Frame {
     ///
     /// # Panics
     /// If there is no microinstruction.
-    pub fn model(mut self, program: impl IntoIterator<Item = Microinstruction>) -> Clocked {
+    pub fn model(mut self, program: impl IntoIterator<Item = FrameStep>) -> ClockedModel {
         let program: Vec<_> = program.into_iter().collect();
         assert!(!program.is_empty(), "a device idles in its first microinstruction");
         // Of signals that differ in one clock the first is reported: one that a user of the device sees.
@@ -65,7 +65,7 @@ impl Frame {
         let inputs =
             self.operands.iter().flat_map(|it| [it.name.clone(), it.name.clone() + "_write"]);
         let signals = self.shown.iter().map(|shown| shown.name.clone());
-        let fixed = Fixed {
+        let fixed = ModelConstants {
             inputs: ["rst_n", "start"].map(str::to_owned).into_iter().chain(inputs).collect(),
             signals: HANDSHAKE.map(str::to_owned).into_iter().chain(signals).collect(),
             shown: self.shown.iter().map(|it| (it.slot, mask(it.format.width()))).collect(),
@@ -80,11 +80,11 @@ impl Frame {
             flags: self.flags,
             valid_delay: self.valid_delay,
         };
-        Clocked::at_power_up(fixed, self.slots)
+        ClockedModel::at_power_up(fixed, self.slots)
     }
 }
 
-impl Fixed {
+impl ModelConstants {
     /// Loads the operand registers, or the buffers in front of them, from data and strobes. Returns whether anything was loaded.
     fn write(&self, state: &mut State, ports: &[u64]) -> bool {
         let mut taken = false;
@@ -99,9 +99,9 @@ impl Fixed {
     }
 }
 
-impl Clocked {
+impl ClockedModel {
     /// Makes the device at power-up, with this number of slots, all 0.
-    fn at_power_up(fixed: Fixed, slots: usize) -> Self {
+    fn at_power_up(fixed: ModelConstants, slots: usize) -> Self {
         let mut model = Self {
             run: false,
             address: 0,
@@ -122,7 +122,7 @@ impl Clocked {
     /// Returns the device with registers behind the results that are logic. These are taken in the microinstruction that was to
     /// set `valid`, and one more sets it; where `valid` comes later than a microinstruction says, in every clock.
     pub(crate) fn registered(&self) -> Option<Self> {
-        let mut it = Fixed::clone(&self.fixed);
+        let mut it = ModelConstants::clone(&self.fixed);
         let mut slots = self.state.len();
         for at in 0..it.shown.len() {
             let (slot, mask) = it.shown[at];
@@ -176,7 +176,7 @@ impl Clocked {
     }
 }
 
-impl Model for Clocked {
+impl Model for ClockedModel {
     fn inputs(&self) -> &[String] {
         &self.fixed.inputs
     }
@@ -236,12 +236,12 @@ impl Model for Clocked {
         Some(Box::new(self.registered()?))
     }
 
-    fn clocked(&self) -> Option<&Clocked> {
+    fn clocked(&self) -> Option<&ClockedModel> {
         Some(self)
     }
 
     fn with_operand_buffers(&self) -> Option<Box<dyn Model>> {
-        let mut it = Fixed::clone(&self.fixed);
+        let mut it = ModelConstants::clone(&self.fixed);
         let mut slots = self.state.len();
         it.buffered = !it.operands.is_empty();
         for (operand, written) in it.operands.iter().zip(&mut it.written) {
@@ -257,7 +257,7 @@ impl Model for Clocked {
 
 /// Returns the program with one microinstruction more after each that was to set `valid`; none where such a one goes on by a
 /// condition.
-fn taking(program: &[Microinstruction]) -> Option<Vec<Microinstruction>> {
+fn taking(program: &[FrameStep]) -> Option<Vec<FrameStep>> {
     let mut longer = Vec::new();
     for (at, here) in program.iter().enumerate() {
         let mut here = here.clone();
@@ -273,8 +273,8 @@ fn taking(program: &[Microinstruction]) -> Option<Vec<Microinstruction>> {
             return None;
         }
         let next = mem::replace(&mut here.next, Next::Following);
-        longer.push(Microinstruction { valid: false, takes_results: true, ..here });
-        longer.push(Microinstruction { next, ..idle().valid() });
+        longer.push(FrameStep { valid: false, takes_results: true, ..here });
+        longer.push(FrameStep { next, ..idle().valid() });
     }
     Some(longer)
 }

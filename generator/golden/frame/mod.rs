@@ -33,7 +33,7 @@ mod tests;
 use std::ops::{Index, IndexMut};
 use std::sync::Arc;
 
-pub use clocked::Clocked;
+pub use clocked::ClockedModel;
 pub use part::Part;
 
 use glint_base::fixed::Format;
@@ -77,7 +77,7 @@ enum Next {
 
 /// One microinstruction.
 #[derive(Clone)]
-pub struct Microinstruction {
+pub struct FrameStep {
     does: Option<Does>,
     next: Next,
     valid: bool,
@@ -87,8 +87,8 @@ pub struct Microinstruction {
 }
 
 /// Returns a microinstruction that changes no register.
-pub fn idle() -> Microinstruction {
-    Microinstruction {
+pub fn idle() -> FrameStep {
+    FrameStep {
         does: None,
         next: Next::Following,
         valid: false,
@@ -98,20 +98,20 @@ pub fn idle() -> Microinstruction {
 }
 
 /// Returns a microinstruction whose rising edge applies `does` to the registers.
-pub fn step(does: impl Fn(&mut State) + Send + Sync + 'static) -> Microinstruction {
-    Microinstruction { does: Some(Arc::new(does)), ..idle() }
+pub fn step(does: impl Fn(&mut State) + Send + Sync + 'static) -> FrameStep {
+    FrameStep { does: Some(Arc::new(does)), ..idle() }
 }
 
 /// Returns a microinstruction as [`step`], by an arithmetic that several share.
 pub fn step_by<A: Send + Sync + 'static>(
     arithmetic: &Arc<A>,
     does: impl Fn(&A, &mut State) + Send + Sync + 'static,
-) -> Microinstruction {
+) -> FrameStep {
     let arithmetic = arithmetic.clone();
     step(move |state| does(&arithmetic, state))
 }
 
-impl Microinstruction {
+impl FrameStep {
     /// States that the results are on the outputs.
     pub fn valid(self) -> Self {
         Self { valid: true, ..self }
@@ -146,7 +146,7 @@ impl Microinstruction {
 /// An operand register with its write strobe. It ignores writes while the device is busy, and does not know
 /// the reset.
 #[derive(Clone)]
-struct Operand {
+struct FrameOperand {
     name: String,
     slot: Slot,
     format: Format,
@@ -154,7 +154,7 @@ struct Operand {
     max: i64,
 }
 
-impl Operand {
+impl FrameOperand {
     /// Returns the number that the register loads from the bits on the port.
     fn held(&self, bits: u64) -> i64 {
         (self.format.raw(bits) as i64).clamp(self.min, self.max)
@@ -162,7 +162,7 @@ impl Operand {
 }
 
 /// A predicted signal, with the bits of its net.
-struct Signal {
+struct FrameSignal {
     name: String,
     output: bool,
     slot: Slot,
@@ -172,15 +172,15 @@ struct Signal {
 /// The state of a device, and its operations.
 #[derive(Default)]
 pub struct Frame {
-    operands: Vec<Operand>,
-    shown: Vec<Signal>,
+    operands: Vec<FrameOperand>,
+    shown: Vec<FrameSignal>,
     slots: usize,
     flags: Vec<Slot>,
     logic: Vec<(Slot, Value)>,
     edges: Vec<Does>,
     valid_delay: u32,
     /// The microinstructions of the parts, in the order of execution.
-    pub(super) parts: Vec<Microinstruction>,
+    pub(super) parts: Vec<FrameStep>,
 }
 
 impl Frame {
@@ -192,7 +192,7 @@ impl Frame {
 
     fn shown(&mut self, name: String, format: Format, output: bool) -> Slot {
         let slot = self.hidden();
-        self.shown.push(Signal { name, output, slot, format });
+        self.shown.push(FrameSignal { name, output, slot, format });
         slot
     }
 
@@ -219,7 +219,12 @@ impl Frame {
     pub fn shows(&mut self, name: &str, register: Slot) {
         let of = self.shown.iter().find(|shown| shown.slot == register);
         let format = of.expect("a register that is shown").format;
-        self.shown.push(Signal { name: name.to_owned(), output: true, slot: register, format });
+        self.shown.push(FrameSignal {
+            name: name.to_owned(),
+            output: true,
+            slot: register,
+            format,
+        });
     }
 
     /// Adds an output of one bit that is 1 in the microinstructions that assert it.
@@ -237,7 +242,7 @@ impl Frame {
     /// Adds an operand whose register clamps each loaded value to `min ..= max`, raw.
     pub fn clamped(&mut self, name: &str, format: Format, min: i64, max: i64) -> Slot {
         let slot = self.shown(format!("{name}_reg"), format, false);
-        self.operands.push(Operand { name: name.to_owned(), slot, format, min, max });
+        self.operands.push(FrameOperand { name: name.to_owned(), slot, format, min, max });
         slot
     }
 

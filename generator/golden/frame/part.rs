@@ -30,7 +30,7 @@
 
 use std::sync::Arc;
 
-use super::{Condition, Does, Frame, Microinstruction, Next, Signal, Slot, State, idle};
+use super::{Condition, Does, Frame, FrameSignal, FrameStep, Next, Slot, State, idle};
 use crate::Model;
 use glint_base::fixed::Format;
 
@@ -75,7 +75,7 @@ impl Frame {
         let signals = part.signals()[part.signals().len() - it.shown.len()..].iter();
         let shown: Vec<_> = signals.zip(&it.shown).collect();
         let (outputs, registers) = shown.split_at(it.outputs);
-        self.shown.extend(registers.iter().map(|(signal, (slot, mask))| Signal {
+        self.shown.extend(registers.iter().map(|(signal, (slot, mask))| FrameSignal {
             name: format!("{name}_{signal}"),
             output: false,
             slot: own(*slot),
@@ -103,7 +103,7 @@ impl Frame {
             self.parts = vec![idle(), idle()];
         }
         let before = self.parts.pop().unwrap_or_else(idle);
-        self.parts.push(Microinstruction { does: Some(then(load, before.does.clone())), ..before });
+        self.parts.push(FrameStep { does: Some(then(load, before.does.clone())), ..before });
         self.parts.extend(it.program.iter().map(|here| {
             let taken: Vec<_> = it.taken.iter().map(|&(from, to)| (own(from), own(to))).collect();
             let takes: Option<Does> = here.takes_results.then(|| -> Does {
@@ -114,7 +114,7 @@ impl Frame {
                 let holds = holds.clone();
                 Arc::new(move |s| holds(&s[base..]))
             };
-            Microinstruction {
+            FrameStep {
                 does: takes.map(|takes| then(takes, does.clone())).or(does),
                 next: match &here.next {
                     Next::RepeatWhile(holds) => Next::RepeatWhile(inside(holds)),

@@ -10,7 +10,7 @@ fn countdown(frame: &mut Frame) -> (Slot, Slot) {
     (from, count)
 }
 
-fn model(valid_delay: u32) -> Clocked {
+fn model(valid_delay: u32) -> ClockedModel {
     let mut frame = Frame::default();
     let (from, count) = countdown(&mut frame);
     let counts = frame.flag("counts");

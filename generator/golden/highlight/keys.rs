@@ -5,10 +5,10 @@
 use super::Products;
 use crate::frame::{Frame, Slot};
 use crate::{Operand, contract};
-use glint_keys::common::{Colours, Domain, Intensity, Operands};
+use glint_keys::common::{ColourKeys, Domain, Intensity, Operands};
 
 /// Returns the products of f with the colours.
-pub fn products(keys: &Colours, f: &Intensity) -> Products {
+pub fn products(keys: &ColourKeys, f: &Intensity) -> Products {
     Products::colours(f.format(), keys.bits, f.output_rounding).in_turn(keys.in_turn())
 }
 

@@ -1,6 +1,6 @@
 //! Makes the products of a reflectance f with the colour operands, for golden models and accuracy contracts.
 
-use crate::frame::{Clocked, Frame, Microinstruction, Slot, State, idle, step};
+use crate::frame::{ClockedModel, Frame, FrameStep, Slot, State, idle, step};
 use crate::narrow::Narrow;
 use crate::{Operand, Output};
 use glint_base::fixed::{Format, Rounding};
@@ -15,12 +15,12 @@ pub struct Products {
     pub(super) narrow: Narrow,
     pub(super) operands: Vec<Operand>,
     pub(super) outputs: Vec<Output>,
-    schedule: Schedule,
+    schedule: ProductOrder,
 }
 
 /// When products are made.
 #[derive(Clone, Copy, Debug)]
-enum Schedule {
+enum ProductOrder {
     /// Whatever f and the colours are: outputs are logic.
     AtOnce,
     /// Each in a microinstruction.
@@ -73,38 +73,41 @@ impl Products {
             narrow: Narrow::new(f.frac as u32, format, rounding),
             operands: operands.into_iter().map(operand).collect(),
             outputs: outputs.into_iter().map(|name| Output { name, format }).collect(),
-            schedule: Schedule::AtOnce,
+            schedule: ProductOrder::AtOnce,
         }
     }
 
     /// Makes the products one after the other, a microinstruction each, if `in_turn`; each at once otherwise.
     #[must_use]
     pub fn in_turn(self, in_turn: bool) -> Self {
-        Self { schedule: if in_turn { Schedule::InTurn } else { Schedule::AtOnce }, ..self }
+        Self { schedule: if in_turn { ProductOrder::InTurn } else { ProductOrder::AtOnce }, ..self }
     }
 
     /// Makes the products at every rising edge if `at_edges`; at once otherwise.
     #[must_use]
     pub fn at_edges(self, at_edges: bool) -> Self {
-        Self { schedule: if at_edges { Schedule::AtEdges } else { Schedule::AtOnce }, ..self }
+        Self {
+            schedule: if at_edges { ProductOrder::AtEdges } else { ProductOrder::AtOnce },
+            ..self
+        }
     }
 
     /// Adds their operands and outputs to a clock model that has the raw f in a slot. Returns the microinstructions that make the
     /// products, before the one with the result; none where they are made at once.
-    pub fn slots(&self, frame: &mut Frame, f: Slot) -> Vec<Microinstruction> {
+    pub fn slots(&self, frame: &mut Frame, f: Slot) -> Vec<FrameStep> {
         let mut program = Vec::new();
         for (operand, output) in self.operands.iter().zip(&self.outputs) {
             let (colour, narrow) = (frame.operand(&operand.name, operand.format), self.narrow);
             let product = move |s: &State| narrow.apply(s[f] * s[colour]);
             match self.schedule {
-                Schedule::AtOnce => frame.output(&output.name, output.format, product),
-                Schedule::InTurn => {
+                ProductOrder::AtOnce => frame.output(&output.name, output.format, product),
+                ProductOrder::InTurn => {
                     let name = format!("{}_intensity", operand.name);
                     let held = frame.register(&name, output.format);
                     frame.shows(&output.name, held);
                     program.push(step(move |s| s[held] = product(s)));
                 }
-                Schedule::AtEdges => {
+                ProductOrder::AtEdges => {
                     let held = frame.hidden();
                     frame.every_edge(move |s| s[held] = product(s));
                     frame.output(&output.name, output.format, move |s| s[held]);
@@ -116,7 +119,7 @@ impl Products {
 
     /// Returns the device at power-up. The products of the value that `program` leaves in the slot `f` are made and shown in
     /// the last microinstruction.
-    pub fn behind(&self, mut frame: Frame, f: Slot, mut program: Vec<Microinstruction>) -> Clocked {
+    pub fn behind(&self, mut frame: Frame, f: Slot, mut program: Vec<FrameStep>) -> ClockedModel {
         program.extend(self.slots(&mut frame, f));
         program.push(idle().valid().end());
         frame.model(program)

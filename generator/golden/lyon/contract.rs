@@ -1,6 +1,6 @@
 //! The accuracy contract of `lyon`: its formula, the terms of its error bound, and the exhaustive check.
 
-use super::{Arithmetic, Derived as _, Keys, Scale};
+use super::{Derived as _, Keys, LyonArithmetic, Scale};
 use crate::contract::{self as shared, ErrorShare};
 use crate::formulas;
 use crate::highlight::{Highlight, Reflectance};
@@ -32,10 +32,10 @@ pub(super) fn of_keys(keys: Keys) -> Highlight {
     let (name, format) = (keys.scale_name(), keys.scale_format());
     operands.push(shared::control(name, format, keys.scale_domain(), doc));
     let products = keys.products();
-    Highlight::new(Arithmetic::new(keys), operands, products)
+    Highlight::new(LyonArithmetic::new(keys), operands, products)
 }
 
-impl Arithmetic {
+impl LyonArithmetic {
     /// Returns D² of the raw components.
     #[inline]
     fn exact_distance(&self, vector: &[i64]) -> f64 {
@@ -52,7 +52,7 @@ impl Arithmetic {
     }
 }
 
-impl Reflectance for Arithmetic {
+impl Reflectance for LyonArithmetic {
     #[inline]
     fn f(&self, control: &[i64]) -> i64 {
         self.f_of(self.distance([control[0], control[1], control[2]]), control[3])

@@ -4,7 +4,7 @@ use super::contract::of_keys;
 use super::*;
 use crate::Contract;
 use glint_base::fixed::Rounding;
-use glint_keys::common::{Colours, Domain, Intensity};
+use glint_keys::common::{ColourKeys, Domain, Intensity};
 
 /// V = 4, D = 6, F = 4, K = 4, small enough to follow by hand.
 fn small(power: u32, scale: Scale) -> Keys {
@@ -16,7 +16,7 @@ fn small(power: u32, scale: Scale) -> Keys {
         distance_rounding: Rounding::Truncate,
         distance_multipliers: 3,
         exponent_bits: 4,
-        colours: Colours::small(),
+        colours: ColourKeys::small(),
         f: Intensity::small(),
         domain: Domain::small(),
     }

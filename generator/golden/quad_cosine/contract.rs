@@ -2,7 +2,7 @@
 
 use std::f64::consts::FRAC_PI_2;
 
-use super::{Arithmetic, Keys, POWERS, products, range_of};
+use super::{Keys, POWERS, QuadCosineArithmetic, products, range_of};
 use crate::contract::{self as shared, ErrorShare};
 use crate::formulas;
 use crate::highlight::{Highlight, Reflectance};
@@ -22,10 +22,10 @@ pub fn contract(config: &Config) -> Box<dyn Contract> {
     ));
     operands.push(line::length_operand(keys.length_bits));
     let products = products(&keys);
-    Box::new(Highlight::new(Arithmetic::new(keys), operands, products))
+    Box::new(Highlight::new(QuadCosineArithmetic::new(keys), operands, products))
 }
 
-impl Arithmetic {
+impl QuadCosineArithmetic {
     /// Returns the largest error of the stretched angle for n, in right angles. The first error is that multiplier 11 takes
     /// only the leading bits of the angle, and the second is ROM 9's rounding.
     ///
@@ -41,7 +41,7 @@ impl Arithmetic {
     }
 }
 
-impl Reflectance for Arithmetic {
+impl Reflectance for QuadCosineArithmetic {
     #[inline]
     fn f(&self, control: &[i64]) -> i64 {
         let (angle, n) = (control[1], control[2]);

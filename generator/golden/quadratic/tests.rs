@@ -6,7 +6,7 @@ use glint_keys::common::{Domain, Intensity, Operands};
 
 #[test]
 fn minimax_words_by_hand() {
-    let contract = Arithmetic::new(Keys {
+    let contract = QuadraticArithmetic::new(Keys {
         scheme: Scheme::Minimax,
         fraction: 2,
         operands: Operands::small(),

@@ -4,7 +4,7 @@ use std::f64::consts::FRAC_PI_2;
 
 use super::Keys;
 use crate::narrow::rounding_error;
-use crate::sine::{Piece, Sine};
+use crate::sine::{ErrorRange, Sine};
 use glint_base::fixed::{Rounding, exp2};
 
 /// Bins of the quarter circle: fine against the narrowest highlight, 3.6° at n = 1000.
@@ -17,7 +17,7 @@ pub const SLACK: f64 = 1e-9;
 
 /// The table's error by angle.
 pub struct Errors {
-    /// The largest error of an operand in each bin, with its shape (as in [`Piece`]).
+    /// The largest error of an operand in each bin, with its shape (as in [`ErrorRange`]).
     errors: Vec<(f64, f64)>,
     /// The largest sine in each bin.
     sines: Vec<f64>,
@@ -26,7 +26,7 @@ pub struct Errors {
 impl Errors {
     fn new(sine: &Sine) -> Self {
         let mut errors = vec![(0.0, 0.0); BINS];
-        sine.for_each_piece(|piece: Piece| {
+        sine.for_each_piece(|piece: ErrorRange| {
             let (low, high) = piece.cosines;
             let first = bin(libm::acos(high) - SLACK);
             let last = bin(libm::acos(low) + SLACK);

@@ -22,12 +22,12 @@
 //! worst pair of bins, in proportion.
 
 use super::analysis::Analysis;
-use super::{Arithmetic, Keys, Kind, Scheme, pairs};
+use super::{Keys, Kind, RomLayout, RoughArithmetic, pairs};
 use crate::contract::ErrorShare;
 use glint_base::fixed::exp2;
 
 /// Returns the terms of f's error.
-pub fn shares(it: &Arithmetic) -> Vec<ErrorShare> {
+pub fn shares(it: &RoughArithmetic) -> Vec<ErrorShare> {
     match it.keys.arithmetic {
         Kind::Patent => {
             vec![("arithmetic", "words modulo 1.0 wrap where the base is negative", 1.0)]
@@ -36,7 +36,7 @@ pub fn shares(it: &Arithmetic) -> Vec<ErrorShare> {
     }
 }
 
-fn exact(it: &Arithmetic) -> Vec<ErrorShare> {
+fn exact(it: &RoughArithmetic) -> Vec<ErrorShare> {
     let keys = &it.keys;
     let analysis = Analysis::new(keys, &it.sine);
     let of = |&(i, j): &(usize, usize)| analysis.bound(i, j, true);
@@ -74,11 +74,11 @@ fn exact(it: &Arithmetic) -> Vec<ErrorShare> {
 /// Returns the keys that govern the parts which [`split`] tells apart.
 fn sine_terms(keys: &Keys) -> &'static [(&'static str, &'static str)] {
     match keys.scheme {
-        Scheme::Direct => &[
+        RomLayout::Direct => &[
             ("sine.fraction", "rounding of the sine, times n"),
             ("sine.address", "one sine for a whole bucket, times n"),
         ],
-        Scheme::Segmented => &[
+        RomLayout::Segmented => &[
             ("sine.fraction", "rounding of the sine, times n"),
             ("sine.segments", "straight segments for the sine, times n"),
             ("sine.slope_fraction", "rounding of the slopes, times n"),
@@ -91,9 +91,9 @@ fn sine_terms(keys: &Keys) -> &'static [(&'static str, &'static str)] {
 fn split(keys: &Keys, error: f64, shape: f64) -> [f64; 3] {
     let ulp = exp2(-(keys.sine_fraction as i32));
     let most = match keys.scheme {
-        Scheme::Direct => [ulp / 2.0, shape, 0.0],
+        RomLayout::Direct => [ulp / 2.0, shape, 0.0],
         // A slope is off by half an ulp over the segment, and the base halves that again.
-        Scheme::Segmented => [1.5 * ulp, shape, exp2(-(keys.slope_fraction as i32)) / 4.0],
+        RomLayout::Segmented => [1.5 * ulp, shape, exp2(-(keys.slope_fraction as i32)) / 4.0],
     };
     most.map(|part| part * error / most.iter().sum::<f64>())
 }

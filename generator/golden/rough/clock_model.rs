@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::{Arithmetic, Derived as _, keys_of};
+use super::{Derived as _, RoughArithmetic, keys_of};
 use crate::Model;
 use crate::frame::{Frame, idle, step_by};
 use glint_base::fixed::Format;
@@ -13,7 +13,7 @@ use glint_config::Config;
 /// A synchronous ROM 18 is addressed a microinstruction before its sine is taken, with operands that do not change in
 /// between, so that it shows the same as another would.
 pub fn model(config: &Config) -> Box<dyn Model> {
-    let it = Arc::new(Arithmetic::new(keys_of(config)));
+    let it = Arc::new(RoughArithmetic::new(keys_of(config)));
     let keys = &it.keys;
     let largest = keys.largest_cosine();
     let product = |int| Format::unsigned(int, keys.product_fraction as i32);

@@ -1,6 +1,6 @@
 //! The accuracy contract of `rough`: its formula, its peak, the terms of its error bound, and the exhaustive check.
 
-use super::{Arithmetic, Derived as _, Kind, bound, keys_of};
+use super::{Derived as _, Kind, RoughArithmetic, bound, keys_of};
 use crate::contract::{self as shared, ErrorShare};
 use crate::formulas;
 use crate::highlight::{Highlight, Reflectance};
@@ -14,10 +14,10 @@ const SWEPT_DEVIATIONS: [f64; 4] = [0.0, 1.0, 5.0, 15.0];
 pub fn contract(config: &Config) -> Box<dyn Contract> {
     let keys = keys_of(config);
     let (control, products) = (keys.control(), keys.products());
-    Box::new(Highlight::new(Arithmetic::new(keys), control, products))
+    Box::new(Highlight::new(RoughArithmetic::new(keys), control, products))
 }
 
-impl Reflectance for Arithmetic {
+impl Reflectance for RoughArithmetic {
     #[inline]
     fn f(&self, control: &[i64]) -> i64 {
         let it = self;

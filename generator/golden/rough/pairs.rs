@@ -13,7 +13,7 @@
 use std::collections::BTreeMap;
 
 use super::analysis::{Analysis, BIN, SLACK};
-use super::{Arithmetic, Derived as _};
+use super::{Derived as _, RoughArithmetic};
 use crate::highlight::Reflectance;
 use glint_base::fixed::exp2;
 
@@ -27,7 +27,7 @@ const LEAST: f64 = 0.5;
 const F64: f64 = 1e-15;
 
 /// A raw cosine.
-struct Cosine {
+struct RawCosine {
     raw: i64,
     /// Its exact sine, and the distance of the table's sine from it.
     sine: f64,
@@ -35,7 +35,7 @@ struct Cosine {
 }
 
 /// A pair of operands with the sign of dγ, and its bound.
-struct Pair {
+struct OperandPair {
     bound: f64,
     control: [i64; 4],
     /// The distance of adder 15 from its exact value, and the amount by which the exact value is below 0.
@@ -43,18 +43,18 @@ struct Pair {
     below: f64,
 }
 
-struct Search<'a> {
-    it: &'a Arithmetic,
+struct PairSearch<'a> {
+    it: &'a RoughArithmetic,
     analysis: &'a Analysis,
     /// Cosines by bin, those with the largest errors first.
-    cosines: BTreeMap<usize, Vec<Cosine>>,
+    cosines: BTreeMap<usize, Vec<RawCosine>>,
     /// The largest error that was met, or half of the first bound.
     largest: f64,
     steps: u64,
 }
 
 /// Returns a bound on the error of f, which no pair of angles exceeds.
-pub fn largest_error(it: &Arithmetic, analysis: &Analysis) -> f64 {
+pub fn largest_error(it: &RoughArithmetic, analysis: &Analysis) -> f64 {
     let mut bins: Vec<(f64, usize, usize, i64)> = Vec::new();
     let mut first = 0.0_f64;
     for (i, j) in analysis.pairs() {
@@ -68,8 +68,8 @@ pub fn largest_error(it: &Arithmetic, analysis: &Analysis) -> f64 {
     }
     bins.sort_by(|one, other| other.0.total_cmp(&one.0));
     let mut search =
-        Search { it, analysis, cosines: BTreeMap::new(), largest: LEAST * first, steps: STEPS };
-    let mut open: Vec<Pair> = Vec::new();
+        PairSearch { it, analysis, cosines: BTreeMap::new(), largest: LEAST * first, steps: STEPS };
+    let mut open: Vec<OperandPair> = Vec::new();
     for (bound, i, j, negative) in bins {
         if bound <= search.largest {
             break;
@@ -92,10 +92,16 @@ pub fn largest_error(it: &Arithmetic, analysis: &Analysis) -> f64 {
     (search.largest + SLACK).min(first)
 }
 
-impl Search<'_> {
+impl PairSearch<'_> {
     /// Looks at the pairs of operands in two bins, and leaves those whose exponents matter in `open`; false when that takes
     /// too many steps.
-    fn look_into(&mut self, i: usize, j: usize, negative: i64, open: &mut Vec<Pair>) -> bool {
+    fn look_into(
+        &mut self,
+        i: usize,
+        j: usize,
+        negative: i64,
+        open: &mut Vec<OperandPair>,
+    ) -> bool {
         for bin in [i, j] {
             let cosines = self.cosines_of(bin);
             self.cosines.entry(bin).or_insert(cosines);
@@ -123,7 +129,7 @@ impl Search<'_> {
     }
 
     /// Returns the pair, if its bound is larger than the largest error that was met.
-    fn pair(&mut self, x: &Cosine, y: &Cosine, negative: i64) -> Option<Pair> {
+    fn pair(&mut self, x: &RawCosine, y: &RawCosine, negative: i64) -> Option<OperandPair> {
         let (it, keys) = (self.it, &self.it.keys);
         let ulp = exp2(-(keys.operands.cosine.fraction as i32));
         let turned = if negative == 1 { x.sine * y.sine } else { -(x.sine * y.sine) };
@@ -140,11 +146,11 @@ impl Search<'_> {
         }
         let control = [x.raw, y.raw, n as i64, negative];
         self.largest = self.largest.max(self.error(&control));
-        Some(Pair { bound, control, distance, below })
+        Some(OperandPair { bound, control, distance, below })
     }
 
     /// Computes the error for every n that may have a larger one; false when that takes too many steps.
-    fn go_through_exponents(&mut self, pair: &Pair) -> bool {
+    fn go_through_exponents(&mut self, pair: &OperandPair) -> bool {
         let (least, most) = self.it.keys.domain.exponents();
         let [x, y, _, negative] = pair.control;
         for n in (least..=most).rev() {
@@ -166,7 +172,7 @@ impl Search<'_> {
     }
 
     /// Returns the cosines of angles in a bin, and one more at each end.
-    fn cosines_of(&self, bin: usize) -> Vec<Cosine> {
+    fn cosines_of(&self, bin: usize) -> Vec<RawCosine> {
         let keys = &self.it.keys;
         let one = 1_i64 << keys.operands.cosine.fraction;
         let raw = |edge: usize| libm::cos(edge as f64 * BIN) * one as f64;
@@ -175,9 +181,9 @@ impl Search<'_> {
         let cosines = (low.max(0)..=high.min(keys.largest_cosine())).map(|raw| {
             let sine = ((one * one - raw * raw) as f64).sqrt() / one as f64;
             let error = (self.it.sine.at(raw) as f64 * unit - sine).abs() + F64;
-            Cosine { raw, sine, error }
+            RawCosine { raw, sine, error }
         });
-        let mut cosines: Vec<Cosine> = cosines.collect();
+        let mut cosines: Vec<RawCosine> = cosines.collect();
         cosines.sort_by(|one, other| other.error.total_cmp(&one.error));
         cosines
     }

@@ -14,7 +14,7 @@ fn small() -> Keys {
         product_fraction: 6,
         product_rounding: Rounding::Truncate,
         f: Intensity::small(),
-        scheme: Scheme::Segmented,
+        scheme: RomLayout::Segmented,
         sine_fraction: 6,
         synchronous: true,
         address: 4,
@@ -43,7 +43,7 @@ fn the_bound_is_the_largest_error_of_all_operands() {
     let f = Intensity { rounding, ..wide.f.clone() };
     let all = [
         Keys { product_rounding: rounding, f, ..wide.clone() },
-        Keys { scheme: Scheme::Direct, address: 7, ..wide.clone() },
+        Keys { scheme: RomLayout::Direct, address: 7, ..wide.clone() },
         Keys { deviation: 90.0, domain: Domain { least: 3, most: 9 }, ..wide.clone() },
         Keys { sine_fraction: 9, product_fraction: 16, ..wide.clone() },
         Keys { clamp: false, ..wide.clone() },
@@ -51,7 +51,7 @@ fn the_bound_is_the_largest_error_of_all_operands() {
     ];
     let mut met = 0;
     for keys in all {
-        let it = Arithmetic::new(keys.clone());
+        let it = RoughArithmetic::new(keys.clone());
         let (lowest, one) = (keys.cos_dgamma_domain().0, keys.largest_cosine());
         let mut largest = 0.0_f64;
         for (x, y) in (0..=one).flat_map(|x| (lowest..=one).map(move |y| (x, y))) {

@@ -4,9 +4,9 @@ use super::*;
 use glint_keys::common::{Domain, Intensity, Operands};
 
 /// C = 4, F = 4, K = 4, small enough to follow by hand.
-fn small(levels: &[u32]) -> Arithmetic {
+fn small(levels: &[u32]) -> ThresholdArithmetic {
     let (operands, f, domain) = (Operands::small(), Intensity::small(), Domain::small());
-    Arithmetic::new(Keys { operands, f, levels: levels.to_vec(), domain })
+    ThresholdArithmetic::new(Keys { operands, f, levels: levels.to_vec(), domain })
 }
 
 #[test]
@@ -29,7 +29,7 @@ fn levels_that_are_seen_are_remarked_on() {
     let remarks = |levels: &[u32]| {
         let schema = glint_keys::threshold::schema();
         let defaults = Keys::of(&Config::defaults(&schema, "defaults"));
-        Arithmetic::new(Keys { levels: levels.to_vec(), ..defaults }).remarks()
+        ThresholdArithmetic::new(Keys { levels: levels.to_vec(), ..defaults }).remarks()
     };
     assert!(remarks(&[50]).is_empty());
     let seen = remarks(&[50, 50, 320]);

@@ -2,7 +2,7 @@
 //!
 //! There is a multiplier for each colour, or one for all.
 
-use crate::dsl::{Designer, Operand, Signal, Step, step};
+use crate::dsl::{Designer, InputOperand, Signal, Step, step};
 use glint_base::fixed::{Format, Overflow, Rounding};
 
 /// The numbers of one colour channel in the source's figure.
@@ -28,7 +28,7 @@ pub struct Colours<'d> {
 struct Channel<'d> {
     /// The name of the output, without its `_out`.
     name: &'static str,
-    operand: Operand<'d>,
+    operand: InputOperand<'d>,
     blocks: Option<ChannelBlocks>,
 }
 

@@ -4,7 +4,7 @@
 //! is not negative. The next bit of the quotient, the top bit first, says whether the step subtracted. The last
 //! remainder is exact, so the quotient is exact to its last bit.
 
-use crate::dsl::{Counter, Designer, Mux, Register, Setting, Signal};
+use crate::dsl::{Counter, Designer, Mux, Register, Signal, StepSetting};
 use glint_base::codes;
 use glint_base::fixed::{Format, Overflow, Rounding};
 
@@ -125,7 +125,7 @@ impl<'d> Divider<'d> {
 
     /// Returns the settings with which dividend and divisor are taken at the end of the microinstruction.
     #[track_caller]
-    pub fn load(&self) -> [Setting; 4] {
+    pub fn load(&self) -> [StepSetting; 4] {
         [
             self.source.pick(self.dividend),
             self.remainder.load(),
@@ -136,7 +136,7 @@ impl<'d> Divider<'d> {
 
     /// Returns the settings with which the next bit enters the quotient at the end of the microinstruction.
     #[track_caller]
-    pub fn step(&self) -> [Setting; 4] {
+    pub fn step(&self) -> [StepSetting; 4] {
         [
             self.source.pick(self.stepped),
             self.remainder.load(),

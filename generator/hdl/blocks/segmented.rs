@@ -20,7 +20,7 @@ pub struct Segmentation {
 
 /// A block of entries: a range, or the values below the last range.
 #[derive(Clone, Copy, Debug)]
-struct Block {
+struct EntryBlock {
     /// Bits of u within the range.
     bits: u32,
     /// Bits of the address within the block.
@@ -92,13 +92,17 @@ pub struct SegmentedFormats {
 impl Segmentation {
     /// Returns the blocks by range, the exact one last. In the ROM larger blocks come first, which aligns
     /// each to its size, so that an address is a constant beside a prefix.
-    fn blocks(&self) -> Vec<Block> {
+    fn blocks(&self) -> Vec<EntryBlock> {
         let ranges = self.segments.len() as u32;
         let rest = self.operand_bits - 2 * ranges;
-        let mut blocks: Vec<Block> = (0u32..)
+        let mut blocks: Vec<EntryBlock> = (0u32..)
             .zip(&self.segments)
-            .map(|(range, &prefix)| Block { bits: self.operand_bits - 2 * range, prefix, base: 0 })
-            .chain([Block { bits: rest, prefix: rest, base: 0 }])
+            .map(|(range, &prefix)| EntryBlock {
+                bits: self.operand_bits - 2 * range,
+                prefix,
+                base: 0,
+            })
+            .chain([EntryBlock { bits: rest, prefix: rest, base: 0 }])
             .collect();
         let mut order: Vec<usize> = (0..blocks.len()).collect();
         order.sort_by_key(|&at| std::cmp::Reverse(blocks[at].prefix));
@@ -215,7 +219,7 @@ fn address_and_rest<'d>(
     let address = Format::unsigned(address_bits as i32, 0);
     let rest = Format::unsigned(0, rest_bits as i32);
     // One arm a block: {constant, prefix} and {remainder, zeros}.
-    let arm = |block: &Block| {
+    let arm = |block: &EntryBlock| {
         let base = d.raw_constant(&format!("{name}_base_word"), i128::from(block.base), address);
         let left = block.bits - block.prefix;
         // Below the last range there may be only the one value 0.

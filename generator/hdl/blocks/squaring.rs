@@ -3,7 +3,7 @@
 //! The first squaring takes its operand from elsewhere and is a microinstruction of its own; all others are one
 //! microinstruction, executed again and again. The multiplier and the muxes before it are the device's.
 
-use crate::dsl::{Counter, Designer, Mux, Register, Setting, Signal, Step, loop_while, step};
+use crate::dsl::{Counter, Designer, Mux, Register, Signal, Step, StepSetting, loop_while, step};
 use glint_base::fixed::Format;
 
 /// Squarings of a base. If there is more than one squaring, the counter `remaining` counts the squarings to come.
@@ -31,7 +31,7 @@ impl<'d> Squarings<'d> {
         designer: &'d Designer,
         count: u32,
         other: Signal<'d>,
-    ) -> (Self, Counter<'d>, Vec<Setting>) {
+    ) -> (Self, Counter<'d>, Vec<StepSetting>) {
         let mux = (count > 1).then(|| {
             let squarings = start(designer, count);
             let mux = designer.mux("remaining_start", [squarings, other]).doc("what is counted");
@@ -47,7 +47,7 @@ impl<'d> Squarings<'d> {
 
     /// Returns the settings that load the counter, in a microinstruction before the second squaring.
     #[track_caller]
-    pub fn load(&self) -> Vec<Setting> {
+    pub fn load(&self) -> Vec<StepSetting> {
         let pick = self.start.map(|(mux, squarings)| mux.pick(squarings));
         let load = self.counter.map(|counter| counter.load());
         pick.into_iter().chain(load).collect()
@@ -62,8 +62,8 @@ impl<'d> Squarings<'d> {
     pub fn steps(
         &self,
         register: Register<'d>,
-        first: impl IntoIterator<Item = Setting>,
-        again: impl IntoIterator<Item = Setting>,
+        first: impl IntoIterator<Item = StepSetting>,
+        again: impl IntoIterator<Item = StepSetting>,
     ) -> Vec<Step> {
         let name = register.q().name();
         let first = first.into_iter().chain([register.load()]);

@@ -8,11 +8,12 @@
 use std::collections::HashMap;
 use std::panic::Location;
 
-use super::program::{Program, Setting, Step, end, jump_if, step, valid};
+use super::program::{MicroprogramSource, Step, StepSetting, end, jump_if, step, valid};
 use super::rules::read_by;
 use super::{Designer, Inner, Signal};
 use crate::netlist::{
-    Design, Driver, Field, FieldId, FieldKind, Net, NetId, Op, RegisterKind, Role, Rom, Sequence,
+    Design, Driver, Field, FieldId, FieldKind, Net, NetId, NetlistRom, Op, RegisterKind, Role,
+    Sequence,
 };
 use glint_base::codes;
 use glint_base::cone;
@@ -136,7 +137,7 @@ impl Designer {
         }
         let load = self.add_field(&load, 1, FieldKind::Enable);
         let (nets, fields) = (HashMap::new(), HashMap::new());
-        Placed { designer: self, name, design: &design, nets, fields }.place(
+        InstanceBuilder { designer: self, name, design: &design, nets, fields }.place(
             &signals,
             load,
             Location::caller(),
@@ -153,7 +154,7 @@ impl Designer {
 
     /// Makes the parts the microprogram if [`Designer::dataflow`] asks for it. Without `dataflow`, parts are an
     /// error.
-    pub(super) fn with_parts(&self, program: &mut Program) {
+    pub(super) fn with_parts(&self, program: &mut MicroprogramSource) {
         let mut parts = self.with(|inner| std::mem::take(&mut inner.parts));
         if program.of_parts {
             self.with(delayed).into_iter().for_each(|it| self.report(it));
@@ -208,7 +209,7 @@ fn unfit(design: &Design) -> Option<String> {
 }
 
 /// A design that becomes a part of another.
-struct Placed<'d, 'p> {
+struct InstanceBuilder<'d, 'p> {
     designer: &'d Designer,
     name: &'p str,
     design: &'p Design,
@@ -216,7 +217,7 @@ struct Placed<'d, 'p> {
     fields: HashMap<FieldId, FieldId>,
 }
 
-impl<'d> Placed<'d, '_> {
+impl<'d> InstanceBuilder<'d, '_> {
     /// Adds the nets, registers, memories and microinstructions of the part to the design. The field `load` loads the
     /// part's operands.
     fn place(
@@ -258,7 +259,7 @@ impl<'d> Placed<'d, '_> {
             });
         }
         for rom in design.roms.iter().filter(|it| self.nets.contains_key(&it.data)) {
-            let placed = Rom {
+            let placed = NetlistRom {
                 name: self.named(&rom.name),
                 address: self.nets[&rom.address],
                 data: self.nets[&rom.data],
@@ -309,7 +310,7 @@ impl<'d> Placed<'d, '_> {
         let (d, control) = (self.designer, &self.design.control);
         let named = |at: usize| format!("{}: {}", self.name, control.microprogram[at].name);
         let set = |field: FieldId, value: u64, what: &str| {
-            Setting::field(d, field, value, format!("{}.{what}", self.name))
+            StepSetting::field(d, field, value, format!("{}.{what}", self.name))
         };
         let steps = control.microprogram.iter().enumerate().map(|(at, it)| {
             let mut fields: Vec<_> = self.fields.iter().collect();

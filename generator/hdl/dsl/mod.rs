@@ -93,9 +93,10 @@ use std::sync::atomic::{AtomicU64, Ordering};
 pub use instance::Instance;
 pub use operand_mux::{OperandMux, SharedProduct};
 pub use program::{
-    Program, Setting, Step, end, hold, jump_if, loop_while, next, step, valid, wait_for_start,
+    MicroprogramSource, Step, StepSetting, end, hold, jump_if, loop_while, next, step, valid,
+    wait_for_start,
 };
-pub use registers::{Counter, Flag, Operand, Register, Select};
+pub use registers::{Counter, Flag, InputOperand, Register, Select};
 pub use rom::Rom;
 pub use signal::{Mux, Signal};
 
@@ -103,7 +104,7 @@ use crate::netlist::register_held;
 pub use crate::netlist::{About, Note, Topic};
 
 use crate::netlist::{
-    Design, Driver, FieldId, NetId, Op, Partition, RegisterKind, Role, Rom as NetRom,
+    Design, Driver, FieldId, NetId, NetlistRom as NetRom, Op, Partition, RegisterKind, Role,
 };
 use glint_base::codes;
 use glint_base::diagnostic::{Diagnostic, Diagnostics};
@@ -141,7 +142,7 @@ pub(crate) struct SelectedProduct {
 pub(crate) struct Inner {
     design: Design,
     views: HashMap<NetId, SelectedProduct>,
-    program: Option<Program>,
+    program: Option<MicroprogramSource>,
     /// The microinstructions of the parts, in the order of execution.
     parts: Vec<Step>,
     /// The nets of the parts.
@@ -340,7 +341,7 @@ impl Designer {
 
     #[track_caller]
     fn program(&self, steps: Vec<Step>, of_parts: bool) {
-        let program = Program { steps, of_parts, location: Location::caller() };
+        let program = MicroprogramSource { steps, of_parts, location: Location::caller() };
         if self.inner.borrow_mut().program.replace(program).is_some() {
             self.error(codes::MICROPROGRAM, "a second microprogram".to_owned());
         }

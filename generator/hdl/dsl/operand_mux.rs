@@ -6,7 +6,7 @@
 //! in their point. [`Designer::finish`] then proves for every word that a register which takes such a view is loaded
 //! under a selection that it is for.
 
-use super::{Designer, Select, SelectedProduct, Setting, Signal};
+use super::{Designer, Select, SelectedProduct, Signal, StepSetting};
 use crate::netlist::{Driver, FieldId, Op};
 use glint_base::codes;
 use glint_base::fixed::Format;
@@ -132,8 +132,8 @@ impl Designer {
 impl<'d> OperandMux<'d> {
     /// Returns the setting with which the mux passes `input` on. It must be one of the inputs.
     #[track_caller]
-    pub fn pick(&self, input: Signal<'d>) -> Setting {
-        Setting::pick_of(self.designer, self.field, &self.name, input, &self.inputs)
+    pub fn pick(&self, input: Signal<'d>) -> StepSetting {
+        StepSetting::pick_of(self.designer, self.field, &self.name, input, &self.inputs)
     }
 
     /// Holds in a register `<name>_held` behind the mux the operand that the microinstruction before selected.

@@ -3,14 +3,14 @@
 //! The microinstruction that set `valid` loads these registers, and a new microinstruction after it sets `valid`. A
 //! result therefore comes one clock later. If `valid` follows a signal, the registers are loaded in every clock.
 
-use super::program::{Kind, Program, Step};
-use super::{Designer, Setting, hold, step, valid};
+use super::program::{MicroprogramSource, SettingKind, Step};
+use super::{Designer, StepSetting, hold, step, valid};
 use crate::netlist::{Design, Driver, FieldKind, NetId, Op, RegisterKind, Role};
 use glint_base::codes;
 use glint_base::diagnostic::Diagnostic;
 
 /// Inserts the registers, and the microinstructions that they take.
-pub(super) fn insert(d: &Designer, program: &mut Program) {
+pub(super) fn insert(d: &Designer, program: &mut MicroprogramSource) {
     let results = d.with(|inner| logic(&inner.design));
     if results.is_empty() {
         return;
@@ -28,7 +28,7 @@ pub(super) fn insert(d: &Designer, program: &mut Program) {
     }
     let note = match load {
         Some(field) => {
-            let load = Setting::field(d, field, 1, "outputs.load".to_owned());
+            let load = StepSetting::field(d, field, 1, "outputs.load".to_owned());
             loaded(d, &mut program.steps, &load);
             "Writes while busy are ignored. The outputs are registers: they hold from valid until the next \
              computation has its results."
@@ -71,11 +71,11 @@ fn behind(d: &Designer, port: NetId, kind: RegisterKind, enable: Option<NetId>) 
 }
 
 /// Makes every microinstruction that sets `valid` load instead, and one after it set `valid`.
-fn loaded(d: &Designer, steps: &mut Vec<Step>, load: &Setting) {
+fn loaded(d: &Designer, steps: &mut Vec<Step>, load: &StepSetting) {
     let mut at = 0;
     while at < steps.len() {
-        if steps[at].sets(|kind| matches!(kind, Kind::Valid)) {
-            if steps[at].sets(|kind| matches!(kind, Kind::LoopWhile { .. })) {
+        if steps[at].sets(|kind| matches!(kind, SettingKind::Valid)) {
+            if steps[at].sets(|kind| matches!(kind, SettingKind::LoopWhile { .. })) {
                 let message = format!(
                     "microinstruction `{}` sets valid and goes on by a condition: its results cannot be taken into \
                      registers before it goes on. Let another microinstruction decide, or leave output.registered out",
@@ -100,11 +100,11 @@ fn followed(steps: &mut Vec<Step>) {
 }
 
 impl Step {
-    fn sets(&self, kind: impl Fn(&Kind) -> bool) -> bool {
+    fn sets(&self, kind: impl Fn(&SettingKind) -> bool) -> bool {
         self.settings.iter().any(|setting| kind(&setting.kind))
     }
 
-    fn with(mut self, setting: Setting) -> Self {
+    fn with(mut self, setting: StepSetting) -> Self {
         self.settings.push(setting);
         self
     }
@@ -112,18 +112,19 @@ impl Step {
     /// Keeps the settings of registers in this microinstruction, and returns a new microinstruction for the settings
     /// that say where control goes next. `valid` is dropped.
     fn divided(&mut self) -> Self {
-        let comes_then =
-            |setting: &Setting| matches!(setting.kind, Kind::Next | Kind::WaitForStart | Kind::End);
+        let comes_then = |setting: &StepSetting| {
+            matches!(setting.kind, SettingKind::Next | SettingKind::WaitForStart | SettingKind::End)
+        };
         let (then, own) = self
             .settings
             .drain(..)
-            .filter(|setting| !matches!(setting.kind, Kind::Valid))
+            .filter(|setting| !matches!(setting.kind, SettingKind::Valid))
             .partition(comes_then);
         self.settings = own;
         // The selections stay, for a microinstruction after it that holds them.
         let mut after = step(&format!("{}, in output registers", self.name), [hold()]);
         after.location = self.location;
-        after.settings.extend::<Vec<Setting>>(then);
+        after.settings.extend::<Vec<StepSetting>>(then);
         after
     }
 }

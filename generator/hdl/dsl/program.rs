@@ -13,22 +13,22 @@ use glint_base::diagnostic::{Diagnostic, SourceLocation};
 
 /// The setting of one field, or of the successor, in a microinstruction.
 #[derive(Clone)]
-pub struct Setting {
-    pub(super) kind: Kind,
+pub struct StepSetting {
+    pub(super) kind: SettingKind,
     /// The designer that the field or the condition belongs to; `None` if there is neither.
-    of: Option<Origin>,
+    of: Option<DesignerIdentity>,
     location: SourceLocation,
 }
 
 /// The serial number of a designer, and the name of its design.
-type Origin = (u64, String);
+type DesignerIdentity = (u64, String);
 
-fn origin(d: &Designer) -> Origin {
+fn origin(d: &Designer) -> DesignerIdentity {
     (d.serial, d.with(|inner| inner.design.name.clone()))
 }
 
 #[derive(Clone)]
-pub(super) enum Kind {
+pub(super) enum SettingKind {
     Field {
         field: FieldId,
         value: u64,
@@ -47,15 +47,15 @@ pub(super) enum Kind {
     Wrong,
 }
 
-impl Setting {
+impl StepSetting {
     #[track_caller]
     pub(crate) fn field(d: &Designer, field: FieldId, value: u64, what: String) -> Self {
-        let kind = Kind::Field { field, value, what };
+        let kind = SettingKind::Field { field, value, what };
         Self { of: Some(origin(d)), ..Self::sequence(kind) }
     }
 
     #[track_caller]
-    fn sequence(kind: Kind) -> Self {
+    fn sequence(kind: SettingKind) -> Self {
         Self { kind, of: None, location: Location::caller() }
     }
 
@@ -93,12 +93,12 @@ impl Setting {
     fn picked(d: &Designer, field: FieldId, mux: &str, input: Signal<'_>, found: &[usize]) -> Self {
         if input.designer().serial != d.serial {
             let _ = d.own(input);
-            return Self::sequence(Kind::Wrong);
+            return Self::sequence(SettingKind::Wrong);
         }
         let [at] = found else {
             let how = if found.is_empty() { "is no input" } else { "is more than one input" };
             d.error(codes::PICK, format!("`{}` {how} of `{mux}`", input.name()));
-            return Self::sequence(Kind::Wrong);
+            return Self::sequence(SettingKind::Wrong);
         };
         let what = format!("{mux}.pick({})", input.name());
         Self::field(d, field, *at as u64, what)
@@ -108,64 +108,64 @@ impl Setting {
 /// Returns the setting that keeps the selections of the previous microinstruction, except the selections that this
 /// microinstruction states.
 #[track_caller]
-pub fn hold() -> Setting {
-    Setting::sequence(Kind::Hold)
+pub fn hold() -> StepSetting {
+    StepSetting::sequence(SettingKind::Hold)
 }
 
 /// Returns the setting that says that the results are on the outputs: `valid` is high in this microinstruction.
 #[track_caller]
-pub fn valid() -> Setting {
-    Setting::sequence(Kind::Valid)
+pub fn valid() -> StepSetting {
+    StepSetting::sequence(SettingKind::Valid)
 }
 
 /// Returns the setting that goes on to the next microinstruction, which is also the default.
 #[track_caller]
-pub fn next() -> Setting {
-    Setting::sequence(Kind::Next)
+pub fn next() -> StepSetting {
+    StepSetting::sequence(SettingKind::Next)
 }
 
 /// Returns the setting that stays in this microinstruction until `start` is high; the device is not busy meanwhile.
 /// Microinstruction 0 always does.
 #[track_caller]
-pub fn wait_for_start() -> Setting {
-    Setting::sequence(Kind::WaitForStart)
+pub fn wait_for_start() -> StepSetting {
+    StepSetting::sequence(SettingKind::WaitForStart)
 }
 
 /// Returns the setting that goes back to the microinstruction named `to` while `condition`, one bit, is 1; then on to
 /// the next microinstruction.
 #[track_caller]
-pub fn loop_while(condition: Signal<'_>, to: &str) -> Setting {
-    let kind = Kind::LoopWhile { condition: condition.id(), to: to.to_owned() };
-    Setting { of: Some(origin(condition.designer())), ..Setting::sequence(kind) }
+pub fn loop_while(condition: Signal<'_>, to: &str) -> StepSetting {
+    let kind = SettingKind::LoopWhile { condition: condition.id(), to: to.to_owned() };
+    StepSetting { of: Some(origin(condition.designer())), ..StepSetting::sequence(kind) }
 }
 
 /// Returns the setting that goes on to the microinstruction named `to` when `condition`, one bit, is 1; else to the
 /// next microinstruction: a way around microinstructions
 /// that there may be nothing to do for, as a loop whose body need not run even once.
 #[track_caller]
-pub fn jump_if(condition: Signal<'_>, to: &str) -> Setting {
+pub fn jump_if(condition: Signal<'_>, to: &str) -> StepSetting {
     // To the sequencer a jump is a jump, whichever way it goes.
     loop_while(condition, to)
 }
 
 /// Returns the setting of the last microinstruction: `done` is high in it, and the device is idle after it.
 #[track_caller]
-pub fn end() -> Setting {
-    Setting::sequence(Kind::End)
+pub fn end() -> StepSetting {
+    StepSetting::sequence(SettingKind::End)
 }
 
 /// A microinstruction of the microprogram.
 #[derive(Clone)]
 pub struct Step {
     pub(super) name: String,
-    pub(super) settings: Vec<Setting>,
+    pub(super) settings: Vec<StepSetting>,
     pub(super) location: SourceLocation,
 }
 
 /// Returns a microinstruction with its name and settings. Muxes that are not mentioned pass on their first input;
 /// registers that are not mentioned keep their value.
 #[track_caller]
-pub fn step(name: &str, settings: impl IntoIterator<Item = Setting>) -> Step {
+pub fn step(name: &str, settings: impl IntoIterator<Item = StepSetting>) -> Step {
     Step {
         name: name.to_owned(),
         settings: settings.into_iter().collect(),
@@ -174,7 +174,7 @@ pub fn step(name: &str, settings: impl IntoIterator<Item = Setting>) -> Step {
 }
 
 /// A microprogram as it was written.
-pub struct Program {
+pub struct MicroprogramSource {
     pub(crate) steps: Vec<Step>,
     /// Whether it executes the parts of the description.
     pub(crate) of_parts: bool,
@@ -182,7 +182,7 @@ pub struct Program {
 }
 
 /// Lowers the program: microinstructions, control ROM, sequencer, and the outputs of the handshake.
-pub(crate) fn assemble(d: &Designer, program: &Program) {
+pub(crate) fn assemble(d: &Designer, program: &MicroprogramSource) {
     let steps = &program.steps;
     if steps.len() < 2 {
         d.report(Diagnostic::new(
@@ -195,8 +195,8 @@ pub(crate) fn assemble(d: &Designer, program: &Program) {
     if foreign(d, steps) {
         return;
     }
-    let field = |setting: &Setting| match setting.kind {
-        Kind::Field { field, .. } => Some(field),
+    let field = |setting: &StepSetting| match setting.kind {
+        SettingKind::Field { field, .. } => Some(field),
         _ => None,
     };
     let picked = steps.iter().flat_map(|step| step.settings.iter().filter_map(field));
@@ -252,7 +252,7 @@ fn foreign(d: &Designer, steps: &[Step]) -> bool {
             && *serial != own.0
         {
             let what = match &setting.kind {
-                Kind::Field { what, .. } => format!("`{what}`"),
+                SettingKind::Field { what, .. } => format!("`{what}`"),
                 _ => "a condition".to_owned(),
             };
             let message = format!(
@@ -272,10 +272,10 @@ fn sequence(d: &Designer, steps: &[Step], step: &Step) -> Sequence {
     for setting in &step.settings {
         let wrong = |code, message| Diagnostic::new(code, message, setting.location);
         let sequence = match &setting.kind {
-            Kind::Next => Sequence::Next,
+            SettingKind::Next => Sequence::Next,
             // Microinstruction 0 waits anyhow.
-            Kind::WaitForStart if std::ptr::eq(step, &steps[0]) => Sequence::Next,
-            Kind::WaitForStart => {
+            SettingKind::WaitForStart if std::ptr::eq(step, &steps[0]) => Sequence::Next,
+            SettingKind::WaitForStart => {
                 if d.with(|inner| inner.taken.is_some()) {
                     let message = format!(
                         "microinstruction `{own}` waits for start, and the operands have buffers, which the start of a \
@@ -285,8 +285,8 @@ fn sequence(d: &Designer, steps: &[Step], step: &Step) -> Sequence {
                 }
                 Sequence::WaitStart
             }
-            Kind::End => Sequence::End,
-            Kind::LoopWhile { condition, to } => {
+            SettingKind::End => Sequence::End,
+            SettingKind::LoopWhile { condition, to } => {
                 if d.net(*condition).format.width() != 1 {
                     let name = d.net(*condition).name;
                     let message = format!(
@@ -339,7 +339,7 @@ fn microinstructions(
             d.report(found.note("the first".to_owned(), first.location));
         }
         let mut values = vec![0; kinds.len()];
-        if step.settings.iter().any(|setting| matches!(setting.kind, Kind::Hold))
+        if step.settings.iter().any(|setting| matches!(setting.kind, SettingKind::Hold))
             && let Some(before) = microinstructions.last()
         {
             for (at, kind) in kinds.iter().enumerate() {
@@ -351,8 +351,8 @@ fn microinstructions(
         let mut set: Vec<Option<(u64, &str, SourceLocation)>> = vec![None; kinds.len()];
         for setting in &step.settings {
             let (field, value, what) = match &setting.kind {
-                Kind::Field { field, value, what } => (*field, *value, what.as_str()),
-                Kind::Valid => match fields.valid {
+                SettingKind::Field { field, value, what } => (*field, *value, what.as_str()),
+                SettingKind::Valid => match fields.valid {
                     Some(field) => (field, 1, "valid"),
                     None => {
                         let message = format!(

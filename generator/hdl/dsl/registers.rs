@@ -1,6 +1,6 @@
 //! Builds registers, operands, flags, counters and select lines, and makes their settings for microinstructions.
 
-use super::{Designer, Setting, Signal};
+use super::{Designer, Signal, StepSetting};
 use crate::netlist::{self, Driver, FieldId, FieldKind, NetId, Op, RegisterKind, Role};
 use glint_base::codes;
 use glint_base::fixed::Format;
@@ -10,14 +10,20 @@ impl Designer {
     /// Returns an operand: the input port `name`, its write strobe `<name>_write` and the register
     /// `<name>_reg`, which a write loads unless the device is busy.
     #[track_caller]
-    pub fn operand(&self, name: &str, format: Format) -> Operand<'_> {
+    pub fn operand(&self, name: &str, format: Format) -> InputOperand<'_> {
         self.operand_port(name, format, |port| port)
     }
 
     /// Returns an operand whose register holds values from `low` to `high` only: a write of a smaller or
     /// larger value loads the limit. Both must be representable.
     #[track_caller]
-    pub fn operand_clamped(&self, name: &str, format: Format, low: f64, high: f64) -> Operand<'_> {
+    pub fn operand_clamped(
+        &self,
+        name: &str,
+        format: Format,
+        low: f64,
+        high: f64,
+    ) -> InputOperand<'_> {
         let format = self.sound(name, format);
         self.operand_port(name, format, |port| {
             let (least, most) = (format.quantise(low), format.quantise(high));
@@ -70,7 +76,7 @@ impl Designer {
         name: &str,
         format: Format,
         limited: impl FnOnce(Signal<'d>) -> Signal<'d>,
-    ) -> Operand<'d> {
+    ) -> InputOperand<'d> {
         let port = self.add_named(name, format, Driver::Input);
         let strobe = self.add_named(&format!("{name}_write"), Format::BIT, Driver::Input);
         self.set_doc(strobe, &format!("writes {name}"));
@@ -96,7 +102,7 @@ impl Designer {
         let (own, kind) = (format!("{name}_reg"), RegisterKind::Operand);
         let q = self.add_register(&own, data.format(), data.range(), kind);
         self.connect(q, data.id(), Some(load));
-        Operand { port: self.signal(port), strobe: self.signal(strobe), q: self.signal(q) }
+        InputOperand { port: self.signal(port), strobe: self.signal(strobe), q: self.signal(q) }
     }
 
     /// Returns a register of the datapath, loaded in the microinstructions that say so; its field is `<name>_load`.
@@ -183,7 +189,7 @@ impl Designer {
     }
 
     /// Changes the register that drives a net.
-    pub(crate) fn change(&self, q: NetId, change: impl FnOnce(&mut netlist::Register)) {
+    pub(crate) fn change(&self, q: NetId, change: impl FnOnce(&mut netlist::NetlistRegister)) {
         self.with(|inner| {
             if let Driver::Register(id) = inner.design.net(q).driver {
                 change(&mut inner.design.registers[id.index()]);
@@ -194,13 +200,13 @@ impl Designer {
 
 /// An operand: port, write strobe and register.
 #[derive(Clone, Copy)]
-pub struct Operand<'d> {
+pub struct InputOperand<'d> {
     port: Signal<'d>,
     strobe: Signal<'d>,
     q: Signal<'d>,
 }
 
-impl<'d> Operand<'d> {
+impl<'d> InputOperand<'d> {
     /// Returns the register's output.
     pub fn q(self) -> Signal<'d> {
         self.q
@@ -274,8 +280,8 @@ impl<'d> Register<'d> {
 
     /// Returns the setting with which the register takes its data at the end of the microinstruction.
     #[track_caller]
-    pub fn load(self) -> Setting {
-        Setting::field(self.q.designer(), self.field, 1, format!("{}.load", self.q.name()))
+    pub fn load(self) -> StepSetting {
+        StepSetting::field(self.q.designer(), self.field, 1, format!("{}.load", self.q.name()))
     }
 }
 
@@ -344,9 +350,9 @@ pub struct Flag<'d> {
 impl Flag<'_> {
     /// Returns the setting with which the output is high in this microinstruction.
     #[track_caller]
-    pub fn raise(self) -> Setting {
+    pub fn raise(self) -> StepSetting {
         let name = self.designer.field_net(self.field).name();
-        Setting::field(self.designer, self.field, 1, name)
+        StepSetting::field(self.designer, self.field, 1, name)
     }
 }
 
@@ -373,13 +379,13 @@ impl<'d> Counter<'d> {
 
     /// Returns the setting with which the counter takes its start value at the end of the microinstruction.
     #[track_caller]
-    pub fn load(self) -> Setting {
-        Setting::field(self.q.designer(), self.load, 1, format!("{}.load", self.q.name()))
+    pub fn load(self) -> StepSetting {
+        StepSetting::field(self.q.designer(), self.load, 1, format!("{}.load", self.q.name()))
     }
 
     /// Returns the setting with which the counter is one less at the end of the microinstruction.
     #[track_caller]
-    pub fn count(self) -> Setting {
-        Setting::field(self.q.designer(), self.count, 1, format!("{}.count", self.q.name()))
+    pub fn count(self) -> StepSetting {
+        StepSetting::field(self.q.designer(), self.count, 1, format!("{}.count", self.q.name()))
     }
 }

@@ -3,8 +3,8 @@
 use super::Designer;
 use crate::netlist::microcode;
 use crate::netlist::{
-    Control, Driver, Field, FieldId, Microinstruction, NetId, Op, Partition, RegisterKind, Role,
-    Rom as NetRom,
+    Control, Driver, Field, FieldId, Microinstruction, NetId, NetlistRom as NetRom, Op, Partition,
+    RegisterKind, Role,
 };
 use glint_base::diagnostic::SourceLocation;
 use glint_base::fixed::{Format, MAX_WIDTH};

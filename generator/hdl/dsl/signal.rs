@@ -3,7 +3,7 @@
 
 use std::cmp::Ordering;
 
-use super::{Designer, Setting};
+use super::{Designer, StepSetting};
 use crate::netlist::{Driver, FieldId, NetId, Op, Topic};
 use glint_base::codes;
 use glint_base::fixed::Format;
@@ -551,8 +551,8 @@ impl<'d> Mux<'d> {
 
     /// Returns the setting with which the mux passes `input` on. It must be one of the mux's inputs.
     #[track_caller]
-    pub fn pick(self, input: Signal<'d>) -> Setting {
-        Setting::pick(self.out.designer(), self.field, &self.out.name(), input)
+    pub fn pick(self, input: Signal<'d>) -> StepSetting {
+        StepSetting::pick(self.out.designer(), self.field, &self.out.name(), input)
     }
 
     /// Returns the select line or lines.

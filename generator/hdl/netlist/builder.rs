@@ -1,8 +1,8 @@
 //! Builds a design net by net: adds nets, registers and ROMs.
 
 use super::{
-    About, Control, Design, Driver, Net, NetId, Partition, RegId, Register, RegisterKind, Rom,
-    RomId, Topic,
+    About, Control, Design, Driver, Net, NetId, NetlistRegister, NetlistRom, Partition, RegId,
+    RegisterKind, RomId, Topic,
 };
 use glint_base::diagnostic::SourceLocation;
 use glint_base::fixed::Format;
@@ -30,15 +30,15 @@ impl Design {
     }
 
     /// Lets a new register, which takes nothing yet, drive a net.
-    pub fn add_register(&mut self, q: NetId, kind: RegisterKind) -> &mut Register {
+    pub fn add_register(&mut self, q: NetId, kind: RegisterKind) -> &mut NetlistRegister {
         let at = self.registers.len();
         self.nets[q.index()].driver = Driver::Register(RegId(at as u32));
-        self.registers.push(Register { q, data: None, enable: None, reset: None, kind });
+        self.registers.push(NetlistRegister { q, data: None, enable: None, reset: None, kind });
         &mut self.registers[at]
     }
 
     /// Adds a ROM, which drives its net from now on.
-    pub fn add_rom(&mut self, rom: Rom) -> RomId {
+    pub fn add_rom(&mut self, rom: NetlistRom) -> RomId {
         let id = RomId(self.roms.len() as u32);
         self.nets[rom.data.index()].driver = Driver::Rom(id);
         self.roms.push(rom);
@@ -64,7 +64,7 @@ impl Net {
     }
 }
 
-impl Rom {
+impl NetlistRom {
     /// Makes a memory that is read at once.
     pub fn new(
         name: &str,

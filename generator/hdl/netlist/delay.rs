@@ -61,7 +61,7 @@ impl Design {
         // The register that alone reads another, and is like it but for its stage.
         let next = |at: usize| {
             let register = &self.registers[at];
-            let [Reader::Register(next)] = readers[register.q.index()][..] else { return None };
+            let [NetReader::Register(next)] = readers[register.q.index()][..] else { return None };
             let after = &self.registers[next];
             (after.enable == register.enable
                 && register.reset.is_none()
@@ -109,23 +109,23 @@ impl Design {
     }
 
     /// Returns the readers of each net.
-    fn readers(&self) -> Vec<Vec<Reader>> {
+    fn readers(&self) -> Vec<Vec<NetReader>> {
         let mut readers = vec![Vec::new(); self.nets.len()];
         for (at, register) in self.registers.iter().enumerate() {
-            register.data.iter().for_each(|it| readers[it.index()].push(Reader::Register(at)));
-            register.enable.iter().for_each(|it| readers[it.index()].push(Reader::Other));
+            register.data.iter().for_each(|it| readers[it.index()].push(NetReader::Register(at)));
+            register.enable.iter().for_each(|it| readers[it.index()].push(NetReader::Other));
         }
         for rom in &self.roms {
             let nets = std::iter::once(rom.address).chain(rom.enable);
-            nets.for_each(|it| readers[it.index()].push(Reader::Other));
+            nets.for_each(|it| readers[it.index()].push(NetReader::Other));
         }
         for net in &self.nets {
             if let Driver::Op(op) = &net.driver {
-                op.operands().iter().for_each(|it| readers[it.index()].push(Reader::Other));
+                op.operands().iter().for_each(|it| readers[it.index()].push(NetReader::Other));
             }
         }
         for port in &self.ports {
-            readers[port.net.index()].push(Reader::Other);
+            readers[port.net.index()].push(NetReader::Other);
         }
         readers
     }
@@ -133,7 +133,7 @@ impl Design {
 
 /// Who reads a net.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Reader {
+enum NetReader {
     /// A register, as its data.
     Register(usize),
     /// Anything else.

@@ -26,8 +26,10 @@ pub fn register_held(design: &mut Design) {
         let q = add_register(design, net, &mut taken);
         for reader in readers {
             match reader {
-                Reader::Register(register) => design.registers[register.index()].data = Some(q),
-                Reader::Cell(cell) => {
+                OperandReader::Register(register) => {
+                    design.registers[register.index()].data = Some(q)
+                }
+                OperandReader::Cell(cell) => {
                     let Driver::Op(op) = &mut design.nets[cell.index()].driver else {
                         unreachable!("only cells read nets")
                     };
@@ -43,7 +45,7 @@ const TRIED: usize = 32;
 
 /// A cell or a register that reads a net.
 #[derive(Clone, Copy, PartialEq, Eq)]
-enum Reader {
+enum OperandReader {
     /// The data input of a register.
     Register(RegId),
     /// The cell that drives this net.
@@ -53,7 +55,7 @@ enum Reader {
 /// The two places at which a path is cut. Cells that settle by the first place are computed in clock 0, by the second
 /// in clock 1, and all others in clock 2. Places are in hundredths of a nanosecond after the operands, in ascending
 /// order; the third is always 0.
-type Places = [u32; 3];
+type CutPlaces = [u32; 3];
 
 /// When a cell is computed, or a register loaded: not before clock k + 1 if place k is below number k.
 type Thresholds = [u32; 3];
@@ -66,12 +68,12 @@ fn until(needed: usize, thresholds: Thresholds) -> Thresholds {
 
 /// Returns the clock, counted from the clock of the first microinstruction, from which on a net with these thresholds
 /// is computed.
-fn clock(thresholds: Thresholds, places: Places) -> usize {
+fn clock(thresholds: Thresholds, places: CutPlaces) -> usize {
     thresholds.iter().zip(places).filter(|(limit, place)| place < *limit).count()
 }
 
 /// A cell that reads nets.
-struct Cell {
+struct OperandCell {
     net: NetId,
     /// In hundredths of a nanosecond.
     delay: u32,
@@ -83,7 +85,7 @@ struct Cell {
 struct Steady<'a> {
     design: &'a Design,
     /// All cells, in an order in which each follows the cells that it depends on within a clock.
-    cells: Vec<Cell>,
+    cells: Vec<OperandCell>,
     /// By number of the net.
     thresholds: Vec<Thresholds>,
     /// The nets that a register may follow: they depend on operand registers and constants alone, and are more than wiring.
@@ -120,7 +122,7 @@ impl<'a> Steady<'a> {
                     let before = operands.iter().map(|of| arrival[of.index()]).max();
                     let delay = delay(design, op);
                     arrival[net.index()] = before.unwrap_or(0) + delay;
-                    cells.push(Cell { net, delay, operands });
+                    cells.push(OperandCell { net, delay, operands });
                 }
                 Driver::Constant(_)
                 | Driver::Rom(_)
@@ -172,7 +174,7 @@ impl<'a> Steady<'a> {
 
     /// Returns the best pair of places. It tries all pairs while there are few. Otherwise it tries pairs that are
     /// evenly spread, and then again pairs between the neighbours of the best one.
-    fn best(&self) -> Places {
+    fn best(&self) -> CutPlaces {
         let mut windows = [(0, self.places.len() - 1); 2];
         loop {
             let tried = windows.map(|(low, high)| {
@@ -195,18 +197,18 @@ impl<'a> Steady<'a> {
         }
     }
 
-    fn at(&self, [first, second]: [usize; 2]) -> Places {
+    fn at(&self, [first, second]: [usize; 2]) -> CutPlaces {
         [self.places[first], self.places[second], 0]
     }
 
     /// Returns whether a register costs no time between a net and its readers from clock `by` on.
-    fn is_cut(&self, net: NetId, by: usize, places: Places) -> bool {
+    fn is_cut(&self, net: NetId, by: usize, places: CutPlaces) -> bool {
         self.holds[net.index()] && by > clock(self.thresholds[net.index()], places)
     }
 
     /// Returns the longest path that starts at an operand register or at an inserted one, in hundredths of a nanosecond, and the
     /// bits of the inserted registers.
-    fn cost(&self, places: Places) -> (u32, u32) {
+    fn cost(&self, places: CutPlaces) -> (u32, u32) {
         let mut arrival: Vec<Option<u32>> = vec![None; self.thresholds.len()];
         let mut held = vec![false; self.thresholds.len()];
         for register in &self.design.registers {
@@ -236,14 +238,14 @@ impl<'a> Steady<'a> {
 
     /// Returns the nets that are followed by a register, each with the readers that take the register in its place.
     /// These readers compute in a later clock.
-    fn cut(&self, places: Places) -> BTreeMap<NetId, Vec<Reader>> {
+    fn cut(&self, places: CutPlaces) -> BTreeMap<NetId, Vec<OperandReader>> {
         let cells = self.cells.iter().flat_map(|cell| {
             let own = self.thresholds[cell.net.index()];
-            cell.operands.iter().map(move |&of| (of, Reader::Cell(cell.net), own))
+            cell.operands.iter().map(move |&of| (of, OperandReader::Cell(cell.net), own))
         });
         let registers =
-            self.registers.iter().map(|&(id, data, by)| (data, Reader::Register(id), by));
-        let mut cut = BTreeMap::<NetId, Vec<Reader>>::new();
+            self.registers.iter().map(|&(id, data, by)| (data, OperandReader::Register(id), by));
+        let mut cut = BTreeMap::<NetId, Vec<OperandReader>>::new();
         for (of, reader, by) in cells.chain(registers) {
             if self.is_cut(of, clock(by, places), places) {
                 cut.entry(of).or_default().push(reader);

@@ -43,7 +43,7 @@ pub(crate) use needed::passed_on;
 pub use needed::setting_of;
 pub use pipeline::{Checkpoint, Multiplier, Pipeline, Stage, Unit};
 pub use termination::latest_done;
-pub use timing::Timing;
+pub use timing::HandshakeTiming;
 
 macro_rules! id {
     ($(#[$doc:meta])* $name:ident) => {
@@ -134,7 +134,7 @@ pub enum Driver {
 
 /// A register: takes `data` on a rising edge when `enable` is 1 or absent.
 #[derive(Clone, Debug)]
-pub struct Register {
+pub struct NetlistRegister {
     /// The net that it drives; the register has its name, format, block number and location.
     pub q: NetId,
     /// The data input; `None` is an error that [`Design::verify`] reports.
@@ -165,7 +165,7 @@ pub enum RegisterKind {
 
 /// A read-only memory.
 #[derive(Clone, Debug)]
-pub struct Rom {
+pub struct NetlistRom {
     /// A legal Verilog identifier; the contents go to `<design>_<name>.mem`.
     pub name: String,
     /// The word number; its range lies within the contents.
@@ -321,9 +321,9 @@ pub struct Design {
     /// All wires.
     pub nets: Vec<Net>,
     /// All registers.
-    pub registers: Vec<Register>,
+    pub registers: Vec<NetlistRegister>,
     /// All ROMs, the control ROM among them.
-    pub roms: Vec<Rom>,
+    pub roms: Vec<NetlistRom>,
     /// Inputs, then outputs, in order of declaration.
     pub ports: Vec<Port>,
     /// The control unit; [`Control::none`] of a pipeline.
@@ -346,18 +346,18 @@ impl Design {
     }
 
     /// Returns the register `id`.
-    pub fn register(&self, id: RegId) -> &Register {
+    pub fn register(&self, id: RegId) -> &NetlistRegister {
         &self.registers[id.index()]
     }
 
     /// Returns whether `rom` has control words: it is the control ROM, or a ROM beside it for fields that do not fit
     /// into the control ROM's words.
-    pub fn is_control_memory(&self, rom: &Rom) -> bool {
+    pub fn is_control_memory(&self, rom: &NetlistRom) -> bool {
         self.roms.get(self.control.rom.index()).is_some_and(|it| it.address == rom.address)
     }
 
     /// Returns the ROM `id`.
-    pub fn rom(&self, id: RomId) -> &Rom {
+    pub fn rom(&self, id: RomId) -> &NetlistRom {
         &self.roms[id.index()]
     }
 
@@ -417,35 +417,35 @@ impl Design {
     /// Fails if there is a combinational loop. The error is the nets along the loop.
     pub fn levelise(&self) -> Result<Vec<NetId>, Vec<NetId>> {
         #[derive(Clone, Copy, PartialEq)]
-        enum Mark {
+        enum VisitMark {
             New,
             Open,
             Done,
         }
-        let mut mark = vec![Mark::New; self.nets.len()];
+        let mut mark = vec![VisitMark::New; self.nets.len()];
         let mut order = Vec::with_capacity(self.nets.len());
         for root in 0..self.nets.len() as u32 {
-            if mark[root as usize] != Mark::New {
+            if mark[root as usize] != VisitMark::New {
                 continue;
             }
             // Each entry: a net and the inputs of it that are still to be visited.
             let mut path = vec![(NetId(root), self.combinational_inputs(NetId(root)))];
-            mark[root as usize] = Mark::Open;
+            mark[root as usize] = VisitMark::Open;
             while let Some((net, pending)) = path.last_mut() {
                 let net = *net;
                 let Some(input) = pending.pop() else {
-                    mark[net.index()] = Mark::Done;
+                    mark[net.index()] = VisitMark::Done;
                     order.push(net);
                     path.pop();
                     continue;
                 };
                 match mark[input.index()] {
-                    Mark::Done => {}
-                    Mark::New => {
-                        mark[input.index()] = Mark::Open;
+                    VisitMark::Done => {}
+                    VisitMark::New => {
+                        mark[input.index()] = VisitMark::Open;
                         path.push((input, self.combinational_inputs(input)));
                     }
-                    Mark::Open => {
+                    VisitMark::Open => {
                         let from = path.iter().position(|(net, _)| *net == input);
                         return Err(path[from.unwrap_or(0)..]
                             .iter()

@@ -12,7 +12,7 @@ use glint_base::fixed::mask;
 ///
 /// If a microinstruction controls a mux, it needs only the chosen input.
 pub fn needed(design: &Design) -> Vec<usize> {
-    let mut walk = Walk {
+    let mut walk = UseSearch {
         design,
         clocks: clocks_to(design),
         needed: vec![usize::MAX; design.nets.len()],
@@ -74,7 +74,7 @@ pub fn passed_on(design: &Design, microinstruction: &Microinstruction, net: NetI
     design.combinational_inputs(net)
 }
 
-struct Walk<'a> {
+struct UseSearch<'a> {
     design: &'a Design,
     /// The fewest clocks from the first microinstruction to each.
     clocks: Vec<usize>,
@@ -82,7 +82,7 @@ struct Walk<'a> {
     seen: HashSet<(usize, NetId)>,
 }
 
-impl Walk<'_> {
+impl UseSearch<'_> {
     /// Notes that `net` matters in every clock.
     fn at_once(&mut self, net: NetId) {
         (0..self.design.control.microprogram.len()).for_each(|at| self.from(at, net));

@@ -6,7 +6,7 @@ use serde::Serialize;
 ///
 /// The clock in which `start` is taken is number 0.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
-pub struct Timing {
+pub struct HandshakeTiming {
     /// The number of the first clock in which `valid` is high.
     pub start_to_valid: Option<u32>,
     /// Clocks from a result to the next one of the same computation, if it has several.
@@ -22,7 +22,7 @@ pub struct Timing {
     pub start_to_start: Option<u32>,
 }
 
-impl Timing {
+impl HandshakeTiming {
     /// Returns the clocks from a point to the next without a pause. If a computation has several results, they are
     /// the clocks between two points of a line under way. Otherwise they are the clocks between computations back to
     /// back. `None` if they depend on the data.

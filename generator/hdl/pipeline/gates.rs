@@ -5,7 +5,7 @@
 //! It is too long for clocks at which products need registers of their own. Synthesis treats every bit separately, so
 //! this pass does too.
 
-use super::graph::{Cell, Graph, Label, NodeId, Op};
+use super::graph::{Cell, Graph, Label, NodeId, NodeOp};
 use super::rebuild::rebuilt;
 use super::unroll::Unrolled;
 use glint_base::fixed::Format;
@@ -13,9 +13,10 @@ use glint_base::fixed::Format;
 /// Returns the computation with gates in place of every two-input mux that has an input with constant bits.
 pub fn gated(unrolled: &Unrolled) -> Unrolled {
     rebuilt(unrolled, |graph, op, node| match op {
-        Op::Mux { select, inputs } => {
+        NodeOp::Mux { select, inputs } => {
             let [zero, one] = inputs[..] else { return None };
-            let bits: Vec<Pair> = known(graph, zero).into_iter().zip(known(graph, one)).collect();
+            let bits: Vec<BitPair> =
+                known(graph, zero).into_iter().zip(known(graph, one)).collect();
             if bits.iter().all(|bit| *bit == (None, None)) {
                 return None;
             }
@@ -28,36 +29,37 @@ pub fn gated(unrolled: &Unrolled) -> Unrolled {
                 low += width;
             }
             parts.reverse();
-            Some(graph.op(Op::Concat(parts), node.format, &node.label))
+            Some(graph.op(NodeOp::Concat(parts), node.format, &node.label))
         }
         _ => None,
     })
 }
 
 /// A bit of each input, if it is known.
-type Pair = (Option<bool>, Option<bool>);
+type BitPair = (Option<bool>, Option<bool>);
 
 /// Returns the bits from `low` on of a mux, of whose inputs the same is known in each.
 fn part(
     graph: &mut Graph,
     select: NodeId,
     (zero, one): (NodeId, NodeId),
-    pair: Pair,
+    pair: BitPair,
     (low, width): (u32, u32),
     label: &Label,
 ) -> NodeId {
     let format = Format::unsigned(width as i32, 0);
-    let slice = |graph: &mut Graph, of: NodeId| graph.op(Op::Slice { of, low }, format, label);
+    let slice = |graph: &mut Graph, of: NodeId| graph.op(NodeOp::Slice { of, low }, format, label);
     // The select, or its inverse, on every bit.
     let spread = |graph: &mut Graph, inverted: bool| {
-        let select = if inverted { graph.op(Op::Not(select), Format::BIT, label) } else { select };
-        let sign = graph.op(Op::Relabel(select), Format::signed(0, 0), label);
+        let select =
+            if inverted { graph.op(NodeOp::Not(select), Format::BIT, label) } else { select };
+        let sign = graph.op(NodeOp::Relabel(select), Format::signed(0, 0), label);
         graph.resize(sign, width, true)
     };
     let (value, inverse, ones) = match pair {
         (None, None) => {
             let inputs = vec![slice(graph, zero), slice(graph, one)];
-            return graph.op(Op::Mux { select, inputs }, format, label);
+            return graph.op(NodeOp::Mux { select, inputs }, format, label);
         }
         (Some(a), Some(b)) if a == b => {
             let bits = if a { u64::MAX } else { 0 };
@@ -65,15 +67,15 @@ fn part(
         }
         (Some(_), Some(one)) => {
             let all = spread(graph, !one);
-            return graph.op(Op::Relabel(all), format, label);
+            return graph.op(NodeOp::Relabel(all), format, label);
         }
         // The input that is not known shows while the select is the other's.
         (Some(constant), None) => (slice(graph, one), false, constant),
         (None, Some(constant)) => (slice(graph, zero), true, constant),
     };
     let gate = spread(graph, inverse != ones);
-    let gate = graph.op(Op::Relabel(gate), format, label);
-    let op = if ones { Op::Or(value, gate) } else { Op::And(value, gate) };
+    let gate = graph.op(NodeOp::Relabel(gate), format, label);
+    let op = if ones { NodeOp::Or(value, gate) } else { NodeOp::And(value, gate) };
     graph.op(op, format, label)
 }
 
@@ -83,18 +85,18 @@ fn known(graph: &Graph, id: NodeId) -> Vec<Option<bool>> {
     let width = graph.width(id) as usize;
     match &node.cell {
         Cell::Constant(bits) => (0..width).map(|bit| Some(bits >> bit & 1 == 1)).collect(),
-        Cell::Op(Op::Relabel(a)) => known(graph, *a),
-        Cell::Op(Op::Extend(a)) => {
+        Cell::Op(NodeOp::Relabel(a)) => known(graph, *a),
+        Cell::Op(NodeOp::Extend(a)) => {
             let mut bits = known(graph, *a);
             let sign =
                 if graph.node(*a).format.signed { bits[bits.len() - 1] } else { Some(false) };
             bits.resize(width, sign);
             bits
         }
-        Cell::Op(Op::Slice { of, low }) => {
+        Cell::Op(NodeOp::Slice { of, low }) => {
             known(graph, *of)[*low as usize..*low as usize + width].to_vec()
         }
-        Cell::Op(Op::Concat(parts)) => {
+        Cell::Op(NodeOp::Concat(parts)) => {
             parts.iter().rev().flat_map(|part| known(graph, *part)).collect()
         }
         _ => vec![None; width],
@@ -127,7 +129,7 @@ result value
         let muxes = after.graph.cone([after.results[0].1]);
         let muxes = muxes
             .into_iter()
-            .filter(|&id| matches!(after.graph.node(id).cell, Cell::Op(Op::Mux { .. })));
+            .filter(|&id| matches!(after.graph.node(id).cell, Cell::Op(NodeOp::Mux { .. })));
         for mux in muxes {
             let known = after.graph.node(mux).cell.operands();
             assert!(known.iter().skip(1).all(|&it| super::known(&after.graph, it).contains(&None)));

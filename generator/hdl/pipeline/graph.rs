@@ -17,7 +17,7 @@ netlist::id!(
 );
 
 /// A combinational cell of nodes.
-pub type Op = netlist::Op<NodeId>;
+pub type NodeOp = netlist::Op<NodeId>;
 
 /// The origin of a value.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
@@ -36,7 +36,7 @@ pub enum Cell {
         address: NodeId,
     },
     /// A combinational cell; its operands are nodes.
-    Op(Op),
+    Op(NodeOp),
 }
 
 /// The name, block number and comment of a value.
@@ -192,14 +192,14 @@ impl Graph {
         let frac = format.frac;
         let wanted = Format { signed, int: width as i32 - frac - i32::from(signed), frac };
         match width.cmp(&format.width()) {
-            std::cmp::Ordering::Less => self.op(Op::Slice { of: id, low: 0 }, wanted, &label),
-            std::cmp::Ordering::Equal => self.op(Op::Relabel(id), wanted, &label),
-            std::cmp::Ordering::Greater => self.op(Op::Extend(id), wanted, &label),
+            std::cmp::Ordering::Less => self.op(NodeOp::Slice { of: id, low: 0 }, wanted, &label),
+            std::cmp::Ordering::Equal => self.op(NodeOp::Relabel(id), wanted, &label),
+            std::cmp::Ordering::Greater => self.op(NodeOp::Extend(id), wanted, &label),
         }
     }
 
     /// Returns a cell, folded as far as it can be.
-    pub fn op(&mut self, op: Op, format: Format, label: &Label) -> NodeId {
+    pub fn op(&mut self, op: NodeOp, format: Format, label: &Label) -> NodeId {
         if let Some(id) = self.fold(&op, format, label) {
             let node = &mut self.nodes[id.index()];
             let plain = !matches!(node.cell, Cell::Constant(_) | Cell::Operand(_));
@@ -218,10 +218,12 @@ impl Graph {
 
     /// Returns the limit of a choice between a value and a limit: the choice takes the value if it is less, else the
     /// limit.
-    fn limit(&self, op: &Op) -> Option<i128> {
-        let Op::Mux { select, inputs } = op else { return None };
+    fn limit(&self, op: &NodeOp) -> Option<i128> {
+        let NodeOp::Mux { select, inputs } = op else { return None };
         match (&self.node(*select).cell, &inputs[..]) {
-            (Cell::Op(Op::Less(value, limit)), [other, one]) if (limit, value) == (other, one) => {
+            (Cell::Op(NodeOp::Less(value, limit)), [other, one])
+                if (limit, value) == (other, one) =>
+            {
                 Some(self.node(*limit).range.1)
             }
             _ => None,
@@ -231,7 +233,7 @@ impl Graph {
     /// Returns whether a value is never above a limit, a power of two, whose bit selects the limit.
     fn is_kept(&self, value: NodeId, select: NodeId, limit: u64) -> bool {
         let (low, high) = self.node(value).range;
-        let Cell::Op(Op::Slice { of, low: bit }) = self.node(select).cell else { return false };
+        let Cell::Op(NodeOp::Slice { of, low: bit }) = self.node(select).cell else { return false };
         of == value
             && limit.checked_ilog2() == Some(bit)
             && low >= 0
@@ -240,7 +242,7 @@ impl Graph {
     }
 
     /// Returns a node that already has the value of the cell, or a simpler node with that value.
-    fn fold(&mut self, op: &Op, format: Format, label: &Label) -> Option<NodeId> {
+    fn fold(&mut self, op: &NodeOp, format: Format, label: &Label) -> Option<NodeId> {
         let known = op.operands().into_iter();
         let known: Option<HashMap<NodeId, [u64; 1]>> =
             known.map(|id| Some((id, [self.constant_of(id)?]))).collect();
@@ -254,49 +256,49 @@ impl Graph {
             let other = graph.node(id).format;
             other.width() == width && other.signed == format.signed
         };
-        let again = |graph: &mut Self, op: Op| Some(graph.op(op, format, label));
+        let again = |graph: &mut Self, op: NodeOp| Some(graph.op(op, format, label));
         match op {
-            Op::Relabel(a) if same(self, *a) => Some(*a),
-            Op::Relabel(a) => match self.node(*a).cell {
-                Cell::Op(Op::Relabel(b)) => again(self, Op::Relabel(b)),
+            NodeOp::Relabel(a) if same(self, *a) => Some(*a),
+            NodeOp::Relabel(a) => match self.node(*a).cell {
+                Cell::Op(NodeOp::Relabel(b)) => again(self, NodeOp::Relabel(b)),
                 _ => None,
             },
-            Op::Extend(a) => {
+            NodeOp::Extend(a) => {
                 let inner = self.node(*a);
-                let Cell::Op(Op::Extend(b)) = inner.cell else { return None };
+                let Cell::Op(NodeOp::Extend(b)) = inner.cell else { return None };
                 let b_signed = self.node(b).format.signed;
                 (b_signed == inner.format.signed || !b_signed)
-                    .then(|| self.op(Op::Extend(b), format, label))
+                    .then(|| self.op(NodeOp::Extend(b), format, label))
             }
-            Op::Slice { of, low } => self.fold_slice(*of, *low, format, label),
-            Op::Concat(parts) => match &parts[..] {
-                [only] => again(self, Op::Relabel(*only)),
+            NodeOp::Slice { of, low } => self.fold_slice(*of, *low, format, label),
+            NodeOp::Concat(parts) => match &parts[..] {
+                [only] => again(self, NodeOp::Relabel(*only)),
                 _ => None,
             },
-            Op::Not(a) => match self.node(*a).cell {
-                Cell::Op(Op::Not(b)) if same(self, b) => Some(b),
+            NodeOp::Not(a) => match self.node(*a).cell {
+                Cell::Op(NodeOp::Not(b)) if same(self, b) => Some(b),
                 _ => None,
             },
-            Op::And(a, b) | Op::Or(a, b) | Op::Xor(a, b) => {
+            NodeOp::And(a, b) | NodeOp::Or(a, b) | NodeOp::Xor(a, b) => {
                 let (a, b) = if self.constant_of(*a).is_some() { (*b, *a) } else { (*a, *b) };
                 let ones = mask(width);
                 match (op, self.constant_of(b)) {
-                    (Op::And(..), Some(0)) => Some(self.constant(0, format, label)),
-                    (Op::Or(..), Some(bits)) if bits == ones => {
+                    (NodeOp::And(..), Some(0)) => Some(self.constant(0, format, label)),
+                    (NodeOp::Or(..), Some(bits)) if bits == ones => {
                         Some(self.constant(ones, format, label))
                     }
-                    (Op::And(..), Some(bits)) if bits == ones && same(self, a) => Some(a),
-                    (Op::Or(..) | Op::Xor(..), Some(0)) if same(self, a) => Some(a),
-                    (Op::Xor(..), Some(bits)) if bits == ones => again(self, Op::Not(a)),
-                    (Op::And(..) | Op::Or(..), None) if a == b && same(self, a) => Some(a),
+                    (NodeOp::And(..), Some(bits)) if bits == ones && same(self, a) => Some(a),
+                    (NodeOp::Or(..) | NodeOp::Xor(..), Some(0)) if same(self, a) => Some(a),
+                    (NodeOp::Xor(..), Some(bits)) if bits == ones => again(self, NodeOp::Not(a)),
+                    (NodeOp::And(..) | NodeOp::Or(..), None) if a == b && same(self, a) => Some(a),
                     (_, None) if self.is_inverse(a, b) || self.is_inverse(b, a) => {
-                        let bits = if matches!(op, Op::And(..)) { 0 } else { ones };
+                        let bits = if matches!(op, NodeOp::And(..)) { 0 } else { ones };
                         Some(self.constant(bits, format, label))
                     }
                     _ => None,
                 }
             }
-            Op::Add { a, b, carry } => {
+            NodeOp::Add { a, b, carry } => {
                 let carry = carry.is_none_or(|carry| self.constant_of(carry) == Some(0));
                 match (self.constant_of(*a), self.constant_of(*b)) {
                     (Some(0), _) if carry && same(self, *b) => Some(*b),
@@ -304,38 +306,38 @@ impl Graph {
                     _ => None,
                 }
             }
-            Op::Sub(a, b) => (self.constant_of(*b) == Some(0) && same(self, *a)).then_some(*a),
-            Op::Mul(a, b) => self.fold_product(*a, *b, format, label),
-            Op::Any(a) => {
+            NodeOp::Sub(a, b) => (self.constant_of(*b) == Some(0) && same(self, *a)).then_some(*a),
+            NodeOp::Mul(a, b) => self.fold_product(*a, *b, format, label),
+            NodeOp::Any(a) => {
                 let (low, high) = self.node(*a).range;
                 if low > 0 || high < 0 {
                     return Some(self.constant(1, format, label));
                 }
-                if let Cell::Op(Op::Extend(b)) = self.node(*a).cell {
-                    return again(self, Op::Any(b));
+                if let Cell::Op(NodeOp::Extend(b)) = self.node(*a).cell {
+                    return again(self, NodeOp::Any(b));
                 }
                 if self.width(*a) == 1 {
-                    return again(self, Op::Relabel(*a));
+                    return again(self, NodeOp::Relabel(*a));
                 }
                 let bits = self.without_zeros(*a, label)?;
-                again(self, Op::Any(bits))
+                again(self, NodeOp::Any(bits))
             }
-            Op::All(a) if self.width(*a) == 1 => again(self, Op::Relabel(*a)),
-            Op::Equal(..) | Op::Less(..) | Op::All(_) => None,
-            Op::Mux { select, inputs } => {
+            NodeOp::All(a) if self.width(*a) == 1 => again(self, NodeOp::Relabel(*a)),
+            NodeOp::Equal(..) | NodeOp::Less(..) | NodeOp::All(_) => None,
+            NodeOp::Mux { select, inputs } => {
                 if let Some(value) = self.constant_of(*select) {
                     let input = inputs[(value as usize).min(inputs.len() - 1)];
-                    return again(self, Op::Relabel(input));
+                    return again(self, NodeOp::Relabel(input));
                 }
                 if inputs.iter().all(|input| *input == inputs[0]) {
-                    return again(self, Op::Relabel(inputs[0]));
+                    return again(self, NodeOp::Relabel(inputs[0]));
                 }
                 let bits: Vec<_> = inputs.iter().map(|&input| self.constant_of(input)).collect();
                 match bits[..] {
-                    [Some(0), Some(1)] if width == 1 => again(self, Op::Relabel(*select)),
-                    [Some(1), Some(0)] if width == 1 => again(self, Op::Not(*select)),
+                    [Some(0), Some(1)] if width == 1 => again(self, NodeOp::Relabel(*select)),
+                    [Some(1), Some(0)] if width == 1 => again(self, NodeOp::Not(*select)),
                     [None, Some(limit)] if self.is_kept(inputs[0], *select, limit) => {
-                        again(self, Op::Relabel(inputs[0]))
+                        again(self, NodeOp::Relabel(inputs[0]))
                     }
                     _ => None,
                 }
@@ -345,18 +347,18 @@ impl Graph {
 
     /// Returns whether a node is another one inverted.
     fn is_inverse(&self, inverse: NodeId, of: NodeId) -> bool {
-        matches!(self.node(inverse).cell, Cell::Op(Op::Not(it)) if it == of)
+        matches!(self.node(inverse).cell, Cell::Op(NodeOp::Not(it)) if it == of)
     }
 
     /// Returns the bits of a slice without the zeros in front of a number, if there are such zeros.
     fn without_zeros(&mut self, slice: NodeId, label: &Label) -> Option<NodeId> {
-        let Cell::Op(Op::Slice { of, low }) = self.node(slice).cell else { return None };
-        let Cell::Op(Op::Extend(number)) = self.node(of).cell else { return None };
+        let Cell::Op(NodeOp::Slice { of, low }) = self.node(slice).cell else { return None };
+        let Cell::Op(NodeOp::Extend(number)) = self.node(of).cell else { return None };
         let inner = self.node(number).format;
         let left = inner.width() - low;
         (!inner.signed && left < self.width(slice)).then(|| {
             let bits = Format::unsigned(left as i32, 0);
-            self.op(Op::Slice { of: number, low }, bits, label)
+            self.op(NodeOp::Slice { of: number, low }, bits, label)
         })
     }
 
@@ -369,28 +371,28 @@ impl Graph {
     ) -> Option<NodeId> {
         let width = format.width();
         if low == 0 && width == self.width(of) {
-            return Some(self.op(Op::Relabel(of), format, label));
+            return Some(self.op(NodeOp::Relabel(of), format, label));
         }
         let again = |graph: &mut Self, of: NodeId, low: u32| {
-            Some(graph.op(Op::Slice { of, low }, format, label))
+            Some(graph.op(NodeOp::Slice { of, low }, format, label))
         };
         match self.node(of).cell.clone() {
-            Cell::Op(Op::Slice { of, low: inner }) => again(self, of, low + inner),
-            Cell::Op(Op::Relabel(a)) => again(self, a, low),
-            Cell::Op(Op::Extend(a)) => {
+            Cell::Op(NodeOp::Slice { of, low: inner }) => again(self, of, low + inner),
+            Cell::Op(NodeOp::Relabel(a)) => again(self, a, low),
+            Cell::Op(NodeOp::Extend(a)) => {
                 let inner = self.node(a).format;
                 if low + width <= inner.width() {
                     return again(self, a, low);
                 }
                 if low == 0 {
-                    return Some(self.op(Op::Extend(a), format, label));
+                    return Some(self.op(NodeOp::Extend(a), format, label));
                 }
                 if inner.signed && width == 1 {
                     return again(self, a, inner.width() - 1);
                 }
                 (low >= inner.width() && !inner.signed).then(|| self.constant(0, format, label))
             }
-            Cell::Op(Op::Concat(parts)) => {
+            Cell::Op(NodeOp::Concat(parts)) => {
                 // From the lowest part up: the bits of each that are wanted.
                 let (mut from, mut wanted) = (0, Vec::new());
                 for part in parts.into_iter().rev() {
@@ -407,10 +409,10 @@ impl Graph {
                 let label = Label { named: false, ..self.node(of).label.clone() };
                 let pieces = wanted.into_iter().rev().map(|(of, low, width)| {
                     let format = Format::unsigned(width as i32, 0);
-                    self.op(Op::Slice { of, low }, format, &label)
+                    self.op(NodeOp::Slice { of, low }, format, &label)
                 });
                 let pieces = pieces.collect();
-                Some(self.op(Op::Concat(pieces), format, &label))
+                Some(self.op(NodeOp::Concat(pieces), format, &label))
             }
             _ => None,
         }
@@ -438,7 +440,7 @@ impl Graph {
         let (a, b) = (self.resize(a, wa, signed), self.resize(b, wb, signed));
         let int = (wa + wb) as i32 - format.frac - i32::from(signed);
         let exact = Format { signed, int, frac: format.frac };
-        let product = self.op(Op::Mul(a, b), exact, label);
+        let product = self.op(NodeOp::Mul(a, b), exact, label);
         Some(self.resize(product, format.width(), format.signed))
     }
 }
@@ -457,8 +459,9 @@ impl Cell {
     pub fn is_wiring(&self) -> bool {
         matches!(
             self,
-            Self::Op(Op::Relabel(_) | Op::Extend(_) | Op::Slice { .. } | Op::Concat(_))
-                | Self::Constant(_)
+            Self::Op(
+                NodeOp::Relabel(_) | NodeOp::Extend(_) | NodeOp::Slice { .. } | NodeOp::Concat(_)
+            ) | Self::Constant(_)
         )
     }
 }

@@ -1,11 +1,11 @@
 //! Finds the clocks from a point to the next: as given, or as a wanted rate or number of multipliers asks for.
 
-use super::schedule::Problems;
+use super::schedule::ScheduleProblem;
 use super::{Goal, Options};
 
 /// The clocks from a point to the next.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Interval {
+pub enum IntervalGoal {
     /// A number of clocks.
     Clocks(usize),
     /// The longest interval with this number of million points a second at the clock of the goal.
@@ -30,7 +30,7 @@ pub fn clocks<'a>(
     name: &str,
     options: &Options,
     most: usize,
-    problems: impl Fn(usize) -> Problems<'a>,
+    problems: impl Fn(usize) -> ScheduleProblem<'a>,
 ) -> Result<usize, Unreached> {
     let wrong = |key, message, remedy| Err(Unreached { key, message, remedy });
     // Muxes before a multiplier take time of the clock.
@@ -41,15 +41,15 @@ pub fn clocks<'a>(
         Goal::Stages(_) => true,
     };
     match options.interval {
-        Interval::Clocks(interval) if interval > most => wrong(
+        IntervalGoal::Clocks(interval) if interval > most => wrong(
             "pipeline.interval",
             format!(
                 "`{name}` has no use for a point every {interval} clocks: its sequential core takes one every {most}"
             ),
             format!("set pipeline.interval to {most} or less, or architecture = \"sequential\""),
         ),
-        Interval::Clocks(interval) => Ok(interval),
-        Interval::Rate(rate) => {
+        IntervalGoal::Clocks(interval) => Ok(interval),
+        IntervalGoal::Rate(rate) => {
             let Goal::ClockMhz(clock) = options.goal else {
                 let message = format!(
                     "pipeline.stages leaves the clock of `{name}` open, and with it the rate"
@@ -69,7 +69,7 @@ pub fn clocks<'a>(
             }
             Ok((1..=longest.min(most)).rev().find(reaches).unwrap_or(1))
         }
-        Interval::Multipliers(allowed) => {
+        IntervalGoal::Multipliers(allowed) => {
             let all = || (1..=most).filter(reaches).map(|it| (it, problems(it).multipliers()));
             let Some((interval, fewest)) = all().min_by_key(|&(_, multipliers)| multipliers) else {
                 // The schedule says why.

@@ -30,13 +30,13 @@ use glint_base::diagnostic::Diagnostics;
 use glint_base::target::Timing;
 
 pub use delay::delay_of;
-pub use graph::{Cell, Graph, Node, NodeId, Op};
-pub use interval::Interval;
+pub use graph::{Cell, Graph, Node, NodeId, NodeOp};
+pub use interval::IntervalGoal;
 pub use passes::{PASSES, Pass};
 use request::Request;
 pub use unroll::{
-    Cycle, Held, Line, Unrolled, WalkRegister, any_cycle, carried, unroll, unroll_in_powers,
-    unroll_line,
+    Cycle, StateValues, Unrolled, UnrolledLine, WalkRegister, any_cycle, carried, unroll,
+    unroll_in_powers, unroll_line,
 };
 
 /// The goal of the schedule.
@@ -65,7 +65,7 @@ pub struct Options {
     /// The goal of the schedule.
     pub goal: Goal,
     /// The least number of clocks between two points.
-    pub interval: Interval,
+    pub interval: IntervalGoal,
     /// Products end in the register of a multiplier, if the target has a delay for it.
     pub registered: bool,
     /// The environment can hold the results back.

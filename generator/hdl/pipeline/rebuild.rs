@@ -1,13 +1,13 @@
 //! Rebuilds a computation in a new graph, with other nodes in place of some.
 
-use super::graph::{Cell, Graph, Node, NodeId, Op};
+use super::graph::{Cell, Graph, Node, NodeId, NodeOp};
 use super::unroll::Unrolled;
 
 /// Returns a copy of a computation in which other nodes may replace cells. `replace` gets each cell, with its
 /// operands in the new graph, and returns the replacement. If it returns `None`, the cell is copied.
 pub fn rebuilt(
     unrolled: &Unrolled,
-    mut replace: impl FnMut(&mut Graph, &Op, &Node) -> Option<NodeId>,
+    mut replace: impl FnMut(&mut Graph, &NodeOp, &Node) -> Option<NodeId>,
 ) -> Unrolled {
     let mut graph = Graph::default();
     let mut place: Vec<NodeId> = Vec::with_capacity(unrolled.graph.nodes.len());

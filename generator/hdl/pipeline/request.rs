@@ -4,7 +4,7 @@
 
 use super::graph::NodeId;
 use super::interval;
-use super::schedule::{self, Problems, Refusal, Schedule, Unreachable};
+use super::schedule::{self, Schedule, ScheduleProblem, ScheduleRefusal, Unreachable};
 use super::unroll::Unrolled;
 use super::{Goal, Options};
 use crate::netlist::{Design, decided_by_data, latest_done};
@@ -33,10 +33,10 @@ impl<'a> Request<'a> {
     }
 
     /// Poses the problem of a schedule, products with registers of their own or without.
-    pub fn problems(&self, registered: bool, interval: usize) -> Problems<'_> {
+    pub fn problems(&self, registered: bool, interval: usize) -> ScheduleProblem<'_> {
         let target = self.options.target;
         let registered = target.registered.filter(|_| registered);
-        Problems::new(&self.unrolled.graph, target, registered, interval, &self.results)
+        ScheduleProblem::new(&self.unrolled.graph, target, registered, interval, &self.results)
     }
 
     /// Returns the clocks from a point to the next.
@@ -61,22 +61,26 @@ impl<'a> Request<'a> {
     /// Fails if a clock or a number of stages cannot be reached. The error has the nearest value that can.
     pub fn schedule(
         &self,
-        problems: &Problems<'_>,
+        problems: &ScheduleProblem<'_>,
         interval: usize,
     ) -> Result<Schedule, Diagnostics> {
         match self.options.goal {
             Goal::ClockMhz(clock) => {
                 let schedule = problems.for_period(1000.0 / clock);
                 schedule.map_err(|refusal| match refusal {
-                    Refusal::Unreachable(limit) => self.too_fast(clock, interval, &limit),
-                    Refusal::Unsolved(why, at) => self.unsolved(&why, at),
+                    ScheduleRefusal::Unreachable(limit) => self.too_fast(clock, interval, &limit),
+                    ScheduleRefusal::Unsolved(why, at) => self.unsolved(&why, at),
                 })
             }
             Goal::Stages(stages) => self.in_stages(problems, stages),
         }
     }
 
-    fn in_stages(&self, problems: &Problems<'_>, stages: usize) -> Result<Schedule, Diagnostics> {
+    fn in_stages(
+        &self,
+        problems: &ScheduleProblem<'_>,
+        stages: usize,
+    ) -> Result<Schedule, Diagnostics> {
         let (name, target) = (&self.sequential.name, self.options.target.name);
         let most = problems.most_stages();
         if stages > most {
@@ -87,8 +91,10 @@ impl<'a> Request<'a> {
             return Err(self.wrong_stages(message, format!("{most} or less"), limiting));
         }
         let schedule = problems.for_stages(stages).map_err(|refusal| match refusal {
-            Refusal::Unsolved(why, at) => self.unsolved(&why, at),
-            Refusal::Unreachable(it) => self.unsolved("no clock is slow enough", Some(it.limiting)),
+            ScheduleRefusal::Unsolved(why, at) => self.unsolved(&why, at),
+            ScheduleRefusal::Unreachable(it) => {
+                self.unsolved("no clock is slow enough", Some(it.limiting))
+            }
         })?;
         let least = schedule.latency;
         if least > stages {

@@ -17,8 +17,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use microlp::{ComparisonOp, OptimizationDirection, Problem, SolveOutcome};
 
 use super::delay;
-use super::graph::{Cell, Graph, Node, NodeId, Op};
-use super::sharing::{self, Kind, Unit};
+use super::graph::{Cell, Graph, Node, NodeId, NodeOp};
+use super::sharing::{self, MultiplierUnit, ProductGroup};
 use glint_base::target::{Registered, Timing};
 
 /// When each value is computed.
@@ -36,7 +36,7 @@ pub struct Schedule {
 
 /// Why there is no schedule.
 #[derive(Clone, Debug)]
-pub enum Refusal {
+pub enum ScheduleRefusal {
     /// The clock cannot be met.
     Unreachable(Unreachable),
     /// The solver failed, or its solution breaks a constraint: the reason, and the node in the wrong stage.
@@ -53,7 +53,7 @@ pub struct Unreachable {
 }
 
 /// The scheduling problem: the nodes, edges and delays that a schedule must respect.
-pub struct Problems<'a> {
+pub struct ScheduleProblem<'a> {
     graph: &'a Graph,
     target: &'a Timing,
     /// The nodes that are scheduled, in order.
@@ -67,17 +67,17 @@ pub struct Problems<'a> {
     /// The select of a choice between a value and a constant, if a register behind it makes the choice by its reset.
     reset_by: Vec<Option<NodeId>>,
     /// For nodes that the clock makes.
-    clocked: Vec<Option<Clocked>>,
+    clocked: Vec<Option<ClockedNode>>,
     /// Clocks from a point to the next at least.
     interval: usize,
     /// The products that share multipliers.
-    kinds: Vec<Kind>,
+    kinds: Vec<ProductGroup>,
 }
 
 /// A node that the clock makes: a word of a block memory, a product in the register of a multiplier, or one of a multiplier
 /// that others use too.
 #[derive(Clone, Copy, Debug)]
-struct Clocked {
+struct ClockedNode {
     /// The time from the operands to the clock, beyond the way to a register.
     operands: f64,
     /// The logic between registers that the operands go through after that, if there is any.
@@ -94,11 +94,14 @@ pub fn megahertz(period: f64) -> f64 {
 
 /// Returns whether an operation is made of other things than look-up tables that could take logic before it with them.
 fn takes_no_logic(cell: &Cell) -> bool {
-    matches!(cell, Cell::Op(Op::Add { .. } | Op::Sub(..) | Op::Less(..) | Op::Mul(..)))
+    matches!(
+        cell,
+        Cell::Op(NodeOp::Add { .. } | NodeOp::Sub(..) | NodeOp::Less(..) | NodeOp::Mul(..))
+    )
 }
 
 /// `(from, to, apart)`: the stage of node `to` is at least `apart` stages after the stage of node `from`.
-type Difference = (NodeId, NodeId, usize);
+type StageDifference = (NodeId, NodeId, usize);
 
 /// The stages of the products that share multipliers.
 type Taken = BTreeMap<NodeId, usize>;
@@ -106,14 +109,14 @@ type Taken = BTreeMap<NodeId, usize>;
 /// Returns the inverters whose bits are, through wiring, factors of products.
 fn inverted_factors(graph: &Graph, live: &[NodeId]) -> Vec<NodeId> {
     let products = live.iter().filter_map(|&id| match graph.node(id).cell {
-        Cell::Op(Op::Mul(a, b)) => Some([a, b]),
+        Cell::Op(NodeOp::Mul(a, b)) => Some([a, b]),
         _ => None,
     });
     let mut open: Vec<NodeId> = products.flatten().collect();
     let mut inverters = Vec::new();
     while let Some(id) = open.pop() {
         match &graph.node(id).cell {
-            Cell::Op(Op::Not(_)) => inverters.push(id),
+            Cell::Op(NodeOp::Not(_)) => inverters.push(id),
             cell if cell.is_wiring() => open.extend(cell.operands()),
             _ => {}
         }
@@ -124,7 +127,7 @@ fn inverted_factors(graph: &Graph, live: &[NodeId]) -> Vec<NodeId> {
 /// Returns whether a node only extends or renames another one. Such a node is made anew wherever it is used, so that
 /// registers hold its operand.
 pub fn is_extension(graph: &Graph, id: NodeId) -> bool {
-    matches!(graph.node(id).cell, Cell::Op(Op::Extend(_) | Op::Relabel(_)))
+    matches!(graph.node(id).cell, Cell::Op(NodeOp::Extend(_) | NodeOp::Relabel(_)))
 }
 
 /// Returns the node that registers hold for the users of `id`.
@@ -135,7 +138,7 @@ fn held(graph: &Graph, results: &[NodeId], mut id: NodeId) -> NodeId {
     id
 }
 
-impl<'a> Problems<'a> {
+impl<'a> ScheduleProblem<'a> {
     /// Makes the problems of a schedule of the nodes that `results` need.
     pub fn new(
         graph: &'a Graph,
@@ -162,7 +165,7 @@ impl<'a> Problems<'a> {
         }
         let nodes = || (0..graph.nodes.len()).map(|at| NodeId(at as u32));
         let product = |id: NodeId| {
-            registered.filter(|_| matches!(graph.node(id).cell, Cell::Op(Op::Mul(..))))
+            registered.filter(|_| matches!(graph.node(id).cell, Cell::Op(NodeOp::Mul(..))))
         };
         let kinds = sharing::kinds(graph, target, &live, interval);
         let shares = |id: &NodeId| kinds.iter().any(|kind| kind.products.contains(id));
@@ -177,7 +180,7 @@ impl<'a> Problems<'a> {
         for id in inverted_factors(graph, &live) {
             let alone = |user: &NodeId| {
                 let cell = &graph.node(*user).cell;
-                cell.is_wiring() || matches!(cell, Cell::Op(Op::Mul(..)))
+                cell.is_wiring() || matches!(cell, Cell::Op(NodeOp::Mul(..)))
             };
             if registered.is_some() || users[id.index()].iter().all(alone) {
                 delay[id.index()] = target.logic;
@@ -186,12 +189,12 @@ impl<'a> Problems<'a> {
         let setup = nodes().map(|id| delay::setup(target, graph, id)).collect();
         let reset_by = nodes().map(|id| delay::reset_by(graph, id));
         let reset_by = reset_by.map(|it| it.map(|select| held(graph, results, select))).collect();
-        let by_clock = |operands| Clocked { operands, inside: 0.0, apart: 1 };
+        let by_clock = |operands| ClockedNode { operands, inside: 0.0, apart: 1 };
         let clocked = nodes().map(|id| match product(id) {
             _ if shares(&id) => {
                 let operands = delay::of_choice(target, interval);
                 let inside = product(id).map_or(target.product, |it| it.product);
-                Some(Clocked { operands, inside, apart: 2 })
+                Some(ClockedNode { operands, inside, apart: 2 })
             }
             Some(registered) => Some(by_clock(registered.product)),
             None => delay::is_block(target, graph, id).then(|| by_clock(target.address)),
@@ -242,9 +245,9 @@ impl<'a> Problems<'a> {
     ///
     /// # Errors
     /// Fails if an operation takes longer than the period, or if the solver fails.
-    pub fn for_period(&self, period: f64) -> Result<Schedule, Refusal> {
+    pub fn for_period(&self, period: f64) -> Result<Schedule, ScheduleRefusal> {
         if let Some(unreachable) = self.fastest().filter(|it| it.period > period + 1e-9) {
-            return Err(Refusal::Unreachable(unreachable));
+            return Err(ScheduleRefusal::Unreachable(unreachable));
         }
         self.solve(period, 0)
     }
@@ -254,7 +257,7 @@ impl<'a> Problems<'a> {
     ///
     /// # Errors
     /// Fails if the solver fails.
-    pub fn for_stages(&self, stages: usize) -> Result<Schedule, Refusal> {
+    pub fn for_stages(&self, stages: usize) -> Result<Schedule, ScheduleRefusal> {
         let fastest = self.fastest().map_or(0.0, |it| it.period);
         let fits = |period: f64| self.least_stages(period) <= stages;
         let all = self.delay.iter().chain(&self.setup).sum::<f64>();
@@ -292,7 +295,7 @@ impl<'a> Problems<'a> {
     /// multipliers lie in columns of their own. If one register leaves too little time on the way to a multiplier,
     /// the value of a memory takes a register near each of the two.
     fn registers_between(&self, from: NodeId, user: NodeId, most: f64) -> usize {
-        let product = matches!(self.graph.node(user).cell, Cell::Op(Op::Mul(..)));
+        let product = matches!(self.graph.node(user).cell, Cell::Op(NodeOp::Mul(..)));
         let far = product && delay::is_block(self.target, self.graph, from);
         1 + usize::from(far && self.delay[user.index()] + self.target.logic > most)
     }
@@ -306,7 +309,7 @@ impl<'a> Problems<'a> {
         }
     }
 
-    fn differences(&self, period: f64) -> Vec<Difference> {
+    fn differences(&self, period: f64) -> Vec<StageDifference> {
         let most = period - self.target.register + 1e-9;
         let mut differences = Vec::new();
         let mut longest = vec![0.0f64; self.graph.nodes.len()];
@@ -322,7 +325,7 @@ impl<'a> Problems<'a> {
             reached[from.index()] = from;
             while let Some(at) = pending.pop_first() {
                 for &user in &self.users[at.index()] {
-                    if let Some(Clocked { operands, apart, .. }) = self.clocked[user.index()] {
+                    if let Some(ClockedNode { operands, apart, .. }) = self.clocked[user.index()] {
                         // Room for a register between the logic and the memory or the multiplier.
                         if longest[at.index()] + operands > most {
                             differences.push((from, user, apart + 1));
@@ -352,7 +355,7 @@ impl<'a> Problems<'a> {
     }
 
     /// Returns the fewest boundaries: the longest chain of differences, and one behind the results.
-    fn latency(&self, differences: &[Difference], taken: &Taken) -> usize {
+    fn latency(&self, differences: &[StageDifference], taken: &Taken) -> usize {
         let earliest = self.earliest(differences, taken);
         let results = self.results.iter().filter(|id| self.graph.constant_of(**id).is_none());
         results.map(|id| earliest[id.index()] + 1).max().unwrap_or(1)
@@ -360,7 +363,7 @@ impl<'a> Problems<'a> {
 
     /// Returns the earliest stage of each node. The differences must be sorted by their first node; a node comes
     /// after its operands.
-    fn earliest(&self, differences: &[Difference], taken: &Taken) -> Vec<usize> {
+    fn earliest(&self, differences: &[StageDifference], taken: &Taken) -> Vec<usize> {
         let mut earliest = vec![0; self.graph.nodes.len()];
         taken.iter().for_each(|(id, stage)| earliest[id.index()] = *stage);
         for &(from, to, apart) in differences {
@@ -371,7 +374,7 @@ impl<'a> Problems<'a> {
 
     /// Returns the stages of products that share multipliers. They are placed one after another. The product that can
     /// be placed earliest comes first; among several, the product that the most stages must follow.
-    fn taken(&self, differences: &[Difference]) -> Taken {
+    fn taken(&self, differences: &[StageDifference]) -> Taken {
         let mut after = vec![0; self.graph.nodes.len()];
         for &(from, to, apart) in differences.iter().rev() {
             after[from.index()] = after[from.index()].max(after[to.index()] + apart);
@@ -409,16 +412,16 @@ impl<'a> Problems<'a> {
     /// Fails if the stages break a constraint. The error is the first such constraint.
     fn verify(
         &self,
-        differences: &[Difference],
+        differences: &[StageDifference],
         stage: &[usize],
         latency: usize,
-    ) -> Result<(), Refusal> {
+    ) -> Result<(), ScheduleRefusal> {
         let name = |id: NodeId| &self.graph.node(id).label.name;
         for &id in &self.live {
             let (at, last) = (stage[id.index()], self.last_stage(id.index(), latency));
             if at > last {
                 let message = format!("`{}` stands in stage {at}, behind stage {last}", name(id));
-                return Err(Refusal::Unsolved(message, Some(id)));
+                return Err(ScheduleRefusal::Unsolved(message, Some(id)));
             }
         }
         for &(from, to, apart) in differences {
@@ -430,7 +433,7 @@ impl<'a> Problems<'a> {
                     name(to),
                     name(from)
                 );
-                return Err(Refusal::Unsolved(message, Some(to)));
+                return Err(ScheduleRefusal::Unsolved(message, Some(to)));
             }
         }
         for kind in &self.kinds {
@@ -443,7 +446,7 @@ impl<'a> Problems<'a> {
                         "`{}` is one product too many for {units} in slot {slot}",
                         name(id)
                     );
-                    return Err(Refusal::Unsolved(message, Some(id)));
+                    return Err(ScheduleRefusal::Unsolved(message, Some(id)));
                 }
             }
         }
@@ -451,7 +454,7 @@ impl<'a> Problems<'a> {
     }
 
     /// Returns the schedule with the fewest register bits for a period, in no fewer stages than `least`.
-    fn solve(&self, period: f64, least: usize) -> Result<Schedule, Refusal> {
+    fn solve(&self, period: f64, least: usize) -> Result<Schedule, ScheduleRefusal> {
         let differences = self.differences(period);
         let taken = self.taken(&differences);
         let latency = least.max(self.latency(&differences, &taken));
@@ -464,7 +467,7 @@ impl<'a> Problems<'a> {
         });
         // Of schedules of as many register bits one whose products are late: their operands have registers of their own.
         let late = |id: usize| match self.graph.node(NodeId(id as u32)).cell {
-            Cell::Op(Op::Mul(..)) => -1e-3,
+            Cell::Op(NodeOp::Mul(..)) => -1e-3,
             _ => 0.0,
         };
         let stage: Vec<_> =
@@ -501,7 +504,7 @@ impl<'a> Problems<'a> {
                 problem.add_constraint(terms, ComparisonOp::Ge, 1.0 + self.apart(user) as f64);
             }
         }
-        let unsolved = |message: String| Refusal::Unsolved(message, None);
+        let unsolved = |message: String| ScheduleRefusal::Unsolved(message, None);
         let solution = match problem.solve().map_err(|error| unsolved(error.to_string()))? {
             SolveOutcome::Solution(solution) => solution,
             _ => return Err(unsolved("the linear program has no solution".to_owned())),
@@ -588,7 +591,7 @@ impl<'a> Problems<'a> {
     }
 
     /// Returns the multipliers that products share, with the products of each slot.
-    pub fn units(&self, schedule: &Schedule) -> Vec<Unit> {
+    pub fn units(&self, schedule: &Schedule) -> Vec<MultiplierUnit> {
         let kinds = self.kinds.iter();
         let of =
             |kind| sharing::units(self.graph, self.target, kind, &schedule.stage, self.interval);
@@ -622,7 +625,7 @@ mod tests {
         let unrolled = unroll::unroll(&design).unwrap_or_else(|wrong| panic!("{wrong}"));
         let results: Vec<NodeId> = unrolled.results.iter().map(|&(_, value)| value).collect();
         let target = Timing::named("ecp5").expect("a target");
-        let problems = Problems::new(&unrolled.graph, target, None, 1, &results);
+        let problems = ScheduleProblem::new(&unrolled.graph, target, None, 1, &results);
         let period = problems.fastest().expect("an operation").period;
         let schedule = problems.for_period(period).expect("a schedule");
         let differences = problems.differences(period);
@@ -630,7 +633,7 @@ mod tests {
             let mut stage = schedule.stage.clone();
             stage[node.index()] = at;
             match problems.verify(&differences, &stage, schedule.latency) {
-                Err(Refusal::Unsolved(why, place)) => Some((why, place)),
+                Err(ScheduleRefusal::Unsolved(why, place)) => Some((why, place)),
                 _ => None,
             }
         };

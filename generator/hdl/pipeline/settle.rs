@@ -4,7 +4,7 @@
 //! For example, in `over₂ ? most : f(over₁ ? most : x)`, the condition `over₂` tests a bit of the inner choice. The
 //! pass makes one choice of it: `most` if either condition holds, and else `f(x)`.
 
-use super::graph::{Cell, Graph, Label, NodeId, Op};
+use super::graph::{Cell, Graph, Label, NodeId, NodeOp};
 use glint_base::fixed::Format;
 
 /// Returns a value as one choice, if it is a choice between a constant and another such choice.
@@ -13,12 +13,12 @@ pub fn settled(graph: &mut Graph, id: NodeId) -> NodeId {
     let Some((over, rest, most)) = limit(graph, id) else { return id };
     let over = flag(graph, over);
     let rest = below(graph, rest, over);
-    graph.op(Op::Mux { select: over, inputs: vec![rest, most] }, node.format, &node.label)
+    graph.op(NodeOp::Mux { select: over, inputs: vec![rest, most] }, node.format, &node.label)
 }
 
 /// Matches `over ? most : rest` with a constant: `over`, `rest` and the constant.
 fn limit(graph: &Graph, id: NodeId) -> Option<(NodeId, NodeId, NodeId)> {
-    let Cell::Op(Op::Mux { select, inputs }) = &graph.node(id).cell else { return None };
+    let Cell::Op(NodeOp::Mux { select, inputs }) = &graph.node(id).cell else { return None };
     match inputs[..] {
         [rest, most] if graph.constant_of(most).is_some() => Some((*select, rest, most)),
         _ => None,
@@ -28,13 +28,13 @@ fn limit(graph: &Graph, id: NodeId) -> Option<(NodeId, NodeId, NodeId)> {
 /// Returns a condition that tests a bit of a choice, rewritten to read the choice's inputs instead.
 fn flag(graph: &mut Graph, id: NodeId) -> NodeId {
     let node = graph.node(id).clone();
-    let Cell::Op(Op::Slice { of, low }) = node.cell else { return id };
+    let Cell::Op(NodeOp::Slice { of, low }) = node.cell else { return id };
     let Some((over, rest, most)) = limit(graph, of) else { return id };
     if node.format.width() != 1 || graph.constant_of(most).is_none_or(|most| most >> low & 1 == 0) {
         return id;
     }
     let label = Label { named: false, ..node.label };
-    let bit = graph.op(Op::Slice { of: rest, low }, Format::BIT, &label);
+    let bit = graph.op(NodeOp::Slice { of: rest, low }, Format::BIT, &label);
     either(graph, over, bit, &label)
 }
 
@@ -45,17 +45,17 @@ fn either(graph: &mut Graph, a: NodeId, b: NodeId, label: &Label) -> NodeId {
         && below + 1 == low
     {
         let format = Format::unsigned(width as i32 + 1, 0);
-        let bits = graph.op(Op::Slice { of, low: below }, format, label);
-        return graph.op(Op::Any(bits), Format::BIT, label);
+        let bits = graph.op(NodeOp::Slice { of, low: below }, format, label);
+        return graph.op(NodeOp::Any(bits), Format::BIT, label);
     }
-    graph.op(Op::Or(a, b), Format::BIT, label)
+    graph.op(NodeOp::Or(a, b), Format::BIT, label)
 }
 
 /// Returns the bits that a condition tests for any 1: their net, the lowest bit and the number of bits.
 fn run(graph: &Graph, id: NodeId) -> Option<(NodeId, u32, u32)> {
     match graph.node(id).cell {
-        Cell::Op(Op::Any(of)) => run(graph, of),
-        Cell::Op(Op::Slice { of, low }) => Some((of, low, graph.width(id))),
+        Cell::Op(NodeOp::Any(of)) => run(graph, of),
+        Cell::Op(NodeOp::Slice { of, low }) => Some((of, low, graph.width(id))),
         _ => None,
     }
 }
@@ -68,7 +68,10 @@ fn below(graph: &mut Graph, id: NodeId, over: NodeId) -> NodeId {
         return if follows(graph, over, inner) { below(graph, rest, over) } else { id };
     }
     match node.cell {
-        Cell::Op(op @ (Op::Slice { .. } | Op::Concat(_) | Op::Extend(_) | Op::Relabel(_))) => {
+        Cell::Op(
+            op
+            @ (NodeOp::Slice { .. } | NodeOp::Concat(_) | NodeOp::Extend(_) | NodeOp::Relabel(_)),
+        ) => {
             let op = op.map(|&operand| below(graph, operand, over));
             graph.op(op, node.format, &node.label)
         }
@@ -84,7 +87,7 @@ fn follows(graph: &Graph, over: NodeId, inner: NodeId) -> bool {
             of == other && low <= from && from + count <= low + width
         }
         _ => match graph.node(over).cell {
-            Cell::Op(Op::Or(a, b)) => follows(graph, a, inner) || follows(graph, b, inner),
+            Cell::Op(NodeOp::Or(a, b)) => follows(graph, a, inner) || follows(graph, b, inner),
             _ => false,
         },
     }

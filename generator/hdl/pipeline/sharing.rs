@@ -6,12 +6,12 @@
 
 use std::cmp::Reverse;
 
-use super::graph::{Cell, Graph, NodeId, Op};
+use super::graph::{Cell, Graph, NodeId, NodeOp};
 use glint_base::target::{FAMILIES, Timing};
 
 /// Products that can share multipliers.
 #[derive(Clone, Debug)]
-pub struct Kind {
+pub struct ProductGroup {
     /// The products, in order.
     pub products: Vec<NodeId>,
     /// The multipliers, fewer than products: as few as serve them in all slots.
@@ -22,7 +22,7 @@ pub struct Kind {
 
 /// A multiplier and the products that it serves.
 #[derive(Clone, Debug)]
-pub struct Unit {
+pub struct MultiplierUnit {
     /// The bits of its factors.
     pub widths: [u32; 2],
     /// Whether the factors have signs.
@@ -35,7 +35,7 @@ pub struct Unit {
 /// Returns the factors of a product.
 fn factors(graph: &Graph, id: NodeId) -> Option<[NodeId; 2]> {
     match graph.node(id).cell {
-        Cell::Op(Op::Mul(a, b)) => Some([a, b]),
+        Cell::Op(NodeOp::Mul(a, b)) => Some([a, b]),
         _ => None,
     }
 }
@@ -51,7 +51,12 @@ pub fn products(graph: &Graph, target: &Timing, live: &[NodeId]) -> Vec<NodeId> 
 
 /// Returns the products of a computation that share multipliers; empty with an interval of 1. Products without a sign
 /// are treated as products with one if the multiplier has a bit to spare and this saves multipliers.
-pub fn kinds(graph: &Graph, target: &Timing, live: &[NodeId], interval: usize) -> Vec<Kind> {
+pub fn kinds(
+    graph: &Graph,
+    target: &Timing,
+    live: &[NodeId],
+    interval: usize,
+) -> Vec<ProductGroup> {
     let products = products(graph, target, live);
     let signed = |id: &NodeId| graph.node(*id).format.signed;
     let has_room = |id: &NodeId| {
@@ -70,7 +75,7 @@ pub fn kinds(graph: &Graph, target: &Timing, live: &[NodeId], interval: usize) -
     let parts = if count(&joined) < count(&apart) { joined } else { apart };
     let kinds = parts.into_iter().zip([true, false]).map(|(products, signed)| {
         let units = units(products.len());
-        Kind { products, units, signed }
+        ProductGroup { products, units, signed }
     });
     kinds.filter(|kind| kind.units < kind.products.len()).collect()
 }
@@ -80,19 +85,20 @@ pub fn kinds(graph: &Graph, target: &Timing, live: &[NodeId], interval: usize) -
 pub fn units(
     graph: &Graph,
     target: &Timing,
-    kind: &Kind,
+    kind: &ProductGroup,
     stage: &[usize],
     interval: usize,
-) -> Vec<Unit> {
+) -> Vec<MultiplierUnit> {
     // A factor without a sign is one bit wider if the multiplier is signed.
     let width = |id: NodeId| {
         let format = graph.node(id).format;
         format.width() + u32::from(kind.signed && !format.signed)
     };
-    let mut units = vec![
-        Unit { widths: [1; 2], signed: kind.signed, serves: vec![None; interval] };
-        kind.units
-    ];
+    let mut units =
+        vec![
+            MultiplierUnit { widths: [1; 2], signed: kind.signed, serves: vec![None; interval] };
+            kind.units
+        ];
     let mut products = kind.products.clone();
     products.sort_by_key(|id| Reverse(graph.width(*id)));
     for id in products {

@@ -8,7 +8,7 @@
 //! with the rest share one factor. If a factor reaches a power of two, as a cosine does with 1.0, its highest bit is
 //! set only where all its other bits are 0.
 
-use super::graph::{Graph, Label, NodeId, Op};
+use super::graph::{Graph, Label, NodeId, NodeOp};
 use super::rebuild::rebuilt;
 use super::sums::shortened;
 use super::unroll::Unrolled;
@@ -22,7 +22,7 @@ const MOST_ROWS: u32 = 4;
 pub fn split(unrolled: &Unrolled, target: &Timing) -> Unrolled {
     rebuilt(unrolled, |graph, op, node| {
         Some(match op {
-            Op::Mul(a, b) => product(graph, target, *a, *b, node.format, &node.label),
+            NodeOp::Mul(a, b) => product(graph, target, *a, *b, node.format, &node.label),
             op => shortened(graph, op.clone(), node.format, node.range, &node.label),
         })
     })
@@ -39,7 +39,7 @@ fn product(
 ) -> NodeId {
     let parts = parts(graph, target, [a, b], format, label);
     match parts[..] {
-        [Term { value, places: 0 }] => value,
+        [ShiftedValue { value, places: 0 }] => value,
         _ => summed(graph, parts, format, label),
     }
 }
@@ -51,13 +51,13 @@ fn parts(
     [a, b]: [NodeId; 2],
     format: Format,
     label: &Label,
-) -> Vec<Term> {
+) -> Vec<ShiftedValue> {
     let (wide, narrow) = if graph.width(a) >= graph.width(b) { (a, b) } else { (b, a) };
     // The sizes of the target are of unsigned operands; most multipliers take a sign bit with them.
     let (most, other) = target.multiplier;
     let limit = if graph.width(narrow) <= other { most } else { other };
     let value = if graph.width(wide) <= limit {
-        graph.op(Op::Mul(a, b), format, label)
+        graph.op(NodeOp::Mul(a, b), format, label)
     } else if !format.signed && reaches_a_power_of_two(graph, wide) {
         below_the_highest(graph, target, [wide, narrow], format, label)
     } else if let Some([positive, other]) = with_a_sign(graph, [a, b]) {
@@ -65,7 +65,7 @@ fn parts(
     } else {
         return cut(graph, target, [wide, narrow], limit, format.signed, label);
     };
-    vec![Term { value, places: 0 }]
+    vec![ShiftedValue { value, places: 0 }]
 }
 
 /// Returns whether the greatest value of an unsigned factor is a power of two, with a bit that no other value has.
@@ -89,20 +89,20 @@ fn below_the_highest(
     let inside = label.part("inside");
     let whole = if wide == narrow {
         let square = product(graph, target, below, below, unsigned(2 * places), &inside);
-        Op::Concat(vec![highest, square])
+        NodeOp::Concat(vec![highest, square])
     } else {
         let product = product(graph, target, below, narrow, unsigned(places + width), &inside);
         let zero = graph.constant(0, unsigned(width), &unnamed(label));
-        let other = Op::Mux { select: highest, inputs: vec![zero, narrow] };
+        let other = NodeOp::Mux { select: highest, inputs: vec![zero, narrow] };
         let other = graph.op(other, unsigned(width), &label.part("at_highest"));
         let upper = slice(graph, product, places, unsigned(width), label);
         // One of the two is 0.
-        let upper = graph.op(Op::Or(upper, other), unsigned(width), &unnamed(label));
-        Op::Concat(vec![upper, slice(graph, product, 0, unsigned(places), label)])
+        let upper = graph.op(NodeOp::Or(upper, other), unsigned(width), &unnamed(label));
+        NodeOp::Concat(vec![upper, slice(graph, product, 0, unsigned(places), label)])
     };
     let bits = if wide == narrow { 2 * places + 1 } else { places + width };
     let whole = graph.op(whole, unsigned(bits), &unnamed(label));
-    graph.op(Op::Extend(whole), format, label)
+    graph.op(NodeOp::Extend(whole), format, label)
 }
 
 /// Returns the one of two signed factors that is never negative, and the other, which has bits below its sign.
@@ -130,27 +130,32 @@ fn below_the_sign(
     let inside = label.part("inside");
     let product = product(graph, target, positive, below, unsigned(width + places), &inside);
     let zero = graph.constant(0, unsigned(width), &unnamed(label));
-    let less = Op::Mux { select: sign, inputs: vec![zero, positive] };
+    let less = NodeOp::Mux { select: sign, inputs: vec![zero, positive] };
     let less = graph.op(less, unsigned(width), &label.part("at_sign"));
     let upper = slice(graph, product, places, unsigned(width), label);
     let [upper, less] = [upper, less].map(|it| graph.resize(it, width + 1, true));
-    let upper = graph.op(Op::Sub(upper, less), integer(true, width + 1), &label.part("upper"));
+    let upper = graph.op(NodeOp::Sub(upper, less), integer(true, width + 1), &label.part("upper"));
     let lower = slice(graph, product, 0, unsigned(places), label);
-    let whole = Op::Concat(vec![upper, lower]);
+    let whole = NodeOp::Concat(vec![upper, lower]);
     let whole = graph.op(whole, integer(true, width + 1 + places), &unnamed(label));
-    graph.op(Op::Extend(whole), format, label)
+    graph.op(NodeOp::Extend(whole), format, label)
 }
 
 /// A number in units of two to the power of `places`.
 #[derive(Clone, Copy)]
-struct Term {
+struct ShiftedValue {
     value: NodeId,
     places: u32,
 }
 
 /// Returns the sum of the parts of a product.
-fn summed(graph: &mut Graph, mut parts: Vec<Term>, format: Format, label: &Label) -> NodeId {
-    let top = |graph: &Graph, term: &Term| term.places + graph.width(term.value);
+fn summed(
+    graph: &mut Graph,
+    mut parts: Vec<ShiftedValue>,
+    format: Format,
+    label: &Label,
+) -> NodeId {
+    let top = |graph: &Graph, term: &ShiftedValue| term.places + graph.width(term.value);
     parts.sort_by_key(|term| std::cmp::Reverse(top(graph, term)));
     // The widest last: no other sum is as wide.
     parts.rotate_left(1);
@@ -159,30 +164,40 @@ fn summed(graph: &mut Graph, mut parts: Vec<Term>, format: Format, label: &Label
         let width = width.min(format.width());
         let signed = [sum, term].iter().any(|it| graph.node(it.value).format.signed);
         let [a, b] = [sum, term].map(|it| in_ones(graph, it, width, signed, label));
-        let (op, format) = (Op::Add { a, b, carry: None }, integer(signed, width));
+        let (op, format) = (NodeOp::Add { a, b, carry: None }, integer(signed, width));
         let value = shortened(graph, op, format, format.range(), &label.part("sum"));
-        Term { value, places: 0 }
+        ShiftedValue { value, places: 0 }
     });
     let sum =
         in_ones(graph, sum.expect("a product has parts"), format.width(), format.signed, label);
-    graph.op(Op::Relabel(sum), format, label)
+    graph.op(NodeOp::Relabel(sum), format, label)
 }
 
 /// Returns a term as a number of this width and sign.
-fn in_ones(graph: &mut Graph, term: Term, width: u32, signed: bool, label: &Label) -> NodeId {
+fn in_ones(
+    graph: &mut Graph,
+    term: ShiftedValue,
+    width: u32,
+    signed: bool,
+    label: &Label,
+) -> NodeId {
     let shifted = shifted(graph, term, label);
     graph.resize(shifted, width, signed)
 }
 
 /// Returns a term as a number, with a zero for each of its places.
-fn shifted(graph: &mut Graph, Term { value, places }: Term, label: &Label) -> NodeId {
+fn shifted(
+    graph: &mut Graph,
+    ShiftedValue { value, places }: ShiftedValue,
+    label: &Label,
+) -> NodeId {
     if places == 0 {
         return value;
     }
     let format = graph.node(value).format;
     let zeros = graph.constant(0, unsigned(places), &unnamed(label));
     let format = integer(format.signed, format.width() + places);
-    graph.op(Op::Concat(vec![value, zeros]), format, &unnamed(label))
+    graph.op(NodeOp::Concat(vec![value, zeros]), format, &unnamed(label))
 }
 
 /// Returns the terms of a product whose wider factor is cut into its `limit` upper bits and the rest.
@@ -193,14 +208,14 @@ fn cut(
     limit: u32,
     signed: bool,
     label: &Label,
-) -> Vec<Term> {
+) -> Vec<ShiftedValue> {
     let rest = graph.width(wide) - limit;
     let upper_bits = slice(graph, wide, rest, integer(signed, limit), &label.part("upper_bits"));
     // The factor of the upper bits, the factor of the rest, and the places by which the upper product is shifted up.
     let (upper_factor, rest_factor, places) = if wide == narrow {
         let lower = slice(graph, wide, 0, unsigned(rest), &label.part("lower_bits"));
         let zero = graph.constant(0, Format::BIT, &unnamed(label));
-        let both = Op::Concat(vec![upper_bits, zero, lower]);
+        let both = NodeOp::Concat(vec![upper_bits, zero, lower]);
         let both = graph.op(both, integer(signed, limit + 1 + rest), &unnamed(label));
         (upper_bits, both, 2 * rest)
     } else {
@@ -209,11 +224,11 @@ fn cut(
     let upper_format = integer(signed, limit + graph.width(upper_factor));
     let upper_label = label.part("upper");
     let upper = parts(graph, target, [upper_bits, upper_factor], upper_format, &upper_label);
-    let upper = upper.into_iter().map(|term| Term { places: term.places + places, ..term });
+    let upper = upper.into_iter().map(|term| ShiftedValue { places: term.places + places, ..term });
     // The lower bits have no sign; their product has the sign of the other operand.
     let width = graph.width(rest_factor);
     let lower = if rest <= MOST_ROWS && rest * width <= target.row_bits {
-        vec![Term { value: rows(graph, wide, rest, rest_factor, label), places: 0 }]
+        vec![ShiftedValue { value: rows(graph, wide, rest, rest_factor, label), places: 0 }]
     } else {
         let lower_bits = slice(graph, wide, 0, unsigned(rest), &label.part("lower_bits"));
         let bits = rest + u32::from(signed);
@@ -234,15 +249,15 @@ fn rows(graph: &mut Graph, wide: NodeId, rest: u32, narrow: NodeId, label: &Labe
         let bit = slice(graph, wide, row, Format::BIT, &label.part("row"));
         let unnamed = unnamed(&label.part("row"));
         let zero = graph.constant(0, format(width), &unnamed);
-        let mux = Op::Mux { select: bit, inputs: vec![zero, narrow] };
+        let mux = NodeOp::Mux { select: bit, inputs: vec![zero, narrow] };
         let taken = graph.op(mux, format(width), &unnamed);
-        let shifted = shifted(graph, Term { value: taken, places: row }, &unnamed);
+        let shifted = shifted(graph, ShiftedValue { value: taken, places: row }, &unnamed);
         sum = Some(match sum {
             None => shifted,
             Some(sum) => {
                 let total = width + row + 1;
                 let [a, b] = [sum, shifted].map(|it| graph.resize(it, total, signed));
-                let (op, format) = (Op::Add { a, b, carry: None }, format(total));
+                let (op, format) = (NodeOp::Add { a, b, carry: None }, format(total));
                 shortened(graph, op, format, format.range(), &label.part("rows"))
             }
         });
@@ -264,15 +279,15 @@ fn unnamed(label: &Label) -> Label {
 }
 
 fn slice(graph: &mut Graph, of: NodeId, low: u32, format: Format, label: &Label) -> NodeId {
-    graph.op(Op::Slice { of, low }, format, &unnamed(label))
+    graph.op(NodeOp::Slice { of, low }, format, &unnamed(label))
 }
 
 #[cfg(test)]
 mod tests {
     use crate::dsl::fixture::design;
-    use crate::dsl::{Designer, Operand, Signal, step};
+    use crate::dsl::{Designer, InputOperand, Signal, step};
     use crate::netlist::{Design, Driver, Interpreter, Op};
-    use crate::pipeline::{Delays, Goal, Interval, Options, pipeline};
+    use crate::pipeline::{Delays, Goal, IntervalGoal, Options, pipeline};
     use glint_base::fixed::Format;
     use glint_base::target::{TIMINGS, Timing};
 
@@ -289,7 +304,7 @@ mod tests {
         let target: &Timing =
             Box::leak(Box::new(Timing { multiplier: (4, 4), ..TIMINGS[0].clone() }));
         let options = Options {
-            interval: Interval::Clocks(1),
+            interval: IntervalGoal::Clocks(1),
             target,
             goal: Goal::Stages(1),
             registered: false,
@@ -326,7 +341,7 @@ mod tests {
         products.inspect(|it| assert!(it.iter().all(|&it| design.width(it) <= 4))).count()
     }
 
-    fn limited<'d>(d: &'d Designer, name: &str, bits: i32, most: f64) -> Operand<'d> {
+    fn limited<'d>(d: &'d Designer, name: &str, bits: i32, most: f64) -> InputOperand<'d> {
         d.operand_clamped(name, Format::unsigned(bits, 0), 0.0, most)
     }
 

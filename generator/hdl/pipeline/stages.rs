@@ -3,13 +3,13 @@
 use std::collections::{BTreeSet, HashMap, HashSet};
 
 use super::graph::{self, Cell, Graph, NodeId};
-use super::schedule::{Problems, Schedule, megahertz};
+use super::schedule::{Schedule, ScheduleProblem, megahertz};
 use super::sharing;
 use super::unroll::Unrolled;
 use super::{Delays, Goal, Options};
 use crate::netlist::{
-    self, About, Checkpoint, Delayed, Design, Driver, Net, NetId, Op, Pipeline, Port, RegId,
-    RegisterKind, Role, Rom, RomId, Stage, Topic,
+    self, About, Checkpoint, Delayed, Design, Driver, Net, NetId, NetlistRom, Op, Pipeline, Port,
+    RegId, RegisterKind, Role, RomId, Stage, Topic,
 };
 use glint_base::fixed::Format;
 
@@ -17,7 +17,7 @@ use glint_base::fixed::Format;
 pub fn assemble(
     sequential: &Design,
     unrolled: &Unrolled,
-    problems: &Problems<'_>,
+    problems: &ScheduleProblem<'_>,
     schedule: &Schedule,
     (options, interval): (&Options, usize),
 ) -> Design {
@@ -43,7 +43,7 @@ pub fn assemble(
         delay_memory: options.target.delay_memory.filter(|_| options.delays == Delays::Memory),
         ..Pipeline::default()
     };
-    let mut builder = Builder {
+    let mut builder = StageBuilder {
         sequential,
         graph: &unrolled.graph,
         problems,
@@ -66,7 +66,7 @@ pub fn assemble(
     builder.results(unrolled);
     let stages = builder.stages(unrolled);
     let checkpoints = builder.checkpoints(unrolled);
-    let Builder { mut design, pipeline, .. } = builder;
+    let StageBuilder { mut design, pipeline, .. } = builder;
     design.ports.sort_by_key(|port| match port.role {
         role if role.is_input() => 0,
         Role::InReady => 1,
@@ -93,10 +93,10 @@ fn count_delayed(design: &mut Design) {
     }
 }
 
-struct Builder<'a> {
+struct StageBuilder<'a> {
     sequential: &'a Design,
     graph: &'a Graph,
-    problems: &'a Problems<'a>,
+    problems: &'a ScheduleProblem<'a>,
     schedule: &'a Schedule,
     design: Design,
     /// The pipeline as far as it is built; stages and checkpoints come last.
@@ -114,7 +114,7 @@ struct Builder<'a> {
     memories: HashMap<RomId, Vec<RomId>>,
 }
 
-impl Builder<'_> {
+impl StageBuilder<'_> {
     fn net(&mut self, name: String, stage: usize, format: Format, driver: Driver) -> NetId {
         self.taken.insert(name.clone());
         self.pipeline.stage_of.push(stage);
@@ -346,7 +346,7 @@ impl Builder<'_> {
     }
 
     /// Returns the multipliers that products share, without the logic that selects their factors.
-    fn units(&mut self, registered: bool) -> Vec<(sharing::Unit, [NetId; 2])> {
+    fn units(&mut self, registered: bool) -> Vec<(sharing::MultiplierUnit, [NetId; 2])> {
         let mut made = Vec::new();
         for (number, unit) in (1..).zip(self.problems.units(self.schedule)) {
             let products = unit.serves.iter().flatten().map(|(id, _)| *id);
@@ -386,7 +386,7 @@ impl Builder<'_> {
     }
 
     /// Makes the factors of shared multipliers: registers behind a choice by the slot, two stages before the product is there.
-    fn muxes(&mut self, units: Vec<(sharing::Unit, [NetId; 2])>) {
+    fn muxes(&mut self, units: Vec<(sharing::MultiplierUnit, [NetId; 2])>) {
         for (at, (unit, factors)) in units.into_iter().enumerate() {
             for (side, q) in factors.into_iter().enumerate() {
                 let mut inputs = vec![None; self.pipeline.interval];
@@ -483,7 +483,7 @@ impl Builder<'_> {
     }
 
     /// Makes a cell in a stage.
-    fn cell(&mut self, id: NodeId, op: &graph::Op, stage: usize) -> NetId {
+    fn cell(&mut self, id: NodeId, op: &graph::NodeOp, stage: usize) -> NetId {
         let op = op.map(|&operand| self.value(operand, stage));
         self.of_node(id, stage, Driver::Op(op), self.graph.node(id).label.named)
     }
@@ -548,7 +548,15 @@ impl Builder<'_> {
         let name = if copy > 1 { format!("{}_{copy}", source.name) } else { source.name.clone() };
         let name = if shares.is_some() { format!("{name}_second") } else { name };
         let enable = self.advance.filter(|_| synchronous);
-        self.design.roms.push(Rom { name, address, data, synchronous, enable, shares, ..source });
+        self.design.roms.push(NetlistRom {
+            name,
+            address,
+            data,
+            synchronous,
+            enable,
+            shares,
+            ..source
+        });
         data
     }
 

@@ -5,7 +5,7 @@
 //! choice between a value and a constant moves behind a sum with a constant, where a register can make the choice by
 //! its reset.
 
-use super::graph::{Cell, Graph, Label, NodeId, Op};
+use super::graph::{Cell, Graph, Label, NodeId, NodeOp};
 use crate::netlist::interval::of_cell;
 use glint_base::fixed::Format;
 use glint_base::interval::Interval;
@@ -13,14 +13,14 @@ use glint_base::interval::Interval;
 /// Inserts a cell. The carry chain of a sum or a difference gets no more bits than it needs.
 pub fn shortened(
     graph: &mut Graph,
-    op: Op,
+    op: NodeOp,
     format: Format,
     range: Interval,
     label: &Label,
 ) -> NodeId {
     // One choice before an inverter takes no clock, two do.
     let behind = match op {
-        Op::Add { a, .. } => choice(graph, a)
+        NodeOp::Add { a, .. } => choice(graph, a)
             .is_some_and(|(_, inputs)| inputs.iter().any(|&it| choice(graph, it).is_some())),
         _ => true,
     };
@@ -30,17 +30,17 @@ pub fn shortened(
 /// Returns a cell as [`shortened`] does. With `behind`, choices are made behind a sum with a constant.
 fn within(
     graph: &mut Graph,
-    op: Op,
+    op: NodeOp,
     format: Format,
     range: Interval,
     label: &Label,
     behind: bool,
 ) -> NodeId {
     let op = match op {
-        Op::Add { a, b, carry: Some(one) } if graph.constant_of(one) == Some(1) => {
+        NodeOp::Add { a, b, carry: Some(one) } if graph.constant_of(one) == Some(1) => {
             match (&graph.node(a).cell, &graph.node(b).cell) {
-                (_, Cell::Op(Op::Not(b))) => Op::Sub(a, *b),
-                (Cell::Op(Op::Not(a)), _) => Op::Sub(b, *a),
+                (_, Cell::Op(NodeOp::Not(b))) => NodeOp::Sub(a, *b),
+                (Cell::Op(NodeOp::Not(a)), _) => NodeOp::Sub(b, *a),
                 _ => op,
             }
         }
@@ -51,8 +51,8 @@ fn within(
     }
     let width = format.width();
     let (passing, other) = match op {
-        Op::Add { a, b, carry: None } if zeros(graph, a) > zeros(graph, b) => (b, a),
-        Op::Add { a, b, carry: None } | Op::Sub(a, b) => (a, b),
+        NodeOp::Add { a, b, carry: None } if zeros(graph, a) > zeros(graph, b) => (b, a),
+        NodeOp::Add { a, b, carry: None } | NodeOp::Sub(a, b) => (a, b),
         _ => return graph.insert(Cell::Op(op), format, range, label),
     };
     let low = zeros(graph, other);
@@ -62,29 +62,29 @@ fn within(
     let label_of_part = Label { named: false, ..label.part("upper") };
     let part = Format::unsigned((width - low) as i32, 0);
     let [upper, addend] =
-        [passing, other].map(|of| graph.op(Op::Slice { of, low }, part, &label_of_part));
+        [passing, other].map(|of| graph.op(NodeOp::Slice { of, low }, part, &label_of_part));
     let upper = match (op, graph.constant_of(addend)) {
         // The constant is 1: its lowest bit is not 0.
-        (_, Some(_)) if width - low == 1 => graph.op(Op::Not(upper), part, &label_of_part),
-        (Op::Sub(..), _) => graph.op(Op::Sub(upper, addend), part, &label_of_part),
-        _ => graph.op(Op::Add { a: upper, b: addend, carry: None }, part, &label_of_part),
+        (_, Some(_)) if width - low == 1 => graph.op(NodeOp::Not(upper), part, &label_of_part),
+        (NodeOp::Sub(..), _) => graph.op(NodeOp::Sub(upper, addend), part, &label_of_part),
+        _ => graph.op(NodeOp::Add { a: upper, b: addend, carry: None }, part, &label_of_part),
     };
     let lower = Format::unsigned(low as i32, 0);
-    let lower = graph.op(Op::Slice { of: passing, low: 0 }, lower, &label_of_part);
-    graph.insert(Cell::Op(Op::Concat(vec![upper, lower])), format, range, label)
+    let lower = graph.op(NodeOp::Slice { of: passing, low: 0 }, lower, &label_of_part);
+    graph.insert(Cell::Op(NodeOp::Concat(vec![upper, lower])), format, range, label)
 }
 
 /// Returns a constant and a choice between a value and a constant: the choice between their sums, or differences.
 fn chosen_behind(
     graph: &mut Graph,
-    op: &Op,
+    op: &NodeOp,
     format: Format,
     range: Interval,
     label: &Label,
 ) -> Option<NodeId> {
     let (constant, from) = match *op {
-        Op::Sub(constant, from) => (constant, from),
-        Op::Add { a: from, b: constant, carry: None } => (constant, from),
+        NodeOp::Sub(constant, from) => (constant, from),
+        NodeOp::Add { a: from, b: constant, carry: None } => (constant, from),
         _ => return None,
     };
     graph.constant_of(constant)?;
@@ -92,10 +92,10 @@ fn chosen_behind(
     let same = graph.node(from).format;
     let each = Label { named: false, ..label.part("before") };
     let inputs = inputs.into_iter().map(|input| {
-        let input = graph.op(Op::Relabel(input), same, &each);
+        let input = graph.op(NodeOp::Relabel(input), same, &each);
         let each_op = match op {
-            Op::Sub(..) => Op::Sub(constant, input),
-            _ => Op::Add { a: input, b: constant, carry: None },
+            NodeOp::Sub(..) => NodeOp::Sub(constant, input),
+            _ => NodeOp::Add { a: input, b: constant, carry: None },
         };
         let range =
             of_cell(&each_op, format, &|id| graph.node(id).format, &|id| graph.node(id).range);
@@ -105,15 +105,15 @@ fn chosen_behind(
         }
     });
     let inputs = inputs.collect();
-    Some(graph.insert(Cell::Op(Op::Mux { select, inputs }), format, range, label))
+    Some(graph.insert(Cell::Op(NodeOp::Mux { select, inputs }), format, range, label))
 }
 
 /// Returns the select and the inputs of a choice between a value and a constant, if a node is such a choice or has
 /// its bits.
 fn choice(graph: &Graph, id: NodeId) -> Option<(NodeId, Vec<NodeId>)> {
     match &graph.node(id).cell {
-        Cell::Op(Op::Relabel(of)) => choice(graph, *of),
-        Cell::Op(Op::Mux { select, inputs }) => {
+        Cell::Op(NodeOp::Relabel(of)) => choice(graph, *of),
+        Cell::Op(NodeOp::Mux { select, inputs }) => {
             let constants = inputs.iter().filter(|it| graph.constant_of(**it).is_some()).count();
             (inputs.len() == 2 && constants == 1).then(|| (*select, inputs.clone()))
         }
@@ -126,12 +126,12 @@ fn zeros(graph: &Graph, id: NodeId) -> u32 {
     let width = graph.width(id);
     match &graph.node(id).cell {
         Cell::Constant(bits) => bits.trailing_zeros().min(width),
-        Cell::Op(Op::Relabel(of)) => zeros(graph, *of),
-        Cell::Op(Op::Extend(of)) => match zeros(graph, *of) {
+        Cell::Op(NodeOp::Relabel(of)) => zeros(graph, *of),
+        Cell::Op(NodeOp::Extend(of)) => match zeros(graph, *of) {
             all if all == graph.width(*of) => width,
             some => some,
         },
-        Cell::Op(Op::Concat(parts)) => {
+        Cell::Op(NodeOp::Concat(parts)) => {
             let mut total = 0;
             for part in parts.iter().rev() {
                 let these = zeros(graph, *part);

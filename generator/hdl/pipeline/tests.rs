@@ -1,8 +1,8 @@
-use super::{Delays, Goal, Interval, Options, pipeline};
+use super::{Delays, Goal, IntervalGoal, Options, pipeline};
 use crate::blocks::divider::Divider;
 use crate::dsl::fixture::design;
 use crate::dsl::{loop_while, step, wait_for_start};
-use crate::netlist::{Design, Driver, Net, NetId, Op, RegId, Register};
+use crate::netlist::{Design, Driver, Net, NetId, NetlistRegister, Op, RegId};
 use glint_base::fixed::Format;
 use glint_base::target::Timing;
 
@@ -11,7 +11,7 @@ fn options(goal: Goal) -> Options {
     Options {
         target,
         goal,
-        interval: Interval::Clocks(1),
+        interval: IntervalGoal::Clocks(1),
         registered: false,
         stall: true,
         side: 0,
@@ -182,7 +182,11 @@ fn a_delay_line_begins_behind_a_registered_multiplier() {
         let register = RegId(made.registers.len() as u32);
         let data = Some(waiting);
         waiting = NetId(made.nets.len() as u32);
-        made.registers.push(Register { q: waiting, data, ..made.register(registered[0]).clone() });
+        made.registers.push(NetlistRegister {
+            q: waiting,
+            data,
+            ..made.register(registered[0]).clone()
+        });
         made.nets.push(Net { driver: Driver::Register(register), ..made.net(product).clone() });
         let stages = &mut made.pipeline.as_mut().expect("a pipeline").stage_of;
         stages.push(stages[second.product.index()] + clocks);
@@ -292,7 +296,7 @@ fn products() -> Design {
 #[test]
 fn a_multiplier_serves_a_product_in_each_slot_and_no_more_than_are_needed() {
     let of = |interval: usize| {
-        let interval = Interval::Clocks(interval);
+        let interval = IntervalGoal::Clocks(interval);
         let options = Options { interval, ..options(Goal::ClockMhz(100.0)) };
         let made = pipeline(&products(), &options).unwrap_or_else(|wrong| panic!("{wrong}"));
         let mistakes = made.verify();
@@ -315,7 +319,7 @@ fn a_multiplier_serves_a_product_in_each_slot_and_no_more_than_are_needed() {
 #[test]
 fn an_interval_beyond_the_sequential_clocks_is_refused_with_the_most() {
     let made = |clocks| {
-        let interval = Interval::Clocks(clocks);
+        let interval = IntervalGoal::Clocks(clocks);
         pipeline(&products(), &Options { interval, ..options(Goal::ClockMhz(100.0)) })
     };
     let text = made(64).expect_err("no interval").to_string();
@@ -334,15 +338,15 @@ fn an_interval_is_the_longest_for_a_rate_and_the_shortest_for_multipliers() {
     let at_100 = |interval| at(Goal::ClockMhz(100.0), interval);
     // The sequential core takes five clocks, including the clock of the write; there are three products.
     for (rate, interval) in [(100.0, 1), (50.1, 1), (50.0, 2), (34.0, 2), (33.3, 3), (0.1, 5)] {
-        assert_eq!(at_100(Interval::Rate(rate)), Ok(interval), "{rate}");
+        assert_eq!(at_100(IntervalGoal::Rate(rate)), Ok(interval), "{rate}");
     }
     for (most, interval) in [(1, 3), (2, 2), (3, 1), (9, 1)] {
-        assert_eq!(at_100(Interval::Multipliers(most)), Ok(interval), "{most}");
+        assert_eq!(at_100(IntervalGoal::Multipliers(most)), Ok(interval), "{most}");
     }
     let refused = [
-        (at_100(Interval::Rate(100.1)), "pipeline.rate to 100 or less"),
-        (at_100(Interval::Multipliers(0)), "pipeline.max_multipliers to 1 or more"),
-        (at(Goal::Stages(4), Interval::Rate(1.0)), "set pipeline.clock_mhz in place"),
+        (at_100(IntervalGoal::Rate(100.1)), "pipeline.rate to 100 or less"),
+        (at_100(IntervalGoal::Multipliers(0)), "pipeline.max_multipliers to 1 or more"),
+        (at(Goal::Stages(4), IntervalGoal::Rate(1.0)), "set pipeline.clock_mhz in place"),
     ];
     for (refused, remedy) in refused {
         assert!(refused.as_ref().is_err_and(|it| it.contains(remedy)), "{refused:?}");

@@ -9,7 +9,7 @@ use std::collections::{HashMap, HashSet};
 use std::fmt::Write;
 use std::panic::Location;
 
-use super::graph::{Cell, Graph, Label, NodeId, Op};
+use super::graph::{Cell, Graph, Label, NodeId, NodeOp};
 use super::unroll::Unrolled;
 use crate::netlist::{NetId, eval};
 use glint_base::fixed::{Format, mask};
@@ -35,7 +35,7 @@ pub fn printed(unrolled: &Unrolled) -> String {
             let _ = write!(text, " [{}, {}]", node.range.0, node.range.1);
         }
         let _ = match &node.cell {
-            Cell::Op(Op::Slice { low, .. }) => writeln!(text, " = slice{operands} {low}"),
+            Cell::Op(NodeOp::Slice { low, .. }) => writeln!(text, " = slice{operands} {low}"),
             Cell::Op(op) => writeln!(text, " = {}{operands}", op.mnemonic()),
             Cell::Constant(bits) => writeln!(text, " = constant {bits}"),
             Cell::Read { rom, .. } => writeln!(text, " = read {}{operands}", rom.index()),
@@ -104,25 +104,27 @@ pub fn parsed(text: &str) -> Result<Unrolled, String> {
                 names.insert(name, graph.constant(number(0)?, format, &label));
                 continue;
             }
-            Some("relabel") => Op::Relabel(of(0)?),
-            Some("extend") => Op::Extend(of(0)?),
-            Some("slice") => Op::Slice { of: of(0)?, low: number(1)? as u32 },
-            Some("concat") => Op::Concat((0..operands.len()).map(of).collect::<Result<_, _>>()?),
-            Some("not") => Op::Not(of(0)?),
-            Some("and") => Op::And(of(0)?, of(1)?),
-            Some("or") => Op::Or(of(0)?, of(1)?),
-            Some("xor") => Op::Xor(of(0)?, of(1)?),
+            Some("relabel") => NodeOp::Relabel(of(0)?),
+            Some("extend") => NodeOp::Extend(of(0)?),
+            Some("slice") => NodeOp::Slice { of: of(0)?, low: number(1)? as u32 },
+            Some("concat") => {
+                NodeOp::Concat((0..operands.len()).map(of).collect::<Result<_, _>>()?)
+            }
+            Some("not") => NodeOp::Not(of(0)?),
+            Some("and") => NodeOp::And(of(0)?, of(1)?),
+            Some("or") => NodeOp::Or(of(0)?, of(1)?),
+            Some("xor") => NodeOp::Xor(of(0)?, of(1)?),
             Some("add") => {
                 let carry = (operands.len() > 2).then(|| of(2)).transpose()?;
-                Op::Add { a: of(0)?, b: of(1)?, carry }
+                NodeOp::Add { a: of(0)?, b: of(1)?, carry }
             }
-            Some("sub") => Op::Sub(of(0)?, of(1)?),
-            Some("mul") => Op::Mul(of(0)?, of(1)?),
-            Some("equal") => Op::Equal(of(0)?, of(1)?),
-            Some("less") => Op::Less(of(0)?, of(1)?),
-            Some("any") => Op::Any(of(0)?),
-            Some("all") => Op::All(of(0)?),
-            Some("mux") => Op::Mux {
+            Some("sub") => NodeOp::Sub(of(0)?, of(1)?),
+            Some("mul") => NodeOp::Mul(of(0)?, of(1)?),
+            Some("equal") => NodeOp::Equal(of(0)?, of(1)?),
+            Some("less") => NodeOp::Less(of(0)?, of(1)?),
+            Some("any") => NodeOp::Any(of(0)?),
+            Some("all") => NodeOp::All(of(0)?),
+            Some("mux") => NodeOp::Mux {
                 select: of(0)?,
                 inputs: (1..operands.len()).map(of).collect::<Result<_, _>>()?,
             },

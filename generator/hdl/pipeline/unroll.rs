@@ -15,10 +15,10 @@ mod cycle;
 mod line;
 
 use clock::{Clock, State, label};
-pub use cycle::{Cycle, Held, any_cycle};
-pub use line::{Line, WalkRegister, unroll_line};
+pub use cycle::{Cycle, StateValues, any_cycle};
+pub use line::{UnrolledLine, WalkRegister, unroll_line};
 
-use super::graph::{Cell, Graph, Label, NodeId, Op};
+use super::graph::{Cell, Graph, Label, NodeId, NodeOp};
 use super::possible;
 use super::settle::settled;
 use crate::netlist::{Design, Net, NetId, RegId, RegisterKind, Role, Sequence};
@@ -39,12 +39,12 @@ pub struct Unrolled {
     /// Each result with its value, by its port in the design.
     pub results: Vec<(NetId, NodeId)>,
     /// The microinstructions in the order of execution.
-    pub steps: Vec<Step>,
+    pub steps: Vec<UnrolledStep>,
 }
 
 /// A microinstruction at a clock of the computation.
 #[derive(Clone, Debug)]
-pub struct Step {
+pub struct UnrolledStep {
     /// Its place in the microprogram.
     pub address: usize,
     /// How often it was executed before.
@@ -268,7 +268,7 @@ impl<'a> Executor<'a> {
             }
             entry.roms.clone_from(&state.roms);
             let label = self.unrolled.graph.node(again).label.clone();
-            condition = self.unrolled.graph.op(Op::And(condition, again), Format::BIT, &label);
+            condition = self.unrolled.graph.op(NodeOp::And(condition, again), Format::BIT, &label);
         }
     }
 
@@ -317,11 +317,11 @@ impl<'a> Executor<'a> {
                 values.all(|(at, it)| it.is_none_or(|it| bit_of(it) == at >> place & 1))
             };
             let taken = match (0..graph.width(count)).find(is_place) {
-                Some(low) => graph.op(Op::Slice { of: count, low }, Format::BIT, &label),
+                Some(low) => graph.op(NodeOp::Slice { of: count, low }, Format::BIT, &label),
                 None => {
                     let bits = iterations.iter().map(|it| bit_of(it.unwrap_or(0)) as u64);
                     let inputs = bits.map(|it| graph.constant(it, Format::BIT, &label)).collect();
-                    graph.op(Op::Mux { select: count, inputs }, Format::BIT, &label)
+                    graph.op(NodeOp::Mux { select: count, inputs }, Format::BIT, &label)
                 }
             };
             now = self.either(taken, &after, &now);
@@ -358,7 +358,7 @@ impl<'a> Executor<'a> {
         let visit = self.visits[at.address];
         self.visits[at.address] += 1;
         self.unrolled.graph.step = self.unrolled.steps.len();
-        self.unrolled.steps.push(Step { address: at.address, visit, registers });
+        self.unrolled.steps.push(UnrolledStep { address: at.address, visit, registers });
         let mut clock = Clock::new(self, &at.state, Some(at.address), false);
         let valid = design.port(|role| role == Role::Valid).map(|port| clock.value(port.net));
         if let Some(valid) = valid {
@@ -394,7 +394,7 @@ impl<'a> Executor<'a> {
             if yes == no {
                 return yes;
             }
-            let mux = Op::Mux { select: condition, inputs: vec![no, yes] };
+            let mux = NodeOp::Mux { select: condition, inputs: vec![no, yes] };
             graph.op(mux, net.format, &label(net))
         };
         let registers = yes.registers.iter().zip(&no.registers);

@@ -1,9 +1,9 @@
-//! Divides the compiler's one bank of slots into the two banks of a [`Program`], and inserts conversions between them.
+//! Divides the compiler's one bank of slots into the two banks of a [`CompiledDesign`], and inserts conversions between them.
 
 use crate::sim::compiler::{Compiler, Ordered};
 use crate::sim::program::{
-    Bank, InputPort, Instruction, Place, Program, ReadEdge, RegisterEdge, Segment, Slot, Sources,
-    Step,
+    Bank, CompiledDesign, InputPort, Instruction, ReadEdge, RegisterEdge, SettlingStep, Slot,
+    Sources, StepGroup, ValueSlot,
 };
 
 /// The width of a narrow slot.
@@ -17,7 +17,7 @@ pub(super) fn divide(
     compiler: &Compiler,
     reads: &[ReadEdge],
     registers: &[RegisterEdge],
-) -> Program {
+) -> CompiledDesign {
     let mut is_wide: Vec<bool> = widths(compiler).iter().map(|&bits| bits > NARROW).collect();
     // A slot that takes a wide slot at the edge is itself wide, and so is a slot that takes that slot.
     let reads_of = reads.iter().map(|edge| (edge.to, edge.address));
@@ -28,7 +28,7 @@ pub(super) fn divide(
     {
         is_wide[*to as usize] = true;
     }
-    let mut divider = Divider {
+    let mut divider = BankSplitter {
         compiler,
         is_wide,
         narrow: Bank::default(),
@@ -77,7 +77,7 @@ fn widths(compiler: &Compiler) -> Vec<u32> {
     widths
 }
 
-struct Divider<'a> {
+struct BankSplitter<'a> {
     compiler: &'a Compiler<'a>,
     /// For each slot of the compiler: whether it takes a wide one.
     is_wide: Vec<bool>,
@@ -86,11 +86,11 @@ struct Divider<'a> {
     /// For each slot of the compiler, its place in each bank, if it has one yet.
     narrow_of: Vec<Option<Slot>>,
     wide_of: Vec<Option<Slot>>,
-    steps: Vec<(Sources, Step)>,
+    steps: Vec<(Sources, SettlingStep)>,
     choices: Vec<Slot>,
 }
 
-impl Divider<'_> {
+impl BankSplitter<'_> {
     /// Returns a new slot in the wanted bank.
     fn fresh(&mut self, wide: bool, initial: u64) -> Slot {
         let bank = if wide { &mut self.wide } else { &mut self.narrow };
@@ -117,12 +117,12 @@ impl Divider<'_> {
     }
 
     /// Returns the place of a slot of the compiler, if it has one yet.
-    fn place(&self, slot: Slot) -> Option<Place> {
+    fn place(&self, slot: Slot) -> Option<ValueSlot> {
         let slot = slot as usize;
         if *self.is_wide.get(slot)? {
-            self.wide_of[slot].map(Place::Wide)
+            self.wide_of[slot].map(ValueSlot::Wide)
         } else {
-            self.narrow_of[slot].map(Place::Narrow)
+            self.narrow_of[slot].map(ValueSlot::Narrow)
         }
     }
 
@@ -136,7 +136,7 @@ impl Divider<'_> {
             return there;
         }
         let a = match self.place(slot) {
-            Some(Place::Narrow(home) | Place::Wide(home)) => home,
+            Some(ValueSlot::Narrow(home) | ValueSlot::Wide(home)) => home,
             None => self.home(slot),
         };
         if self.is_wide[slot as usize] == wide {
@@ -146,7 +146,7 @@ impl Divider<'_> {
         let [initial] = self.compiler.initial[slot as usize];
         let to = self.fresh(true, initial);
         if self.compiler.known_value(slot).is_none() {
-            self.steps.push((sources, Step::Widen { to, a }));
+            self.steps.push((sources, SettlingStep::Widen { to, a }));
         }
         self.wide_of[slot as usize] = Some(to);
         to
@@ -156,7 +156,7 @@ impl Divider<'_> {
     fn cut(&mut self, slot: Slot, low: u8, drop: u8, sources: Sources) -> Slot {
         let a = self.operand(slot, true, sources);
         let to = self.fresh(false, 0);
-        self.steps.push((sources, Step::Cut { to, a, low, drop }));
+        self.steps.push((sources, SettlingStep::Cut { to, a, low, drop }));
         to
     }
 
@@ -175,7 +175,7 @@ impl Divider<'_> {
                 let a = self.cut(a, low, drop, sources);
                 let to = self.home(step.to);
                 let field = I::Field { to, a, low: 0, drop, source };
-                self.steps.push((sources, Step::Narrow(field)));
+                self.steps.push((sources, SettlingStep::Narrow(field)));
             }
             I::ChooseAny { of, low, drop, a, b, .. }
                 if is_wide(of) && !is_wide(step.to) && fits(drop) =>
@@ -184,32 +184,32 @@ impl Divider<'_> {
                 let [a, b] = [a, b].map(|slot| self.operand(slot, false, sources));
                 let to = self.home(step.to);
                 let choose = I::ChooseAny { to, of, low: 0, drop, a, b };
-                self.steps.push((sources, Step::Narrow(choose)));
+                self.steps.push((sources, SettlingStep::Narrow(choose)));
             }
             I::Any { a, low, drop, .. } if is_wide(a) && fits(drop) => {
                 let a = self.cut(a, low, drop, sources);
                 let to = self.home(step.to);
                 let any = I::Any { to, a, low: 0, drop };
-                self.steps.push((sources, Step::Narrow(any)));
+                self.steps.push((sources, SettlingStep::Narrow(any)));
             }
             I::Place { to, base, a, low, drop, shift } if is_wide(a) && !is_wide(to) => {
                 let a = self.cut(a, low, drop, sources);
                 let base = self.operand(base, false, sources);
                 let to = self.home(step.to);
                 let place = I::Place { to, base, a, low: 0, drop, shift };
-                self.steps.push((sources, Step::Narrow(place)));
+                self.steps.push((sources, SettlingStep::Narrow(place)));
             }
             I::MulUnsigned { to, a, b } if is_wide(to) && !is_wide(a) && !is_wide(b) => {
                 let (a, b) = (self.operand(a, false, sources), self.operand(b, false, sources));
                 let to = self.home(to);
-                self.steps.push((sources, Step::Product { to, a, b }));
+                self.steps.push((sources, SettlingStep::Product { to, a, b }));
             }
             I::MulSigned { to, a, b, drop_a, drop_b, drop }
                 if is_wide(to) && fits(drop_a) && fits(drop_b) =>
             {
                 let (a, b) = (self.operand(a, false, sources), self.operand(b, false, sources));
                 let to = self.home(to);
-                let product = Step::SignedProduct { to, a, b, drop_a, drop_b, drop };
+                let product = SettlingStep::SignedProduct { to, a, b, drop_a, drop_b, drop };
                 self.steps.push((sources, product));
             }
             instruction => self.within_a_bank(step, instruction),
@@ -240,12 +240,12 @@ impl Divider<'_> {
         if let Some(to) = to {
             *to = result;
         }
-        let of_bank = if wide { Step::Wide } else { Step::Narrow };
+        let of_bank = if wide { SettlingStep::Wide } else { SettlingStep::Narrow };
         self.steps.push((sources, of_bank(instruction)));
         if wide != result_wide {
             let (to, a) = (self.home(step.to), result);
             let (low, drop) = (0, NARROW as u8);
-            self.steps.push((sources, Step::Cut { to, a, low, drop }));
+            self.steps.push((sources, SettlingStep::Cut { to, a, low, drop }));
         }
     }
 
@@ -286,7 +286,7 @@ impl Divider<'_> {
         if wide { &mut self.wide } else { &mut self.narrow }
     }
 
-    fn program(mut self) -> Program {
+    fn program(mut self) -> CompiledDesign {
         let of_net = &self.compiler.of_net;
         for &slot in of_net.iter().filter(|&&slot| slot != Slot::MAX) {
             if self.place(slot).is_none() {
@@ -297,9 +297,9 @@ impl Divider<'_> {
         let segments = self
             .steps
             .chunk_by(|(a, _), (b, _)| a == b)
-            .map(|chunk| Segment { sources: chunk[0].0, len: chunk.len() as u32 })
+            .map(|chunk| StepGroup { sources: chunk[0].0, len: chunk.len() as u32 })
             .collect();
-        Program {
+        CompiledDesign {
             steps: self.steps.into_iter().map(|(_, step)| step).collect(),
             segments,
             narrow: self.narrow,

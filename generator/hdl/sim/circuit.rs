@@ -9,8 +9,8 @@ use rust_hdl::core::signal::get_signal_id;
 
 use crate::netlist::{Design, NetId, Partition};
 use crate::sim::machine::Machine;
-use crate::sim::program::Program;
-use crate::sim::wire::{Direction, Seen, Wire};
+use crate::sim::program::CompiledDesign;
+use crate::sim::wire::{Direction, ProbeView, Wire};
 
 /// `LANES` independent instances of a design as a rust_hdl [`Block`]: rust_hdl clocks and settles
 /// it, checks it and, for lane 0, traces it.
@@ -32,7 +32,7 @@ pub struct Circuit<const LANES: usize = 1> {
     ports: Vec<Observed>,
     /// Control unit and datapath, or the handshake and the stages of a pipeline.
     scopes: Vec<(String, Vec<Observed>)>,
-    microprogram: Microprogram,
+    microprogram: MicroinstructionNames,
 }
 
 /// A net that rust_hdl sees as an atom.
@@ -48,7 +48,7 @@ struct Observed {
 
 /// The names of microinstructions, and the nets that tell which one is executed.
 #[derive(Debug)]
-struct Microprogram {
+struct MicroinstructionNames {
     names: Arc<[String]>,
     /// The address register and the run flag, when there is a control unit.
     state: Option<(NetId, NetId)>,
@@ -59,9 +59,9 @@ impl<const LANES: usize> Circuit<LANES> {
     /// Compiles a design and has rust_hdl check the result. It is at power-up, the clock low.
     ///
     /// # Errors
-    /// Fails if [`Program::new`] fails, or if rust_hdl's `check_all` finds a fault.
+    /// Fails if [`CompiledDesign::new`] fails, or if rust_hdl's `check_all` finds a fault.
     pub fn new(design: &Design) -> Result<Self> {
-        let program = Arc::new(Program::new(design)?);
+        let program = Arc::new(CompiledDesign::new(design)?);
         let inputs = vec![[0; LANES]; program.inputs()];
         let observed = |net: NetId, direction| Observed {
             net,
@@ -91,7 +91,7 @@ impl<const LANES: usize> Circuit<LANES> {
             connected: false,
             ports,
             scopes: scopes.collect(),
-            microprogram: Microprogram::new(design),
+            microprogram: MicroinstructionNames::new(design),
         };
         circuit.connect_all();
         check_all(&circuit).map_err(|error| anyhow!("rust_hdl refuses the circuit: {error:?}"))?;
@@ -105,7 +105,7 @@ impl<const LANES: usize> Circuit<LANES> {
         &mut self.inputs
     }
 
-    fn wire<'a>(&self, id: usize, bits: u64, seen: Seen<'a>) -> Wire<'a> {
+    fn wire<'a>(&self, id: usize, bits: u64, seen: ProbeView<'a>) -> Wire<'a> {
         Wire { id, connected: self.connected, changed: self.changed, bits, seen }
     }
 
@@ -113,7 +113,7 @@ impl<const LANES: usize> Circuit<LANES> {
         for net in nets {
             let (width, signed, direction) = (net.width, net.signed, net.direction);
             let bits = self.machine.lane(net.net, 0);
-            let wire = self.wire(net.id, bits, Seen::Net { width, signed, direction });
+            let wire = self.wire(net.id, bits, ProbeView::Net { width, signed, direction });
             probe.visit_atom(&net.name, &wire);
         }
     }
@@ -139,7 +139,7 @@ pub(super) fn scopes(design: &Design) -> Vec<(String, Vec<NetId>)> {
     scopes
 }
 
-impl Microprogram {
+impl MicroinstructionNames {
     fn new(design: &Design) -> Self {
         let control = &design.control;
         let names = control.microprogram.iter().map(|it| it.name.clone()).collect();
@@ -193,7 +193,7 @@ impl<const LANES: usize> Block for Circuit<LANES> {
             if let (0, Some((address, run))) = (at, self.microprogram.state) {
                 let [address, run] = [address, run].map(|net| self.machine.lane(net, 0));
                 let names = &self.microprogram.names;
-                let seen = Seen::Microinstruction { names, run: run == 1 };
+                let seen = ProbeView::Microinstruction { names, run: run == 1 };
                 let name = self.wire(self.microprogram.id, address, seen);
                 probe.visit_atom("microinstruction", &name);
             }

@@ -1,17 +1,19 @@
-//! Compiles a [`Design`] to a simulation [`Program`].
+//! Compiles a [`Design`] to a [`CompiledDesign`], which the simulator runs.
 
 use std::collections::{HashMap, HashSet};
 
 use anyhow::{Result, ensure};
 
-use crate::netlist::{Design, Driver, NetId, Register, Role};
+use crate::netlist::{Design, Driver, NetId, NetlistRegister, Role};
 use crate::sim::banks;
 use crate::sim::compiler::Compiler;
-use crate::sim::program::{Instruction, Program, ReadEdge, RegisterEdge, Slot, Sources, drop_of};
+use crate::sim::program::{
+    CompiledDesign, Instruction, ReadEdge, RegisterEdge, Slot, Sources, drop_of,
+};
 use glint_base::diagnostic::Diagnostics;
 use glint_base::fixed::mask;
 
-impl Program {
+impl CompiledDesign {
     /// Compiles a design.
     ///
     /// # Errors
@@ -72,7 +74,7 @@ impl<'a> Compiler<'a> {
     }
 
     /// Returns the clock edge, and everything together.
-    fn finish(mut self) -> Program {
+    fn finish(mut self) -> CompiledDesign {
         let design = self.design;
         let reset = design.port(|role| role == Role::Reset);
         let mut written = HashSet::new();
@@ -118,14 +120,14 @@ impl<'a> Compiler<'a> {
 
     /// Returns the registers in an order in which a register that takes the value of another comes before that other
     /// one, except in circles. The value then need not be copied to be [`Compiler::stable`].
-    fn readers_first(&self) -> Vec<&'a Register> {
+    fn readers_first(&self) -> Vec<&'a NetlistRegister> {
         let registers = &self.design.registers;
         let slot = |net: NetId| self.of_net[net.index()];
         let by_slot: HashMap<Slot, usize> =
             registers.iter().enumerate().map(|(at, register)| (slot(register.q), at)).collect();
         let mut readers = vec![0; registers.len()];
         let read_by = |at: usize| {
-            let register: &Register = &registers[at];
+            let register: &NetlistRegister = &registers[at];
             let nets = register.data.iter().chain(&register.enable);
             nets.filter_map(|&net| by_slot.get(&slot(net)).copied()).filter(move |&of| of != at)
         };

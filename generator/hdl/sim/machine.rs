@@ -5,17 +5,19 @@ use std::mem;
 use std::sync::Arc;
 
 use crate::netlist::NetId;
-use crate::sim::program::{Bank, Instruction, Place, Program, Slot, Sources, Span, Step};
+use crate::sim::program::{
+    Bank, CompiledDesign, Instruction, SettlingStep, Slot, Sources, Span, ValueSlot,
+};
 use crate::sim::slots::Slots;
-use crate::sim::word::Word;
+use crate::sim::word::LaneWord;
 
-/// The state of `LANES` independent instances of a design, which one pass over the [`Program`] advances together.
+/// The state of `LANES` independent instances of a design, which one pass over the [`CompiledDesign`] advances together.
 ///
 /// A pass is compiled three times on x86-64: for any processor, for processors with AVX2 and for processors with
 /// AVX-512. The machine decides at run time which one runs; all compute the same.
 #[derive(Clone, Debug)]
 pub struct Machine<const LANES: usize = 1> {
-    program: Arc<Program>,
+    program: Arc<CompiledDesign>,
     narrow: Slots<u32, LANES>,
     wide: Slots<u64, LANES>,
     /// The sources that have changed since the machine was last settled.
@@ -24,7 +26,7 @@ pub struct Machine<const LANES: usize = 1> {
 
 impl<const LANES: usize> Machine<LANES> {
     /// Makes a machine at power-up: registers, outputs of synchronous ROMs and inputs are 0; settled.
-    pub fn new(program: Arc<Program>) -> Self {
+    pub fn new(program: Arc<CompiledDesign>) -> Self {
         let mut machine = Self {
             narrow: power_up(&program.narrow),
             wide: power_up(&program.wide),
@@ -52,12 +54,12 @@ impl<const LANES: usize> Machine<LANES> {
     /// each input port, in order of declaration; bits beyond the width of a port are ignored.
     pub fn update(&mut self, edge: bool, inputs: Option<&[[u64; LANES]]>) -> bool {
         #[cfg(target_arch = "x86_64")]
-        match Vectors::here() {
+        match VectorLevel::here() {
             // SAFETY: this processor has AVX-512.
-            Vectors::Avx512 => return unsafe { self.update_avx512(edge, inputs) },
+            VectorLevel::Avx512 => return unsafe { self.update_avx512(edge, inputs) },
             // SAFETY: this processor has AVX2.
-            Vectors::Avx2 => return unsafe { self.update_avx2(edge, inputs) },
-            Vectors::Base => {}
+            VectorLevel::Avx2 => return unsafe { self.update_avx2(edge, inputs) },
+            VectorLevel::Base => {}
         }
         self.update_here(edge, inputs)
     }
@@ -76,7 +78,7 @@ impl<const LANES: usize> Machine<LANES> {
 
     #[inline(always)]
     fn update_here(&mut self, edge: bool, inputs: Option<&[[u64; LANES]]>) -> bool {
-        let Program { narrow, wide, words, .. } = &*self.program;
+        let CompiledDesign { narrow, wide, words, .. } = &*self.program;
         if edge {
             self.changed = clock(narrow, words, &mut self.narrow, self.changed);
             self.changed = clock(wide, words, &mut self.wide, self.changed);
@@ -94,7 +96,7 @@ impl<const LANES: usize> Machine<LANES> {
 
     #[inline(always)]
     fn settle(&mut self) {
-        let Program { steps, segments, choices, words, .. } = &*self.program;
+        let CompiledDesign { steps, segments, choices, words, .. } = &*self.program;
         let (narrow, wide) = (&mut *self.narrow, &mut *self.wide);
         let mut changed = mem::take(&mut self.changed);
         let mut rest = steps.as_slice();
@@ -106,25 +108,25 @@ impl<const LANES: usize> Machine<LANES> {
             }
             for step in here {
                 match *step {
-                    Step::Narrow(instruction) => {
+                    SettlingStep::Narrow(instruction) => {
                         changed |= execute(instruction, choices, words, narrow);
                     }
-                    Step::Wide(instruction) => {
+                    SettlingStep::Wide(instruction) => {
                         changed |= execute(instruction, choices, words, wide);
                     }
-                    Step::Widen { to, a } => {
+                    SettlingStep::Widen { to, a } => {
                         map(&mut wide[to as usize], &narrow[a as usize], u64::from);
                     }
-                    Step::Cut { to, a, low, drop } => {
+                    SettlingStep::Cut { to, a, low, drop } => {
                         let cut = |a: u64| (a >> low & u64::MAX >> drop) as u32;
                         map(&mut narrow[to as usize], &wide[a as usize], cut);
                     }
-                    Step::Product { to, a, b } => {
+                    SettlingStep::Product { to, a, b } => {
                         let [a, b] = [a, b].map(|slot| &narrow[slot as usize]);
                         let product = |a, b| u64::from(a) * u64::from(b);
                         map2(&mut wide[to as usize], a, b, product);
                     }
-                    Step::SignedProduct { to, a, b, drop_a, drop_b, drop } => {
+                    SettlingStep::SignedProduct { to, a, b, drop_a, drop_b, drop } => {
                         let [a, b] = [a, b].map(|slot| &narrow[slot as usize]);
                         let signed = |bits: u32, drop| i64::from(sign_extended(bits, drop) as i32);
                         let product = |a, b| {
@@ -149,7 +151,7 @@ impl<const LANES: usize> Machine<LANES> {
         known: Option<&[[u64; LANES]]>,
     ) -> [u64; LANES] {
         #[cfg(target_arch = "x86_64")]
-        if Vectors::here() != Vectors::Base {
+        if VectorLevel::here() != VectorLevel::Base {
             // SAFETY: this processor has AVX2.
             return unsafe { self.differences_avx2(nets, expected, known) };
         }
@@ -180,13 +182,13 @@ impl<const LANES: usize> Machine<LANES> {
         for (at, (net, expected)) in nets.iter().zip(expected).enumerate() {
             let known = known.map_or(&all, |known| &known[at]);
             match self.program.place(*net) {
-                Place::Narrow(slot) => {
+                ValueSlot::Narrow(slot) => {
                     let bits = &narrow[slot as usize];
                     for lane in 0..LANES {
                         differences[lane] |= (u64::from(bits[lane]) ^ expected[lane]) & known[lane];
                     }
                 }
-                Place::Wide(slot) => {
+                ValueSlot::Wide(slot) => {
                     let bits = &wide[slot as usize];
                     for lane in 0..LANES {
                         differences[lane] |= (bits[lane] ^ expected[lane]) & known[lane];
@@ -203,8 +205,8 @@ impl<const LANES: usize> Machine<LANES> {
     /// Panics if the net is unnamed and was optimised away.
     pub fn lanes(&self, net: NetId) -> [u64; LANES] {
         match self.program.place(net) {
-            Place::Narrow(slot) => self.narrow[slot as usize].map(u64::from),
-            Place::Wide(slot) => self.wide[slot as usize],
+            ValueSlot::Narrow(slot) => self.narrow[slot as usize].map(u64::from),
+            ValueSlot::Wide(slot) => self.wide[slot as usize],
         }
     }
 
@@ -214,8 +216,8 @@ impl<const LANES: usize> Machine<LANES> {
     /// Panics if the net is unnamed and was optimised away, or there is no such lane.
     pub fn lane(&self, net: NetId, lane: usize) -> u64 {
         match self.program.place(net) {
-            Place::Narrow(slot) => self.narrow[slot as usize][lane].into(),
-            Place::Wide(slot) => self.wide[slot as usize][lane],
+            ValueSlot::Narrow(slot) => self.narrow[slot as usize][lane].into(),
+            ValueSlot::Wide(slot) => self.wide[slot as usize][lane],
         }
     }
 }
@@ -223,7 +225,7 @@ impl<const LANES: usize> Machine<LANES> {
 /// The vector instructions of the processor.
 #[cfg(target_arch = "x86_64")]
 #[derive(Clone, Copy, PartialEq, Eq)]
-enum Vectors {
+enum VectorLevel {
     Base,
     Avx2,
     /// With AVX2.
@@ -231,7 +233,7 @@ enum Vectors {
 }
 
 #[cfg(target_arch = "x86_64")]
-impl Vectors {
+impl VectorLevel {
     #[inline]
     fn here() -> Self {
         if !is_x86_feature_detected!("avx2") {
@@ -248,13 +250,13 @@ impl Vectors {
     }
 }
 
-fn power_up<W: Word, const LANES: usize>(bank: &Bank) -> Slots<W, LANES> {
+fn power_up<W: LaneWord, const LANES: usize>(bank: &Bank) -> Slots<W, LANES> {
     Slots::new(bank.initial.iter().map(|&bits| [W::low(bits); LANES]))
 }
 
 /// Sets the inputs. Returns the `news` and the sources that have changed.
 #[inline(always)]
-fn take_inputs<W: Word, const LANES: usize>(
+fn take_inputs<W: LaneWord, const LANES: usize>(
     bank: &Bank,
     inputs: &[[u64; LANES]],
     slots: &mut [[W; LANES]],
@@ -270,7 +272,7 @@ fn take_inputs<W: Word, const LANES: usize>(
 
 /// Performs the rising edge. Returns the `news` and the sources that have changed.
 #[inline(always)]
-fn clock<W: Word, const LANES: usize>(
+fn clock<W: LaneWord, const LANES: usize>(
     bank: &Bank,
     words: &[u64],
     slots: &mut [[W; LANES]],
@@ -311,7 +313,7 @@ fn clock<W: Word, const LANES: usize>(
 
 /// Loads a register in the lanes that are enabled. Returns `source` when that changes any, unless it is among the `news` already.
 #[inline(always)]
-fn load<W: Word, const LANES: usize>(
+fn load<W: LaneWord, const LANES: usize>(
     q: &mut [W; LANES],
     data: &[W; LANES],
     enable: &[W; LANES],
@@ -329,7 +331,7 @@ fn load<W: Word, const LANES: usize>(
 
 /// Returns the value of a slot after the edge: a new one in the lanes that are enabled.
 #[inline(always)]
-fn enabled<W: Word, const LANES: usize>(
+fn enabled<W: LaneWord, const LANES: usize>(
     slots: &[[W; LANES]],
     slot: Slot,
     mut new: [W; LANES],
@@ -346,7 +348,7 @@ fn enabled<W: Word, const LANES: usize>(
 
 /// Stores a value. Returns `source` when that changes any lane, unless it is among the `news` already.
 #[inline(always)]
-fn store<W: Word, const LANES: usize>(
+fn store<W: LaneWord, const LANES: usize>(
     slot: &mut [W; LANES],
     new: &[W; LANES],
     source: Sources,
@@ -359,7 +361,7 @@ fn store<W: Word, const LANES: usize>(
 
 /// Returns `source` when any lane has a difference, unless it is among the `news` already.
 #[inline(always)]
-fn changed<W: Word, const LANES: usize>(
+fn changed<W: LaneWord, const LANES: usize>(
     source: Sources,
     news: Sources,
     difference: impl Fn(usize) -> W,
@@ -376,7 +378,7 @@ fn changed<W: Word, const LANES: usize>(
 
 /// Executes one instruction. Returns the source of the field that has changed, if the instruction takes a field.
 #[inline(always)]
-pub(super) fn execute<W: Word, const LANES: usize>(
+pub(super) fn execute<W: LaneWord, const LANES: usize>(
     instruction: Instruction,
     choices: &[Slot],
     words: &[u64],
@@ -456,13 +458,13 @@ pub(super) fn execute<W: Word, const LANES: usize>(
 
 /// Returns the sign bit of a pattern whose width is given as `drop`.
 #[inline(always)]
-fn sign<W: Word>(drop: u8) -> W {
+fn sign<W: LaneWord>(drop: u8) -> W {
     W::low(1 << 63 >> drop)
 }
 
 /// Returns a two's complement pattern whose width is given as `drop`, at the full width.
 #[inline(always)]
-fn sign_extended<W: Word>(bits: W, drop: u8) -> W {
+fn sign_extended<W: LaneWord>(bits: W, drop: u8) -> W {
     (bits ^ sign(drop)).wrapping_sub(sign(drop))
 }
 
@@ -474,7 +476,7 @@ fn read(words: &[u64], span: Span, address: u64) -> u64 {
 
 /// Selects one of the choices in each lane. If `select` is beyond the choices, it selects the last one.
 #[inline(always)]
-fn mux<W: Word, const LANES: usize>(
+fn mux<W: LaneWord, const LANES: usize>(
     slots: &mut [[W; LANES]],
     to: Slot,
     select: Slot,
@@ -507,7 +509,7 @@ const VECTOR: usize = 8;
 const COMPARED: usize = 16;
 
 #[inline(always)]
-fn unary<W: Word, const LANES: usize>(
+fn unary<W: LaneWord, const LANES: usize>(
     slots: &mut [[W; LANES]],
     to: Slot,
     a: Slot,
@@ -518,7 +520,7 @@ fn unary<W: Word, const LANES: usize>(
 }
 
 #[inline(always)]
-fn binary<W: Word, const LANES: usize>(
+fn binary<W: LaneWord, const LANES: usize>(
     slots: &mut [[W; LANES]],
     to: Slot,
     a: Slot,
@@ -530,7 +532,7 @@ fn binary<W: Word, const LANES: usize>(
 }
 
 #[inline(always)]
-fn ternary<W: Word, const LANES: usize>(
+fn ternary<W: LaneWord, const LANES: usize>(
     slots: &mut [[W; LANES]],
     to: Slot,
     operands: [Slot; 3],

@@ -1,6 +1,6 @@
 //! The built-in simulator: runs many instances of a design clock by clock, and writes waveforms.
 //!
-//! A [`Design`] is compiled to a [`Program`] of levelised instructions. A [`Machine`] runs the program for a number
+//! A [`Design`] is compiled to a [`CompiledDesign`] of levelised instructions. A [`Machine`] runs the program for a number
 //! of independent instances at once, its lanes. A [`Circuit`] is the machine as one rust_hdl block, and a
 //! [`Simulator`] is the circuit with its clock.
 //!
@@ -35,7 +35,7 @@ use crate::netlist::{Design, NetId};
 
 pub use circuit::Circuit;
 pub use machine::Machine;
-pub use program::Program;
+pub use program::CompiledDesign;
 pub use vcd::VcdWriter;
 
 /// Half a clock in waveforms, in picoseconds.

@@ -8,7 +8,7 @@
 //!
 //! There are two banks of slots. The *narrow* bank has slots of 32 bits: nearly all values fit, and a vector of the
 //! processor holds twice as many lanes. The *wide* bank has slots of 64 bits for all other values. An [`Instruction`]
-//! works within one bank; the other [`Step`]s lead from one bank to the other.
+//! works within one bank; the other [`SettlingStep`]s lead from one bank to the other.
 //!
 //! A value that changes outside settling is a *source*: an input port, or a value that the edge writes. The fields of
 //! the control word are sources too, because most of them stay the same from one word to the next. Instructions that
@@ -121,7 +121,7 @@ impl Instruction {
 
 /// One step of settling.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum Step {
+pub(super) enum SettlingStep {
     /// Among the narrow slots.
     Narrow(Instruction),
     /// Among the wide slots.
@@ -138,12 +138,12 @@ pub(super) enum Step {
 
 /// The place of a value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Place {
+pub(super) enum ValueSlot {
     Narrow(Slot),
     Wide(Slot),
 }
 
-/// The contents of a ROM in [`Program::words`].
+/// The contents of a ROM in [`CompiledDesign::words`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(super) struct Span {
     pub start: u32,
@@ -152,7 +152,7 @@ pub(super) struct Span {
 
 /// Consecutive steps that depend on the same sources.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Segment {
+pub(super) struct StepGroup {
     pub sources: Sources,
     pub len: u32,
 }
@@ -203,11 +203,11 @@ pub(super) struct Bank {
 
 /// A compiled [`Design`](crate::netlist::Design). Machines share it; it holds no state.
 #[derive(Clone, Debug)]
-pub struct Program {
+pub struct CompiledDesign {
     /// The steps, in an order in which each follows the steps that compute its operands.
-    pub(super) steps: Vec<Step>,
+    pub(super) steps: Vec<SettlingStep>,
     /// They cover the steps.
-    pub(super) segments: Vec<Segment>,
+    pub(super) segments: Vec<StepGroup>,
     pub(super) narrow: Bank,
     pub(super) wide: Bank,
     /// The inputs of all muxes that have more than two, in the bank of the mux.
@@ -215,10 +215,10 @@ pub struct Program {
     /// The contents of all ROMs.
     pub(super) words: Vec<u64>,
     /// The place of each net; none for unnamed nets that have none.
-    pub(super) places: Vec<Option<Place>>,
+    pub(super) places: Vec<Option<ValueSlot>>,
 }
 
-impl Program {
+impl CompiledDesign {
     /// Returns the number of input ports.
     pub fn inputs(&self) -> usize {
         self.narrow.inputs.len() + self.wide.inputs.len()
@@ -228,7 +228,7 @@ impl Program {
     ///
     /// # Panics
     /// Panics if the net is unnamed and has none.
-    pub(super) fn place(&self, net: NetId) -> Place {
+    pub(super) fn place(&self, net: NetId) -> ValueSlot {
         let place = self.places[net.index()];
         place.unwrap_or_else(|| panic!("{net:?} is unnamed and not simulated"))
     }

@@ -19,7 +19,7 @@ pub(super) enum Direction {
 
 /// The view of a probe.
 #[derive(Debug)]
-pub(super) enum Seen<'a> {
+pub(super) enum ProbeView<'a> {
     /// A net.
     Net { width: u32, signed: bool, direction: Direction },
     /// The name of the microinstruction that is executed, `idle` when none is: of these, the one at the address that the bits
@@ -35,7 +35,7 @@ pub(super) struct Wire<'a> {
     pub connected: bool,
     pub changed: bool,
     pub bits: u64,
-    pub seen: Seen<'a>,
+    pub seen: ProbeView<'a>,
 }
 
 /// Returns a string as VCD can hold it: a space would end it.
@@ -47,8 +47,8 @@ fn vcd_text(text: &str) -> String {
 impl Atom for Wire<'_> {
     fn bits(&self) -> usize {
         match self.seen {
-            Seen::Net { width, .. } => width as usize,
-            Seen::Microinstruction { names, .. } => {
+            ProbeView::Net { width, .. } => width as usize,
+            ProbeView::Microinstruction { names, .. } => {
                 names.len().next_power_of_two().ilog2() as usize
             }
         }
@@ -64,8 +64,8 @@ impl Atom for Wire<'_> {
 
     fn kind(&self) -> AtomKind {
         match self.seen {
-            Seen::Net { direction: Direction::Input, .. } => AtomKind::InputParameter,
-            Seen::Net { direction: Direction::Output, .. } => AtomKind::OutputParameter,
+            ProbeView::Net { direction: Direction::Input, .. } => AtomKind::InputParameter,
+            ProbeView::Net { direction: Direction::Output, .. } => AtomKind::OutputParameter,
             _ => AtomKind::LocalSignal,
         }
     }
@@ -73,11 +73,11 @@ impl Atom for Wire<'_> {
     fn descriptor(&self) -> TypeDescriptor {
         let width = self.bits();
         let (name, kind) = match self.seen {
-            Seen::Net { signed: true, .. } => {
+            ProbeView::Net { signed: true, .. } => {
                 (format!("Signed::<{width}>"), TypeKind::Signed(width))
             }
-            Seen::Net { .. } => (format!("Bits::<{width}>"), TypeKind::Bits(width)),
-            Seen::Microinstruction { names, .. } => {
+            ProbeView::Net { .. } => (format!("Bits::<{width}>"), TypeKind::Bits(width)),
+            ProbeView::Microinstruction { names, .. } => {
                 let names = names.iter().map(|name| vcd_text(name));
                 let names = ["idle".to_owned()].into_iter().chain(names);
                 ("microinstruction".to_owned(), TypeKind::Enum(names.collect()))
@@ -88,12 +88,12 @@ impl Atom for Wire<'_> {
 
     fn vcd(&self) -> VCDValue {
         match self.seen {
-            Seen::Net { width, .. } => {
+            ProbeView::Net { width, .. } => {
                 let bit = |at: u32| vcd::Value::from(self.bits >> at & 1 == 1);
                 VCDValue::Vector((0..width).rev().map(bit).collect())
             }
-            Seen::Microinstruction { run: false, .. } => VCDValue::String("idle".to_owned()),
-            Seen::Microinstruction { names, .. } => {
+            ProbeView::Microinstruction { run: false, .. } => VCDValue::String("idle".to_owned()),
+            ProbeView::Microinstruction { names, .. } => {
                 let name = usize::try_from(self.bits).ok().and_then(|at| names.get(at));
                 let nameless = || format!("microinstruction_{}", self.bits);
                 VCDValue::String(name.map_or_else(nameless, |name| vcd_text(name)))

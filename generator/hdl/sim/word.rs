@@ -3,7 +3,7 @@
 use std::ops::{BitAnd, BitOr, BitXor, Shl, Shr};
 
 /// The word of a slot in a lane.
-pub(super) trait Word:
+pub(super) trait LaneWord:
     Copy
     + Default
     + Ord
@@ -25,7 +25,7 @@ pub(super) trait Word:
 
 macro_rules! word {
     ($word:ident) => {
-        impl Word for $word {
+        impl LaneWord for $word {
             const ZERO: Self = 0;
 
             #[inline(always)]

@@ -9,7 +9,7 @@ use glint_base::fixed::mask;
 
 /// Neighbouring bits of one origin.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Piece {
+pub enum BitRun {
     /// `width` bits of a net from `low` up.
     Net {
         /// The net.
@@ -37,7 +37,7 @@ pub enum Piece {
     },
 }
 
-impl Piece {
+impl BitRun {
     /// Returns the width in bits.
     pub fn width(self) -> u32 {
         match self {
@@ -78,26 +78,26 @@ impl Piece {
 
 /// A word as pieces, the most significant first.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Bits(Vec<Piece>);
+pub struct Bits(Vec<BitRun>);
 
 impl Bits {
     /// Makes the bits of a whole net.
     pub fn net(net: NetId, width: u32) -> Self {
-        Self(vec![Piece::Net { net, low: 0, width }])
+        Self(vec![BitRun::Net { net, low: 0, width }])
     }
 
     /// Makes a bit pattern.
     pub fn constant(value: u64, width: u32) -> Self {
-        Self(vec![Piece::Constant { value, width }])
+        Self(vec![BitRun::Constant { value, width }])
     }
 
     /// Returns the pieces, the most significant first.
-    pub fn pieces(&self) -> &[Piece] {
+    pub fn pieces(&self) -> &[BitRun] {
         &self.0
     }
 
     /// Returns the only piece, if there is but one.
-    pub fn single(&self) -> Option<Piece> {
+    pub fn single(&self) -> Option<BitRun> {
         match self.0[..] {
             [piece] => Some(piece),
             _ => None,
@@ -139,27 +139,27 @@ impl Bits {
             return self.clone();
         }
         let above = match self.0.first() {
-            Some(Piece::Net { net, low, width }) if signed => {
+            Some(BitRun::Net { net, low, width }) if signed => {
                 let bit = low + width - 1;
                 match count {
-                    1 => Piece::Net { net: *net, low: bit, width: 1 },
-                    _ => Piece::Copies { net: *net, bit, count },
+                    1 => BitRun::Net { net: *net, low: bit, width: 1 },
+                    _ => BitRun::Copies { net: *net, bit, count },
                 }
             }
-            Some(Piece::Copies { net, bit, count: already }) if signed => {
+            Some(BitRun::Copies { net, bit, count: already }) if signed => {
                 let mut extended = self.clone();
-                extended.0[0] = Piece::Copies { net: *net, bit: *bit, count: count + already };
+                extended.0[0] = BitRun::Copies { net: *net, bit: *bit, count: count + already };
                 return extended;
             }
-            Some(Piece::Constant { value, width }) if signed && value >> (width - 1) & 1 == 1 => {
-                Piece::Constant { value: mask(count), width: count }
+            Some(BitRun::Constant { value, width }) if signed && value >> (width - 1) & 1 == 1 => {
+                BitRun::Constant { value: mask(count), width: count }
             }
-            _ => Piece::Constant { value: 0, width: count },
+            _ => BitRun::Constant { value: 0, width: count },
         };
         Self(vec![above]).followed_by(self)
     }
 
-    fn append(&mut self, piece: Piece) {
+    fn append(&mut self, piece: BitRun) {
         match self.0.last().and_then(|above| above.join(piece)) {
             Some(joined) => {
                 self.0.pop();
@@ -180,7 +180,7 @@ mod tests {
     #[test]
     fn slices_of_slices_are_one_slice() {
         let bits = Bits::net(A, 20).slice(4, 10).slice(2, 3);
-        assert_eq!(bits.pieces(), [Piece::Net { net: A, low: 6, width: 3 }]);
+        assert_eq!(bits.pieces(), [BitRun::Net { net: A, low: 6, width: 3 }]);
     }
 
     #[test]
@@ -196,9 +196,9 @@ mod tests {
     #[test]
     fn extension_repeats_the_sign_bit() {
         let once = Bits::net(A, 8).extend(9, true);
-        assert_eq!(once.pieces()[0], Piece::Net { net: A, low: 7, width: 1 });
+        assert_eq!(once.pieces()[0], BitRun::Net { net: A, low: 7, width: 1 });
         let twice = Bits::net(A, 8).extend(10, true).extend(13, true);
-        assert_eq!(twice.pieces()[0], Piece::Copies { net: A, bit: 7, count: 5 });
+        assert_eq!(twice.pieces()[0], BitRun::Copies { net: A, bit: 7, count: 5 });
         assert_eq!(Bits::constant(0b10, 2).extend(4, true), Bits::constant(0b1110, 4));
         assert_eq!(Bits::constant(0b10, 2).extend(4, false), Bits::constant(0b0010, 4));
     }
@@ -209,7 +209,7 @@ mod tests {
         assert_eq!(bits.width(), 3);
         assert_eq!(
             bits.pieces(),
-            [Piece::Copies { net: A, bit: 3, count: 2 }, Piece::Net { net: A, low: 3, width: 1 }]
+            [BitRun::Copies { net: A, bit: 3, count: 2 }, BitRun::Net { net: A, low: 3, width: 1 }]
         );
     }
 }

@@ -5,10 +5,10 @@
 //! into an adder is extended to the adder's width. Only products and comparisons depend on signedness, and they state
 //! it.
 
-use super::bits::{Bits, Piece};
+use super::bits::{BitRun, Bits};
 use super::plan::{NetForm, Plan, Reader};
 use super::text::{Names, constant_name, literal, together};
-use crate::netlist::{Driver, NetId, Op, Rom};
+use crate::netlist::{Driver, NetId, NetlistRom, Op};
 use glint_base::fixed::mask;
 
 /// A number that is baked in: a localparam.
@@ -90,7 +90,7 @@ impl<'a> Expressions<'a> {
     /// says as much: 0, 1 ulp, all ones.
     fn constant(&mut self, id: NetId) -> Option<String> {
         let design = self.plan.design;
-        let Some(Piece::Constant { value, width }) = self.plan.bits[id.index()].single() else {
+        let Some(BitRun::Constant { value, width }) = self.plan.bits[id.index()].single() else {
             return None;
         };
         let mut origin = id;
@@ -135,7 +135,7 @@ impl<'a> Expressions<'a> {
     }
 
     /// Returns the word number for a ROM, exactly as wide as its depth asks.
-    pub fn address(&mut self, rom: &Rom) -> String {
+    pub fn address(&mut self, rom: &NetlistRom) -> String {
         let width = super::plan::address_width(rom.words.len());
         let bits = &self.plan.bits[rom.address.index()];
         let exact =
@@ -146,7 +146,7 @@ impl<'a> Expressions<'a> {
     /// Returns the cell whose result a net is, if the cell is written in place of the net.
     fn inline(&self, id: NetId) -> Option<NetId> {
         match self.plan.bits[id.index()].single() {
-            Some(Piece::Net { net, .. }) if self.plan.forms[net.index()] == NetForm::Inline => {
+            Some(BitRun::Net { net, .. }) if self.plan.forms[net.index()] == NetForm::Inline => {
                 Some(net)
             }
             _ => None,
@@ -158,20 +158,20 @@ impl<'a> Expressions<'a> {
         together(bits.pieces().iter().map(|piece| self.piece(*piece)).collect())
     }
 
-    fn piece(&self, piece: Piece) -> String {
+    fn piece(&self, piece: BitRun) -> String {
         let name = |net: NetId| self.plan.design.net(net).name.as_str();
         match piece {
-            Piece::Constant { value, width } => literal(value, width),
-            Piece::Copies { net, bit, count } if self.plan.design.width(net) == 1 => {
+            BitRun::Constant { value, width } => literal(value, width),
+            BitRun::Copies { net, bit, count } if self.plan.design.width(net) == 1 => {
                 debug_assert_eq!(bit, 0, "a net of one bit has no other");
                 format!("{{{count}{{{}}}}}", name(net))
             }
-            Piece::Copies { net, bit, count } => format!("{{{count}{{{}[{bit}]}}}}", name(net)),
-            Piece::Net { net, width, .. } if width == self.plan.design.width(net) => {
+            BitRun::Copies { net, bit, count } => format!("{{{count}{{{}[{bit}]}}}}", name(net)),
+            BitRun::Net { net, width, .. } if width == self.plan.design.width(net) => {
                 name(net).to_owned()
             }
-            Piece::Net { net, low, width: 1 } => format!("{}[{low}]", name(net)),
-            Piece::Net { net, low, width } => format!("{}[{}:{low}]", name(net), low + width - 1),
+            BitRun::Net { net, low, width: 1 } => format!("{}[{low}]", name(net)),
+            BitRun::Net { net, low, width } => format!("{}[{}:{low}]", name(net), low + width - 1),
         }
     }
 
@@ -200,7 +200,7 @@ impl<'a> Expressions<'a> {
                 // A constant reads best on the right.
                 None if matches!(
                     self.plan.bits[a.index()].single(),
-                    Some(Piece::Constant { .. })
+                    Some(BitRun::Constant { .. })
                 ) =>
                 {
                     format!("{} > {}", self.with_sign(*b), self.with_sign(*a))
@@ -237,7 +237,7 @@ impl<'a> Expressions<'a> {
         let text = self.operand(id);
         let wanted = self.plan.design.net(id).format.signed;
         let written = match self.plan.bits[id.index()].single() {
-            Some(Piece::Net { net, width, .. }) if width == self.plan.design.width(net) => {
+            Some(BitRun::Net { net, width, .. }) if width == self.plan.design.width(net) => {
                 self.plan.design.net(net).format.signed
             }
             _ => false,

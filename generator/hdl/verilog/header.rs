@@ -2,7 +2,7 @@
 
 use super::naming::Naming;
 use super::text::comment;
-use crate::netlist::{Design, NetId, Partition, Pipeline, Role, Sequence, Timing};
+use crate::netlist::{Design, HandshakeTiming, NetId, Partition, Pipeline, Role, Sequence};
 use glint_base::fixed::Format;
 
 /// The facts of a file's header beyond the design.
@@ -11,7 +11,7 @@ pub struct Origin<'a> {
     /// The command that makes the file again; empty if there is no such command.
     pub regenerate: &'a str,
     /// Clocks between the events of the handshake.
-    pub timing: &'a Timing,
+    pub timing: &'a HandshakeTiming,
 }
 
 /// Returns the header of the top module: its formula and all that its user must know.
@@ -80,7 +80,7 @@ pub fn regenerated(origin: &Origin) -> Vec<String> {
     ]
 }
 
-fn latency(timing: &Timing) -> Vec<String> {
+fn latency(timing: &HandshakeTiming) -> Vec<String> {
     let valid = timing.start_to_valid.map(|clocks| format!("valid {clocks} clocks after start"));
     let more = timing.valid_to_valid.map(|clocks| match clocks {
         1 => "then a result every clock, as many as the operands say".to_owned(),

@@ -21,7 +21,7 @@ pub mod writer;
 
 use anyhow::Result;
 
-use crate::netlist::{Design, Partition, RomId, Timing};
+use crate::netlist::{Design, HandshakeTiming, Partition, RomId};
 use header::Origin;
 use interface::Interface;
 use naming::Naming;
@@ -33,7 +33,7 @@ use plan::Plan;
 /// Fails with the mistakes that [`Design::verify_structure`] finds, or if [`memories`] fails.
 pub fn files(design: &Design) -> Result<Vec<(String, String)>> {
     let (plan, naming) = (Plan::new(design)?, Naming::new(design));
-    let origin = Origin { regenerate: "", timing: &Timing::default() };
+    let origin = Origin { regenerate: "", timing: &HandshakeTiming::default() };
     Ok([modules(&plan, &naming, &origin), memories(design, &naming)?].concat())
 }
 

@@ -12,7 +12,9 @@ use super::rows::{Row, separated};
 use super::text::{COLUMNS, annotated, comment, literal, range, statement};
 use super::words::{in_fields, in_hex, word_note};
 use super::writer;
-use crate::netlist::{Design, Driver, Multiplier, NetId, Op, Partition, RegId, Register, RomId};
+use crate::netlist::{
+    Design, Driver, Multiplier, NetId, NetlistRegister, Op, Partition, RegId, RomId,
+};
 
 /// Builds one partition.
 pub struct Builder<'a> {
@@ -322,7 +324,7 @@ impl<'a> Builder<'a> {
     }
 
     /// Returns the instance that computes a product and holds it.
-    fn multiplier(&mut self, register: &Register, multiplier: Multiplier) -> Vec<String> {
+    fn multiplier(&mut self, register: &NetlistRegister, multiplier: Multiplier) -> Vec<String> {
         let design = self.plan.design;
         let Multiplier { product, factors } = multiplier;
         let [a, b] = factors.map(|factor| self.expressions.whole(factor));
@@ -353,9 +355,9 @@ impl<'a> Builder<'a> {
     /// Writes the blocks of registers. Registers with the same enable and the same reset behaviour share a block.
     pub(super) fn groups(&mut self, wanted: &dyn Fn(NetId) -> bool) -> Vec<Vec<String>> {
         /// The enable, and whether reset sets the registers.
-        type Key = (Option<NetId>, bool);
+        type ResetGroup = (Option<NetId>, bool);
         let design = self.plan.design;
-        let mut groups: Vec<(Key, Vec<RegId>)> = Vec::new();
+        let mut groups: Vec<(ResetGroup, Vec<RegId>)> = Vec::new();
         for member in self.written(wanted) {
             let register = design.register(member);
             let key = (register.enable, register.reset.is_some());

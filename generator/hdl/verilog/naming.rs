@@ -2,7 +2,9 @@
 //! files.
 
 use super::text::{Names, constant_name};
-use crate::netlist::{Control, Design, Driver, FieldKind, Net, NetId, Op, Partition, Rom, RomId};
+use crate::netlist::{
+    Control, Design, Driver, FieldKind, Net, NetId, NetlistRom, Op, Partition, RomId,
+};
 
 /// Names of modules, instances, memories, files and parameters.
 pub struct Naming {
@@ -60,7 +62,7 @@ impl Naming {
             });
         }
         let numbers = (0..design.roms.len() as u32).map(RomId);
-        let file = |rom: &Rom| format!("{}_{}.mem", design.name, rom.name);
+        let file = |rom: &NetlistRom| format!("{}_{}.mem", design.name, rom.name);
         Self {
             control_instance,
             datapath_instance,
@@ -162,7 +164,7 @@ pub fn remark(design: &Design, id: NetId) -> String {
 }
 
 /// Returns `ROM 18`, or `ROM sine` if the source has no number for the ROM.
-pub fn rom_label(rom: &Rom) -> String {
+pub fn rom_label(rom: &NetlistRom) -> String {
     match rom.block {
         Some(number) => format!("ROM {number}"),
         None => format!("ROM {}", rom.name),

@@ -8,7 +8,7 @@ use std::collections::{BTreeMap, HashSet};
 
 use anyhow::{Result, ensure};
 
-use super::bits::{Bits, Piece};
+use super::bits::{BitRun, Bits};
 use super::naming::remark;
 use crate::netlist::{
     DelayLine, Delayed, Design, Driver, NetId, Op, Partition, RegId, Role, RomId,
@@ -174,7 +174,7 @@ impl<'a> Plan<'a> {
     pub fn constant_comparison(&self, a: NetId, b: NetId) -> Option<u64> {
         let format = self.design.net(a).format;
         let constant = |id: NetId| match self.roots[id.index()].single() {
-            Some(Piece::Constant { value, .. }) => Some(format.raw(value)),
+            Some(BitRun::Constant { value, .. }) => Some(format.raw(value)),
             _ => None,
         };
         match (constant(a), constant(b)) {
@@ -257,7 +257,7 @@ impl<'a> Plan<'a> {
         while let Some(reader) = pending.pop() {
             for operand in self.operands(reader) {
                 for piece in self.operand_bits(reader, operand).pieces() {
-                    let (Piece::Net { net, .. } | Piece::Copies { net, .. }) = *piece else {
+                    let (BitRun::Net { net, .. } | BitRun::Copies { net, .. }) = *piece else {
                         continue;
                     };
                     if !std::mem::replace(&mut live[net.index()], true) {
@@ -281,8 +281,8 @@ impl<'a> Plan<'a> {
             for operand in self.operands(reader) {
                 let bits = self.operand_bits(reader, operand);
                 for piece in bits.pieces() {
-                    if let Piece::Net { net, width, .. } | Piece::Copies { net, count: width, .. } =
-                        *piece
+                    if let BitRun::Net { net, width, .. }
+                    | BitRun::Copies { net, count: width, .. } = *piece
                     {
                         let whole = bits.single().is_some() && width == self.design.width(net);
                         uses.entry(net).or_default().push((reader, whole));
@@ -369,7 +369,7 @@ impl<'a> Plan<'a> {
 
     fn mentioned(&self, operand: NetId, size: &[usize]) -> usize {
         let nets = self.bits[operand.index()].pieces().iter().map(|piece| match piece {
-            Piece::Net { net, .. } => size[net.index()],
+            BitRun::Net { net, .. } => size[net.index()],
             _ => 0,
         });
         nets.sum::<usize>().max(1)
@@ -419,9 +419,9 @@ impl<'a> Plan<'a> {
             for operand in self.operands(reader) {
                 for piece in self.operand_bits(reader, operand).pieces() {
                     match *piece {
-                        Piece::Net { net, low, width } => read(partition, net, mask(width) << low),
-                        Piece::Copies { net, bit, .. } => read(partition, net, 1 << bit),
-                        Piece::Constant { .. } => {}
+                        BitRun::Net { net, low, width } => read(partition, net, mask(width) << low),
+                        BitRun::Copies { net, bit, .. } => read(partition, net, 1 << bit),
+                        BitRun::Constant { .. } => {}
                     }
                 }
             }

@@ -8,7 +8,7 @@ use super::quotient::Quotient;
 use glint_base::cone;
 use glint_base::interval::{self, Interval, common, wrap};
 use glint_rtl::netlist::{RomId, interval::of_cell};
-use glint_rtl::pipeline::{Cell, Graph, NodeId, Op};
+use glint_rtl::pipeline::{Cell, Graph, NodeId, NodeOp};
 
 /// The most ways that are looked at, including ways that turn out to be impossible.
 const MOST: usize = 4096;
@@ -140,7 +140,7 @@ impl Case {
                     let most = (1 << bits) - 1;
                     (part(over.0, under.1).min(most), part(over.1, under.0).min(most))
                 }
-                Cell::Op(Op::Mux { select, inputs }) => {
+                Cell::Op(NodeOp::Mux { select, inputs }) => {
                     if open(select) {
                         let decider = decider(graph, *select, &of);
                         return Decision::Splits(decider, of(&decider));
@@ -148,11 +148,11 @@ impl Case {
                     of(&inputs[(of(select).0 as usize).min(inputs.len() - 1)])
                 }
                 // A condition that is counted with.
-                Cell::Op(Op::Add { carry: Some(carry), .. }) if open(carry) => {
+                Cell::Op(NodeOp::Add { carry: Some(carry), .. }) if open(carry) => {
                     let decider = decider(graph, *carry, &of);
                     return Decision::Splits(decider, of(&decider));
                 }
-                Cell::Op(Op::All(a)) => {
+                Cell::Op(NodeOp::All(a)) => {
                     let format = graph.node(*a).format;
                     let ones = if format.signed { -1 } else { format.max_raw() };
                     let possible = common(of(a), (ones, ones)).is_some();
@@ -206,32 +206,32 @@ fn polynomial(
     };
     match &node.cell {
         Cell::Operand(_) => Some(RawPolynomial::operand(id)),
-        Cell::Op(Op::Relabel(a) | Op::Extend(a)) => wrapped(of(a), known(a)?),
-        Cell::Op(Op::Slice { of: a, low: 0 }) => wrapped(of(a), known(a)?),
-        Cell::Op(Op::Not(a)) => {
+        Cell::Op(NodeOp::Relabel(a) | NodeOp::Extend(a)) => wrapped(of(a), known(a)?),
+        Cell::Op(NodeOp::Slice { of: a, low: 0 }) => wrapped(of(a), known(a)?),
+        Cell::Op(NodeOp::Not(a)) => {
             let most = if node.format.signed { -1 } else { node.format.range().1 };
             RawPolynomial::constant(most).plus(known(a)?, -1)
         }
-        Cell::Op(Op::Concat(parts)) => {
+        Cell::Op(NodeOp::Concat(parts)) => {
             let [a, zeros] = parts[..] else { return None };
             let raised =
                 graph.constant_of(zeros) == Some(0) && of(&a).0 >= 0 && !node.format.signed;
             let factor = RawPolynomial::constant(1 << graph.width(zeros));
             known(&a).filter(|_| raised)?.times(factor)
         }
-        Cell::Op(Op::Mux { select, inputs }) => {
+        Cell::Op(NodeOp::Mux { select, inputs }) => {
             known(&inputs[(of(select).0 as usize).min(inputs.len() - 1)])
         }
-        Cell::Op(Op::Add { a, b, carry }) => {
+        Cell::Op(NodeOp::Add { a, b, carry }) => {
             let one = carry.as_ref().map_or((0, 0), of);
             let whole = (of(a).0 + of(b).0 + one.0, of(a).1 + of(b).1 + one.1);
             let carry = RawPolynomial::constant(one.0);
             wrapped(whole, known(a)?.plus(known(b)?, 1)?.plus(carry, 1)?)
         }
-        Cell::Op(Op::Sub(a, b)) => {
+        Cell::Op(NodeOp::Sub(a, b)) => {
             wrapped((of(a).0 - of(b).1, of(a).1 - of(b).0), known(a)?.plus(known(b)?, -1)?)
         }
-        Cell::Op(Op::Mul(a, b)) => known(a)?.times(known(b)?),
+        Cell::Op(NodeOp::Mul(a, b)) => known(a)?.times(known(b)?),
         _ => None,
     }
 }
@@ -239,14 +239,13 @@ fn polynomial(
 /// Returns the node to split first, so that this undecided selection becomes known: a condition on which the
 /// selection depends.
 fn decider(graph: &Graph, id: NodeId, of: &dyn Fn(&NodeId) -> Interval) -> NodeId {
-    let operands = match &graph.node(id).cell {
-        Cell::Op(op @ (Op::And(..) | Op::Or(..) | Op::Not(_) | Op::Relabel(_)))
-            if graph.width(id) == 1 =>
-        {
-            op.operands()
-        }
-        _ => return id,
-    };
+    let operands =
+        match &graph.node(id).cell {
+            Cell::Op(
+                op @ (NodeOp::And(..) | NodeOp::Or(..) | NodeOp::Not(_) | NodeOp::Relabel(_)),
+            ) if graph.width(id) == 1 => op.operands(),
+            _ => return id,
+        };
     let open = operands.into_iter().find(|operand| of(operand).0 != of(operand).1);
     open.map_or(id, |operand| decider(graph, operand, of))
 }
@@ -273,15 +272,15 @@ pub fn learn(
     let Cell::Op(op) = &node.cell else { return true };
     let is = (range.0 == range.1).then_some(range.0);
     match (op, is) {
-        (Op::Relabel(a) | Op::Extend(a), _) if unsigned(*a) == unsigned(id) => {
+        (NodeOp::Relabel(a) | NodeOp::Extend(a), _) if unsigned(*a) == unsigned(id) => {
             learn(graph, known, ranges, *a, range)
         }
-        (Op::Not(a), _) if unsigned(*a) && unsigned(id) => {
+        (NodeOp::Not(a), _) if unsigned(*a) && unsigned(id) => {
             let most = all(id).1;
             learn(graph, known, ranges, *a, (most - range.1, most - range.0))
         }
         // The bits above all others.
-        (Op::Slice { of, low }, _) if reaches_top(graph, *of, low + graph.width(id)) => {
+        (NodeOp::Slice { of, low }, _) if reaches_top(graph, *of, low + graph.width(id)) => {
             if unsigned(*of) && unsigned(id) {
                 learn(graph, known, ranges, *of, (range.0 << low, ((range.1 + 1) << low) - 1))
             } else if let (Some(bit), 1, false) = (is, graph.width(id), unsigned(*of)) {
@@ -294,7 +293,7 @@ pub fn learn(
             }
         }
         // The bits below a sign that is known.
-        (Op::Slice { of, low }, _)
+        (NodeOp::Slice { of, low }, _)
             if !unsigned(*of) && unsigned(id) && low + graph.width(id) + 1 == graph.width(*of) =>
         {
             let (least, _) = all(*of);
@@ -307,28 +306,30 @@ pub fn learn(
             learn(graph, known, ranges, *of, range)
         }
         // For a mux whose select is decided: the input that it passes on.
-        (Op::Mux { select, inputs }, _) => match value(known, *select) {
+        (NodeOp::Mux { select, inputs }, _) => match value(known, *select) {
             (low, high) if low == high => {
                 let input = inputs[(low as usize).min(inputs.len() - 1)];
                 unsigned(input) != unsigned(id) || learn(graph, known, ranges, input, range)
             }
             _ => true,
         },
-        (Op::Any(a), Some(0)) => learn(graph, known, ranges, *a, (0, 0)),
-        (Op::Any(a), Some(_)) if unsigned(*a) => learn(graph, known, ranges, *a, (1, all(*a).1)),
-        (Op::All(a), Some(0)) if unsigned(*a) => {
+        (NodeOp::Any(a), Some(0)) => learn(graph, known, ranges, *a, (0, 0)),
+        (NodeOp::Any(a), Some(_)) if unsigned(*a) => {
+            learn(graph, known, ranges, *a, (1, all(*a).1))
+        }
+        (NodeOp::All(a), Some(0)) if unsigned(*a) => {
             learn(graph, known, ranges, *a, (0, all(*a).1 - 1))
         }
-        (Op::All(a), Some(_)) if unsigned(*a) => {
+        (NodeOp::All(a), Some(_)) if unsigned(*a) => {
             learn(graph, known, ranges, *a, (all(*a).1, all(*a).1))
         }
-        (Op::And(a, b), Some(1)) if graph.width(id) == 1 => {
+        (NodeOp::And(a, b), Some(1)) if graph.width(id) == 1 => {
             learn(graph, known, ranges, *a, (1, 1)) && learn(graph, known, ranges, *b, (1, 1))
         }
-        (Op::Or(a, b), Some(0)) if graph.width(id) == 1 => {
+        (NodeOp::Or(a, b), Some(0)) if graph.width(id) == 1 => {
             learn(graph, known, ranges, *a, (0, 0)) && learn(graph, known, ranges, *b, (0, 0))
         }
-        (Op::Less(a, b), Some(less)) => {
+        (NodeOp::Less(a, b), Some(less)) => {
             let ((a_low, a_high), (b_low, b_high)) = (value(known, *a), value(known, *b));
             let (for_a, for_b) = match less {
                 1 => ((a_low, b_high - 1), (a_low + 1, b_high)),

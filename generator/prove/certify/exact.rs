@@ -7,7 +7,7 @@ use std::collections::{BTreeMap, HashMap};
 
 use super::terms::{RealTerm, RealTermId, RealTerms};
 use glint_base::fixed::exp2;
-use glint_formula::{Comparison, Formula, Function, Kind, Literal, Operator};
+use glint_formula::{Comparison, Expression, Function, Kind, Literal, Operator};
 use glint_golden::Operand;
 
 /// A term for the formula under conditions: the terms `at_least` are not negative, and the terms `at_most` are not
@@ -94,7 +94,7 @@ pub fn word_variable(rom: &str, variable: &str) -> String {
 
 /// Notes by which power of two each operand is divided in the formula: the exponent if it is the same everywhere, or
 /// 0.
-pub fn divisors(formula: &Formula, found: &mut HashMap<String, Option<i32>>) {
+pub fn divisors(formula: &Expression, found: &mut HashMap<String, Option<i32>>) {
     let mut note = |name: &str, power: i32| {
         let all = found.entry(name.to_owned()).or_insert(Some(power));
         if *all != Some(power) {
@@ -113,7 +113,7 @@ pub fn divisors(formula: &Formula, found: &mut HashMap<String, Option<i32>>) {
 }
 
 /// Returns the operand that is divided by a power of two, and that power.
-fn quotient(formula: &Formula) -> Option<(&str, i32)> {
+fn quotient(formula: &Expression) -> Option<(&str, i32)> {
     let Kind::Binary(Operator::Div, a, b) = &formula.kind else { return None };
     let (Kind::Operand(name), Kind::Number(by)) = (&a.kind, &b.kind) else { return None };
     Some((name, power_of_two(by.nearest())?))
@@ -133,14 +133,14 @@ pub fn untranslated(function: Function) -> String {
 /// # Errors
 /// Fails if the formula has a part without a translation.
 pub fn branches(
-    formula: &Formula,
+    formula: &Expression,
     setting: &FormulaContext,
     terms: &mut RealTerms,
 ) -> Result<Vec<Branch>, String> {
     // For two expressions: every way that both can go together, with the term of each.
     let pairs = |terms: &mut RealTerms,
-                 a: &Formula,
-                 b: &Formula|
+                 a: &Expression,
+                 b: &Expression|
      -> Result<Vec<(Branch, RealTermId, RealTermId)>, String> {
         let (first, second) = (branches(a, setting, terms)?, branches(b, setting, terms)?);
         let all = first.iter().flat_map(|one| second.iter().map(move |other| (one, other)));
@@ -148,8 +148,8 @@ pub fn branches(
         Ok(pairs.collect())
     };
     let operation = |terms: &mut RealTerms,
-                     a: &Formula,
-                     b: &Formula,
+                     a: &Expression,
+                     b: &Expression,
                      make: fn(RealTermId, RealTermId) -> RealTerm| {
         let made = pairs(terms, a, b)?.into_iter().map(|(branch, left, right)| {
             let term = folded(terms, make(left, right));
@@ -170,7 +170,7 @@ pub fn branches(
         Kind::Word(rom, place) => Ok(plain(word(rom, place, setting, terms)?)),
         Kind::Constant(name, _) => Err(format!("the constant `{name}` has no translation")),
         Kind::Unary(Function::Negate, a) => {
-            let zero = Formula::new(Kind::Number(Literal::zero()), formula.span.clone());
+            let zero = Expression::new(Kind::Number(Literal::zero()), formula.span.clone());
             operation(terms, &zero, a, RealTerm::Sub)
         }
         Kind::Unary(function, _) => Err(untranslated(*function)),
@@ -231,7 +231,7 @@ pub fn branches(
 /// Returns the word of a table: the number that it is wherever this case reads, or a variable.
 fn word(
     rom: &str,
-    place: &Formula,
+    place: &Expression,
     setting: &FormulaContext,
     terms: &mut RealTerms,
 ) -> Result<RealTermId, String> {
@@ -284,7 +284,7 @@ fn variable_of(
 }
 
 /// Returns the value of a formula that does not vary in this case.
-fn constant(formula: &Formula, setting: &FormulaContext) -> Option<f64> {
+fn constant(formula: &Expression, setting: &FormulaContext) -> Option<f64> {
     match &formula.kind {
         Kind::Number(literal) => Some(literal.nearest()),
         Kind::Operand(name) => {
@@ -296,7 +296,7 @@ fn constant(formula: &Formula, setting: &FormulaContext) -> Option<f64> {
 
 /// Returns whether a comparison of an operand with a number holds for all values of this case, or for none.
 fn decided(comparison: &Comparison, setting: &FormulaContext) -> Option<bool> {
-    let range = |formula: &Formula| match &formula.kind {
+    let range = |formula: &Expression| match &formula.kind {
         Kind::Number(literal) => Some((literal.nearest(), literal.nearest())),
         Kind::Operand(name) => setting.ranges.get(name).copied(),
         _ => None,

@@ -9,7 +9,7 @@ use super::terms::{RealTerm, RealTermId, RealTerms, RoundingDirection};
 use glint_base::fixed::exp2;
 use glint_base::interval::{Interval, wrap};
 use glint_rtl::netlist::RomId;
-use glint_rtl::pipeline::{Cell, Graph, NodeId, Op};
+use glint_rtl::pipeline::{Cell, Graph, NodeId, NodeOp};
 
 /// A node's raw value.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -171,7 +171,7 @@ impl<'a> Hardware<'a> {
     /// Returns `None` if the node is made of constants, or is bits that are cut out.
     pub fn expression(&mut self, terms: &mut RealTerms, id: NodeId) -> Option<NodeValue> {
         let is_cut =
-            matches!(self.graph.node(id).cell, Cell::Op(Op::Slice { .. }) | Cell::Operand(_));
+            matches!(self.graph.node(id).cell, Cell::Op(NodeOp::Slice { .. }) | Cell::Operand(_));
         let (low, high) = self.range(id);
         if low != high {
             return self.value(terms, id).ok();
@@ -206,16 +206,16 @@ impl<'a> Hardware<'a> {
         let case = self.case;
         let range = |id: &NodeId| case.ranges[id.index()];
         match op {
-            Op::Relabel(a) | Op::Extend(a) => {
+            NodeOp::Relabel(a) | NodeOp::Extend(a) => {
                 let wrap = wrap_of(range(a))?;
                 let a = self.value(terms, *a)?;
                 Ok(add(terms, a, NodeValue::Constant(wrap), RealTerm::Add, &name))
             }
-            Op::Mux { select, inputs } => {
+            NodeOp::Mux { select, inputs } => {
                 let chosen = range(select).0 as usize;
                 self.value(terms, inputs[chosen.min(inputs.len() - 1)])
             }
-            Op::Slice { of, low } => {
+            NodeOp::Slice { of, low } => {
                 let wrap = wrap_of((range(of).0 >> low, range(of).1 >> low))?;
                 let (from, to) = range(of);
                 let of = self.value(terms, *of)?;
@@ -226,7 +226,7 @@ impl<'a> Hardware<'a> {
                 let cut = cut(terms, of, *low, RoundingDirection::Down, &name);
                 Ok(add(terms, cut, NodeValue::Constant(wrap), RealTerm::Add, &name))
             }
-            Op::Concat(parts) => {
+            NodeOp::Concat(parts) => {
                 let mut sum = NodeValue::Constant(0);
                 let mut position = 0;
                 for part in parts.iter().rev() {
@@ -240,7 +240,7 @@ impl<'a> Hardware<'a> {
                 }
                 Ok(sum)
             }
-            Op::Not(a) => {
+            NodeOp::Not(a) => {
                 let most = if node.format.signed { -1 } else { node.format.range().1 };
                 let a = self.value(terms, *a)?;
                 // The inverse of an unsigned number is 1.0 minus the number, with the point at its top.
@@ -256,7 +256,7 @@ impl<'a> Hardware<'a> {
                 };
                 Ok(add(terms, NodeValue::Constant(most), a, RealTerm::Sub, &name))
             }
-            Op::Add { a, b, carry } => {
+            NodeOp::Add { a, b, carry } => {
                 if let Some((of, low)) = self.rounded(*a, *b) {
                     let half = 1 << (low - 1);
                     let wrap =
@@ -283,13 +283,13 @@ impl<'a> Hardware<'a> {
                     }
                 }
             }
-            Op::Sub(a, b) => {
+            NodeOp::Sub(a, b) => {
                 let wrap = wrap_of((range(a).0 - range(b).1, range(a).1 - range(b).0))?;
                 let (a, b) = (self.value(terms, *a)?, self.value(terms, *b)?);
                 let difference = add(terms, a, b, RealTerm::Sub, &name);
                 Ok(add(terms, difference, NodeValue::Constant(wrap), RealTerm::Add, &name))
             }
-            Op::Mul(a, b) => {
+            NodeOp::Mul(a, b) => {
                 let frac = |id: &NodeId| graph.node(*id).format.frac;
                 let (of_a, of_b) = (self.value(terms, *a)?, self.value(terms, *b)?);
                 let (a, a_scale) = placed(terms, of_a, frac(a));
@@ -297,13 +297,15 @@ impl<'a> Hardware<'a> {
                 let id = terms.insert(RealTerm::Mul(a, b), &name);
                 Ok(NodeValue::Term { id, scale: a_scale + b_scale })
             }
-            Op::And(..)
-            | Op::Or(..)
-            | Op::Xor(..)
-            | Op::Equal(..)
-            | Op::Less(..)
-            | Op::Any(_)
-            | Op::All(_) => Err(format!("`{name}` is logic whose result is taken for a number")),
+            NodeOp::And(..)
+            | NodeOp::Or(..)
+            | NodeOp::Xor(..)
+            | NodeOp::Equal(..)
+            | NodeOp::Less(..)
+            | NodeOp::Any(_)
+            | NodeOp::All(_) => {
+                Err(format!("`{name}` is logic whose result is taken for a number"))
+            }
         }
     }
 
@@ -311,11 +313,11 @@ impl<'a> Hardware<'a> {
     /// to the nearest, halves up, for ⌊y⌋ + (⌊2y⌋ − 2⌊y⌋) = ⌊y + 1/2⌋. Returns `None` if y may be negative.
     fn rounded(&self, a: NodeId, b: NodeId) -> Option<(NodeId, u32)> {
         let inner = |id: NodeId| match &self.graph.node(id).cell {
-            Cell::Op(Op::Extend(of) | Op::Relabel(of)) => *of,
+            Cell::Op(NodeOp::Extend(of) | NodeOp::Relabel(of)) => *of,
             _ => id,
         };
         let slice = |id: NodeId| match &self.graph.node(inner(id)).cell {
-            Cell::Op(Op::Slice { of, low }) => Some((widened(self.graph, *of), *low)),
+            Cell::Op(NodeOp::Slice { of, low }) => Some((widened(self.graph, *of), *low)),
             _ => None,
         };
         let one = |a: NodeId, b: NodeId| {

@@ -25,7 +25,7 @@ use std::time::{Duration, Instant};
 
 use cases::UnrolledComputation;
 pub use find::bound;
-use glint_formula::{Formula, Function, Kind, parse};
+use glint_formula::{Expression, Function, Kind, parse};
 use glint_golden::Contract;
 use glint_rtl::netlist::{Design, RomId};
 use glint_rtl::pipeline::{NodeId, unroll, unroll_line};
@@ -118,7 +118,7 @@ fn within(
     Ok(statements.list)
 }
 
-fn formulas(contract: &dyn Contract) -> Result<Vec<Formula>, String> {
+fn formulas(contract: &dyn Contract) -> Result<Vec<Expression>, String> {
     let (expressions, wanted) = match contract.highlight() {
         Some(highlight) => (highlight.expressions(), 1),
         None => (contract.expressions(), contract.outputs().len()),

@@ -12,8 +12,8 @@ use super::statement::Statements;
 use super::task::Task;
 use super::terms::{RealTerm, RealTermId, RealTerms};
 use glint_base::fixed::exp2;
-use glint_formula::Formula;
-use glint_rtl::pipeline::{Cell, NodeId, Op};
+use glint_formula::Expression;
+use glint_rtl::pipeline::{Cell, NodeId, NodeOp};
 
 impl Task<'_> {
     /// Returns the variable and the divisor of each operand. If the formula divides an operand by a power of two
@@ -136,7 +136,9 @@ impl Task<'_> {
                 let value = |raw: i128| raw as f64 * exp2(-scale);
                 presupposed.insert(id, (value(low), value(high)));
             }
-            if let (Cell::Op(Op::Less(a, b)), true) = (&self.graph().node(node).cell, low == high) {
+            if let (Cell::Op(NodeOp::Less(a, b)), true) =
+                (&self.graph().node(node).cell, low == high)
+            {
                 presupposed.extend(hardware.compared(terms, (*a, *b), low == 1));
             }
         }
@@ -154,7 +156,7 @@ fn real_operand(
     setting: &FormulaContext,
     terms: &mut RealTerms,
 ) -> Result<RealTermId, String> {
-    let branches = exact::branches(&Formula::operand(name), setting, terms)?;
+    let branches = exact::branches(&Expression::operand(name), setting, terms)?;
     Ok(branches[0].term)
 }
 

@@ -7,7 +7,7 @@
 
 use std::collections::BTreeMap;
 
-use glint_rtl::pipeline::{Cell, Graph, NodeId, Op};
+use glint_rtl::pipeline::{Cell, Graph, NodeId, NodeOp};
 
 /// A quotient that is found bit by bit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -42,7 +42,7 @@ pub fn quotients(graph: &Graph, results: &[NodeId]) -> BTreeMap<NodeId, Quotient
 
 /// Returns the quotient whose bits a node joins, the first on top.
 fn quotient(graph: &Graph, id: NodeId) -> Option<Quotient> {
-    let Cell::Op(Op::Concat(_)) = graph.node(id).cell else { return None };
+    let Cell::Op(NodeOp::Concat(_)) = graph.node(id).cell else { return None };
     let mut bits = Vec::new();
     joined(graph, id, &mut bits);
     let steps: Option<Vec<DivisionStep>> = bits.iter().map(|&bit| step(graph, bit)).collect();
@@ -57,7 +57,9 @@ fn quotient(graph: &Graph, id: NodeId) -> Option<Quotient> {
 /// Collects the nodes that are joined in a node, the top one first.
 fn joined(graph: &Graph, id: NodeId, parts: &mut Vec<NodeId>) {
     match &graph.node(id).cell {
-        Cell::Op(Op::Concat(inner)) => inner.iter().for_each(|&part| joined(graph, part, parts)),
+        Cell::Op(NodeOp::Concat(inner)) => {
+            inner.iter().for_each(|&part| joined(graph, part, parts))
+        }
         _ => parts.push(id),
     }
 }
@@ -77,9 +79,9 @@ fn step(graph: &Graph, bit: NodeId) -> Option<DivisionStep> {
         Cell::Op(op) => Some(op),
         _ => None,
     };
-    let Op::Not(negative) = op(bit)? else { return None };
-    let Op::Slice { of: trial, low } = op(*negative)? else { return None };
-    let Op::Sub(doubled, divisor) = op(*trial)? else { return None };
+    let NodeOp::Not(negative) = op(bit)? else { return None };
+    let NodeOp::Slice { of: trial, low } = op(*negative)? else { return None };
+    let NodeOp::Sub(doubled, divisor) = op(*trial)? else { return None };
     // The sign of a difference that has room for all its values.
     let ((least, most), (from, to)) = (graph.node(*trial).format.range(), {
         let (a, b) = (graph.node(*doubled).range, graph.node(*divisor).range);
@@ -90,7 +92,7 @@ fn step(graph: &Graph, bit: NodeId) -> Option<DivisionStep> {
         && low + 1 == graph.width(*trial)
         && least <= from
         && to <= most;
-    let Op::Concat(parts) = op(widened(graph, *doubled))? else { return None };
+    let NodeOp::Concat(parts) = op(widened(graph, *doubled))? else { return None };
     let [remainder, zero] = parts[..] else { return None };
     let is_doubled = graph.constant_of(zero) == Some(0) && graph.width(zero) == 1;
     let (doubled, trial, divisor) = (*doubled, *trial, widened(graph, *divisor));
@@ -106,15 +108,15 @@ fn step(graph: &Graph, bit: NodeId) -> Option<DivisionStep> {
 
 /// Returns whether a node is the remainder after a step, with all bits that numbers up to the divisor have.
 fn is_left(graph: &Graph, id: NodeId, step: &DivisionStep) -> bool {
-    let Cell::Op(Op::Slice { of, low: 0 }) = graph.node(id).cell else { return false };
-    let left = Op::Mux { select: step.bit, inputs: vec![step.doubled, step.trial] };
+    let Cell::Op(NodeOp::Slice { of, low: 0 }) = graph.node(id).cell else { return false };
+    let left = NodeOp::Mux { select: step.bit, inputs: vec![step.doubled, step.trial] };
     graph.node(of).cell == Cell::Op(left) && graph.width(id) >= graph.width(step.divisor)
 }
 
 /// Returns the node that is extended by zeros in this one.
 pub fn widened(graph: &Graph, id: NodeId) -> NodeId {
     match &graph.node(id).cell {
-        Cell::Op(Op::Extend(of)) if !graph.node(*of).format.signed => *of,
+        Cell::Op(NodeOp::Extend(of)) if !graph.node(*of).format.signed => *of,
         _ => id,
     }
 }

@@ -26,9 +26,9 @@ use super::statement::{Statement, Statements};
 use super::task::Task;
 use super::terms::{RealTerm, RealTermId, RealTerms, number};
 use glint_base::fixed::exp2;
-use glint_formula::{Enclosure, Formula, Function, Kind, Operator, parse};
+use glint_formula::{Enclosure, Expression, Function, Kind, Operator, parse};
 use glint_rtl::netlist::NetId;
-use glint_rtl::pipeline::{Cell, NodeId, Op, WalkRegister};
+use glint_rtl::pipeline::{Cell, NodeId, NodeOp, WalkRegister};
 
 /// The number of words in a script: Gappa's time grows with its square.
 const WORDS: usize = 8;
@@ -87,7 +87,7 @@ pub fn statements(task: &Task, walk: &[WalkRegister]) -> Result<Vec<Statement>, 
 }
 
 /// Returns x and k of cos(pi / 2 · x)ᵏ.
-fn lobe(formula: &Formula) -> Option<(&Formula, u32)> {
+fn lobe(formula: &Expression) -> Option<(&Expression, u32)> {
     let Kind::Binary(Operator::Power, base, exponent) = &formula.kind else { return None };
     let Kind::Unary(Function::Cos, angle) = &base.kind else { return None };
     let Kind::Number(literal) = &exponent.kind else { return None };
@@ -102,7 +102,7 @@ struct AngleWalk {
     /// The angle of the first point.
     start: String,
     /// The angle as a point has it, as the formula of a point that is no first one says it: wrapped around.
-    wrapped: Formula,
+    wrapped: Expression,
 }
 
 impl AngleWalk {
@@ -115,7 +115,7 @@ impl AngleWalk {
             _ => None,
         };
         let [WalkRegister { first, before, next }] = *walk else { return Err(other()) };
-        let Cell::Op(Op::Add { a, b, carry: None }) = graph.node(next).cell else {
+        let Cell::Op(NodeOp::Add { a, b, carry: None }) = graph.node(next).cell else {
             return Err(other());
         };
         let step = if a == before { b } else { a };
@@ -134,8 +134,8 @@ impl AngleWalk {
 
     /// Returns the expression with [`POINT`] in place of the angle of a point, start + index·step, wrapped around. By
     /// induction, the walk's register holds this angle.
-    fn angle(&self, formula: &Formula) -> Formula {
-        formula.substitute(&self.wrapped, &Formula::operand(POINT), &formula.span)
+    fn angle(&self, formula: &Expression) -> Expression {
+        formula.substitute(&self.wrapped, &Expression::operand(POINT), &formula.span)
     }
 }
 
@@ -163,8 +163,8 @@ fn table(task: &Task) -> Result<ColourProducts, String> {
         let node = graph.node(id);
         let is_open = |id: &NodeId| graph.node(*id).range.0 != graph.node(*id).range.1;
         let selects = match &node.cell {
-            Cell::Op(Op::Mux { select, .. }) => is_open(select),
-            Cell::Op(Op::Add { carry: Some(carry), .. }) => is_open(carry),
+            Cell::Op(NodeOp::Mux { select, .. }) => is_open(select),
+            Cell::Op(NodeOp::Add { carry: Some(carry), .. }) => is_open(carry),
             Cell::Operand(at) => {
                 let name = &task.design.net(task.unrolled.operands[*at]).name;
                 before.binary_search(&id).is_ok() || !colours.contains(name)
@@ -187,7 +187,7 @@ fn words(
     task: &Task,
     table: NodeId,
     walk: &AngleWalk,
-    angle: &Formula,
+    angle: &Expression,
 ) -> Result<Vec<WordSegment>, String> {
     let graph = task.graph();
     let Cell::Read { rom, address } = graph.node(table).cell else {
@@ -237,7 +237,7 @@ fn words(
 
 /// Returns the enclosure of an angle if the angle of the point is in this range. Returns `None` if the angle depends
 /// on anything else.
-fn enclosed(angle: &Formula, (low, high): (f64, f64)) -> Option<Enclosure> {
+fn enclosed(angle: &Expression, (low, high): (f64, f64)) -> Option<Enclosure> {
     angle.enclose(&[(POINT, Enclosure::between(low, high))]).ok()
 }
 

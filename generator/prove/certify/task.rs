@@ -2,7 +2,7 @@
 //! table requires it.
 
 use super::cases::{self, NodeIntervals, UnrolledComputation};
-use glint_formula::{Formula, Kind, Operator};
+use glint_formula::{Expression, Kind, Operator};
 use glint_golden::Contract;
 use glint_rtl::netlist::{Design, RomId};
 use glint_rtl::pipeline::{Cell, Graph, NodeId, Unrolled};
@@ -24,7 +24,7 @@ pub(super) struct Task<'a> {
     pub(super) view: UnrolledComputation<'a>,
     pub(super) tables: &'a [String],
     /// The formulas of a highlight's f, or else of the outputs.
-    pub(super) formulas: &'a [Formula],
+    pub(super) formulas: &'a [Expression],
 }
 
 impl Task<'_> {
@@ -90,7 +90,7 @@ impl Task<'_> {
                 continue;
             };
             let tables: Vec<RomId> = self.tables_read_at(node);
-            let is_exponent = |part: &Kind| matches!(part, Kind::Binary(Operator::Power, _, exponent) if **exponent == Formula::operand(&operand.name));
+            let is_exponent = |part: &Kind| matches!(part, Kind::Binary(Operator::Power, _, exponent) if **exponent == Expression::operand(&operand.name));
             let single = self.formulas.iter().any(|formula| formula.has(&is_exponent));
             let words = |at: i64| -> Vec<i128> {
                 tables.iter().map(|&rom| (self.view.words)(rom, at as u64)).collect()

@@ -11,7 +11,7 @@ use rand_chacha::rand_core::{RngCore, SeedableRng};
 
 use super::terms::{RealTerm, RealTermId, RealTerms, RoundingDirection, number};
 use glint_base::fixed::exp2;
-use glint_formula::{Formula, Function, Kind, Operator, parse};
+use glint_formula::{Expression, Function, Kind, Operator, parse};
 
 /// Points from which a descent begins.
 const STARTS: usize = 64;
@@ -195,7 +195,7 @@ fn expression(
 }
 
 fn term(
-    formula: &Formula,
+    formula: &Expression,
     terms: &mut RealTerms,
     names: &HashMap<String, RealTermId>,
 ) -> Option<RealTermId> {

@@ -5,7 +5,7 @@ use anyhow::Result;
 
 use glint_base::cone;
 use glint_core::cosim::Lockstep;
-use glint_rtl::netlist::{Design, Driver, NetId, Register, RegisterKind, Role, RomId};
+use glint_rtl::netlist::{Design, Driver, NetId, NetlistRegister, RegisterKind, Role, RomId};
 use glint_rtl::sim::Simulator;
 
 /// Places that are kept of each word.
@@ -125,7 +125,7 @@ impl Coverage {
 }
 
 /// Returns the operand that a register holds, which it takes from a port or from the buffer behind it.
-pub(super) fn operand_of<'d>(design: &'d Design, register: &Register) -> Option<&'d str> {
+pub(super) fn operand_of<'d>(design: &'d Design, register: &NetlistRegister) -> Option<&'d str> {
     let before = |net: NetId| match &design.net(net).driver {
         Driver::Op(op) => op.operands(),
         Driver::Register(buffer) => design.register(*buffer).data.into_iter().collect(),

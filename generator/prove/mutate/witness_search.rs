@@ -15,7 +15,7 @@ use glint_base::fixed::mask;
 use glint_core::cosim::Random;
 use glint_golden::{Contract, Operand};
 use glint_rtl::netlist::{Design, NetId, Pipeline, Role};
-use glint_rtl::sim::{Machine, Program};
+use glint_rtl::sim::{CompiledDesign, Machine};
 
 const LANES: usize = 64;
 
@@ -33,7 +33,7 @@ const SEED: u64 = 4;
 
 /// The pipeline without a fault.
 pub(super) struct PointSearch {
-    sound: Arc<Program>,
+    sound: Arc<CompiledDesign>,
     /// How many inputs there are, and which are high after a clock of reset: a point comes and one goes whenever it can.
     inputs: usize,
     high: Vec<usize>,
@@ -82,7 +82,7 @@ impl PointSearch {
         let results = sound.outputs().filter(|port| port.role == Role::Result);
         stages[pipeline.stages.len()].predicted.extend(results.map(|port| port.net));
         Ok(Self {
-            sound: Arc::new(Program::new(sound)?),
+            sound: Arc::new(CompiledDesign::new(sound)?),
             inputs: sound.inputs().count(),
             high: [Role::Reset, Role::InValid, Role::OutReady]
                 .into_iter()
@@ -105,7 +105,7 @@ impl PointSearch {
         confirm: impl Fn(OperandValues) -> Result<Option<T>>,
     ) -> Result<Option<T>> {
         let mut sound = Machine::<LANES>::new(self.sound.clone());
-        let mut mutant = Machine::<LANES>::new(Arc::new(Program::new(mutant)?));
+        let mut mutant = Machine::<LANES>::new(Arc::new(CompiledDesign::new(mutant)?));
         let mut random = Random::new(SEED);
         let mut inputs = vec![[0; LANES]; self.inputs];
         let mut kept = DeepestPoints::default();

@@ -2,8 +2,8 @@
 
 use anyhow::{Context, Result};
 
-use glint_config::{Config, Key, Kind, Schema, Value};
-use glint_core::cosim::{Points, Random};
+use glint_config::{Config, Key, KeyKind, Schema, Value};
+use glint_core::cosim::{PointSource, Random};
 use glint_core::registry::Device;
 use glint_golden::Contract;
 use glint_rtl::netlist::Design;
@@ -134,7 +134,7 @@ struct CoreInterface {
 
 impl CoreInterface {
     fn new(design: &Design, contract: &dyn Contract) -> Self {
-        let (drawn, mut random) = (Points::new(contract), Random::new(1));
+        let (drawn, mut random) = (PointSource::new(contract), Random::new(1));
         let points: Vec<Vec<i64>> = (0..POINTS).map(|_| drawn.of_domain(&mut random)).collect();
         Self {
             ports: ports(design),
@@ -169,10 +169,10 @@ fn formula(contract: &dyn Contract, points: &[Vec<i64>]) -> Vec<[f64; 2]> {
 fn alternatives(key: &Key, value: &Value) -> Vec<Value> {
     let mut values = neighbours(&key.kind, value);
     match (&key.kind, value) {
-        (Kind::Integer { min, max }, _) => {
+        (KeyKind::Integer { min, max }, _) => {
             values.extend([*min, *max].map(Value::Integer));
         }
-        (Kind::Integers { min, max, .. }, Value::Integers(list)) => {
+        (KeyKind::Integers { min, max, .. }, Value::Integers(list)) => {
             values.extend([*min, *max].map(|end| Value::Integers(vec![end; list.len()])));
         }
         _ => {}
@@ -181,18 +181,18 @@ fn alternatives(key: &Key, value: &Value) -> Vec<Value> {
 }
 
 /// Returns the values next to one, inside the range.
-fn neighbours(kind: &Kind, value: &Value) -> Vec<Value> {
+fn neighbours(kind: &KeyKind, value: &Value) -> Vec<Value> {
     match (kind, value) {
-        (Kind::Integer { min, max }, Value::Integer(value)) => {
+        (KeyKind::Integer { min, max }, Value::Integer(value)) => {
             let values = STEPS.iter().flat_map(|step| [value - step, value + step]);
             values.filter(|value| (min..=max).contains(&value)).map(Value::Integer).collect()
         }
-        (Kind::Choice(options), Value::Text(text)) => {
+        (KeyKind::Choice(options), Value::Text(text)) => {
             let others = options.iter().filter(|option| *option != text);
             others.map(|option| Value::Text((*option).to_owned())).collect()
         }
-        (Kind::Flag, Value::Flag(flag)) => vec![Value::Flag(!flag)],
-        (Kind::Integers { min, max, len_min, len_max }, Value::Integers(list)) => {
+        (KeyKind::Flag, Value::Flag(flag)) => vec![Value::Flag(!flag)],
+        (KeyKind::Integers { min, max, len_min, len_max }, Value::Integers(list)) => {
             let mut lists = Vec::new();
             for at in 0..list.len() {
                 for by in [-1, 1] {

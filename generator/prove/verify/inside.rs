@@ -10,7 +10,7 @@ use glint_base::input;
 use glint_base::program::Program;
 use glint_base::text::{counted, grouped};
 use glint_core::core::{TEST_POINTS, TEST_SEED};
-use glint_core::cosim::exhaustive::{Job, Proof, Record, Shard, State};
+use glint_core::cosim::exhaustive::{Job, Proof, Record, Shard, ShardState};
 use glint_golden::{Contract, Sweep};
 
 /// Results that lock-step compares, and with full effort.
@@ -156,7 +156,7 @@ fn contract(subject: &CheckSubject<'_>, progress: &(dyn Fn(u64) + Sync)) -> Resu
         });
     }
     let job = Job::new(contract);
-    let mut state = State::new("", Shard::WHOLE);
+    let mut state = ShardState::new("", Shard::WHOLE);
     let whole = job.run(&mut state, progress, &mut |_| ControlFlow::Continue(()))?;
     debug_assert!(whole.is_continue(), "nothing stops it");
     let proof = Proof::new(contract, state.f.peak, state.colours.peak);

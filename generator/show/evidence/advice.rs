@@ -4,7 +4,7 @@ use std::fmt;
 
 use glint_base::fixed::Format;
 use glint_base::text::rounded_up;
-use glint_config::{Config, Kind, Schema, Value};
+use glint_config::{Config, KeyKind, Schema, Value};
 use glint_core::core::Core;
 use glint_core::registry::Device;
 use glint_golden::{Bound, Contract};
@@ -130,7 +130,7 @@ fn candidates(
     };
     let mut candidates = Vec::new();
     for key in &schema.keys {
-        let is_choice = matches!(key.kind, Kind::Choice(_) | Kind::Flag);
+        let is_choice = matches!(key.kind, KeyKind::Choice(_) | KeyKind::Flag);
         let is_asked = governs(key.name) || is_choice && is_beside(key.name);
         if is_asked && table(key.name) != "domain" && config.applies(schema, key.name) {
             let values = neighbours(&key.kind, config.value(key.name), step);
@@ -141,10 +141,10 @@ fn candidates(
 }
 
 /// Returns the values next to one.
-fn neighbours(kind: &Kind, value: &Value, step: i64) -> Vec<Value> {
+fn neighbours(kind: &KeyKind, value: &Value, step: i64) -> Vec<Value> {
     match (kind, value) {
         (_, Value::Integer(value)) => [value - step, value + step].map(Value::Integer).to_vec(),
-        (Kind::Choice(options), Value::Text(text)) => {
+        (KeyKind::Choice(options), Value::Text(text)) => {
             let others = options.iter().filter(|option| *option != text);
             others.map(|option| Value::Text((*option).to_owned())).collect()
         }

@@ -1,6 +1,6 @@
 //! Mistakes in microprograms: order and ends of microinstructions, selections, `valid`, jumps and loops.
 
-use glint::dsl::{Designer, Setting, Signal, end, jump_if, loop_while, next, step, valid};
+use glint::dsl::{Designer, Signal, StepSetting, end, jump_if, loop_while, next, step, valid};
 use glint::fixed::{Format, Overflow, Rounding};
 
 use super::{BYTE, Found, finish, mistakes, program};
@@ -137,7 +137,7 @@ fn held_products_settle_under_their_selection() {
 
 #[test]
 fn valid_may_follow_one_bit() {
-    let follows = |clocks: u32, last: fn() -> Vec<Setting>| {
+    let follows = |clocks: u32, last: fn() -> Vec<StepSetting>| {
         program(|d, load| {
             let x = d.operand("a", Format::BIT);
             d.valid_after(x.q(), clocks);

@@ -6,7 +6,7 @@ mod microprogram;
 use std::panic::Location;
 
 use glint::config::Config;
-use glint::dsl::{About, Designer, Setting, end, loop_while, step, valid};
+use glint::dsl::{About, Designer, StepSetting, end, loop_while, step, valid};
 use glint::fixed::{Format, Overflow, Rounding};
 use glint::hdl::blocks::divider::Divider;
 use glint::registry::Registry;
@@ -39,7 +39,7 @@ fn finish(d: Designer) -> Found {
 
 /// Returns a small device with these microinstructions.
 #[track_caller]
-fn program(steps: impl FnOnce(&Designer, Setting) -> Vec<glint::dsl::Step>) -> Found {
+fn program(steps: impl FnOnce(&Designer, StepSetting) -> Vec<glint::dsl::Step>) -> Found {
     let d = Designer::new("device");
     let x = d.operand("x", BYTE);
     let y = d.register("y", BYTE);
@@ -296,7 +296,7 @@ fn formats_have_limits() {
 }
 
 /// Returns the warnings of a small device that says more than it needs to.
-fn warnings(more: impl FnOnce(&Designer) -> Vec<Setting>) -> Found {
+fn warnings(more: impl FnOnce(&Designer) -> Vec<StepSetting>) -> Found {
     let d = Designer::new("device");
     let x = d.operand("x", BYTE);
     let y = d.register("y", BYTE);

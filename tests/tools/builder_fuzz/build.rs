@@ -1,7 +1,7 @@
 //! Descriptions drawn at random: calls of the builder, right ones and wrong ones.
 
 use glint::base::diagnostic::Diagnostics;
-use glint::dsl::{Designer, Register, Setting, Signal, end, jump_if, loop_while, step, valid};
+use glint::dsl::{Designer, Register, Signal, StepSetting, end, jump_if, loop_while, step, valid};
 use glint::fixed::{Format, Overflow, Rounding};
 use glint::hdl::netlist::Design;
 use proptest::collection::vec;
@@ -62,9 +62,9 @@ struct Builder<'d> {
     registers: Vec<Register<'d>>,
     /// Wires that are not driven yet.
     wires: Vec<Signal<'d>>,
-    settings: Vec<Setting>,
+    settings: Vec<StepSetting>,
     /// The settings of counters, which do not count where they load.
-    counting: Vec<Setting>,
+    counting: Vec<StepSetting>,
     count: usize,
 }
 

@@ -14,7 +14,7 @@ use crate::commands::load;
 use crate::interrupt::Deferred;
 use crate::{OutputOptions, destination, progress, say, wrong_usage};
 use glint_base::{input, text};
-use glint_core::cosim::exhaustive::{Job, Shard, State, kept};
+use glint_core::cosim::exhaustive::{Job, Shard, ShardState, kept};
 use glint_core::registry::Registry;
 use show::{announce, report};
 
@@ -40,7 +40,7 @@ pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) ->
     for (one, sweep) in loaded.iter().zip(sweeps) {
         let fingerprint = one.core.fingerprint(&sweep);
         let job = one.core.job_of(sweep)?;
-        let mut state = State::new(&fingerprint, arguments.shard.unwrap_or(Shard::WHOLE));
+        let mut state = ShardState::new(&fingerprint, arguments.shard.unwrap_or(Shard::WHOLE));
         if let Some(path) = &arguments.resume
             && let Some(found) = read(path)?
         {
@@ -64,7 +64,7 @@ pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) ->
 }
 
 /// Returns the state that a file holds, if there is one.
-pub fn read(path: &Path) -> Result<Option<State>> {
+pub fn read(path: &Path) -> Result<Option<ShardState>> {
     let Some(text) = input::text(path)? else { return Ok(None) };
     let state = kept::from_text(&text).with_context(|| {
         format!("`{}` does not hold the state of a proof; name another file", path.display())
@@ -76,10 +76,10 @@ pub fn read(path: &Path) -> Result<Option<State>> {
 fn prove(
     output: OutputOptions,
     job: &Job<'_>,
-    state: &mut State,
+    state: &mut ShardState,
     file: Option<&Path>,
 ) -> Result<()> {
-    let save = |state: &State| -> Result<()> {
+    let save = |state: &ShardState| -> Result<()> {
         match file {
             Some(path) => destination::replace(path, kept::to_text(state)?.as_bytes()),
             None => Ok(()),
@@ -128,7 +128,7 @@ fn prove(
 }
 
 /// Tells how long a proof will take, by a sample.
-fn announce_duration(job: &Job<'_>, state: &State) -> Result<()> {
+fn announce_duration(job: &Job<'_>, state: &ShardState) -> Result<()> {
     if job.remaining(state) == 0 {
         return Ok(());
     }

@@ -56,7 +56,7 @@ struct Team {
 }
 
 /// A computation of an instance.
-struct Task {
+struct LaneTask {
     point: usize,
     /// Results so far.
     shown: usize,
@@ -72,7 +72,7 @@ impl Team {
         let base = points.results[range.start];
         let mut out = vec![0; (points.results[range.end] - base) * width];
         // The first was taken first.
-        let mut tasks: [VecDeque<Task>; LANES] = array::from_fn(|_| VecDeque::new());
+        let mut tasks: [VecDeque<LaneTask>; LANES] = array::from_fn(|_| VecDeque::new());
         let (mut left, mut waiting) = (range.len(), range);
         let mut offering = false;
         for clock in 1.. {
@@ -80,11 +80,15 @@ impl Team {
                 break;
             }
             let ready = in_ready.is_none_or(|net| instances.simulator.lane(net, 0) == 1);
-            let takes = |tasks: &VecDeque<Task>| latency.map_or(tasks.is_empty(), |_| ready);
+            let takes = |tasks: &VecDeque<LaneTask>| latency.map_or(tasks.is_empty(), |_| ready);
             for tasks in tasks.iter_mut().filter(|tasks| takes(tasks)) {
-                tasks.extend(waiting.next().map(|point| Task { point, shown: 0, taken: clock }));
+                tasks.extend(waiting.next().map(|point| LaneTask {
+                    point,
+                    shown: 0,
+                    taken: clock,
+                }));
             }
-            let taken = |tasks: &VecDeque<Task>| {
+            let taken = |tasks: &VecDeque<LaneTask>| {
                 let newest = tasks.back().filter(|task| task.taken == clock);
                 newest.map(|task| points.operands(task.point))
             };

@@ -30,8 +30,8 @@ use features::{CLASSES, Watch, observable};
 use glint_base::fixed::mask;
 use glint_golden::Contract;
 use glint_rtl::netlist::Design;
-use glint_rtl::sim::{Machine, Program};
-use side_by_side::{LANES, Shown, SideBySide};
+use glint_rtl::sim::{CompiledDesign, Machine};
+use side_by_side::{LANES, OutputTrace, SideBySide};
 
 /// The number of computations that must show each feature, or all of them if there are fewer.
 const TIMES: u8 = 2;
@@ -40,9 +40,9 @@ const TIMES: u8 = 2;
 const MOST_CLOCKS: u32 = 20_000;
 
 /// A computation of the pool.
-struct Candidate {
+struct PoolComputation {
     operands: Vec<i64>,
-    shown: Shown,
+    shown: OutputTrace,
     /// How bright its results are, as a class.
     class: usize,
     features: Vec<u32>,
@@ -52,7 +52,7 @@ struct Candidate {
 
 /// Computations that were chosen already: a core and the pipeline that is made of it have the same.
 #[derive(Default)]
-pub struct Known(Mutex<HashMap<String, Arc<Mutex<Option<Computations>>>>>);
+pub struct ComputationCache(Mutex<HashMap<String, Arc<Mutex<Option<Computations>>>>>);
 
 /// The computations of a bench.
 #[derive(Clone, Default)]
@@ -63,7 +63,7 @@ pub struct Computations {
     pub word_stride: usize,
 }
 
-impl Known {
+impl ComputationCache {
     /// Returns [`computations`], which are looked for once for each design, whatever its name. `contract_digest` tells the
     /// contract from others.
     ///
@@ -96,7 +96,7 @@ impl Known {
 /// Fails if the design cannot be simulated, or does not belong to the contract.
 pub fn computations(design: &Design, contract: &dyn Contract) -> Result<Computations> {
     let observed = observable(design);
-    let machine = Machine::new(Arc::new(Program::new(&observed)?));
+    let machine = Machine::new(Arc::new(CompiledDesign::new(&observed)?));
     let mut device = SideBySide::new(&observed, contract, machine)?;
     let mut watch = Watch::new(&observed);
     let mut candidates = Vec::new();
@@ -112,7 +112,13 @@ pub fn computations(design: &Design, contract: &dyn Contract) -> Result<Computat
         for (lane, (operands, shown)) in batch.iter().zip(shown).enumerate() {
             let class = class(contract, &shown);
             let (features, read) = watch.take(lane, class);
-            candidates.push(Candidate { operands: operands.clone(), shown, class, features, read });
+            candidates.push(PoolComputation {
+                operands: operands.clone(),
+                shown,
+                class,
+                features,
+                read,
+            });
         }
     }
     let mut chosen: Vec<usize> = (0..pool.corners.len()).collect();
@@ -139,7 +145,7 @@ pub fn computations(design: &Design, contract: &dyn Contract) -> Result<Computat
 
 /// Chooses lines that read table after table: the first line, which is the longest, and each line that reads mostly new
 /// words.
-fn sweeps(lines: &[Candidate]) -> Vec<usize> {
+fn sweeps(lines: &[PoolComputation]) -> Vec<usize> {
     let mut read = HashSet::new();
     let mut chosen = Vec::new();
     for (at, line) in lines.iter().enumerate() {
@@ -153,7 +159,7 @@ fn sweeps(lines: &[Candidate]) -> Vec<usize> {
 }
 
 /// Returns a class for the brightest result: 0 in the dark, 1 dim, 2 beyond a sixteenth of the largest output.
-fn class(contract: &dyn Contract, shown: &Shown) -> usize {
+fn class(contract: &dyn Contract, shown: &OutputTrace) -> usize {
     let mut class = 0;
     for (_, outputs) in &shown.results {
         for (it, &output) in contract.outputs().iter().zip(outputs) {
@@ -166,7 +172,7 @@ fn class(contract: &dyn Contract, shown: &Shown) -> usize {
 
 /// Adds the candidates that show, per clock, the most features that were not shown often enough. It ends when no feature is
 /// missing or there are enough clocks. Features from number `words` on are ROM words, which must be read once.
-fn choose(candidates: &[Candidate], words: usize, count: usize, chosen: &mut Vec<usize>) {
+fn choose(candidates: &[PoolComputation], words: usize, count: usize, chosen: &mut Vec<usize>) {
     let mut wanted = vec![TIMES; count];
     wanted[words..].fill(1);
     let mut clocks = 0;

@@ -1,6 +1,6 @@
 //! Draws the pool of computations from which the computations of a test bench are chosen.
 
-use crate::cosim::{Points, Random};
+use crate::cosim::{PointSource, Random};
 use glint_golden::{Contract, Highlight};
 
 /// The number of points that are drawn in the same way as the points of the default test.
@@ -47,7 +47,7 @@ pub struct Pool {
 /// Returns the pool for a contract; a function of it alone.
 pub fn pool(contract: &dyn Contract) -> Pool {
     let mut random = Random::new(1);
-    let mut points = Points::new(contract);
+    let mut points = PointSource::new(contract);
     points.shorten(LONGEST);
     let count = points.operands().len();
     let mut drawn = vec![vec![0; count]; DRAWN];
@@ -109,7 +109,7 @@ pub fn pool(contract: &dyn Contract) -> Pool {
 
 /// Moves operands with a fraction toward the ends of their domains, most of them to the upper end. A cosine there belongs to
 /// no angle.
-fn near_ends(points: &Points<'_>, random: &mut Random, values: &mut [i64]) {
+fn near_ends(points: &PointSource<'_>, random: &mut Random, values: &mut [i64]) {
     for (value, operand) in values.iter_mut().zip(points.operands()) {
         let (low, high) = operand.domain;
         let off = random.magnitude(high.abs_diff(low)) as i64;
@@ -124,7 +124,7 @@ fn near_ends(points: &Points<'_>, random: &mut Random, values: &mut [i64]) {
 
 /// Draws operands from their formats, beyond the domains too, and moves them to where the formula has some value. A word
 /// that is read far from the peak alone within the domain is read near it there, and counts for more.
-fn anywhere(points: &Points<'_>, random: &mut Random, values: &mut [i64]) {
+fn anywhere(points: &PointSource<'_>, random: &mut Random, values: &mut [i64]) {
     let control = points.operands().iter().filter(|operand| !operand.colour).count();
     for (value, operand) in values[..control].iter_mut().zip(points.operands()) {
         let format = operand.format;
@@ -134,7 +134,7 @@ fn anywhere(points: &Points<'_>, random: &mut Random, values: &mut [i64]) {
 }
 
 /// Returns every combination of the ends of the control operands' domains, and of their formats if those are not too many.
-fn corners(points: &Points<'_>, bright: &dyn Fn(&mut [i64])) -> Vec<Vec<i64>> {
+fn corners(points: &PointSource<'_>, bright: &dyn Fn(&mut [i64])) -> Vec<Vec<i64>> {
     let ends = |with_format: bool| -> Vec<Vec<i64>> {
         let of = points.operands().iter().enumerate().map(|(at, operand)| {
             let (low, high) = operand.domain;
@@ -180,7 +180,7 @@ fn corners(points: &Points<'_>, bright: &dyn Fn(&mut [i64])) -> Vec<Vec<i64>> {
 /// less. The longest are first.
 fn lines(
     highlight: &Highlight,
-    points: &Points,
+    points: &PointSource,
     length: usize,
     bright: &dyn Fn(&mut [i64]),
 ) -> Vec<Vec<i64>> {

@@ -20,14 +20,14 @@ pub type Lanes = u32;
 
 /// The outputs of a computation.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Shown {
+pub struct OutputTrace {
     /// Clocks from `start` to the next.
     pub clocks: u32,
     /// The result outputs whenever `valid` is high, with the clock.
     pub results: Vec<(u32, Vec<u64>)>,
 }
 
-impl Shown {
+impl OutputTrace {
     /// Returns how much it differs, in the bits of results as numbers; most where the clocks differ.
     pub fn differs(&self, from: &Self) -> u64 {
         if self.results.len() != from.results.len() || self.clocks != from.clocks {
@@ -92,7 +92,7 @@ impl SideBySide {
         computations: &[&[i64]],
         word: u32,
         faults: &[u64],
-    ) -> Result<Vec<Shown>> {
+    ) -> Result<Vec<OutputTrace>> {
         self.invert(word, faults);
         let shown = self.run(computations.iter().copied(), |_, _| ());
         self.invert(word, faults);
@@ -115,7 +115,7 @@ impl SideBySide {
         &mut self,
         computations: impl IntoIterator<Item = &'c [i64]>,
         mut see: impl FnMut(&Machine<LANES>, Lanes),
-    ) -> Result<Vec<Shown>> {
+    ) -> Result<Vec<OutputTrace>> {
         let mut shown = Vec::new();
         for (lane, computation) in computations.into_iter().enumerate() {
             for port in &self.ports.operands {
@@ -123,7 +123,7 @@ impl SideBySide {
                 self.inputs[port.strobe][lane] = 1;
             }
             self.inputs[self.ports.start][lane] = 1;
-            shown.push(Shown::default());
+            shown.push(OutputTrace::default());
         }
         self.clock();
         for port in &self.ports.operands {
@@ -136,7 +136,8 @@ impl SideBySide {
             self.machine.update(false, Some(&self.inputs));
             let bits = |net| lanes(self.machine.lanes(net));
             let (busy, valid) = (bits(self.busy), bits(self.ports.valid));
-            let ended = |(lane, shown): (usize, &Shown)| shown.clocks > 0 || busy >> lane & 1 == 0;
+            let ended =
+                |(lane, shown): (usize, &OutputTrace)| shown.clocks > 0 || busy >> lane & 1 == 0;
             for (lane, shown) in shown.iter_mut().enumerate().filter(|(_, shown)| shown.clocks == 0)
             {
                 if busy >> lane & 1 == 0 {

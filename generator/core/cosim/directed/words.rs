@@ -8,13 +8,13 @@ use std::sync::Arc;
 
 use anyhow::Result;
 
-use super::Candidate;
+use super::PoolComputation;
 use super::memories::Memories;
-use super::side_by_side::{LANES, Shown, SideBySide};
-use crate::cosim::{Points, Random};
+use super::side_by_side::{LANES, OutputTrace, SideBySide};
+use crate::cosim::{PointSource, Random};
 use glint_golden::Contract;
 use glint_rtl::netlist::Design;
-use glint_rtl::sim::{Machine, Program};
+use glint_rtl::sim::{CompiledDesign, Machine};
 
 /// Readers of a word that take more clocks than this are not asked: lines that read a table from end to end.
 pub const LONGEST: u32 = 64;
@@ -51,16 +51,16 @@ pub struct Chosen {
 pub fn chosen(
     design: &Design,
     contract: &dyn Contract,
-    candidates: &[Candidate],
+    candidates: &[PoolComputation],
     known: &BTreeSet<u32>,
 ) -> Result<Chosen> {
     let mut copied = design.clone();
     let memories = Memories::copied(&mut copied, LANES);
-    let machine = Machine::new(Arc::new(Program::new(&copied)?));
+    let machine = Machine::new(Arc::new(CompiledDesign::new(&copied)?));
     let device = SideBySide::new(&copied, contract, machine)?.with_copies(&copied, memories)?;
-    let points = Points::new(contract);
+    let points = PointSource::new(contract);
     let random = Random::new(3);
-    let mut search = Search { device, points, random, candidates, result: Chosen::default() };
+    let mut search = WordSearch { device, points, random, candidates, result: Chosen::default() };
     let mut widths = Vec::new();
     for rom in &design.roms {
         let width = if design.is_control_memory(rom) { 0 } else { design.width(rom.data) };
@@ -79,14 +79,14 @@ pub fn chosen(
 }
 
 /// Returns the smallest stride with which one computation for each chosen word takes at most [`MOST_CLOCKS`], about.
-fn word_stride(candidates: &[Candidate], readers: &BTreeMap<u32, Vec<usize>>) -> usize {
+fn word_stride(candidates: &[PoolComputation], readers: &BTreeMap<u32, Vec<usize>>) -> usize {
     let first = readers.values().filter_map(|readers| readers.first());
     let clocks: u64 = first.map(|&at| u64::from(candidates[at].shown.clocks)).sum();
     clocks.div_ceil(MOST_CLOCKS).max(1) as usize
 }
 
 /// Returns for each word the brightest of its readers, as many as there are lanes.
-fn readers(candidates: &[Candidate]) -> BTreeMap<u32, Vec<usize>> {
+fn readers(candidates: &[PoolComputation]) -> BTreeMap<u32, Vec<usize>> {
     let mut order: Vec<usize> = (0..candidates.len()).collect();
     order.retain(|&at| candidates[at].shown.clocks <= LONGEST);
     order.sort_by_key(|&at| Reverse(candidates[at].class));
@@ -102,15 +102,15 @@ fn readers(candidates: &[Candidate]) -> BTreeMap<u32, Vec<usize>> {
     readers
 }
 
-struct Search<'a> {
+struct WordSearch<'a> {
     device: SideBySide,
-    points: Points<'a>,
+    points: PointSource<'a>,
     random: Random,
-    candidates: &'a [Candidate],
+    candidates: &'a [PoolComputation],
     result: Chosen,
 }
 
-impl Search<'_> {
+impl WordSearch<'_> {
     /// Chooses computations that notice these bits of a word.
     fn word(&mut self, word: u32, mut left: u64, readers: &[usize]) -> Result<()> {
         let candidates = self.candidates;
@@ -138,7 +138,7 @@ impl Search<'_> {
             nearest = noticing.iter().map(|&at| candidates[at].operands.as_slice()).collect();
             least = bit;
             self.result.chosen.insert(first);
-            let Candidate { operands, shown, .. } = &candidates[first];
+            let PoolComputation { operands, shown, .. } = &candidates[first];
             left &= !(bit | self.noticed(word, left, operands, shown)?);
         }
         self.climb(word, left, least, nearest.iter().map(|operands| operands.to_vec()).collect())
@@ -183,13 +183,19 @@ impl Search<'_> {
     }
 
     /// Returns the outputs of computations with bits of a word inverted.
-    fn run(&mut self, computations: &[&[i64]], word: u32, bits: u64) -> Result<Vec<Shown>> {
+    fn run(&mut self, computations: &[&[i64]], word: u32, bits: u64) -> Result<Vec<OutputTrace>> {
         let faults: Vec<u64> = vec![bits; computations.len()];
         self.device.run_with(computations, word, &faults)
     }
 
     /// Returns the bits of a word which a computation notices, one inverted at a time. `right` is its output without a fault.
-    fn noticed(&mut self, word: u32, bits: u64, operands: &[i64], right: &Shown) -> Result<u64> {
+    fn noticed(
+        &mut self,
+        word: u32,
+        bits: u64,
+        operands: &[i64],
+        right: &OutputTrace,
+    ) -> Result<u64> {
         let bits: Vec<u64> =
             (0..u64::BITS).map(|bit| bits & 1 << bit).filter(|&bit| bit != 0).collect();
         let mut noticed = 0;

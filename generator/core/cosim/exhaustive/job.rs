@@ -1,6 +1,6 @@
 //! Runs a proof as a job that can be interrupted, resumed, and divided among machines.
 //!
-//! The blocks of places are divided among shards: shard i of N has every N-th block, from block i − 1 on. A [`State`] records
+//! The blocks of places are divided among shards: shard i of N has every N-th block, from block i − 1 on. A [`ShardState`] records
 //! the progress of a shard, as a few numbers in a file. Joining the states of all shards gives exactly the result of one
 //! uninterrupted run, because a peak does not depend on the order in which it was found.
 
@@ -96,7 +96,7 @@ pub struct Progress {
 /// How far a shard has come.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct State {
+pub struct ShardState {
     /// Identifies one configuration, and the sources that compute with it.
     pub digest: String,
     /// The part of the job.
@@ -109,7 +109,7 @@ pub struct State {
     pub clocks: Steps,
 }
 
-impl State {
+impl ShardState {
     /// Makes the state in which nothing is done.
     pub fn new(digest: &str, shard: Shard) -> Self {
         let nothing = Progress { done: 0, peak: Peak::NONE };
@@ -169,12 +169,12 @@ impl<'a> Job<'a> {
     }
 
     /// Returns how many places of the shard are still to be visited.
-    pub fn remaining(&self, state: &State) -> u64 {
+    pub fn remaining(&self, state: &ShardState) -> u64 {
         self.parts_remaining(state).iter().sum()
     }
 
     /// Returns the remaining work of each part: of `f`, of the colours, of the combinations.
-    fn parts_remaining(&self, state: &State) -> [u64; 3] {
+    fn parts_remaining(&self, state: &ShardState) -> [u64; 3] {
         let shard = state.shard;
         let blocks = |done: u64, blocks| {
             let count = shard.count(blocks);
@@ -195,7 +195,7 @@ impl<'a> Job<'a> {
     ///
     /// # Errors
     /// Fails if the state cannot belong to this job.
-    pub fn validate(&self, state: &State) -> Result<()> {
+    pub fn validate(&self, state: &ShardState) -> Result<()> {
         let shard = state.shard;
         ensure!(shard.is_valid(), "there is no shard {shard}");
         for (what, places, progress) in
@@ -243,7 +243,7 @@ impl<'a> Job<'a> {
     ///
     /// # Errors
     /// Fails if the design cannot be simulated, or does not settle.
-    pub fn estimate(&self, state: &State, threads: usize) -> Result<Duration> {
+    pub fn estimate(&self, state: &ShardState, threads: usize) -> Result<Duration> {
         let [f, colours, clocks] = self.parts_remaining(state);
         let seconds = |count: u64, pace: Duration| count as f64 * pace.as_secs_f64();
         let mut sum = 0.0;
@@ -265,12 +265,12 @@ impl<'a> Job<'a> {
     /// Fails if the design cannot be simulated, or does not settle.
     pub fn run(
         &self,
-        state: &mut State,
+        state: &mut ShardState,
         progress: &(dyn Fn(u64) + Sync),
-        look: &mut dyn FnMut(&State) -> ControlFlow<()>,
+        look: &mut dyn FnMut(&ShardState) -> ControlFlow<()>,
     ) -> Result<ControlFlow<()>> {
         let shard = state.shard;
-        for part in [Part::F, Part::Colours] {
+        for part in [JobPart::F, JobPart::Colours] {
             let places = part.places(self);
             let count = shard.count(places.blocks());
             while part.progress(state).done < count {
@@ -305,12 +305,12 @@ impl<'a> Job<'a> {
     /// # Errors
     /// Fails if the shards belong to different jobs, or if a shard is missing, duplicated or not done. `names` gives the
     /// names of `states`, in their order, for the error.
-    pub fn merge(&self, states: &[State], names: &[String]) -> Result<State> {
+    pub fn merge(&self, states: &[ShardState], names: &[String]) -> Result<ShardState> {
         let Some(first) = states.first() else {
             anyhow::bail!("nothing to merge");
         };
         let of = first.shard.of;
-        let mut merged = State::new(&first.digest, Shard::WHOLE);
+        let mut merged = ShardState::new(&first.digest, Shard::WHOLE);
         let mut seen: BTreeMap<u64, &String> = BTreeMap::new();
         for (state, name) in states.iter().zip(names) {
             ensure!(
@@ -359,12 +359,12 @@ impl<'a> Job<'a> {
 
 /// The parts of a job.
 #[derive(Clone, Copy)]
-enum Part {
+enum JobPart {
     F,
     Colours,
 }
 
-impl Part {
+impl JobPart {
     fn places<'j, 'a>(self, job: &'j Job<'a>) -> &'j Places<'a> {
         match self {
             Self::F => &job.f,
@@ -372,7 +372,7 @@ impl Part {
         }
     }
 
-    fn progress(self, state: &mut State) -> &mut Progress {
+    fn progress(self, state: &mut ShardState) -> &mut Progress {
         match self {
             Self::F => &mut state.f,
             Self::Colours => &mut state.colours,

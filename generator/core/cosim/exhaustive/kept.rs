@@ -3,18 +3,18 @@
 use anyhow::{Context, Result, ensure};
 use serde::{Deserialize, Serialize};
 
-use super::job::State;
+use super::job::ShardState;
 use crate::package::digest;
 
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-struct Kept {
-    state: State,
+struct SavedShard {
+    state: ShardState,
     /// SHA-256 of the state as JSON without blanks.
     checksum: String,
 }
 
-fn checksum(state: &State) -> Result<String> {
+fn checksum(state: &ShardState) -> Result<String> {
     Ok(digest(&serde_json::to_vec(state)?))
 }
 
@@ -22,8 +22,8 @@ fn checksum(state: &State) -> Result<String> {
 ///
 /// # Errors
 /// Fails if the state cannot be written as JSON.
-pub fn to_text(state: &State) -> Result<String> {
-    let kept = Kept { state: state.clone(), checksum: checksum(state)? };
+pub fn to_text(state: &ShardState) -> Result<String> {
+    let kept = SavedShard { state: state.clone(), checksum: checksum(state)? };
     Ok(serde_json::to_string_pretty(&kept)? + "\n")
 }
 
@@ -31,8 +31,9 @@ pub fn to_text(state: &State) -> Result<String> {
 ///
 /// # Errors
 /// Fails if the text is not the text of such a file, or was changed since it was written.
-pub fn from_text(text: &str) -> Result<State> {
-    let kept: Kept = serde_json::from_str(text).context("not a file of this version of Glint")?;
+pub fn from_text(text: &str) -> Result<ShardState> {
+    let kept: SavedShard =
+        serde_json::from_str(text).context("not a file of this version of Glint")?;
     ensure!(kept.checksum == checksum(&kept.state)?, "the checksum is wrong: it was changed");
     Ok(kept.state)
 }

@@ -18,7 +18,7 @@ mod tests;
 pub use axis::AxisValues;
 pub use backing::{Backing, Certificate};
 pub use clocks::{Clocks, Difference, MOST_BITS, Steps};
-pub use job::{Job, MOST_SHARDS, Progress, Shard, State};
+pub use job::{Job, MOST_SHARDS, Progress, Shard, ShardState};
 pub use places::{Peak, Places};
 pub use record::Record;
 

@@ -43,7 +43,7 @@ impl Peak {
 
 /// The quantity that is measured at a place.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Measure {
+enum PlaceMeasure {
     /// The error that [`Contract::sweep_error`] returns: for a highlight, the error of `f`.
     F,
     /// The error that a colour multiplier adds, in output units.
@@ -53,7 +53,7 @@ enum Measure {
 /// The places of a contract, by number, the last axis fastest.
 pub struct Places<'a> {
     contract: &'a dyn Contract,
-    measure: Measure,
+    measure: PlaceMeasure,
     sweep: Sweep,
 }
 
@@ -65,7 +65,7 @@ impl<'a> Places<'a> {
 
     /// Makes the places of a sweep of `f` with other values than the contract's sweep.
     pub fn of_sweep(contract: &'a dyn Contract, sweep: Sweep) -> Self {
-        Self { contract, measure: Measure::F, sweep }
+        Self { contract, measure: PlaceMeasure::F, sweep }
     }
 
     /// Makes the places of every word `f` with every value of a colour operand (they are all alike).
@@ -83,7 +83,11 @@ impl<'a> Places<'a> {
             // Without colours there is no product, and no place.
             None => vec![axis("f", Values::List(Vec::new()))],
         };
-        Self { contract, measure: Measure::Colour, sweep: Sweep { axes, omits: String::new() } }
+        Self {
+            contract,
+            measure: PlaceMeasure::Colour,
+            sweep: Sweep { axes, omits: String::new() },
+        }
     }
 
     /// Returns the axes, and the operands that they leave out.
@@ -141,8 +145,8 @@ impl<'a> Places<'a> {
     #[inline]
     fn error_at(&self, place: &[i64]) -> f64 {
         let error = match self.measure {
-            Measure::F => self.contract.sweep_error(place),
-            Measure::Colour => self.contract.highlight().map_or(0.0, |highlight| {
+            PlaceMeasure::F => self.contract.sweep_error(place),
+            PlaceMeasure::Colour => self.contract.highlight().map_or(0.0, |highlight| {
                 let exact = (place[0] * place[1]) as f64 * highlight.f_format().to_f64(1);
                 (highlight.colour(place[0], place[1]) as f64 - exact).abs()
             }),

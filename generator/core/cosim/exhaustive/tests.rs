@@ -66,20 +66,20 @@ fn without_colours_there_are_no_products() {
 }
 
 /// Goes on to the end of a shard.
-fn completed(mut state: State) -> State {
+fn completed(mut state: ShardState) -> ShardState {
     let end = Job::new(&Counting).run(&mut state, &|_| (), &mut |_| ControlFlow::Continue(()));
     assert_eq!(end.unwrap(), ControlFlow::Continue(()));
     state
 }
 
-fn whole() -> State {
-    completed(State::new("digest", Shard::WHOLE))
+fn whole() -> ShardState {
+    completed(ShardState::new("digest", Shard::WHOLE))
 }
 
 #[test]
 fn an_interrupted_run_ends_as_an_uninterrupted_one() {
     let job = Job::new(&Counting);
-    let mut state = State::new("digest", Shard { number: 2, of: 3 });
+    let mut state = ShardState::new("digest", Shard { number: 2, of: 3 });
     assert_eq!(job.remaining(&state), 2 * (1 << 17));
     // Interrupted as soon as one block is done, and resumed from the text that a file would hold.
     let broken = job.run(&mut state, &|_| (), &mut |_| ControlFlow::Break(()));
@@ -95,19 +95,19 @@ fn an_interrupted_run_ends_as_an_uninterrupted_one() {
 #[test]
 fn shards_join_to_the_whole() {
     let job = Job::new(&Counting);
-    let shard = |number| completed(State::new("digest", Shard { number, of: 3 }));
+    let shard = |number| completed(ShardState::new("digest", Shard { number, of: 3 }));
     let names: Vec<String> = ["c", "a", "b"].map(String::from).to_vec();
     let states = [shard(3), shard(1), shard(2)];
     assert_eq!(job.merge(&states, &names).unwrap(), whole());
 
-    let refused = |states: &[State]| job.merge(states, &names).unwrap_err().to_string();
+    let refused = |states: &[ShardState]| job.merge(states, &names).unwrap_err().to_string();
     assert_eq!(refused(&states[..2]), "missing: shard 2/3");
     assert_eq!(refused(&[states[0].clone(), states[0].clone()]), "`c` and `a` are both shard 3/3");
     assert!(refused(&[states[0].clone(), whole()]).contains("not of one division"));
     let mut other = states[1].clone();
     other.digest = "another".to_owned();
     assert!(refused(&[states[0].clone(), other]).contains("not of the same configuration"));
-    let nothing = State::new("digest", Shard { number: 1, of: 3 });
+    let nothing = ShardState::new("digest", Shard { number: 1, of: 3 });
     assert!(refused(&[nothing]).contains("`c` is not complete; go on with --shard 1/3"));
 }
 
@@ -117,8 +117,8 @@ fn what_cannot_be_a_state_is_refused() {
     let job = Job::new(&Counting);
     let right = whole();
     job.validate(&right).unwrap();
-    job.validate(&State::new("digest", Shard { number: 3, of: 9 })).unwrap();
-    type Change = fn(&mut State);
+    job.validate(&ShardState::new("digest", Shard { number: 3, of: 9 })).unwrap();
+    type Change = fn(&mut ShardState);
     let changes: [(Change, &str); 9] = [
         (|state| state.f.done = 8, "8 blocks are done of 7"),
         (|state| state.f.done = 0, "nothing is done, and yet"),
@@ -139,7 +139,7 @@ fn what_cannot_be_a_state_is_refused() {
         assert!(format!("{merged:#}").contains("`part` is damaged"), "{merged:#}");
     }
     // A place of another shard, or of a block that is not done.
-    let mut state = State::new("digest", Shard { number: 1, of: 2 });
+    let mut state = ShardState::new("digest", Shard { number: 1, of: 2 });
     state.f = Progress { done: 1, peak: Peak { error: f64::from(1 << 17), place: 1 << 17 } };
     assert!(job.validate(&state).unwrap_err().to_string().contains("has not done"));
     state.f.peak.place = 2 << 17;
@@ -167,7 +167,7 @@ fn a_file_that_was_changed_is_no_state() {
 #[test]
 fn missing_shards_of_many_are_counted() {
     let job = Job::new(&Counting);
-    let state = completed(State::new("digest", Shard { number: 900_000, of: MOST_SHARDS }));
+    let state = completed(ShardState::new("digest", Shard { number: 900_000, of: MOST_SHARDS }));
     let refused = job.merge(&[state], &["part".to_owned()]).unwrap_err().to_string();
     assert!(refused.starts_with("missing: shard 1/1000000, 2/1000000"), "{refused}");
     assert!(refused.ends_with("10/1000000 and 999 989 more"), "{refused}");

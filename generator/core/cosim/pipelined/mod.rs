@@ -14,7 +14,7 @@ use std::sync::Arc;
 use anyhow::Result;
 
 use super::measure::Measure;
-use super::outcome::Seen;
+use super::outcome::StreamRecord;
 use super::ports::Ports;
 use glint_golden::Model;
 use glint_golden::pipeline::Occupancy;
@@ -23,7 +23,7 @@ use reference::{Expected, Reference};
 
 /// A point on its way.
 #[derive(Clone, Debug)]
-struct Point {
+struct PipelinedPoint {
     /// Raw operands, in the order of the contract.
     operands: Vec<i64>,
     side: u64,
@@ -38,7 +38,7 @@ struct Point {
 pub(super) struct Pipe {
     columns: Arc<Vec<(Column, usize)>>,
     reference: Reference,
-    stages: Occupancy<Point>,
+    stages: Occupancy<PipelinedPoint>,
     out_ready: bool,
     /// Whether the offer of the latest clock was taken.
     pub(super) taken: bool,
@@ -105,7 +105,7 @@ impl Pipe {
         inputs: &[u64],
         place: u64,
         measure: Option<&Measure>,
-        seen: &mut Seen,
+        seen: &mut StreamRecord,
     ) -> Result<()> {
         let rst_n = inputs[ports.reset] == 1;
         self.out_ready = ports.out_ready.is_none_or(|at| inputs[at] == 1);
@@ -117,7 +117,7 @@ impl Pipe {
             let patterns = ports.operands.iter().map(|port| inputs[port.data]);
             let expected = self.reference.point(patterns)?;
             let side = ports.side_in.map_or(0, |(at, _)| inputs[at]);
-            point = Some(Point { operands, side, expected, place, taken: seen.clocks });
+            point = Some(PipelinedPoint { operands, side, expected, place, taken: seen.clocks });
         }
         let Some(point) = self.stages.clock(rst_n, point, self.out_ready) else { return Ok(()) };
         seen.points += 1;

@@ -4,7 +4,7 @@
 use anyhow::{Context, Result};
 use glint_base::fill;
 
-use super::{List, PointsBench};
+use super::{PointList, PointsBench};
 use glint_rtl::netlist::{Design, Port, Role};
 use glint_rtl::verilog::text::{Names, literal};
 
@@ -26,13 +26,13 @@ pub fn points_bench(design: &Design, limit: u32) -> Result<PointsBench> {
         _ => None,
     });
     let ends = [of_role(Role::Reset)?.net, of_role(Role::Valid)?.net];
-    let list = List::new(design, limit, |role| role == Role::Point, ends);
+    let list = PointList::new(design, limit, |role| role == Role::Point, ends);
     let names = Variables::new(&mut Names::of_ports(design));
     // A pipeline that takes one every few clocks says when.
     let slots = design.pipeline.as_ref().is_some_and(|it| it.interval > 1);
     let ready = design.port(|it| it == Role::InReady).filter(|_| slots);
     let text = fill!("points_pipeline.v" {
-        list: &'a List = &list,
+        list: &'a PointList = &list,
         every: &'a str = if slots { "whenever it is taken" } else { "every clock" },
         taken: String = ready.map_or(String::new(), |it| format!(" && {}", port_name(it))),
         waits: String = match slots {

@@ -3,7 +3,7 @@
 use anyhow::{Result, bail};
 use glint_base::fill;
 
-use crate::package::artifact::{Artifacts, Job, Kind};
+use crate::package::artifact::{ArtifactKind, Artifacts, EmitJob};
 use crate::package::bus::Bus;
 use crate::package::tops::{Face, Top, TopPort};
 use crate::package::unfit::Unfit;
@@ -11,22 +11,22 @@ use glint_rtl::netlist::{Design, Role};
 use glint_rtl::verilog::text::ascii;
 
 /// A core that CSRs can drive: one computation of operands to results.
-struct Core<'a> {
+struct LitexCore<'a> {
     top: &'a Top,
-    operands: Vec<Operand>,
+    operands: Vec<LitexOperand>,
     results: Vec<&'a TopPort>,
     /// Other inputs, which stay low.
     idle: Vec<&'a TopPort>,
 }
 
-struct Operand {
+struct LitexOperand {
     name: String,
     strobe: String,
     width: u32,
 }
 
 /// A core between streams.
-struct Stream<'a> {
+struct LitexStream<'a> {
     top: &'a Top,
     input: u32,
     output: u32,
@@ -39,7 +39,7 @@ struct Stream<'a> {
 ///
 /// # Errors
 /// Fails if CSRs cannot drive the core and it has no stream.
-pub fn file(job: &Job, tops: &[Top], files: &mut Artifacts) -> Result<()> {
+pub fn file(job: &EmitJob, tops: &[Top], files: &mut Artifacts) -> Result<()> {
     let (name, design, is_line) = (job.name(), job.design, job.is_line());
     let find = |face: fn(Face) -> bool| tops.iter().find(|top| face(top.face));
     let stream = find(|face| face == Face::Stream).map(streamed);
@@ -68,20 +68,20 @@ pub fn file(job: &Job, tops: &[Top], files: &mut Artifacts) -> Result<()> {
         regenerate: &'a str = job.regenerate(),
         // The names of the classes begin with it.
         class: String = camel(name),
-        core: Option<Core<'a>>,
-        stream: Option<Stream<'a>>,
+        core: Option<LitexCore<'a>>,
+        stream: Option<LitexStream<'a>>,
         registers: Option<(&'a Top, &'a Bus)>,
     })?;
-    files.add(Kind::Software, format!("{name}_litex.py"), text);
+    files.add(ArtifactKind::Software, format!("{name}_litex.py"), text);
     Ok(())
 }
 
-fn driven<'a>(design: &Design, top: &'a Top) -> Core<'a> {
+fn driven<'a>(design: &Design, top: &'a Top) -> LitexCore<'a> {
     let name = |port: &glint_rtl::netlist::Port| design.net(port.net).name.clone();
-    let operands: Vec<Operand> = design
+    let operands: Vec<LitexOperand> = design
         .inputs()
         .filter_map(|port| match port.role {
-            Role::Operand { strobe } => Some(Operand {
+            Role::Operand { strobe } => Some(LitexOperand {
                 name: name(port),
                 strobe: design.net(strobe).name.clone(),
                 width: design.width(port.net),
@@ -99,11 +99,11 @@ fn driven<'a>(design: &Design, top: &'a Top) -> Core<'a> {
     };
     let idle = top.signals().filter(known).collect();
     let results = top.signals().filter(|port| results.contains(&port.name)).collect();
-    Core { top, operands, results, idle }
+    LitexCore { top, operands, results, idle }
 }
 
-fn streamed(top: &Top) -> Stream<'_> {
-    Stream {
+fn streamed(top: &Top) -> LitexStream<'_> {
+    LitexStream {
         top,
         input: top.width("s_axis_tdata"),
         output: top.width("m_axis_tdata"),

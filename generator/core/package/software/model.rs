@@ -5,20 +5,20 @@ use std::collections::BTreeMap;
 
 use anyhow::{Context, Result};
 
-use super::print::{Line, Printer, comment, field, literal, pattern_type, taken};
+use super::print::{CStatement, Printer, comment, field, literal, pattern_type, taken};
 use crate::observation::WorkedExample;
-use crate::package::artifact::{Artifacts, Job, Kind};
+use crate::package::artifact::{ArtifactKind, Artifacts, EmitJob};
 use crate::package::unfit::Unfit;
 use glint_base::fixed::{Format, mask};
 use glint_rtl::netlist::{Design, Port, Role, RomId};
 use glint_rtl::pipeline::{
-    Cell, Cycle, Graph, Held, NodeId, Unrolled, any_cycle, unroll_in_powers,
+    Cell, Cycle, Graph, NodeId, StateValues, Unrolled, any_cycle, unroll_in_powers,
 };
 use glint_rtl::verilog::text::{Names, ascii, constant_name, statement};
 
 /// An operand or a result in C.
 #[derive(Clone)]
-pub struct Field {
+pub struct CField {
     /// As a structure has it.
     pub name: String,
     /// The upper-case name with the module's before it.
@@ -31,7 +31,7 @@ pub struct Field {
     pub doc: String,
 }
 
-impl Field {
+impl CField {
     /// Makes the field of a structure for a port.
     pub fn new(design: &Design, port: &Port) -> Self {
         let net = design.net(port.net);
@@ -115,7 +115,7 @@ impl Field {
 /// # Errors
 /// Fails if the core cannot become a function. It must not wait for `start` in the middle, have a loop without a bound, or have
 /// results that depend on an earlier computation.
-pub fn files(job: &Job, files: &mut Artifacts) -> Result<Vec<RomId>> {
+pub fn files(job: &EmitJob, files: &mut Artifacts) -> Result<Vec<RomId>> {
     let (name, inputs, line) = (job.name(), job.inputs, job.is_line());
     let design = inputs.sequential.as_ref().unwrap_or(job.design);
     let about = &design.about;
@@ -123,10 +123,10 @@ pub fn files(job: &Job, files: &mut Artifacts) -> Result<Vec<RomId>> {
         design
             .inputs()
             .filter(|port| matches!(port.role, Role::Operand { .. }))
-            .map(|port| Field::new(design, port))
+            .map(|port| CField::new(design, port))
             .collect::<Vec<_>>()
     };
-    let results = || result_ports(design).map(|port| Field::new(design, port)).collect::<Vec<_>>();
+    let results = || result_ports(design).map(|port| CField::new(design, port)).collect::<Vec<_>>();
     let names = table_names(design);
     let (body, read) = if line { of_line(design, &names) } else { of_point(design, &names) }
         .map_err(|error| {
@@ -145,8 +145,8 @@ pub fn files(job: &Job, files: &mut Artifacts) -> Result<Vec<RomId>> {
         // Only for a pipeline: the upper-case name of its latency, and the clocks.
         latency: Option<(String, usize)> =
             latency.map(|clocks| (format!("{}_LATENCY", constant_name(name)), clocks)),
-        operands: Vec<Field> = operands(),
-        results: Vec<Field> = results(),
+        operands: Vec<CField> = operands(),
+        results: Vec<CField> = results(),
         line: bool,
     })?;
     let source = fill!("model.c" {
@@ -157,18 +157,18 @@ pub fn files(job: &Job, files: &mut Artifacts) -> Result<Vec<RomId>> {
         body: Vec<String>,
         line: bool,
     })?;
-    files.add(Kind::Software, format!("{name}_model.h"), header);
-    files.add(Kind::Software, format!("{name}_model.c"), source);
+    files.add(ArtifactKind::Software, format!("{name}_model.h"), header);
+    files.add(ArtifactKind::Software, format!("{name}_model.c"), source);
     if let Some(example) = &inputs.example {
         let python = fill!("model.py" {
             name: &'a str,
             regenerate: &'a str,
-            operands: Vec<Field> = operands(),
-            results: Vec<Field> = results(),
+            operands: Vec<CField> = operands(),
+            results: Vec<CField> = results(),
             values: Vec<String> = example_values(design, example),
             line: bool,
         })?;
-        files.add(Kind::Software, format!("{name}_model.py"), python);
+        files.add(ArtifactKind::Software, format!("{name}_model.py"), python);
     }
     Ok(read)
 }
@@ -196,7 +196,7 @@ fn of_point(design: &Design, tables: &[String]) -> Result<(Vec<String>, Vec<RomI
     let mut printer = Printer::new(design, &unrolled, tables, BTreeMap::new());
     let mut body = Vec::new();
     let mut step = None;
-    for Line { step: of, text } in printer.lines(&mut taken(), &wanted) {
+    for CStatement { step: of, text } in printer.lines(&mut taken(), &wanted) {
         if step.replace(of) != Some(of) {
             let step = &unrolled.steps[of];
             let turn =
@@ -242,12 +242,12 @@ fn of_line(design: &Design, tables: &[String]) -> Result<(Vec<String>, Vec<RomId
     // Registers and memories that the results of some clock depend on.
     let outputs = results.iter().map(|(_, value)| *value).chain([valid, done]);
     let mut wanted: Vec<NodeId> = outputs.collect();
-    let mut kept: Vec<Held> = Vec::new();
+    let mut kept: Vec<StateValues> = Vec::new();
     loop {
         let needed = graph.cone(wanted.iter().copied());
         let more = held.iter().filter(|it| needed.binary_search(&it.before).is_ok());
-        let is_state = |it: &Held| matches!(graph.node(it.before).cell, Cell::Unknown(_));
-        let now: Vec<Held> = more.copied().filter(is_state).collect();
+        let is_state = |it: &StateValues| matches!(graph.node(it.before).cell, Cell::Unknown(_));
+        let now: Vec<StateValues> = more.copied().filter(is_state).collect();
         if now.len() == kept.len() {
             break;
         }
@@ -292,7 +292,7 @@ fn of_line(design: &Design, tables: &[String]) -> Result<(Vec<String>, Vec<RomId
 fn clocked(
     graph: &Graph,
     printer: &Printer,
-    kept: &[Held],
+    kept: &[StateValues],
     states: &BTreeMap<NodeId, String>,
     names: &mut Names,
 ) -> Vec<String> {
@@ -320,7 +320,7 @@ fn clocked(
 /// Returns the statement `red_out = …;`, which takes the value from a bit pattern.
 fn assigned(design: &Design, port: &Port, pattern: &str) -> String {
     let net = design.net(port.net);
-    let kind = Field::new(design, port).kind;
+    let kind = CField::new(design, port).kind;
     let width = net.format.width();
     let value = match net.format.signed {
         false => pattern.to_owned(),

@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 
 use glint_base::fixed::mask;
 use glint_rtl::netlist::{Design, NetId};
-use glint_rtl::pipeline::{Cell, Graph, NodeId, Op, Unrolled};
+use glint_rtl::pipeline::{Cell, Graph, NodeId, NodeOp, Unrolled};
 use glint_rtl::verilog::text::{Names, ascii};
 
 /// The words of C99 and the names that the model's own text uses.
@@ -46,9 +46,9 @@ pub fn literal(bits: u64, width: u32) -> String {
 }
 
 /// An expression, and whether it needs no brackets beside any operator.
-struct Text(String, bool);
+struct CExpression(String, bool);
 
-impl Text {
+impl CExpression {
     fn inner(self) -> String {
         if self.1 { self.0 } else { format!("({})", self.0) }
     }
@@ -69,7 +69,7 @@ pub struct Printer<'a> {
 }
 
 /// A statement, and the microinstruction that it belongs to.
-pub struct Line {
+pub struct CStatement {
     /// The number of the step.
     pub step: usize,
     /// The text, without indentation.
@@ -89,7 +89,7 @@ impl<'a> Printer<'a> {
     }
 
     /// Returns the statements that compute `wanted`.
-    pub fn lines(&mut self, names: &mut Names, wanted: &[NodeId]) -> Vec<Line> {
+    pub fn lines(&mut self, names: &mut Names, wanted: &[NodeId]) -> Vec<CStatement> {
         let graph = self.graph;
         let needed = graph.cone(wanted.iter().copied());
         let mut uses = vec![0_u32; graph.nodes.len()];
@@ -102,8 +102,8 @@ impl<'a> Printer<'a> {
             let node = graph.node(id);
             let local = match &node.cell {
                 // Another name for the same bits.
-                Cell::Op(Op::Relabel(_)) => false,
-                Cell::Op(Op::Extend(of)) if !graph.node(*of).format.signed => false,
+                Cell::Op(NodeOp::Relabel(_)) => false,
+                Cell::Op(NodeOp::Extend(of)) if !graph.node(*of).format.signed => false,
                 Cell::Op(_) | Cell::Read { .. } => uses[id.index()] > 1 || node.label.named,
                 Cell::Operand(_) => true,
                 Cell::Constant(_) | Cell::Unknown(_) => false,
@@ -115,7 +115,7 @@ impl<'a> Printer<'a> {
             let name = names.fresh(&node.label.name);
             let kind = pattern_type(graph.width(id));
             let text = format!("const {kind} {name} = {text};");
-            lines.push(Line { step: node.step, text });
+            lines.push(CStatement { step: node.step, text });
             self.locals.insert(id, name);
         }
         lines
@@ -131,27 +131,27 @@ impl<'a> Printer<'a> {
         self.value(id).0
     }
 
-    fn value(&self, id: NodeId) -> Text {
+    fn value(&self, id: NodeId) -> CExpression {
         match self.locals.get(&id) {
-            Some(name) => Text(name.clone(), true),
+            Some(name) => CExpression(name.clone(), true),
             None => self.expression(id),
         }
     }
 
     /// Prints a value in the type of `width` bits.
-    fn in_type(&self, id: NodeId, width: u32) -> Text {
+    fn in_type(&self, id: NodeId, width: u32) -> CExpression {
         let (from, to) = (pattern_type(self.graph.width(id)), pattern_type(width));
         let text = self.value(id);
         if let Some(bits) = self.graph.constant_of(id) {
-            return Text(literal(bits, width), true);
+            return CExpression(literal(bits, width), true);
         }
-        if from == to { text } else { Text(format!("({to}){}", text.inner()), true) }
+        if from == to { text } else { CExpression(format!("({to}){}", text.inner()), true) }
     }
 
-    fn masked(&self, text: String, width: u32) -> Text {
+    fn masked(&self, text: String, width: u32) -> CExpression {
         match width {
-            32 | 64 => Text(text, false),
-            _ => Text(format!("({text}) & {}", literal(mask(width), width)), false),
+            32 | 64 => CExpression(text, false),
+            _ => CExpression(format!("({text}) & {}", literal(mask(width), width)), false),
         }
     }
 
@@ -170,24 +170,27 @@ impl<'a> Printer<'a> {
     /// Prints a value as a condition.
     fn condition(&self, id: NodeId) -> String {
         match (&self.graph.node(id).cell, self.locals.get(&id)) {
-            (Cell::Op(op @ (Op::Equal(..) | Op::Less(..) | Op::Any(_) | Op::All(_))), None) => {
-                self.comparison(op)
-            }
+            (
+                Cell::Op(
+                    op @ (NodeOp::Equal(..) | NodeOp::Less(..) | NodeOp::Any(_) | NodeOp::All(_)),
+                ),
+                None,
+            ) => self.comparison(op),
             _ => format!("{} != 0u", self.value(id).inner()),
         }
     }
 
-    fn comparison(&self, op: &Op) -> String {
+    fn comparison(&self, op: &NodeOp) -> String {
         let text = |id: NodeId| self.value(id).inner();
         match op {
-            Op::Equal(a, b) => format!("{} == {}", text(*a), text(*b)),
-            Op::Less(a, b) if self.graph.node(*a).format.signed => {
+            NodeOp::Equal(a, b) => format!("{} == {}", text(*a), text(*b)),
+            NodeOp::Less(a, b) if self.graph.node(*a).format.signed => {
                 let width = self.graph.width(*a);
                 let sign = literal(1 << (width - 1), width);
                 format!("({} ^ {sign}) < ({} ^ {sign})", text(*a), text(*b))
             }
-            Op::Less(a, b) => format!("{} < {}", text(*a), text(*b)),
-            Op::All(of) => {
+            NodeOp::Less(a, b) => format!("{} < {}", text(*a), text(*b)),
+            NodeOp::All(of) => {
                 let width = self.graph.width(*of);
                 format!("{} == {}", text(*of), literal(mask(width), width))
             }
@@ -198,11 +201,11 @@ impl<'a> Printer<'a> {
         }
     }
 
-    fn expression(&self, id: NodeId) -> Text {
+    fn expression(&self, id: NodeId) -> CExpression {
         let node = self.graph.node(id);
         let width = node.format.width();
         match &node.cell {
-            Cell::Constant(bits) => Text(literal(*bits, width), true),
+            Cell::Constant(bits) => CExpression(literal(*bits, width), true),
             Cell::Operand(at) => {
                 let net = self.design.net(self.operands[*at]);
                 let field = field(&net.name);
@@ -212,34 +215,34 @@ impl<'a> Printer<'a> {
                     format!("operands.{field}")
                 };
                 match width {
-                    32 | 64 => Text(text, true),
-                    _ => Text(format!("{text} & {}", literal(mask(width), width)), false),
+                    32 | 64 => CExpression(text, true),
+                    _ => CExpression(format!("{text} & {}", literal(mask(width), width)), false),
                 }
             }
             Cell::Unknown(_) => {
                 let name = self.states.get(&id).cloned();
-                Text(name.unwrap_or_else(|| literal(0, width)), true)
+                CExpression(name.unwrap_or_else(|| literal(0, width)), true)
             }
             Cell::Read { rom, address } => {
                 let kind = pattern_type(width);
                 let table = &self.tables[rom.index()];
-                Text(format!("({kind}){table}[{}]", self.value(*address).0), true)
+                CExpression(format!("({kind}){table}[{}]", self.value(*address).0), true)
             }
             Cell::Op(op) => self.operation(op, width),
         }
     }
 
-    fn operation(&self, op: &Op, width: u32) -> Text {
+    fn operation(&self, op: &NodeOp, width: u32) -> CExpression {
         let graph = self.graph;
         let text = |id: NodeId| self.value(id).inner();
         let wide = |id: NodeId| self.in_type(id, width).inner();
         match op {
-            Op::Relabel(of) => self.value(*of),
-            Op::Extend(of) if graph.node(*of).format.signed => {
+            NodeOp::Relabel(of) => self.value(*of),
+            NodeOp::Extend(of) if graph.node(*of).format.signed => {
                 self.masked(self.with_sign(*of, width), width)
             }
-            Op::Extend(of) => self.in_type(*of, width),
-            Op::Slice { of, low } => {
+            NodeOp::Extend(of) => self.in_type(*of, width),
+            NodeOp::Slice { of, low } => {
                 let whole = graph.width(*of);
                 let shifted = match low {
                     0 => text(*of),
@@ -251,9 +254,13 @@ impl<'a> Printer<'a> {
                     false => shifted,
                 };
                 let (from, to) = (pattern_type(whole), pattern_type(width));
-                if from == to { Text(cut, false) } else { Text(format!("({to})({cut})"), true) }
+                if from == to {
+                    CExpression(cut, false)
+                } else {
+                    CExpression(format!("({to})({cut})"), true)
+                }
             }
-            Op::Concat(parts) => {
+            NodeOp::Concat(parts) => {
                 let mut low = width;
                 let mut pieces = Vec::new();
                 for part in parts {
@@ -265,40 +272,45 @@ impl<'a> Printer<'a> {
                         });
                     }
                 }
-                Text(pieces.join(" | "), pieces.len() == 1)
+                CExpression(pieces.join(" | "), pieces.len() == 1)
             }
-            Op::Not(of) => Text(format!("{} ^ {}", text(*of), literal(mask(width), width)), false),
-            Op::And(a, b) => Text(format!("{} & {}", text(*a), text(*b)), false),
-            Op::Or(a, b) => Text(format!("{} | {}", text(*a), text(*b)), false),
-            Op::Xor(a, b) => Text(format!("{} ^ {}", text(*a), text(*b)), false),
-            Op::Add { a, b, carry } => {
+            NodeOp::Not(of) => {
+                CExpression(format!("{} ^ {}", text(*of), literal(mask(width), width)), false)
+            }
+            NodeOp::And(a, b) => CExpression(format!("{} & {}", text(*a), text(*b)), false),
+            NodeOp::Or(a, b) => CExpression(format!("{} | {}", text(*a), text(*b)), false),
+            NodeOp::Xor(a, b) => CExpression(format!("{} ^ {}", text(*a), text(*b)), false),
+            NodeOp::Add { a, b, carry } => {
                 let mut sum = format!("{} + {}", text(*a), text(*b));
                 if let Some(carry) = carry {
                     sum += &format!(" + {}", wide(*carry));
                 }
                 self.masked(sum, width)
             }
-            Op::Sub(a, b) => self.masked(format!("{} - {}", text(*a), text(*b)), width),
-            Op::Mul(a, b) if graph.node(*a).format.signed => {
+            NodeOp::Sub(a, b) => self.masked(format!("{} - {}", text(*a), text(*b)), width),
+            NodeOp::Mul(a, b) if graph.node(*a).format.signed => {
                 let (a, b) = (self.with_sign(*a, width), self.with_sign(*b, width));
                 self.masked(format!("{a} * {b}"), width)
             }
-            Op::Mul(a, b) => Text(format!("{} * {}", wide(*a), wide(*b)), false),
-            Op::Equal(..) | Op::Less(..) | Op::Any(_) | Op::All(_) => {
-                Text(format!("(uint32_t)({})", self.comparison(op)), true)
+            NodeOp::Mul(a, b) => CExpression(format!("{} * {}", wide(*a), wide(*b)), false),
+            NodeOp::Equal(..) | NodeOp::Less(..) | NodeOp::Any(_) | NodeOp::All(_) => {
+                CExpression(format!("(uint32_t)({})", self.comparison(op)), true)
             }
-            Op::Mux { select, inputs } => {
+            NodeOp::Mux { select, inputs } => {
                 let (last, others) = inputs.split_last().expect("a multiplexer has inputs");
                 if let [at_0] = others {
                     let condition = self.condition(*select);
-                    return Text(format!("{condition} ? {} : {}", text(*last), text(*at_0)), false);
+                    return CExpression(
+                        format!("{condition} ? {} : {}", text(*last), text(*at_0)),
+                        false,
+                    );
                 }
                 let mut chain = String::new();
                 for (at, input) in others.iter().enumerate() {
                     let number = literal(at as u64, graph.width(*select));
                     chain += &format!("{} == {number} ? {} : ", text(*select), text(*input));
                 }
-                Text(chain + &text(*last), false)
+                CExpression(chain + &text(*last), false)
             }
         }
     }

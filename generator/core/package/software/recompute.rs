@@ -4,9 +4,9 @@
 
 use anyhow::Result;
 
-use super::model::{Field, table_names};
+use super::model::{CField, table_names};
 use crate::observation::ContractFacts;
-use crate::package::artifact::{Artifacts, Job, Kind};
+use crate::package::artifact::{ArtifactKind, Artifacts, EmitJob};
 use crate::package::unfit::Unfit;
 use glint_base::fill;
 use glint_formula::parse;
@@ -18,14 +18,14 @@ use glint_rtl::verilog::text::{ascii, statement};
 const VALUES: usize = 8;
 
 /// The parts of a contract that the program needs: one operand with its domain, one result, and its formula.
-struct Subject<'f> {
+struct RecomputedFormula<'f> {
     operand: &'f str,
     domain: (i64, i64),
     result: &'f str,
     formula: &'f str,
 }
 
-impl<'f> Subject<'f> {
+impl<'f> RecomputedFormula<'f> {
     fn new(name: &str, facts: &'f ContractFacts) -> Result<Self, Unfit> {
         match (&facts.domain[..], &facts.outputs[..], &facts.f[..]) {
             ([(operand, domain)], [(result, None)], [formula]) => {
@@ -46,31 +46,31 @@ fn unfit(name: &str, why: &str) -> Unfit {
 /// # Errors
 /// Fails if the core has several operands or results, or if its contract states no formula.
 pub fn check(name: &str, facts: &ContractFacts) -> Result<(), Unfit> {
-    Subject::new(name, facts).map(drop)
+    RecomputedFormula::new(name, facts).map(drop)
 }
 
 /// Adds the program. `read` are the ROMs that the model reads.
 ///
 /// # Errors
 /// Fails as [`check`] does.
-pub fn file(job: &Job, read: &[RomId], files: &mut Artifacts) -> Result<()> {
+pub fn file(job: &EmitJob, read: &[RomId], files: &mut Artifacts) -> Result<()> {
     let (name, inputs) = (job.name(), job.inputs);
     let design = inputs.sequential.as_ref().unwrap_or(job.design);
     let facts = inputs.accuracy.as_ref().ok_or_else(|| unfit(name, "it has no contract"))?;
-    let Subject { operand, domain: (first, last), result, formula: text } =
-        Subject::new(name, facts)?;
+    let RecomputedFormula { operand, domain: (first, last), result, formula: text } =
+        RecomputedFormula::new(name, facts)?;
     let formula = parse(text)?;
     let mut parts = 0;
     formula.walk(&mut |_| parts += 1);
     let field = |name: &str| {
         let mut ports = design.ports.iter();
         let port = ports.find(|port| design.net(port.net).name == name);
-        port.map(|port| Field::new(design, port))
+        port.map(|port| CField::new(design, port))
             .ok_or_else(|| unfit(name, "its contract names no port"))
     };
     let (operand, result) = (field(operand)?, field(result)?);
     let (naming, tables) = (Naming::new(design), table_names(design));
-    let written = files.names(&[Kind::Memory]);
+    let written = files.names(&[ArtifactKind::Memory]);
     let memory = |id: &RomId| {
         let (file, table) = (naming.files[id.index()].clone(), tables[id.index()].clone());
         written.contains(&file).then(|| (file, table, design.rom(*id).words.len()))
@@ -95,6 +95,6 @@ pub fn file(job: &Job, read: &[RomId], files: &mut Artifacts) -> Result<()> {
         last: i64,
         bound: String = format!("{:?}", facts.bound),
     })?;
-    files.add(Kind::Software, format!("{name}_recompute.c"), program);
+    files.add(ArtifactKind::Software, format!("{name}_recompute.c"), program);
     Ok(())
 }

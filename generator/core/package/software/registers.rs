@@ -3,28 +3,28 @@
 use anyhow::Result;
 use glint_base::fill;
 
-use crate::package::artifact::{Artifacts, Job, Kind};
+use crate::package::artifact::{ArtifactKind, Artifacts, EmitJob};
 use crate::package::bus::Bus;
-use crate::package::map::{Access, Bits, Map, Register};
+use crate::package::map::{Access, BusRegister, Map, RegisterBits};
 use glint_base::fixed::Format;
 use glint_rtl::verilog::text::{ascii, constant_name};
 
 /// A register as the templates print it.
 struct Printed<'a> {
-    register: &'a Register,
+    register: &'a BusRegister,
     /// In upper case.
     constant: String,
-    fields: Vec<Field<'a>>,
+    fields: Vec<BitField<'a>>,
 }
 
 /// Bits of a register.
-struct Field<'a> {
-    bits: &'a Bits,
+struct BitField<'a> {
+    bits: &'a RegisterBits,
     /// In upper case.
     constant: String,
 }
 
-impl Field<'_> {
+impl BitField<'_> {
     fn mask(&self) -> String {
         format!("0x{:08x}", ((1u64 << self.bits.width) - 1) << self.bits.low)
     }
@@ -46,13 +46,13 @@ impl Field<'_> {
 }
 
 /// An operand and its conversion.
-struct Operand {
+struct OperandConversion {
     name: String,
     constant: String,
     format: Format,
 }
 
-impl Operand {
+impl OperandConversion {
     /// Returns the bits of the raw integer as the registers hold it.
     fn bits(&self) -> u32 {
         if self.format.width() <= 32 { 32 } else { 64 }
@@ -77,15 +77,15 @@ impl Operand {
 ///
 /// # Errors
 /// Fails if a template fails.
-pub fn files(job: &Job, bus: &Bus, map: &Map, files: &mut Artifacts) -> Result<()> {
+pub fn files(job: &EmitJob, bus: &Bus, map: &Map, files: &mut Artifacts) -> Result<()> {
     let (name, regenerate, bus) = (job.name(), job.regenerate(), bus.title);
     let title = ascii(&job.design.about.title).replace("*/", "* /").replace('"', "'");
     let title = title.as_str();
     let registers: Vec<Printed> = map.registers.iter().map(view).collect();
-    let operands: Vec<Operand> = map
+    let operands: Vec<OperandConversion> = map
         .operands
         .iter()
-        .map(|operand| Operand {
+        .map(|operand| OperandConversion {
             name: operand.name.clone(),
             constant: constant_name(&operand.name),
             format: operand.format,
@@ -96,23 +96,23 @@ pub fn files(job: &Job, bus: &Bus, map: &Map, files: &mut Artifacts) -> Result<(
         name: &'a str, title: &'a str, regenerate: &'a str,
         guard: String = format!("{prefix}_REGISTERS_H"),
         prefix: &'a str = &prefix,
-        bus: &'a str, registers: &'a [Printed<'a>] = &registers, operands: &'a [Operand] = &operands,
+        bus: &'a str, registers: &'a [Printed<'a>] = &registers, operands: &'a [OperandConversion] = &operands,
     })?;
     let module = fill!("registers.rs" {
         name: &'a str, title: &'a str, regenerate: &'a str, bus: &'a str,
-        registers: &'a [Printed<'a>] = &registers, operands: &'a [Operand] = &operands,
+        registers: &'a [Printed<'a>] = &registers, operands: &'a [OperandConversion] = &operands,
     })?;
     let rdl = fill!("registers.rdl" {
         name: &'a str, title: &'a str, regenerate: &'a str, registers: &'a [Printed<'a>] = &registers,
     })?;
-    files.add(Kind::Software, format!("{name}_registers.h"), header);
-    files.add(Kind::Software, format!("{name}_registers.rs"), module);
-    files.add(Kind::Software, format!("{name}.rdl"), rdl);
+    files.add(ArtifactKind::Software, format!("{name}_registers.h"), header);
+    files.add(ArtifactKind::Software, format!("{name}_registers.rs"), module);
+    files.add(ArtifactKind::Software, format!("{name}.rdl"), rdl);
     Ok(())
 }
 
-fn view(register: &Register) -> Printed<'_> {
-    let field = |bits| Field { bits, constant: constant_name(&bits.name) };
+fn view(register: &BusRegister) -> Printed<'_> {
+    let field = |bits| BitField { bits, constant: constant_name(&bits.name) };
     Printed {
         register,
         constant: constant_name(&register.name),

@@ -4,8 +4,8 @@
 use anyhow::Result;
 use glint_base::fill;
 
-use super::model::Field;
-use crate::package::artifact::{Artifacts, Job, Kind};
+use super::model::CField;
+use crate::package::artifact::{ArtifactKind, Artifacts, EmitJob};
 use glint_base::fixed::exp2;
 use glint_rtl::netlist::Role;
 use glint_rtl::verilog::text::constant_name;
@@ -14,12 +14,12 @@ use glint_rtl::verilog::text::constant_name;
 const KNOWN: [&str; 5] = ["delta_zeta", "zeta_start", "exponent", "length", "amplitude"];
 
 /// The contents of the three files of a configuration.
-struct Line<'a> {
+struct LineSetup<'a> {
     name: &'a str,
     prefix: String,
     regenerate: &'a str,
     /// `zeta_start` and `delta_zeta`.
-    angles: Vec<Field>,
+    angles: Vec<CField>,
     /// The domain of the exponent; without it angles are taken times √(n/2).
     exponent: Option<(i64, i64)>,
     /// The most intervals.
@@ -32,9 +32,9 @@ struct Line<'a> {
     order: Vec<String>,
 }
 
-impl Line<'_> {
+impl LineSetup<'_> {
     /// Returns the number of raw angles in a turn.
-    fn turn(&self, angle: &Field) -> String {
+    fn turn(&self, angle: &CField) -> String {
         exp2(angle.format.width() as i32).to_string()
     }
 }
@@ -43,11 +43,11 @@ impl Line<'_> {
 ///
 /// # Errors
 /// Fails if a template fails.
-pub fn files(job: &Job, files: &mut Artifacts) -> Result<()> {
+pub fn files(job: &EmitJob, files: &mut Artifacts) -> Result<()> {
     let (name, inputs) = (job.name(), job.inputs);
     let design = inputs.sequential.as_ref().unwrap_or(job.design);
     let ports = design.inputs().filter(|port| matches!(port.role, Role::Operand { .. }));
-    let fields: Vec<Field> = ports.map(|port| Field::new(design, port)).collect();
+    let fields: Vec<CField> = ports.map(|port| CField::new(design, port)).collect();
     let accuracy = inputs.accuracy.as_ref().filter(|accuracy| accuracy.length.is_some());
     let Some(accuracy) = accuracy else {
         return Ok(());
@@ -64,7 +64,7 @@ pub fn files(job: &Job, files: &mut Artifacts) -> Result<()> {
     else {
         return Ok(());
     };
-    let line = &Line {
+    let line = &LineSetup {
         name,
         prefix: constant_name(name),
         regenerate: job.regenerate(),
@@ -77,11 +77,11 @@ pub fn files(job: &Job, files: &mut Artifacts) -> Result<()> {
         order: fields.iter().map(|field| field.name.clone()).collect(),
     };
     for (ending, text) in [
-        ("h", fill!("setup.h" { line: &'a Line<'a> })?),
-        ("c", fill!("setup.c" { line: &'a Line<'a> })?),
-        ("py", fill!("setup.py" { line: &'a Line<'a> })?),
+        ("h", fill!("setup.h" { line: &'a LineSetup<'a> })?),
+        ("c", fill!("setup.c" { line: &'a LineSetup<'a> })?),
+        ("py", fill!("setup.py" { line: &'a LineSetup<'a> })?),
     ] {
-        files.add(Kind::Software, format!("{name}_setup.{ending}"), text);
+        files.add(ArtifactKind::Software, format!("{name}_setup.{ending}"), text);
     }
     Ok(())
 }

@@ -3,21 +3,21 @@
 use anyhow::Result;
 use glint_base::fill;
 
-use super::model::Field;
-use crate::package::artifact::{Artifacts, Job, Kind};
+use super::model::CField;
+use crate::package::artifact::{ArtifactKind, Artifacts, EmitJob};
 use crate::package::wrap::fields::Transfer;
 use glint_rtl::verilog::text::constant_name;
 
 /// A number in the bytes of a transfer.
-struct Number {
-    field: Field,
+struct TransferNumber {
+    field: CField,
     port: String,
     first: u32,
     /// Its bytes.
     size: u32,
 }
 
-impl Number {
+impl TransferNumber {
     fn bytes(&self) -> std::ops::Range<u32> {
         0..self.size
     }
@@ -61,16 +61,16 @@ impl Number {
 struct Bytes {
     bytes: u32,
     filled: u32,
-    numbers: Vec<Number>,
+    numbers: Vec<TransferNumber>,
 }
 
 impl Bytes {
-    fn new(job: &Job, transfer: &Transfer) -> Self {
+    fn new(job: &EmitJob, transfer: &Transfer) -> Self {
         let design = job.design;
-        let number = |field: &crate::package::wrap::fields::Field| {
+        let number = |field: &crate::package::wrap::fields::StreamField| {
             let port = design.ports.iter().find(|port| design.net(port.net).name == field.name)?;
-            Some(Number {
-                field: Field::new(design, port),
+            Some(TransferNumber {
+                field: CField::new(design, port),
                 port: field.name.clone(),
                 first: field.low / 8,
                 size: field.padded() / 8,
@@ -93,7 +93,7 @@ impl Bytes {
 ///
 /// # Errors
 /// Fails if a template fails.
-pub fn files(job: &Job, files: &mut Artifacts) -> Result<()> {
+pub fn files(job: &EmitJob, files: &mut Artifacts) -> Result<()> {
     let (name, regenerate) = (job.name(), job.regenerate());
     let (sent, received) = (Transfer::sent(job)?, Transfer::received(job)?);
     let (sent, received) = (Bytes::new(job, &sent), Bytes::new(job, &received));
@@ -108,7 +108,7 @@ pub fn files(job: &Job, files: &mut Artifacts) -> Result<()> {
         sent: &'a Bytes = &sent,
         received: &'a Bytes = &received,
     })?;
-    files.add(Kind::Software, format!("{name}_stream.h"), header);
-    files.add(Kind::Software, format!("{name}_stream.py"), python);
+    files.add(ArtifactKind::Software, format!("{name}_stream.h"), header);
+    files.add(ArtifactKind::Software, format!("{name}_stream.py"), python);
     Ok(())
 }

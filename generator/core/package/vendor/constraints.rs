@@ -4,14 +4,14 @@
 use anyhow::Result;
 use glint_base::fill;
 
-use crate::package::artifact::{Artifacts, Job, Kind};
+use crate::package::artifact::{ArtifactKind, Artifacts, EmitJob};
 use crate::package::tops::Top;
 
 /// Adds both files of each module.
 ///
 /// # Errors
 /// Fails if a template fails.
-pub fn files(job: &Job, tops: &[Top], clock_mhz: f64, files: &mut Artifacts) -> Result<()> {
+pub fn files(job: &EmitJob, tops: &[Top], clock_mhz: f64, files: &mut Artifacts) -> Result<()> {
     for top in tops {
         for (ending, reader) in [
             ("sdc", "For Quartus, nextpnr, OpenSTA and all that read SDC."),
@@ -24,7 +24,7 @@ pub fn files(job: &Job, tops: &[Top], clock_mhz: f64, files: &mut Artifacts) -> 
                 // Who reads the file, and how.
                 reader: &'a str,
             })?;
-            files.add(Kind::Constraint, format!("{}.{ending}", top.module), text);
+            files.add(ArtifactKind::Constraint, format!("{}.{ending}", top.module), text);
         }
     }
     Ok(())

@@ -2,21 +2,21 @@
 
 use anyhow::Result;
 
-use crate::package::artifact::{Artifacts, Job, Kind};
-use crate::package::map::{Access, Bits, Register};
+use crate::package::artifact::{ArtifactKind, Artifacts, EmitJob};
+use crate::package::map::{Access, BusRegister, RegisterBits};
 use crate::package::tops::{Face, Top};
 use glint_base::template::render;
 use glint_rtl::verilog::text::ascii;
 
 #[glint_base::template::template("component.xml")]
-struct Component<'a> {
+struct IpXactComponent<'a> {
     top: &'a Top,
     title: String,
     regenerate: String,
     vendor: &'a str,
     version: &'a str,
     buses: Vec<BusInterface>,
-    registers: &'a [Register],
+    registers: &'a [BusRegister],
     /// Bytes that the registers take.
     range: usize,
     memories: Vec<String>,
@@ -46,7 +46,7 @@ impl BusInterface {
     }
 }
 
-impl Component<'_> {
+impl IpXactComponent<'_> {
     /// Returns a number as IP-XACT writes it, after the `'h`.
     fn hex(&self, number: impl std::fmt::LowerHex) -> String {
         format!("{number:x}")
@@ -58,7 +58,7 @@ impl Component<'_> {
     }
 }
 
-impl Bits {
+impl RegisterBits {
     /// Returns the access of a program.
     fn ip_xact_access(&self) -> &'static str {
         match self.access {
@@ -82,13 +82,13 @@ impl Bits {
 ///
 /// # Errors
 /// Fails if a template fails.
-pub fn files(job: &Job, tops: &[Top], files: &mut Artifacts) -> Result<()> {
+pub fn files(job: &EmitJob, tops: &[Top], files: &mut Artifacts) -> Result<()> {
     for top in tops {
-        let registers: &[Register] = match (top.face, &job.registers) {
+        let registers: &[BusRegister] = match (top.face, &job.registers) {
             (Face::Registers(_), Some((_, map))) => &map.registers,
             _ => &[],
         };
-        let component = Component {
+        let component = IpXactComponent {
             top,
             title: escaped(&job.design.about.title),
             regenerate: comment(job.regenerate()),
@@ -97,10 +97,10 @@ pub fn files(job: &Job, tops: &[Top], files: &mut Artifacts) -> Result<()> {
             buses: buses(top),
             registers,
             range: 4 * registers.len(),
-            memories: files.names(&[Kind::Memory]),
+            memories: files.names(&[ArtifactKind::Memory]),
         };
         let text = render(&component)?;
-        files.add(Kind::Script, format!("{}.xml", top.module), text);
+        files.add(ArtifactKind::Script, format!("{}.xml", top.module), text);
     }
     Ok(())
 }

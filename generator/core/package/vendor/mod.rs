@@ -6,14 +6,14 @@ mod tcl;
 
 use anyhow::Result;
 
-use super::artifact::{Artifacts, Job};
+use super::artifact::{Artifacts, EmitJob};
 use super::tops::Top;
 
 /// Adds the files that the configuration asks for.
 ///
 /// # Errors
 /// Fails if a template fails.
-pub fn files(job: &Job, tops: &[Top], files: &mut Artifacts) -> Result<()> {
+pub fn files(job: &EmitJob, tops: &[Top], files: &mut Artifacts) -> Result<()> {
     let around = &job.inputs.around;
     if let Some(clock_mhz) = around.clock_mhz {
         constraints::files(job, tops, clock_mhz, files)?;

@@ -3,7 +3,7 @@
 use anyhow::Result;
 use glint_base::fill;
 
-use crate::package::artifact::{Artifacts, Job, Kind};
+use crate::package::artifact::{ArtifactKind, Artifacts, EmitJob};
 use crate::package::bus::Protocol;
 use crate::package::tops::{Top, TopPort};
 use glint_rtl::verilog::text::ascii;
@@ -14,7 +14,7 @@ const QUARTUS_FAMILY: &str = "Cyclone V";
 const QUARTUS_DEVICE: &str = "5CEBA4F23C7";
 
 /// An interface of Platform Designer.
-struct Interface<'a> {
+struct PlatformInterface<'a> {
     name: &'static str,
     kind: &'static str,
     /// `end` takes, `start` offers.
@@ -33,10 +33,10 @@ impl TopPort {
 ///
 /// # Errors
 /// Fails if a template fails.
-pub fn vivado(job: &Job, tops: &[Top], files: &mut Artifacts) -> Result<()> {
+pub fn vivado(job: &EmitJob, tops: &[Top], files: &mut Artifacts) -> Result<()> {
     let (name, around) = (job.name(), &job.inputs.around);
     let version = around.version.as_str();
-    let memories = files.names(&[Kind::Memory]);
+    let memories = files.names(&[ArtifactKind::Memory]);
     let build = fill!("vivado.tcl" {
         name: &'a str,
         part: &'a str = VIVADO_PART,
@@ -55,8 +55,8 @@ pub fn vivado(job: &Job, tops: &[Top], files: &mut Artifacts) -> Result<()> {
         tops: &'a [Top],
         memories: &'a [String] = &memories,
     })?;
-    files.add(Kind::Script, format!("{name}_vivado.tcl"), build);
-    files.add(Kind::Script, format!("{name}_vivado_ip.tcl"), ip);
+    files.add(ArtifactKind::Script, format!("{name}_vivado.tcl"), build);
+    files.add(ArtifactKind::Script, format!("{name}_vivado_ip.tcl"), ip);
     Ok(())
 }
 
@@ -64,7 +64,7 @@ pub fn vivado(job: &Job, tops: &[Top], files: &mut Artifacts) -> Result<()> {
 ///
 /// # Errors
 /// Fails if a template fails.
-pub fn quartus(job: &Job, tops: &[Top], files: &mut Artifacts) -> Result<()> {
+pub fn quartus(job: &EmitJob, tops: &[Top], files: &mut Artifacts) -> Result<()> {
     let (name, around) = (job.name(), &job.inputs.around);
     let build = fill!("quartus.tcl" {
         name: &'a str,
@@ -73,7 +73,7 @@ pub fn quartus(job: &Job, tops: &[Top], files: &mut Artifacts) -> Result<()> {
         regenerate: &'a str = job.regenerate(),
         tops: &'a [Top],
     })?;
-    files.add(Kind::Script, format!("{name}_quartus.tcl"), build);
+    files.add(ArtifactKind::Script, format!("{name}_quartus.tcl"), build);
     for top in tops {
         let text = fill!("hw.tcl" {
             top: &'a Top,
@@ -81,22 +81,22 @@ pub fn quartus(job: &Job, tops: &[Top], files: &mut Artifacts) -> Result<()> {
             regenerate: &'a str = job.regenerate(),
             vendor: &'a str = &around.vendor,
             version: &'a str = &around.version,
-            memories: Vec<String> = files.names(&[Kind::Memory]),
-            interfaces: Vec<Interface<'a>> = interfaces(top),
+            memories: Vec<String> = files.names(&[ArtifactKind::Memory]),
+            interfaces: Vec<PlatformInterface<'a>> = interfaces(top),
         })?;
-        files.add(Kind::Script, format!("{}_hw.tcl", top.module), text);
+        files.add(ArtifactKind::Script, format!("{}_hw.tcl", top.module), text);
     }
     Ok(())
 }
 
 /// Returns the interfaces of a module but for clock, reset and interrupt.
-fn interfaces(top: &Top) -> Vec<Interface<'_>> {
+fn interfaces(top: &Top) -> Vec<PlatformInterface<'_>> {
     if top.protocols.is_empty() {
         // The type of interface for all that has none.
         let ports = top.signals().map(|port| (port, port.name.clone())).collect();
-        return vec![Interface { name: "signals", kind: "conduit", side: "end", ports }];
+        return vec![PlatformInterface { name: "signals", kind: "conduit", side: "end", ports }];
     }
-    let interface = |protocol: &'static Protocol| Interface {
+    let interface = |protocol: &'static Protocol| PlatformInterface {
         name: protocol.name,
         kind: protocol.platform,
         side: if protocol.is_slave { "end" } else { "start" },

@@ -4,18 +4,18 @@
 use anyhow::Result;
 use glint_base::fill;
 
-use super::fields::{Field, Transfer};
+use super::fields::{StreamField, Transfer};
 use super::points::{points, received, sent};
 use crate::observation::Vectors;
-use crate::package::artifact::{Artifacts, Job, Kind};
-use crate::package::map::{INTERRUPT_PENDING, Map, Part, Placed, Register};
+use crate::package::artifact::{ArtifactKind, Artifacts, EmitJob};
+use crate::package::map::{BusRegister, INTERRUPT_PENDING, Map, PortBits, PortPlacement};
 use glint_base::fixed::mask;
 
 /// Points that a bench writes to registers, at most: those between are left out.
 const ON_A_BUS: usize = 256;
 
 /// A register of an operand or of results, as a bench accesses it.
-struct Access {
+struct BenchRegister {
     at: String,
     word: String,
     mask: String,
@@ -25,7 +25,7 @@ struct Access {
 ///
 /// # Errors
 /// Fails if the core lacks its handshake.
-pub fn files(job: &Job, vectors: &Vectors, files: &mut Artifacts) -> Result<()> {
+pub fn files(job: &EmitJob, vectors: &Vectors, files: &mut Artifacts) -> Result<()> {
     let (design, name) = (job.design, job.name());
     let points = points(design, vectors)?;
     if points.is_empty() {
@@ -57,7 +57,7 @@ pub fn files(job: &Job, vectors: &Vectors, files: &mut Artifacts) -> Result<()> 
             user_words: u32 = user_bits.div_ceil(32),
             offer_high: u32 = out_high + 1 + user_bits,
         })?;
-        files.add(Kind::Bench, format!("{name}_axis_tb.v"), text);
+        files.add(ArtifactKind::Bench, format!("{name}_axis_tb.v"), text);
         add_python(job, "axis", &["streams_carry_every_point"], files)?;
     }
     if let Some((bus, map)) = &job.registers {
@@ -78,29 +78,29 @@ pub fn files(job: &Job, vectors: &Vectors, files: &mut Artifacts) -> Result<()> 
             in_high: u32,
             out_high: u32,
             address_high: u32 = map.address_bits() - 1,
-            parts: Vec<Access> = accesses(&map.operands, &operands.fields, "point"),
-            results: Vec<Access> = of_results(map, &results.fields),
+            parts: Vec<BenchRegister> = accesses(&map.operands, &operands.fields, "point"),
+            results: Vec<BenchRegister> = of_results(map, &results.fields),
             constants: Vec<(String, String)>,
             read_only: Vec<String>,
         })?;
-        files.add(Kind::Bench, format!("{top}_tb.v"), text);
+        files.add(ArtifactKind::Bench, format!("{top}_tb.v"), text);
         let tests = &["registers_compute_every_point", "registers_keep_what_is_written"];
         add_python(job, bus.suffix, tests, files)?;
     }
-    files.add(Kind::Bench, format!("{name}_sent.mem"), sent(&points, &operands));
+    files.add(ArtifactKind::Bench, format!("{name}_sent.mem"), sent(&points, &operands));
     let received = received(&points, &results, job.is_line());
-    files.add(Kind::Bench, format!("{name}_received.mem"), received);
+    files.add(ArtifactKind::Bench, format!("{name}_received.mem"), received);
     Ok(())
 }
 
 /// Adds the bench of a wrapper in Python, where the core has one.
-fn add_python(job: &Job, wrapper: &str, tests: &[&str], files: &mut Artifacts) -> Result<()> {
+fn add_python(job: &EmitJob, wrapper: &str, tests: &[&str], files: &mut Artifacts) -> Result<()> {
     if job.inputs.example.is_some() && job.inputs.accuracy.is_some() {
         let name = job.name();
         let text = fill!("test_wrapper.py" {
             name: &'a str, wrapper: &'a str, tests: &'a [&'a str],
         })?;
-        files.add(Kind::Python, format!("test_{name}_{wrapper}.py"), text);
+        files.add(ArtifactKind::Python, format!("test_{name}_{wrapper}.py"), text);
     }
     Ok(())
 }
@@ -111,12 +111,12 @@ fn address(place: u32) -> String {
 
 /// Returns the registers before the operands with their values after a reset, and the registers that cannot be written.
 fn fixed(map: &Map) -> (Vec<(String, String)>, Vec<String>) {
-    let value = |register: &Register| {
+    let value = |register: &BusRegister| {
         let value = register.bits.iter().map(|bits| bits.reset << bits.low).sum::<u64>();
         (address(register.place), format!("32'h{value:08x}"))
     };
-    let own = |register: &&Register| register.place <= INTERRUPT_PENDING;
-    let read_only = |register: &&Register| {
+    let own = |register: &&BusRegister| register.place <= INTERRUPT_PENDING;
+    let read_only = |register: &&BusRegister| {
         use crate::package::map::Access::Read;
         register.bits.iter().all(|bits| bits.access == Read)
     };
@@ -127,15 +127,15 @@ fn fixed(map: &Map) -> (Vec<(String, String)>, Vec<String>) {
 }
 
 /// Returns the registers of ports, each in the words of a point.
-fn accesses(ports: &[Placed], fields: &[Field], net: &str) -> Vec<Access> {
+fn accesses(ports: &[PortPlacement], fields: &[StreamField], net: &str) -> Vec<BenchRegister> {
     let of_port = |(port, field)| {
-        let Placed { parts, .. }: &Placed = port;
+        let PortPlacement { parts, .. }: &PortPlacement = port;
         parts.iter().map(move |part| access(part, field, net))
     };
     ports.iter().zip(fields).flat_map(of_port).collect()
 }
 
-fn access(part: &Part, field: &Field, net: &str) -> Access {
+fn access(part: &PortBits, field: &StreamField, net: &str) -> BenchRegister {
     let bits = (field.padded() - part.low).min(32);
     let low = field.low + part.low;
     let all = format!("{net}[{}:{low}]", low + bits - 1);
@@ -150,22 +150,22 @@ fn access(part: &Part, field: &Field, net: &str) -> Access {
         0 => all,
         more => format!("{{{{{more}{{{above}}}}}, {all}}}"),
     };
-    Access { at: address(part.place), word, mask: format!("32'h{:08x}", mask(part.width)) }
+    BenchRegister { at: address(part.place), word, mask: format!("32'h{:08x}", mask(part.width)) }
 }
 
 /// Returns all results in one register are side by side as in a stream.
-fn of_results(map: &Map, fields: &[Field]) -> Vec<Access> {
+fn of_results(map: &Map, fields: &[StreamField]) -> Vec<BenchRegister> {
     if map.last() > map.last_operand() + 1 || fields.len() == 1 {
         return accesses(&map.results, fields, "result");
     }
-    let all = Field {
+    let all = StreamField {
         name: String::new(),
         label: String::new(),
         signed: false,
-        width: fields.iter().map(Field::padded).sum(),
+        width: fields.iter().map(StreamField::padded).sum(),
         low: 0,
         strobe: String::new(),
     };
-    let part = Part { place: map.last(), at: 0, low: 0, width: all.width };
+    let part = PortBits { place: map.last(), at: 0, low: 0, width: all.width };
     vec![access(&part, &all, "result")]
 }

@@ -3,12 +3,12 @@
 
 use anyhow::{Context, Result};
 
-use crate::package::artifact::Job;
+use crate::package::artifact::EmitJob;
 use glint_rtl::netlist::{Design, Port, Role};
 use glint_rtl::verilog::text::{ascii, literal, statement};
 
 /// An operand or a result in the bytes of a stream.
-pub struct Field {
+pub struct StreamField {
     pub name: String,
     /// Name and format, for comments.
     pub label: String,
@@ -20,7 +20,7 @@ pub struct Field {
     pub strobe: String,
 }
 
-impl Field {
+impl StreamField {
     /// Returns the number of its bits, including the padding of its last byte.
     pub fn padded(&self) -> u32 {
         self.width.next_multiple_of(8)
@@ -49,7 +49,7 @@ impl Field {
 }
 
 /// Returns the operands, in the order of the ports.
-pub fn operands(design: &Design) -> Vec<Field> {
+pub fn operands(design: &Design) -> Vec<StreamField> {
     let ports = design.inputs().filter_map(|port| match port.role {
         Role::Operand { strobe } => Some((port, design.net(strobe).name.clone())),
         Role::Point => Some((port, String::new())),
@@ -59,7 +59,7 @@ pub fn operands(design: &Design) -> Vec<Field> {
 }
 
 /// Returns the results, in the order of the ports.
-pub fn results(design: &Design) -> Vec<Field> {
+pub fn results(design: &Design) -> Vec<StreamField> {
     let ports = design.outputs().filter(|port| port.role == Role::Result);
     side_by_side(design, ports.map(|port| (port, String::new())))
 }
@@ -67,11 +67,11 @@ pub fn results(design: &Design) -> Vec<Field> {
 fn side_by_side<'a>(
     design: &Design,
     ports: impl Iterator<Item = (&'a Port, String)>,
-) -> Vec<Field> {
+) -> Vec<StreamField> {
     let mut low = 0;
     let field = |(port, strobe): (&Port, String)| {
         let net = design.net(port.net);
-        let field = Field {
+        let field = StreamField {
             name: net.name.clone(),
             label: ascii(&format!("{}, {}", net.name, net.format)),
             signed: net.format.signed,
@@ -87,7 +87,7 @@ fn side_by_side<'a>(
 
 /// The fields of a transfer, and the bits of all of it.
 pub struct Transfer {
-    pub fields: Vec<Field>,
+    pub fields: Vec<StreamField>,
     pub bits: u32,
 }
 
@@ -96,7 +96,7 @@ impl Transfer {
     ///
     /// # Errors
     /// Fails if the core has no operands.
-    pub fn sent(job: &Job) -> Result<Self> {
+    pub fn sent(job: &EmitJob) -> Result<Self> {
         Self::new(job, operands(job.design))
     }
 
@@ -104,11 +104,11 @@ impl Transfer {
     ///
     /// # Errors
     /// Fails if the core has no results.
-    pub fn received(job: &Job) -> Result<Self> {
+    pub fn received(job: &EmitJob) -> Result<Self> {
         Self::new(job, results(job.design))
     }
 
-    fn new(job: &Job, fields: Vec<Field>) -> Result<Self> {
+    fn new(job: &EmitJob, fields: Vec<StreamField>) -> Result<Self> {
         let last = fields.last().context("a wrapper needs a core with operands and results")?;
         let bits = last.low + last.padded();
         let bits = if job.inputs.around.power_of_two { bits.next_power_of_two() } else { bits };
@@ -126,7 +126,7 @@ impl Transfer {
     }
 
     /// Returns the field of a port.
-    pub fn field(&self, name: &str) -> Option<&Field> {
+    pub fn field(&self, name: &str) -> Option<&StreamField> {
         self.fields.iter().find(|field| field.name == name)
     }
 
@@ -138,7 +138,7 @@ impl Transfer {
     /// Returns the parts of a concatenation of all of it; the last field is above the others.
     pub fn packed(&self, prefix: &str) -> Vec<String> {
         let above = self.bits - self.filled();
-        let of_field = |field: &Field| field.packed(&format!("{prefix}{}", field.name));
+        let of_field = |field: &StreamField| field.packed(&format!("{prefix}{}", field.name));
         let fields = self.fields.iter().rev().flat_map(of_field);
         (above > 0).then(|| literal(0, above)).into_iter().chain(fields).collect()
     }

@@ -11,7 +11,7 @@ mod words;
 use anyhow::Result;
 use glint_base::fill;
 
-use super::artifact::{Artifacts, Job, Kind};
+use super::artifact::{ArtifactKind, Artifacts, EmitJob};
 use glint_rtl::netlist::{Design, Port, Role};
 use glint_rtl::verilog::rows::separated;
 use glint_rtl::verilog::text::range;
@@ -20,7 +20,7 @@ use glint_rtl::verilog::text::range;
 ///
 /// # Errors
 /// Fails if a wrapper does not fit the core.
-pub fn files(job: &Job, files: &mut Artifacts) -> Result<()> {
+pub fn files(job: &EmitJob, files: &mut Artifacts) -> Result<()> {
     let streams = job.inputs.around.stream;
     if streams {
         match &job.design.pipeline {
@@ -39,11 +39,11 @@ pub fn files(job: &Job, files: &mut Artifacts) -> Result<()> {
 }
 
 /// Adds the properties of a wrapper, and the Yosys commands that make the problem, if there is a bench.
-fn add_proof(job: &Job, wrapper: &str, text: String, files: &mut Artifacts) -> Result<()> {
+fn add_proof(job: &EmitJob, wrapper: &str, text: String, files: &mut Artifacts) -> Result<()> {
     if job.inputs.vectors.is_some() {
         let script = fill!("wrapper_formal.ys" { name: &'a str = wrapper })?;
-        files.add(Kind::WrapperProof, format!("{wrapper}_formal.sv"), text);
-        files.add(Kind::WrapperProof, format!("{wrapper}_formal.ys"), script);
+        files.add(ArtifactKind::WrapperProof, format!("{wrapper}_formal.sv"), text);
+        files.add(ArtifactKind::WrapperProof, format!("{wrapper}_formal.ys"), script);
     }
     Ok(())
 }

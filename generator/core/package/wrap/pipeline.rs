@@ -4,21 +4,21 @@
 use anyhow::{Result, ensure};
 use glint_base::fill;
 
-use super::fields::{Field, Transfer, sink};
+use super::fields::{StreamField, Transfer, sink};
 use super::{add_proof, connected, seen_inside, stub_ports};
-use crate::package::artifact::{Artifacts, Job, Kind};
+use crate::package::artifact::{ArtifactKind, Artifacts, EmitJob};
 use glint_rtl::netlist::{Pipeline, Role};
 use glint_rtl::verilog::rows::separated;
 use glint_rtl::verilog::text::literal;
 
 /// The lowest and the highest bit of a stage's tlast and tuser, among the bits of all stages.
-struct Side {
+struct SideBits {
     low: u32,
     high: u32,
 }
 
 /// A result among the bits of all results, without padding.
-struct Raw<'a> {
+struct ResultBits<'a> {
     name: &'a str,
     low: u32,
     width: u32,
@@ -28,7 +28,7 @@ struct Raw<'a> {
 ///
 /// # Errors
 /// Fails if the pipeline cannot be held back, or has no operands or results.
-pub fn modules(job: &Job, pipeline: &Pipeline, files: &mut Artifacts) -> Result<()> {
+pub fn modules(job: &EmitJob, pipeline: &Pipeline, files: &mut Artifacts) -> Result<()> {
     let (name, design) = (job.name(), job.design);
     ensure!(
         pipeline.stall,
@@ -44,7 +44,7 @@ pub fn modules(job: &Job, pipeline: &Pipeline, files: &mut Artifacts) -> Result<
         Role::Valid => Some("valid".to_owned()),
         Role::Point => {
             let field = operands.field(name);
-            Some(format!("s_axis_tdata{}", field.map(Field::bits).unwrap_or_default()))
+            Some(format!("s_axis_tdata{}", field.map(StreamField::bits).unwrap_or_default()))
         }
         Role::SideIn => Some(literal(0, pipeline.side)),
         _ => None,
@@ -65,8 +65,8 @@ pub fn modules(job: &Job, pipeline: &Pipeline, files: &mut Artifacts) -> Result<
         regenerate: &'a str = job.regenerate(),
         user_bits: u32,
         keep: bool,
-        operands: &'a [Field] = &operands.fields,
-        results: &'a [Field] = &results.fields,
+        operands: &'a [StreamField] = &operands.fields,
+        results: &'a [StreamField] = &results.fields,
         signed: bool = results.has_signs(),
         in_high: u32,
         out_high: u32,
@@ -82,13 +82,13 @@ pub fn modules(job: &Job, pipeline: &Pipeline, files: &mut Artifacts) -> Result<
         connections: Vec<String>,
         unused: Vec<String> = sink(&unused),
     })?;
-    files.add(Kind::Wrapper, format!("{name}_axis.v"), text);
+    files.add(ArtifactKind::Wrapper, format!("{name}_axis.v"), text);
 
     let side = user_bits + 1;
     let mut raw_bits = 0;
     let mut raw = Vec::new();
     for field in &results.fields {
-        raw.push(Raw { name: &field.name, low: raw_bits, width: field.width });
+        raw.push(ResultBits { name: &field.name, low: raw_bits, width: field.width });
         raw_bits += field.width;
     }
     let side_net = if in_memory { "side.words" } else { "side" };
@@ -104,7 +104,8 @@ pub fn modules(job: &Job, pipeline: &Pipeline, files: &mut Artifacts) -> Result<
     nets.extend(handshake.map(|port| (format!("core.{port}"), 1)));
     let ports = operands.fields.iter().chain(&results.fields);
     nets.extend(ports.map(|field| (format!("core.{}", field.name), field.width)));
-    let check = |field: &Field| format!("dut.core.{} == s_axis_tdata{}", field.name, field.bits());
+    let check =
+        |field: &StreamField| format!("dut.core.{} == s_axis_tdata{}", field.name, field.bits());
     let text = fill!("axis_pipeline_formal.sv" {
         name: &'a str,
         in_high: u32,
@@ -112,7 +113,7 @@ pub fn modules(job: &Job, pipeline: &Pipeline, files: &mut Artifacts) -> Result<
         user_bits: u32,
         keep: bool,
         stub_ports: Vec<String> = stub_ports(design),
-        raw: Vec<Raw<'a>>,
+        raw: Vec<ResultBits<'a>>,
         raw_high: u32 = raw_bits - 1,
         packed: Vec<String> = separated(results.packed("dut.core.")),
         checks: Vec<String> = operands.fields.iter().map(check).collect(),
@@ -123,8 +124,8 @@ pub fn modules(job: &Job, pipeline: &Pipeline, files: &mut Artifacts) -> Result<
         interval: usize = pipeline.interval,
         slot_high: u32 = (pipeline.interval - 1).checked_ilog2().unwrap_or(0),
         side: &'a str = side_net,
-        sides: Vec<Side> = (0..stages as u32)
-            .map(|stage| Side { low: stage * side, high: stage * side + user_bits })
+        sides: Vec<SideBits> = (0..stages as u32)
+            .map(|stage| SideBits { low: stage * side, high: stage * side + user_bits })
             .collect(),
     })?;
     add_proof(job, &format!("{name}_axis"), text, files)

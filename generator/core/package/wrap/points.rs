@@ -4,7 +4,7 @@ use std::collections::VecDeque;
 
 use anyhow::{Context, Result};
 
-use super::fields::{Field, Transfer};
+use super::fields::{StreamField, Transfer};
 use crate::observation::Vectors;
 use crate::package::bench::packed;
 use glint_base::fixed::mask;
@@ -26,7 +26,7 @@ pub struct Point {
 /// Fails if the design lacks its handshake.
 pub fn points(design: &Design, vectors: &Vectors) -> Result<Vec<Point>> {
     let clocks = vectors.inputs.iter().zip(&vectors.expected);
-    let rows = clocks.map(|(inputs, outputs)| Row { design, inputs, outputs });
+    let rows = clocks.map(|(inputs, outputs)| PortValues { design, inputs, outputs });
     let all = match &design.pipeline {
         Some(_) => streamed(rows),
         None => computed(design, rows),
@@ -42,13 +42,13 @@ pub fn points(design: &Design, vectors: &Vectors) -> Result<Vec<Point>> {
 }
 
 /// The ports in a clock.
-struct Row<'a> {
+struct PortValues<'a> {
     design: &'a Design,
     inputs: &'a [u64],
     outputs: &'a [u64],
 }
 
-impl Row<'_> {
+impl PortValues<'_> {
     /// Returns the ports of some roles with their values.
     fn all(&self, is: impl Fn(Role) -> bool) -> Vec<(&Port, u64)> {
         let inputs = self.design.inputs().zip(self.inputs);
@@ -72,7 +72,7 @@ impl Row<'_> {
 
 /// Returns the computations of a microprogram. Operands are written one by one, and `start` takes the values that are written
 /// by then.
-fn computed<'a>(design: &Design, rows: impl Iterator<Item = Row<'a>>) -> Option<Vec<Point>> {
+fn computed<'a>(design: &Design, rows: impl Iterator<Item = PortValues<'a>>) -> Option<Vec<Point>> {
     let overlaps = design.control.overlaps;
     let mut done = Vec::new();
     let mut written: Vec<Option<u64>> = Vec::new();
@@ -116,7 +116,7 @@ fn computed<'a>(design: &Design, rows: impl Iterator<Item = Row<'a>>) -> Option<
 }
 
 /// Returns a pipeline's: points leave it in their order.
-fn streamed<'a>(rows: impl Iterator<Item = Row<'a>>) -> Option<Vec<Point>> {
+fn streamed<'a>(rows: impl Iterator<Item = PortValues<'a>>) -> Option<Vec<Point>> {
     let mut done = Vec::new();
     let mut inside: VecDeque<Vec<u64>> = VecDeque::new();
     let mut known = false;
@@ -142,7 +142,7 @@ fn streamed<'a>(rows: impl Iterator<Item = Row<'a>>) -> Option<Vec<Point>> {
 /// Returns the stream's input: the operands side by side in whole bytes, the bits above them of every other point set.
 pub fn sent(points: &[Point], operands: &Transfer) -> String {
     let word = |(number, point): (usize, &Point)| {
-        let above = |field: &Field| if number % 2 == 1 { !mask(field.width) } else { 0 };
+        let above = |field: &StreamField| if number % 2 == 1 { !mask(field.width) } else { 0 };
         word(&point.operands, operands, above, number % 2 == 1, None)
     };
     points.iter().enumerate().map(word).collect()
@@ -160,7 +160,7 @@ pub fn received(points: &[Point], results: &Transfer, is_line: bool) -> String {
                 .map(|(value, field)| field.signed && value >> (field.width - 1) & 1 == 1)
                 .collect();
             let mut signs = signs.into_iter();
-            let above = |field: &Field| match signs.next() {
+            let above = |field: &StreamField| match signs.next() {
                 Some(true) => !mask(field.width),
                 _ => 0,
             };
@@ -175,14 +175,15 @@ pub fn received(points: &[Point], results: &Transfer, is_line: bool) -> String {
 fn word(
     values: &[u64],
     transfer: &Transfer,
-    mut above: impl FnMut(&Field) -> u64,
+    mut above: impl FnMut(&StreamField) -> u64,
     ones: bool,
     top: Option<u64>,
 ) -> String {
     let fields = &transfer.fields;
-    let whole = |(value, field): (&u64, &Field)| (value | above(field)) & mask(field.padded());
+    let whole =
+        |(value, field): (&u64, &StreamField)| (value | above(field)) & mask(field.padded());
     let mut row: Vec<u64> = values.iter().zip(fields).map(whole).collect();
-    let mut widths: Vec<u32> = fields.iter().map(Field::padded).collect();
+    let mut widths: Vec<u32> = fields.iter().map(StreamField::padded).collect();
     for _ in 0..(transfer.bits - transfer.filled()) / 8 {
         row.push(if ones { 0xff } else { 0 });
         widths.push(8);

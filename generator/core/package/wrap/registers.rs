@@ -7,23 +7,23 @@ use glint_base::fill;
 use super::fields::sink;
 use super::words::{Word, constants, select, within, words};
 use super::{add_proof, connected, core_wire, seen_inside, stub_free, stub_ports};
-use crate::package::artifact::{Artifacts, Job, Kind};
+use crate::package::artifact::{ArtifactKind, Artifacts, EmitJob};
 use crate::package::bus::Bus;
-use crate::package::map::{self, Bits, Map, Part, Placed, Register};
+use crate::package::map::{self, BusRegister, Map, PortBits, PortPlacement, RegisterBits};
 use glint_rtl::netlist::Role;
 use glint_rtl::verilog::text::{comment, literal, range, statement};
 
 /// An operand where it is kept.
-struct Operand {
+struct OperandWords {
     name: String,
     strobe: String,
     range: String,
     zero: String,
-    lanes: Vec<Lane>,
+    lanes: Vec<ByteLane>,
 }
 
 /// Bits that a byte of a register writes.
-struct Lane {
+struct ByteLane {
     word: String,
     number: u32,
     byte: u32,
@@ -36,18 +36,18 @@ struct Lane {
 ///
 /// # Errors
 /// Fails if a template fails.
-pub fn modules(job: &Job, bus: &Bus, map: &Map, files: &mut Artifacts) -> Result<()> {
+pub fn modules(job: &EmitJob, bus: &Bus, map: &Map, files: &mut Artifacts) -> Result<()> {
     let [module, module_proof] =
         (bus.module)(job.name(), job.regenerate(), map.address_bits() - 1)?;
     let registers = format!("{}_registers", job.name());
     let bus = format!("{}_{}", job.name(), bus.suffix);
-    files.add(Kind::Wrapper, format!("{bus}.v"), module);
-    files.add(Kind::Wrapper, format!("{registers}.v"), block(job, map)?);
+    files.add(ArtifactKind::Wrapper, format!("{bus}.v"), module);
+    files.add(ArtifactKind::Wrapper, format!("{registers}.v"), block(job, map)?);
     add_proof(job, &bus, module_proof, files)?;
     add_proof(job, &registers, proof(job, map)?, files)
 }
 
-fn block(job: &Job, map: &Map) -> Result<String> {
+fn block(job: &EmitJob, map: &Map) -> Result<String> {
     let design = job.design;
     let word_bits = map.address_bits() - 2;
     let place = |place: u32| literal(place.into(), word_bits);
@@ -77,7 +77,7 @@ fn block(job: &Job, map: &Map) -> Result<String> {
         map: Vec<String> = described(map),
         address_high: u32 = map.address_bits() - 1,
         word_high: u32 = word_bits - 1,
-        operands: Vec<Operand> = operands(map),
+        operands: Vec<OperandWords> = operands(map),
         // The values that a read of the first registers gives, and of all other registers.
         constants: Vec<String> = constants(map),
         words: Vec<Word> = words(design, map),
@@ -120,14 +120,14 @@ fn indented(text: &str) -> Vec<String> {
     comment(12, text).into_iter().map(|text| line(text.trim_start().to_owned())).collect()
 }
 
-fn operands(map: &Map) -> Vec<Operand> {
+fn operands(map: &Map) -> Vec<OperandWords> {
     let word_bits = map.address_bits() - 2;
-    let operand = |operand: &Placed| {
+    let operand = |operand: &PortPlacement| {
         let width = operand.format.width();
         let lanes = operand.parts.iter().flat_map(|part| {
             (0..part.width.div_ceil(8)).map(move |byte| {
                 let (low, high) = (8 * byte, (8 * byte + 8).min(part.width) - 1);
-                Lane {
+                ByteLane {
                     word: literal(part.place.into(), word_bits),
                     number: part.place,
                     byte,
@@ -136,7 +136,7 @@ fn operands(map: &Map) -> Vec<Operand> {
                 }
             })
         });
-        Operand {
+        OperandWords {
             name: operand.name.clone(),
             strobe: operand.strobe.clone(),
             range: range(width),
@@ -149,7 +149,7 @@ fn operands(map: &Map) -> Vec<Operand> {
 
 /// Returns the word that a read of a register gives, according to the map alone: each field at its place, and 0 between the
 /// fields.
-fn read(map: &Map, register: &Register) -> Vec<String> {
+fn read(map: &Map, register: &BusRegister) -> Vec<String> {
     let mut parts = Vec::new();
     let mut above = 32;
     for bits in register.bits.iter().rev() {
@@ -173,7 +173,7 @@ fn read(map: &Map, register: &Register) -> Vec<String> {
 }
 
 /// Returns the nets behind some bits, as wide as these.
-fn source(map: &Map, register: &Register, bits: &Bits) -> String {
+fn source(map: &Map, register: &BusRegister, bits: &RegisterBits) -> String {
     if register.place < map::CONSTANTS {
         return literal(bits.reset, bits.width);
     }
@@ -186,8 +186,8 @@ fn source(map: &Map, register: &Register, bits: &Bits) -> String {
         _ => {
             let is_operand = register.place <= map.last_operand();
             let ports = if is_operand { &map.operands } else { &map.results };
-            let here = |part: &&Part| (part.place, part.at) == (register.place, bits.low);
-            let part = |port: &'_ Placed| port.parts.iter().find(here).copied();
+            let here = |part: &&PortBits| (part.place, part.at) == (register.place, bits.low);
+            let part = |port: &'_ PortPlacement| port.parts.iter().find(here).copied();
             let found = ports.iter().find_map(|port| Some((port, part(port)?)));
             let Some((port, part)) = found else { return literal(0, bits.width) };
             let (width, high) = (port.format.width(), part.low + part.width - 1);
@@ -204,7 +204,7 @@ fn source(map: &Map, register: &Register, bits: &Bits) -> String {
     }
 }
 
-fn proof(job: &Job, map: &Map) -> Result<String> {
+fn proof(job: &EmitJob, map: &Map) -> Result<String> {
     let word_bits = map.address_bits() - 2;
     let own = [
         ("start", 1),
@@ -237,7 +237,7 @@ fn proof(job: &Job, map: &Map) -> Result<String> {
         last_operand_number: u32 = map.last_operand(),
         first_result_number: u32 = map.last_operand() + 1,
         last_result_number: u32 = map.last(),
-        operands: Vec<Operand> = operands(map),
+        operands: Vec<OperandWords> = operands(map),
         // The place of each register, and the word that a read of it gives.
         reads: Vec<(u32, Vec<String>)> = reads.collect(),
         stub_ports: Vec<String> = stub_ports(job.design),

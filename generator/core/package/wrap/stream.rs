@@ -3,15 +3,15 @@
 use anyhow::{Context, Result};
 use glint_base::fill;
 
-use super::fields::{Field, Transfer, sink};
+use super::fields::{StreamField, Transfer, sink};
 use super::{add_proof, connected, core_wire, seen_inside, stub_free, stub_ports};
-use crate::package::artifact::{Artifacts, Job, Kind};
+use crate::package::artifact::{ArtifactKind, Artifacts, EmitJob};
 use glint_rtl::netlist::Role;
 use glint_rtl::verilog::rows::separated;
 use glint_rtl::verilog::text::literal;
 
 /// The line of a core that walks lines: the operand that says how long one is, and the buffer.
-struct Line {
+struct LineStream {
     length: String,
     length_low: u32,
     length_high: u32,
@@ -19,7 +19,7 @@ struct Line {
     width: u32,
 }
 
-impl Line {
+impl LineStream {
     /// Returns the highest bit of a place in the buffer.
     fn high(&self) -> u32 {
         self.width - 1
@@ -48,7 +48,7 @@ impl Line {
 ///
 /// # Errors
 /// Fails if the core lacks the handshake of a microprogram, operands or results.
-pub fn modules(job: &Job, files: &mut Artifacts) -> Result<()> {
+pub fn modules(job: &EmitJob, files: &mut Artifacts) -> Result<()> {
     let (name, design, regenerate) = (job.name(), job.design, job.regenerate());
     design.handshake()?;
     let (operands, results) = (Transfer::sent(job)?, Transfer::received(job)?);
@@ -63,7 +63,7 @@ pub fn modules(job: &Job, files: &mut Artifacts) -> Result<()> {
         Role::Done if overlaps => Some("done".to_owned()),
         Role::Operand { .. } => {
             let field = operands.field(name);
-            Some(format!("operands{}", field.map(Field::bits).unwrap_or_default()))
+            Some(format!("operands{}", field.map(StreamField::bits).unwrap_or_default()))
         }
         Role::Strobe if operands.fields.iter().any(|field| field.strobe == name) => {
             Some("start".to_owned())
@@ -88,8 +88,8 @@ pub fn modules(job: &Job, files: &mut Artifacts) -> Result<()> {
         regenerate: &'a str,
         user_bits: u32,
         keep: bool,
-        operands: &'a [Field] = &operands.fields,
-        results: &'a [Field] = &results.fields,
+        operands: &'a [StreamField] = &operands.fields,
+        results: &'a [StreamField] = &results.fields,
         signed: bool = results.has_signs(),
         in_high: u32,
         out_high: u32,
@@ -98,19 +98,20 @@ pub fn modules(job: &Job, files: &mut Artifacts) -> Result<()> {
         connections: Vec<String>,
         // The kind of net that drives the outputs: a register, or a wire from the buffer.
         output: &'a str = if line.is_some() { "wire" } else { "reg " },
-        line: Option<&'a Line> = line.as_ref(),
+        line: Option<&'a LineStream> = line.as_ref(),
         unused: Vec<String> = sink(&unused),
         // The core hears `start` in the clock of `done` too.
         overlaps: bool,
     })?;
-    files.add(Kind::Wrapper, format!("{name}_axis.v"), text);
+    files.add(ArtifactKind::Wrapper, format!("{name}_axis.v"), text);
     if let Some(line) = &line {
         let buffer = fill!("axis_buffer.v" {
-            name: &'a str, regenerate: &'a str, out_high: u32, user_bits: u32, line: &'a Line,
+            name: &'a str, regenerate: &'a str, out_high: u32, user_bits: u32, line: &'a LineStream,
         })?;
-        files.add(Kind::Wrapper, format!("{name}_axis_buffer.v"), buffer);
+        files.add(ArtifactKind::Wrapper, format!("{name}_axis_buffer.v"), buffer);
     }
-    let check = |field: &Field| format!("dut.core.{} == its_operands{}", field.name, field.bits());
+    let check =
+        |field: &StreamField| format!("dut.core.{} == its_operands{}", field.name, field.bits());
     let text = fill!("axis_formal.sv" {
         name: &'a str,
         in_high: u32,
@@ -126,7 +127,7 @@ pub fn modules(job: &Job, files: &mut Artifacts) -> Result<()> {
         // Declarations of the inner nets that the proof reads.
         inside: Vec<String> = inside(&operands, &results, line.as_ref(), user_bits)?,
         strobes: Vec<&'a String> = operands.fields.iter().map(|field| &field.strobe).collect(),
-        line: Option<&'a Line> = line.as_ref(),
+        line: Option<&'a LineStream> = line.as_ref(),
         overlaps: bool,
     })?;
     add_proof(job, &format!("{name}_axis"), text, files)
@@ -136,7 +137,7 @@ pub fn modules(job: &Job, files: &mut Artifacts) -> Result<()> {
 fn inside(
     operands: &Transfer,
     results: &Transfer,
-    line: Option<&Line>,
+    line: Option<&LineStream>,
     user: u32,
 ) -> Result<Vec<String>> {
     let (in_bits, out_bits) = (operands.bits, results.bits);
@@ -153,7 +154,7 @@ fn inside(
     .map(|(net, width)| (net.to_owned(), width))
     .into();
     let own = match line {
-        Some(Line { width, .. }) => vec![
+        Some(LineStream { width, .. }) => vec![
             ("core.to_come", width + 1),
             ("read", 1),
             ("read_at", width + 1),
@@ -177,14 +178,14 @@ fn inside(
     Ok(nets.into_iter().map(seen_inside).collect())
 }
 
-fn line(job: &Job, operands: &Transfer) -> Result<Option<Line>> {
+fn line(job: &EmitJob, operands: &Transfer) -> Result<Option<LineStream>> {
     let length = job.inputs.accuracy.as_ref().and_then(|accuracy| accuracy.length.as_ref());
     let Some(length) = length else {
         return Ok(None);
     };
     let field = operands.field(length);
     let field = field.with_context(|| format!("`{length}` is no operand"))?;
-    Ok(Some(Line {
+    Ok(Some(LineStream {
         length: field.name.clone(),
         length_low: field.low,
         length_high: field.high(),

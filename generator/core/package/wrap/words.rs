@@ -2,7 +2,7 @@
 //! gives.
 
 use super::fields::{Transfer, results};
-use crate::package::map::{self, Map, Part, Placed, Register};
+use crate::package::map::{self, BusRegister, Map, PortBits, PortPlacement};
 use glint_rtl::netlist::Design;
 use glint_rtl::verilog::text::{literal, statement};
 
@@ -52,7 +52,7 @@ pub fn select(width: u32, low: u32, high: u32) -> String {
 
 /// Returns the words of the registers that never change.
 pub fn constants(map: &Map) -> Vec<String> {
-    let value = |register: &Register| {
+    let value = |register: &BusRegister| {
         let value = register.bits.iter().map(|bits| bits.reset << bits.low).sum::<u64>();
         format!("32'h{value:08x}")
     };
@@ -96,7 +96,7 @@ pub fn words(design: &Design, map: &Map) -> Vec<Word> {
 }
 
 /// Returns a part of a port in 32 bits. A result is extended with copies of its sign.
-fn extended(port: &Placed, part: &Part, net: &str, is_result: bool) -> String {
+fn extended(port: &PortPlacement, part: &PortBits, net: &str, is_result: bool) -> String {
     let width = port.format.width();
     let bits = format!("{net}{}", select(width, part.low, part.low + part.width - 1));
     let signed = is_result && port.format.signed;

@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 use super::Executor;
 use crate::netlist::{self, Driver, Net, NetId, RegId, RegisterKind, Role, RomId, Topic};
-use crate::pipeline::graph::{Cell, Graph, Label, NodeId, Op};
+use crate::pipeline::graph::{Cell, Graph, Label, NodeId, NodeOp};
 use glint_base::fixed::Format;
 
 /// The state between two clocks.
@@ -55,7 +55,7 @@ impl<'e, 'a> Clock<'e, 'a> {
                 None => {
                     let of = self.value(design.rom(design.control.rom).data);
                     let low = design.field_positions()[field.index()];
-                    self.graph().op(Op::Slice { of, low }, net.format, &label)
+                    self.graph().op(NodeOp::Slice { of, low }, net.format, &label)
                 }
             },
             Driver::Register(register) => match self.of_sequencer(*register) {
@@ -73,7 +73,7 @@ impl<'e, 'a> Clock<'e, 'a> {
                     chosen = select.map(|it| inputs[(it as usize).min(inputs.len() - 1)]);
                 }
                 let op = match chosen {
-                    Some(input) => Op::Relabel(self.value(input)),
+                    Some(input) => NodeOp::Relabel(self.value(input)),
                     None => op.map(|&operand| self.value(operand)),
                 };
                 self.graph().op(op, net.format, &label)
@@ -154,10 +154,10 @@ impl<'e, 'a> Clock<'e, 'a> {
             let net = design.net(register.q);
             let before = self.state.registers[number];
             let graph = self.graph();
-            let mut held = graph.op(Op::Relabel(data), net.format, &label(net));
+            let mut held = graph.op(NodeOp::Relabel(data), net.format, &label(net));
             if let (Some(select), None) = (enable, fixed) {
                 let inputs = vec![before, held];
-                held = graph.op(Op::Mux { select, inputs }, net.format, &label(net));
+                held = graph.op(NodeOp::Mux { select, inputs }, net.format, &label(net));
             }
             after.registers[number] = if register.kind == RegisterKind::Internal {
                 held

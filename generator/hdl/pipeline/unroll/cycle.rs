@@ -14,12 +14,12 @@ pub struct Cycle {
     /// The values, including the values of the clock that takes `start`. The results are all outputs.
     pub unrolled: Unrolled,
     /// Registers and synchronous ROMs.
-    pub held: Vec<Held>,
+    pub held: Vec<StateValues>,
 }
 
 /// The contents of registers and synchronous ROMs, by values.
 #[derive(Clone, Copy, Debug)]
-pub struct Held {
+pub struct StateValues {
     /// The net that it drives.
     pub net: NetId,
     /// After the clock that takes `start` and all operands. For a ROM it is the word before any clock, which no
@@ -50,14 +50,14 @@ pub fn any_cycle(design: &Design) -> Cycle {
     let outputs = design.outputs().map(|port| (port.net, clock.value(port.net))).collect();
     let after = clock.edge();
     executor.unrolled.results = outputs;
-    let registers = design.registers.iter().enumerate().map(|(at, register)| Held {
+    let registers = design.registers.iter().enumerate().map(|(at, register)| StateValues {
         net: register.q,
         first: first.registers[at],
         before: running.registers[at],
         after: after.registers[at],
     });
     let roms = design.roms.iter().enumerate().filter(|(_, rom)| rom.synchronous);
-    let roms = roms.map(|(at, rom)| Held {
+    let roms = roms.map(|(at, rom)| StateValues {
         net: rom.data,
         first: running.roms[at],
         before: running.roms[at],

@@ -23,7 +23,7 @@ const MOST_DELAY: usize = 12;
 
 /// A computation of several results.
 #[derive(Debug)]
-pub struct Line {
+pub struct UnrolledLine {
     /// The first point. The others differ from it in the walk.
     pub unrolled: Unrolled,
     /// The registers of the walk.
@@ -45,17 +45,17 @@ pub struct WalkRegister {
 ///
 /// # Errors
 /// Fails if the points are not alike in the way that the head of this module describes.
-pub fn unroll_line(design: &Design) -> Result<Line, Diagnostics> {
+pub fn unroll_line(design: &Design) -> Result<UnrolledLine, Diagnostics> {
     let executor = Executor::new(design, Iterations::OneByOne);
-    Points { executor }.line().map_err(|diagnostic| Diagnostics(vec![diagnostic]))
+    LineUnroller { executor }.line().map_err(|diagnostic| Diagnostics(vec![diagnostic]))
 }
 
-struct Points<'a> {
+struct LineUnroller<'a> {
     executor: Executor<'a>,
 }
 
-impl Points<'_> {
-    fn line(mut self) -> Result<Line, Diagnostic> {
+impl LineUnroller<'_> {
+    fn line(mut self) -> Result<UnrolledLine, Diagnostic> {
         let design = self.executor.design;
         let unknown = self.executor.power_up();
         let started = self.executor.start(&unknown);
@@ -108,7 +108,7 @@ impl Points<'_> {
         let walk = held(&begun).into_iter().zip(before).zip(held(&gone));
         let walk =
             walk.map(|((first, before), next)| WalkRegister { first, before, next }).collect();
-        Ok(Line { unrolled: self.executor.unrolled, walk })
+        Ok(UnrolledLine { unrolled: self.executor.unrolled, walk })
     }
 
     /// Finds after how many clocks `valid` follows from the microinstruction alone, and the microinstructions that set it.

@@ -3,8 +3,8 @@
 use std::panic::Location;
 
 use crate::netlist::{
-    Control, Design, Driver, Field, FieldId, FieldKind, Microinstruction, Net, NetId, Op, Port,
-    Register, RegisterKind, Role, Rom, RomId, Sequence,
+    Control, Design, Driver, Field, FieldId, FieldKind, Microinstruction, Net, NetId,
+    NetlistRegister, NetlistRom, Op, Port, RegisterKind, Role, RomId, Sequence,
 };
 use glint_base::fixed::{Format, mask};
 
@@ -53,7 +53,7 @@ impl Build {
     }
 
     /// Returns the register that drives `q`.
-    pub fn of(&mut self, q: NetId) -> &mut Register {
+    pub fn of(&mut self, q: NetId) -> &mut NetlistRegister {
         let register = self.design.registers.iter_mut().find(|r| r.q == q);
         register.expect("a register")
     }
@@ -68,8 +68,8 @@ impl Build {
     ) -> NetId {
         let data = self.net(name, format, Driver::Undriven);
         let words = words.iter().map(|word| word & mask(format.width())).collect();
-        let rom = Rom::new(&format!("{name}_rom"), address, data, words, Location::caller());
-        self.design.add_rom(Rom { synchronous, ..rom });
+        let rom = NetlistRom::new(&format!("{name}_rom"), address, data, words, Location::caller());
+        self.design.add_rom(NetlistRom { synchronous, ..rom });
         data
     }
 

@@ -2,7 +2,7 @@
 
 use super::build::Build;
 use crate::netlist::{Driver, NetId, Op, RegId, Role, RomId};
-use crate::sim::Program;
+use crate::sim::CompiledDesign;
 use glint_base::fixed::Format;
 
 const BYTE: Format = Format::unsigned(8, 0);
@@ -13,9 +13,9 @@ const SIGNED: Format = Format::signed(7, 0);
 fn refuses<T>(words: &[&str], change: impl FnOnce(&mut Build, NetId) -> T) {
     let mut b = Build::new();
     let a = b.input("a", BYTE);
-    Program::new(&b.design).expect("nothing is wrong yet");
+    CompiledDesign::new(&b.design).expect("nothing is wrong yet");
     change(&mut b, a);
-    let error = Program::new(&b.design).expect_err("it is wrong");
+    let error = CompiledDesign::new(&b.design).expect_err("it is wrong");
     let message = format!("{error:#}");
     for word in words {
         assert!(message.contains(word), "`{message}` does not say `{word}`");

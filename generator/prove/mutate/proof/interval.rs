@@ -6,10 +6,10 @@
 use super::pairs::{self, Pairs};
 use glint_base::interval::{Interval, fits, hull, of_values};
 use glint_rtl::netlist::interval::of_cell;
-use glint_rtl::netlist::{Design, Driver, NetId, Op, Register, RegisterKind};
+use glint_rtl::netlist::{Design, Driver, NetId, NetlistRegister, Op, RegisterKind};
 
 /// Returns whether the stated interval of a register holds in every clock from power-up on.
-pub(super) fn trusted(design: &Design, register: &Register) -> bool {
+pub(super) fn trusted(design: &Design, register: &NetlistRegister) -> bool {
     let (low, high) = design.net(register.q).range;
     register.kind != RegisterKind::Internal && low <= 0 && high >= 0
 }

@@ -11,8 +11,10 @@ use glint_base::program::Program;
 use glint_base::text::{counted, rounded_up};
 use glint_config::{Config, Key, Schema, shared_keys};
 use glint_core::cosim::exhaustive::Backing;
-use glint_core::package::facts::{self, Sequence};
-use glint_core::package::{LineClocks, Linear, Quantity, Surroundings, Timing, WorkedExample};
+use glint_core::package::facts::{self, SequenceFacts};
+use glint_core::package::{
+    HandshakeTiming, LineClocks, Linear, Quantity, Surroundings, WorkedExample,
+};
 use glint_golden::{Bound, Contract, Values};
 use glint_rtl::netlist::{Design, Pipeline};
 use glint_rtl::verilog::naming::Naming;
@@ -36,7 +38,7 @@ pub struct PageInputs<'a> {
     /// The key that would bring the bound down most.
     pub advice: Option<Advice>,
     /// Clocks.
-    pub timing: &'a Timing,
+    pub timing: &'a HandshakeTiming,
     /// One computation with all its numbers.
     pub example: &'a WorkedExample,
     /// Clocks of a line, for a device that walks lines.
@@ -219,7 +221,7 @@ pub fn fields(design: &Design) -> TextTable {
 /// Returns the microprogram as the patents print theirs: a row for each microinstruction, a column for each line.
 pub fn microprogram(design: &Design) -> TextTable {
     let fields = facts::fields(design);
-    let heading = |field: &facts::Field| match field.lines {
+    let heading = |field: &facts::FieldFacts| match field.lines {
         [] => code(field.name),
         numbers => lines(numbers),
     };
@@ -234,12 +236,12 @@ pub fn microprogram(design: &Design) -> TextTable {
         }
         cells.push(microinstruction.name.to_owned());
         cells.push(match microinstruction.sequence {
-            Sequence::Plain("next") => String::new(),
-            Sequence::Plain(what) => what.to_owned(),
-            Sequence::Loop { loop_to, condition } => {
+            SequenceFacts::Plain("next") => String::new(),
+            SequenceFacts::Plain(what) => what.to_owned(),
+            SequenceFacts::Loop { loop_to, condition } => {
                 format!("to {loop_to} while {}", code(condition))
             }
-            Sequence::Jump { jump_to, condition } => {
+            SequenceFacts::Jump { jump_to, condition } => {
                 format!("to {jump_to} if {}", code(condition))
             }
         });
@@ -249,7 +251,7 @@ pub fn microprogram(design: &Design) -> TextTable {
 }
 
 /// Tabulates in which clock after `start` each event of the handshake is.
-pub fn clocks(timing: &Timing, line: Option<&LineClocks>) -> TextTable {
+pub fn clocks(timing: &HandshakeTiming, line: Option<&LineClocks>) -> TextTable {
     let mut table = TextTable::of("event | clock:");
     let mut row = |event: &str, clock: Option<u32>, of_line: Option<Linear>| {
         let formula = || line.zip(of_line).map(|(line, clocks)| clocks.text(&code(&line.length)));

@@ -22,7 +22,7 @@ use glint_base::target::FAMILIES;
 use glint_core::core::Core;
 use glint_core::cosim::batch::Golden;
 use glint_core::cosim::exhaustive::{Backing, Record};
-use glint_core::package::{LineClocks, Timing, WorkedExample};
+use glint_core::package::{HandshakeTiming, LineClocks, WorkedExample};
 use waves::Waves;
 
 /// A side of the picture of a highlight, in pixels.
@@ -58,7 +58,7 @@ pub struct Datasheet {
 
 /// The results of a page that take work.
 struct DatasheetResults {
-    timing: Timing,
+    timing: HandshakeTiming,
     example: WorkedExample,
     line: Option<LineClocks>,
     waves: Waves,

@@ -22,7 +22,7 @@ use crate::pages::markup::html;
 use crate::pages::stages;
 use glint_base::target::FAMILIES;
 use glint_base::{input, text};
-use glint_core::package::{self, InstanceExample, Seal, Timing};
+use glint_core::package::{self, HandshakeTiming, InstanceExample, Seal};
 use glint_rtl::netlist::Design;
 
 #[glint_base::template::template("datasheet.html")]
@@ -300,7 +300,7 @@ fn rate(subject: &Subject) -> Option<String> {
 }
 
 /// Returns how often a point can be computed, in a sentence.
-fn throughput(subject: &Subject, timing: &Timing) -> String {
+fn throughput(subject: &Subject, timing: &HandshakeTiming) -> String {
     let often = match timing.clocks_per_point() {
         Some(1) => "A point takes a clock".to_owned(),
         Some(clocks) => format!("Back to back a point takes {clocks} clocks"),

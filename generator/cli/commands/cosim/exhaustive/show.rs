@@ -10,11 +10,11 @@ use crate::commands::mismatch::Reproducer;
 use crate::{OutputOptions, say};
 use glint_base::program::Program;
 use glint_base::text;
-use glint_core::cosim::exhaustive::{Difference, Job, Proof, Shard, State};
+use glint_core::cosim::exhaustive::{Difference, Job, Proof, Shard, ShardState};
 use glint_golden::Values;
 
 /// Announces the work ahead, and the part that it leaves out.
-pub fn announce(one: &Loaded, job: &Job<'_>, state: &State) {
+pub fn announce(one: &Loaded, job: &Job<'_>, state: &ShardState) {
     say!("{}: {} ({})", one.path, job.words(), job.f.sweep().words(),);
     if !job.f.sweep().omits.is_empty() {
         say!("  not covered: {}", job.f.sweep().omits);
@@ -31,7 +31,7 @@ pub fn announce(one: &Loaded, job: &Job<'_>, state: &State) {
         say!("  not covered: {}", clocks.omits());
     }
     let left = job.remaining(state);
-    let all = job.remaining(&State::new("", Shard::WHOLE));
+    let all = job.remaining(&ShardState::new("", Shard::WHOLE));
     if left != all {
         say!("  shard {}: {} evaluations to do here", state.shard, text::grouped(left));
     }
@@ -45,7 +45,7 @@ pub fn report(
     output: OutputOptions,
     one: &Loaded,
     job: &Job<'_>,
-    state: &State,
+    state: &ShardState,
     list: &mut Vec<Value>,
 ) -> Result<bool> {
     let contract = one.core.contract.as_ref();
@@ -67,7 +67,11 @@ pub fn report(
 }
 
 /// Returns the first combination that differs, with its waveform.
-fn found(one: &Loaded, job: &Job<'_>, state: &State) -> Result<Option<(Difference, Reproducer)>> {
+fn found(
+    one: &Loaded,
+    job: &Job<'_>,
+    state: &ShardState,
+) -> Result<Option<(Difference, Reproducer)>> {
     let (Some(clocks), Some(place)) = (&job.clocks, state.clocks.differs) else {
         return Ok(None);
     };
@@ -76,7 +80,7 @@ fn found(one: &Loaded, job: &Job<'_>, state: &State) -> Result<Option<(Differenc
     Ok(Some((difference, reproducer)))
 }
 
-fn print(one: &Loaded, job: &Job<'_>, proof: &Proof, state: &State) {
+fn print(one: &Loaded, job: &Job<'_>, proof: &Proof, state: &ShardState) {
     let at: Vec<String> = job
         .f
         .sweep()
@@ -110,7 +114,7 @@ fn as_json(
     one: &Loaded,
     job: &Job<'_>,
     proof: &Proof,
-    state: &State,
+    state: &ShardState,
     found: Option<&(Difference, Reproducer)>,
 ) -> Value {
     let places = &job.f;
