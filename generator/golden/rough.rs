@@ -119,10 +119,10 @@ impl Keys {
 struct RoughArithmetic {
     keys: Keys,
     sine: Sine,
-    kind: Blocks,
+    kind: RoughBlocks,
 }
 
-enum Blocks {
+enum RoughBlocks {
     Exact {
         /// 1.0 of registers 11 and 12, and of register 13.
         product_one: i64,
@@ -143,7 +143,7 @@ impl RoughArithmetic {
     fn new(keys: Keys) -> Self {
         let (p, f) = (keys.product_fraction, keys.f.fraction);
         let kind = match keys.arithmetic {
-            Kind::Patent => Blocks::Patent {
+            Kind::Patent => RoughBlocks::Patent {
                 width: keys.operands.cosine.fraction,
                 mask: (1 << keys.operands.cosine.fraction) - 1,
             },
@@ -152,7 +152,7 @@ impl RoughArithmetic {
                     Narrow::new(from, Format::unsigned(int, p as i32), keys.product_rounding)
                 };
                 let result = |from| Narrow::new(from, keys.result_format(), keys.f.rounding);
-                Blocks::Exact {
+                RoughBlocks::Exact {
                     product_one: 1 << p,
                     result_one: 1 << f,
                     clamp: keys.clamp,
@@ -170,8 +170,8 @@ impl RoughArithmetic {
     #[inline]
     fn cos_cos(&self, cos_gamma: i64, cos_dgamma: i64) -> i64 {
         match &self.kind {
-            Blocks::Exact { cos_cos, .. } => cos_cos.apply(cos_gamma * cos_dgamma),
-            Blocks::Patent { width, .. } => (cos_gamma * cos_dgamma) >> width,
+            RoughBlocks::Exact { cos_cos, .. } => cos_cos.apply(cos_gamma * cos_dgamma),
+            RoughBlocks::Patent { width, .. } => (cos_gamma * cos_dgamma) >> width,
         }
     }
 
@@ -179,8 +179,8 @@ impl RoughArithmetic {
     #[inline]
     fn sin_sin(&self, sin_gamma: i64, sin_dgamma: i64) -> i64 {
         match &self.kind {
-            Blocks::Exact { sin_sin, .. } => sin_sin.apply(sin_gamma * sin_dgamma),
-            Blocks::Patent { width, .. } => (sin_gamma * sin_dgamma) >> width,
+            RoughBlocks::Exact { sin_sin, .. } => sin_sin.apply(sin_gamma * sin_dgamma),
+            RoughBlocks::Patent { width, .. } => (sin_gamma * sin_dgamma) >> width,
         }
     }
 
@@ -192,11 +192,11 @@ impl RoughArithmetic {
     #[inline]
     fn adder_15(&self, cos_cos: i64, sin_sin: i64, dgamma_negative: i64) -> i64 {
         match &self.kind {
-            Blocks::Exact { product_one, .. } if dgamma_negative == 0 => {
+            RoughBlocks::Exact { product_one, .. } if dgamma_negative == 0 => {
                 cos_cos - sin_sin - product_one
             }
-            Blocks::Exact { product_one, .. } => cos_cos + sin_sin - product_one,
-            Blocks::Patent { mask, .. } => {
+            RoughBlocks::Exact { product_one, .. } => cos_cos + sin_sin - product_one,
+            RoughBlocks::Patent { mask, .. } => {
                 let adder_31 = (sin_sin - 1) & mask;
                 let mux_14 = if dgamma_negative == 0 { !sin_sin & mask } else { adder_31 };
                 (cos_cos + mux_14 + dgamma_negative) & mask
@@ -208,11 +208,11 @@ impl RoughArithmetic {
     #[inline]
     fn scaled(&self, adder_15: i64, exponent: i64, cos_gamma: i64) -> i64 {
         match &self.kind {
-            Blocks::Exact { result_one, .. } if cos_gamma == 0 => -result_one,
+            RoughBlocks::Exact { result_one, .. } if cos_gamma == 0 => -result_one,
             // n is read with its low bit behind the point.
-            Blocks::Exact { scaled, .. } => scaled.apply(adder_15 * exponent),
+            RoughBlocks::Exact { scaled, .. } => scaled.apply(adder_15 * exponent),
             // n is wired a place down, and loses its low bit.
-            Blocks::Patent { mask, .. } => (adder_15 * (exponent >> 1)) & mask,
+            RoughBlocks::Patent { mask, .. } => (adder_15 * (exponent >> 1)) & mask,
         }
     }
 
@@ -220,13 +220,13 @@ impl RoughArithmetic {
     #[inline]
     fn squared(&self, result: i64, cos_gamma: i64) -> i64 {
         match &self.kind {
-            Blocks::Exact { result_one, .. } if cos_gamma == 0 => -result_one,
-            Blocks::Exact { result_one, square, .. } => {
+            RoughBlocks::Exact { result_one, .. } if cos_gamma == 0 => -result_one,
+            RoughBlocks::Exact { result_one, square, .. } => {
                 let adder_16 = result + result_one;
                 square.apply(adder_16 * adder_16)
             }
             // The carry-in of adder 16 is all that is left of the 1.0.
-            Blocks::Patent { width, mask } => {
+            RoughBlocks::Patent { width, mask } => {
                 let adder_16 = (result + 1) & mask;
                 (adder_16 * adder_16) >> width
             }
@@ -240,9 +240,9 @@ impl RoughArithmetic {
     #[inline]
     fn f_of(&self, result: i64) -> i64 {
         match &self.kind {
-            Blocks::Exact { result_one, clamp: true, .. } => result & (result_one - 1),
-            Blocks::Exact { result_one, clamp: false, .. } => result.clamp(0, result_one - 1),
-            Blocks::Patent { .. } => result,
+            RoughBlocks::Exact { result_one, clamp: true, .. } => result & (result_one - 1),
+            RoughBlocks::Exact { result_one, clamp: false, .. } => result.clamp(0, result_one - 1),
+            RoughBlocks::Patent { .. } => result,
         }
     }
 }

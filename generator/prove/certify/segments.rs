@@ -140,9 +140,9 @@ impl AngleWalk {
 }
 
 /// The colour operand of each output, the one word that all are made of, and the outputs.
-type ColourProducts = (Vec<String>, NodeId, Vec<(String, NodeId)>);
+type ProductsByColour = (Vec<String>, NodeId, Vec<(String, NodeId)>);
 
-fn table(task: &Task) -> Result<ColourProducts, String> {
+fn table(task: &Task) -> Result<ProductsByColour, String> {
     let graph = task.graph();
     let outputs = task.outputs()?;
     let operands = task.contract.operands().iter();

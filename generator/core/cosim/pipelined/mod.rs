@@ -36,7 +36,7 @@ struct PipelinedPoint {
 /// The points on their way through a pipeline.
 #[derive(Clone)]
 pub(super) struct Pipe {
-    columns: Arc<Vec<(Column, usize)>>,
+    columns: Arc<Vec<(ComparedValue, usize)>>,
     reference: Reference,
     stages: Occupancy<PipelinedPoint>,
     out_ready: bool,
@@ -46,7 +46,7 @@ pub(super) struct Pipe {
 
 /// A value that is compared.
 #[derive(Clone, Copy)]
-enum Column {
+enum ComparedValue {
     OutValid,
     InReady,
     Side,
@@ -74,15 +74,16 @@ impl Pipe {
         let mut nets = vec![ports.valid];
         nets.extend(in_ready);
         nets.extend(ports.side_out);
-        let mut columns = vec![Column::OutValid];
-        columns.extend(in_ready.map(|_| Column::InReady));
-        columns.extend(ports.side_out.map(|_| Column::Side));
+        let mut columns = vec![ComparedValue::OutValid];
+        columns.extend(in_ready.map(|_| ComparedValue::InReady));
+        columns.extend(ports.side_out.map(|_| ComparedValue::Side));
         nets.extend(&results);
-        columns.extend((0..results.len()).map(Column::Result));
+        columns.extend((0..results.len()).map(ComparedValue::Result));
         let mut columns: Vec<_> = columns.into_iter().map(|column| (column, latency)).collect();
         for (at, checkpoint) in pipeline.checkpoints.iter().enumerate() {
             nets.push(checkpoint.net);
-            columns.push((Column::Checkpoint(at), pipeline.stage_of[checkpoint.net.index()]));
+            columns
+                .push((ComparedValue::Checkpoint(at), pipeline.stage_of[checkpoint.net.index()]));
         }
         let pipe = Self {
             columns: Arc::new(columns),
@@ -136,11 +137,11 @@ impl Pipe {
         let (column, stage) = self.columns[at];
         let point = self.stages.stage(stage);
         match column {
-            Column::OutValid => Some(point.is_some().into()),
-            Column::InReady => Some(self.stages.takes(self.out_ready).into()),
-            Column::Side => point.map(|point| point.side),
-            Column::Result(at) => point.map(|point| point.expected.results[at]),
-            Column::Checkpoint(at) => point.and_then(|point| point.expected.registers[at]),
+            ComparedValue::OutValid => Some(point.is_some().into()),
+            ComparedValue::InReady => Some(self.stages.takes(self.out_ready).into()),
+            ComparedValue::Side => point.map(|point| point.side),
+            ComparedValue::Result(at) => point.map(|point| point.expected.results[at]),
+            ComparedValue::Checkpoint(at) => point.and_then(|point| point.expected.registers[at]),
         }
     }
 

@@ -15,7 +15,7 @@ const RESULTS: usize = 4096;
 
 /// A computation: bit patterns in the order of the ports.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Point {
+pub struct BenchPoint {
     pub operands: Vec<u64>,
     pub results: Vec<Vec<u64>>,
 }
@@ -24,7 +24,7 @@ pub struct Point {
 ///
 /// # Errors
 /// Fails if the design lacks its handshake.
-pub fn points(design: &Design, vectors: &Vectors) -> Result<Vec<Point>> {
+pub fn points(design: &Design, vectors: &Vectors) -> Result<Vec<BenchPoint>> {
     let clocks = vectors.inputs.iter().zip(&vectors.expected);
     let rows = clocks.map(|(inputs, outputs)| PortValues { design, inputs, outputs });
     let all = match &design.pipeline {
@@ -33,7 +33,7 @@ pub fn points(design: &Design, vectors: &Vectors) -> Result<Vec<Point>> {
     }
     .context("a list of points needs the handshake of a core")?;
     let mut results = 0;
-    let fits = |point: &Point| {
+    let fits = |point: &BenchPoint| {
         let fits = results + point.results.len() <= RESULTS;
         results += if fits { point.results.len() } else { 0 };
         fits
@@ -72,11 +72,14 @@ impl PortValues<'_> {
 
 /// Returns the computations of a microprogram. Operands are written one by one, and `start` takes the values that are written
 /// by then.
-fn computed<'a>(design: &Design, rows: impl Iterator<Item = PortValues<'a>>) -> Option<Vec<Point>> {
+fn computed<'a>(
+    design: &Design,
+    rows: impl Iterator<Item = PortValues<'a>>,
+) -> Option<Vec<BenchPoint>> {
     let overlaps = design.control.overlaps;
     let mut done = Vec::new();
     let mut written: Vec<Option<u64>> = Vec::new();
-    let mut current: Option<Point> = None;
+    let mut current: Option<BenchPoint> = None;
     let mut known = false;
     for row in rows {
         let operands = row.all(|role| matches!(role, Role::Operand { .. }));
@@ -109,14 +112,14 @@ fn computed<'a>(design: &Design, rows: impl Iterator<Item = PortValues<'a>>) -> 
         }
         if row.high(Role::Start)? && (!busy || overlaps && ends) {
             let operands = written.iter().copied().collect::<Option<Vec<u64>>>();
-            current = operands.map(|operands| Point { operands, results: Vec::new() });
+            current = operands.map(|operands| BenchPoint { operands, results: Vec::new() });
         }
     }
     Some(done)
 }
 
 /// Returns a pipeline's: points leave it in their order.
-fn streamed<'a>(rows: impl Iterator<Item = PortValues<'a>>) -> Option<Vec<Point>> {
+fn streamed<'a>(rows: impl Iterator<Item = PortValues<'a>>) -> Option<Vec<BenchPoint>> {
     let mut done = Vec::new();
     let mut inside: VecDeque<Vec<u64>> = VecDeque::new();
     let mut known = false;
@@ -130,7 +133,7 @@ fn streamed<'a>(rows: impl Iterator<Item = PortValues<'a>>) -> Option<Vec<Point>
         }
         if row.high(Role::Valid)? && row.high(Role::OutReady).unwrap_or(true) {
             let operands = inside.pop_front()?;
-            done.push(Point { operands, results: vec![row.results()] });
+            done.push(BenchPoint { operands, results: vec![row.results()] });
         }
         if row.high(Role::InValid)? && row.high(Role::InReady).unwrap_or(true) {
             inside.push_back(row.values(|role| role == Role::Point));
@@ -140,8 +143,8 @@ fn streamed<'a>(rows: impl Iterator<Item = PortValues<'a>>) -> Option<Vec<Point>
 }
 
 /// Returns the stream's input: the operands side by side in whole bytes, the bits above them of every other point set.
-pub fn sent(points: &[Point], operands: &Transfer) -> String {
-    let word = |(number, point): (usize, &Point)| {
+pub fn sent(points: &[BenchPoint], operands: &Transfer) -> String {
+    let word = |(number, point): (usize, &BenchPoint)| {
         let above = |field: &StreamField| if number % 2 == 1 { !mask(field.width) } else { 0 };
         word(&point.operands, operands, above, number % 2 == 1, None)
     };
@@ -149,7 +152,7 @@ pub fn sent(points: &[Point], operands: &Transfer) -> String {
 }
 
 /// Returns the stream's output, a line a result: likewise, with copies of the sign, and above them whether it is the last of a line.
-pub fn received(points: &[Point], results: &Transfer, is_line: bool) -> String {
+pub fn received(points: &[BenchPoint], results: &Transfer, is_line: bool) -> String {
     let mut text = String::new();
     for point in points {
         let last = point.results.len() - 1;
