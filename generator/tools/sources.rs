@@ -47,7 +47,8 @@ impl<'a> YosysSources<'a> {
         self.directory.path()
     }
 
-    /// Has Yosys read the Verilog and run commands.
+    /// Has Yosys read the Verilog and run commands. For example, for one file `rsqrt.v` and the commands `proc; opt`
+    /// the script is `read_verilog rsqrt.v; proc; opt`.
     ///
     /// # Errors
     /// Fails if Yosys fails or takes too long.

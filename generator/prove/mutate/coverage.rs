@@ -14,7 +14,8 @@ const PLACES: usize = 6;
 /// Raw values of operands, by name.
 pub(super) type OperandValues = Vec<(String, i64)>;
 
-/// A place in a test.
+/// A place in a test. For example, seed 1 and 40 points are the clock of the stream with seed 1 before which 40 results
+/// have come.
 #[derive(Clone)]
 pub(super) struct TestPlace {
     /// The seed of the stream.
@@ -124,7 +125,8 @@ impl Coverage {
     }
 }
 
-/// Returns the operand that a register holds, which it takes from a port or from the buffer behind it.
+/// Returns the operand that a register holds, which it takes from a port or from the buffer behind it. For example, the
+/// operand register of `cos_gamma` gives the name of the port, `cos_gamma`.
 pub(super) fn operand_of<'d>(design: &'d Design, register: &Register) -> Option<&'d str> {
     let before = |net: NetId| match &design.net(net).driver {
         Driver::Op(op) => op.operands(),

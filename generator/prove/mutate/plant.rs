@@ -37,7 +37,8 @@ pub(super) fn bare(design: &Design) -> Design {
     bare
 }
 
-/// Returns a net beside `like`.
+/// Adds a net of the format of `like`. For example, the suffix `sound` names the net `product_sound` after `product`,
+/// and `product_sound_` if that name is taken.
 fn add(design: &mut Design, like: NetId, suffix: &str, driver: Driver) -> NetId {
     let mut name = Cow::from(format!("{}_{suffix}", design.net(like).name));
     while design.find(&name).is_some() {
@@ -118,7 +119,7 @@ fn redirect(design: &mut Design, from: NetId, to: NetId, except: &[NetId]) {
     }
 }
 
-/// Makes a register keep its value.
+/// Makes a register keep its value: its data input becomes its own output.
 fn never(design: &mut Design, id: RegId) {
     let register = &mut design.registers[id.index()];
     register.data = Some(register.q);

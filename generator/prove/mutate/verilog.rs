@@ -34,7 +34,8 @@ const PROOF_LIMIT: Duration = Duration::from_secs(120);
 /// A fault of a text.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct TextFault {
-    /// The file, the number of the line, and the change.
+    /// The file, the number of the line, the kind, and a number among the faults of this kind in the line. For example,
+    /// `blinn_datapath.v:127:operator:1` is the first wrong operator in line 127.
     pub id: String,
     /// The name of the fault's kind.
     pub kind: &'static str,
@@ -92,7 +93,8 @@ pub struct VerilogText {
     modules: Vec<usize>,
 }
 
-/// A replacement of text, and its name. If the replacement equals the original text, there is no fault.
+/// A replacement of text, and its name. If the replacement equals the original text, there is no fault. For example,
+/// the kind `constant` replaces `4'd9` by `4'd8`.
 struct TextOperator {
     kind: &'static str,
     pattern: Regex,

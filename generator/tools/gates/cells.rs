@@ -38,7 +38,8 @@ impl Start {
     }
 }
 
-/// Returns the flat netlist of the module `top` in cells of [`LIBERTY`], as Verilog.
+/// Returns the flat netlist of the module `top` in cells of [`LIBERTY`], as Verilog. Its flip-flops, for example, are
+/// instances of the cell `DFFPOSX1`.
 ///
 /// # Errors
 /// Fails if the library cannot be read, or if Yosys fails or takes longer than `limit`.

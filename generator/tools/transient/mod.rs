@@ -64,7 +64,7 @@ fn list() -> MutexGuard<'static, List> {
     LIST.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Does `work` as a whole: an interruption waits for its end. For renames that belong together.
+/// Does `work` as a whole: an interruption waits for its end. A caller must use it for renames that belong together.
 pub fn undivided<T>(work: impl FnOnce() -> T) -> T {
     let _guard = UNDIVIDED.lock().unwrap_or_else(PoisonError::into_inner);
     work()
