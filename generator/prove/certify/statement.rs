@@ -22,7 +22,8 @@ pub struct Statement {
 }
 
 impl Statement {
-    /// Puts a bound into the statement's scripts in place of the question for one.
+    /// Puts a bound into the statement's scripts in place of the question for one. For example, `|difference_7| in ? }`
+    /// becomes `|difference_7| <= 0.5 }`.
     #[must_use]
     pub fn within(&self, bound: f64) -> Self {
         let stated = format!("| <= {} }}", number(bound));

@@ -62,7 +62,8 @@ pub fn about(
     facts
 }
 
-/// Returns a product by 0, 1 and -1.
+/// Returns the facts about a product by 0, 1 and -1. For example, one says that the factor is not 1, or the product is
+/// the other factor.
 fn by_one_or_none(
     terms: &mut VectorTerms,
     product: VectorTermId,
@@ -120,7 +121,8 @@ struct ProductSum {
 }
 
 /// Divides a product if a factor is the upper bits of a larger term. The larger term times `other` is this product,
-/// shifted, plus the product of the lower bits and `other`.
+/// shifted, plus the product of the lower bits and `other`. For example, if u is the bits from 4 up of w, then w·x is
+/// 16·(u·x) plus the lowest 4 bits of w times x.
 fn in_parts(
     terms: &mut VectorTerms,
     factor: VectorTermId,
@@ -189,7 +191,8 @@ fn square_in_parts(
     Some(ProductSum { product, sum, there: true })
 }
 
-/// Returns `bits` joined with the bits of the same term below their lowest, and the number of the bits below.
+/// Returns `bits` joined with the bits of the same term below their lowest, and the number of the bits below. For
+/// example, bits 4 to 7 of a term give bits 0 to 7, and 4.
 fn whole(terms: &mut VectorTerms, bits: VectorTermId) -> Option<(VectorTermId, u32)> {
     match *terms.term(bits) {
         VectorTerm::Slice { of, low } if low > 0 => {

@@ -1,4 +1,5 @@
-//! Finds the free keys of a configuration, and its neighbours: the configurations with other values of some keys.
+//! Finds the free keys of a configuration, and its neighbours: the configurations with other values of some keys. A key
+//! of the tables `domain` and `function` is never free, because it is part of the question.
 
 use anyhow::{Context, Result};
 
@@ -180,7 +181,8 @@ fn alternatives(key: &Key, value: &Value) -> Vec<Value> {
     values
 }
 
-/// Returns the values next to one, inside the range.
+/// Returns the values next to one, inside the range. For example, the integer 8 has the neighbours 7, 9, 6, 10, 4 and
+/// 12. The list [6, 6] has [5, 6], [7, 6], [6, 5], [6, 7], [6, 6, 6] and [6].
 fn neighbours(kind: &Kind, value: &Value) -> Vec<Value> {
     match (kind, value) {
         (Kind::Integer { min, max }, Value::Integer(value)) => {
