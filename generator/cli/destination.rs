@@ -115,7 +115,7 @@ impl Destination {
     }
 }
 
-/// Replaces the file `path` as a whole, or leaves it as it was.
+/// Replaces the file `path` as a whole, or leaves it as it was. For example, a full disk leaves the old file unchanged.
 ///
 /// # Errors
 /// Fails if the file cannot be written.

@@ -21,7 +21,8 @@ struct TerminalColumn<'a> {
 }
 
 impl<'a> TerminalColumn<'a> {
-    /// Returns the columns of some headings, which are separated by bars.
+    /// Returns the columns of some headings, which are separated by bars. For example, `device | points:2` is a column
+    /// of words and a column of numbers.
     ///
     /// The cells below a heading with a colon are numbers. Other cells are words, which may be broken into lines. A
     /// digit behind a colon or a semicolon says when a column is left out if there is too little room.
@@ -44,7 +45,7 @@ pub fn print(headings: &str, rows: impl IntoIterator<Item = Vec<String>>) {
 }
 
 /// Returns the largest width of a line: the value of `COLUMNS`, or else the width of the terminal. Returns `None`
-/// without either, and a line may then have any width.
+/// without either, and a line may then have any width. For example, `COLUMNS=80` gives 80.
 fn width() -> Option<usize> {
     let said = std::env::var("COLUMNS").ok().and_then(|text| text.parse().ok());
     let terminal = || Some(usize::from(console::Term::stdout().size_checked()?.1));

@@ -62,7 +62,8 @@ pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) ->
     }
 }
 
-/// Returns the operands that are outside the domain for which the contract is stated, in words.
+/// Returns the operands that are outside the domain for which the contract is stated, in words. For example, `exponent
+/// = 300 is not in 1 to 255`.
 fn outside(operands: &[Operand], raw: &[i64]) -> Vec<String> {
     let outside = operands.iter().zip(raw).filter_map(|(operand, raw)| {
         let (low, high) = operand.domain;
@@ -152,7 +153,8 @@ struct ResultComparison {
     name: String,
     value: f64,
     exact: f64,
-    /// The error in last places of the result. At a jump of the formula, it is measured from the nearer side.
+    /// The error in last places of the result. At a jump of the formula, it is measured from the nearer side. For
+    /// example, 0.3 means that an output of 200 stands for a formula of 199.7 or 200.3.
     error: f64,
 }
 

@@ -121,7 +121,8 @@ pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) ->
     Ok(true)
 }
 
-/// Returns the targets that pipelines are scheduled for, if every configuration is a pipeline with such a target; else nothing.
+/// Returns the targets that pipelines are scheduled for, if every configuration is a pipeline with such a target; else
+/// nothing. For example, one pipeline for ECP5 gives ECP5; a pipeline and a sequential core give nothing.
 fn targets_of_pipelines(loaded: &[Loaded]) -> Vec<Target> {
     let target = |one: &Loaded| {
         let pipeline = one.core.design.pipeline.as_ref()?;

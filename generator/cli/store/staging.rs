@@ -87,7 +87,7 @@ fn place(out: &Path, staging: &Path, made: &[String]) -> Result<()> {
 }
 
 /// Deletes whatever is in the way of a file: a directory in its place, or a file in the place of one of its
-/// directories.
+/// directories. For example, a file `rtl_out/rough` must go before `rtl_out/rough/rough.v` can come.
 fn make_room(out: &Path, path: &str) -> Result<()> {
     let cannot = |path: &Path| format!("cannot delete `{}`, which is in the way", path.display());
     let ends = path.match_indices('/').map(|(at, _)| at).skip(1);
