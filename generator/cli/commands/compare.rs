@@ -243,8 +243,8 @@ fn synthesise(
     Ok(runs.chunks(FAMILIES.len()).map(<[_]>::to_vec).collect())
 }
 
-/// Returns why a configuration has no errors to show. For example, `gauss: n = 2000 is not in its domain, n = 1 to
-/// 1000`.
+/// Returns why a configuration has no errors to show. For example, `my_core.toml: n = 300 is not in its domain, n = 1
+/// to 255`.
 fn outside(entry: &ComparisonEntry, n: u32) -> String {
     let label = &entry.label;
     match domain(&entry.core) {

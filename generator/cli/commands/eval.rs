@@ -154,7 +154,7 @@ struct ResultComparison {
     value: f64,
     exact: f64,
     /// The error in last places of the result. At a jump of the formula, it is measured from the nearer side. For
-    /// example, 0.3 means that an output of 200 stands for a formula of 199.7 or 200.3.
+    /// example, an output of 200 for a formula of 200.3 has the error 0.3, in an output without fraction bits.
     error: f64,
 }
 

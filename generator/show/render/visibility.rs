@@ -270,7 +270,8 @@ impl Planes {
     }
 }
 
-/// Returns the place at which a ray enters a ball, as a multiple of the ray.
+/// Returns the place at which a ray enters a ball, as a multiple of the ray. For example, the ray (0, 0, −1) enters a
+/// ball of radius 2 around (0, 0, −5) at 3.
 #[inline]
 fn meet_ball(ray: Vector, middle: Vector, radius: f64) -> Option<f64> {
     let square = ray.dot(ray);

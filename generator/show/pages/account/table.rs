@@ -28,8 +28,8 @@ pub struct TextTable {
 }
 
 impl TextTable {
-    /// Makes a table with these headings, which bars part, yet without rows; the cells below a heading with a colon behind it
-    /// are numbers.
+    /// Makes a table with these headings, which bars part, yet without rows. The cells below a heading with a colon
+    /// behind it are numbers. For example, `port | bits:` has a column of words and a column of numbers.
     pub fn of(headings: &str) -> Self {
         let column = |heading: &'_ str| match heading.strip_suffix(':') {
             Some(heading) => Column { heading: heading.to_owned(), align: Align::Right },
@@ -59,7 +59,7 @@ impl TextTable {
     }
 }
 
-/// Returns a name or a number as the files write it; nothing for nothing.
+/// Returns a name or a number as the files write it; nothing for nothing. For example, clk becomes `clk` in backquotes.
 pub fn code(text: &str) -> String {
     match text {
         "" => String::new(),

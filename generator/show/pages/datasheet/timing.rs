@@ -79,7 +79,8 @@ fn clock_widths(waves: &Waves) -> [i32; 2] {
     [wanted(&mut waves.lanes.iter()), wanted(&mut values)]
 }
 
-/// Returns the stretches of some places in which a value stays, as half-open ranges.
+/// Returns the stretches of some places in which a value stays, as half-open ranges. For example, the values 5, 5 and 6
+/// have the ranges from 0 to 2 and from 2 to 3.
 fn segments(lane: &Lane, places: Range<usize>) -> Vec<(usize, usize)> {
     let mut to = places.start;
     let stretch = |alike: &[Option<String>]| {

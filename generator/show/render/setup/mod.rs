@@ -161,6 +161,7 @@ impl Arc {
     }
 
     /// Returns the line of `length` intervals with the light `intensity` (I·k_s, in output units) and the exponent n.
+    /// For example, 639 intervals have 640 points.
     pub fn line(&self, intensity: f64, exponent: u32, length: u32) -> LineParameters {
         LineParameters {
             amplitude: intensity * libm::pow(self.peak.min(1.0), f64::from(exponent)),
@@ -229,7 +230,7 @@ impl LineParameters {
         self.zeta_start + f64::from(index) * self.delta_zeta
     }
 
-    /// Returns a = √(n/2), by which a device without an exponent takes the angles.
+    /// Returns a = √(n/2), by which a device without an exponent takes the angles. For example, n = 8 gives 2.
     pub fn stretch(&self) -> f64 {
         (f64::from(self.exponent) / 2.0).sqrt()
     }

@@ -194,7 +194,8 @@ impl<'a> Blocks<'a> {
         }
     }
 
-    /// Returns the constant that a net is.
+    /// Returns the constant that a net is made of, also through other cells. For example, an extension of the constant
+    /// 1 gives the constant 1.
     fn constant(&self, mut id: NetId) -> Option<NetId> {
         loop {
             match &self.design.net(id).driver {
@@ -262,6 +263,7 @@ impl<'a> Blocks<'a> {
     }
 
     /// Returns the name of the block, port or ROM that drives a net of [`Block::inputs`], or the value of a constant.
+    /// For example, `cos_gamma_reg`, or `0.5`.
     pub fn name(&self, id: NetId) -> String {
         let net = self.design.net(id);
         match &net.driver {
