@@ -28,7 +28,7 @@ impl MadeDirectories {
         Ok(made)
     }
 
-    /// Keeps the directories: the file is written.
+    /// Keeps the directories. A caller must call it once the file is written.
     pub fn keep(&mut self) {
         self.paths.clear();
     }

@@ -103,7 +103,7 @@ fn print_text(error: &anyhow::Error) {
     }
 }
 
-/// Prints a warning to standard error.
+/// Prints a warning to standard error. For example, the line may begin with `warning: my_core.toml: no waveform`.
 pub fn warn(message: &str) {
     print_line(&format!("warning: {message}"));
 }

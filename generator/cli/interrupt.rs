@@ -44,7 +44,7 @@ impl Deferred {
         Self(())
     }
 
-    /// Returns whether a signal has come.
+    /// Returns whether a signal has come. If it has, the command must save its work and end.
     pub fn noted(&self) -> bool {
         NOTED.load(Ordering::SeqCst) != 0
     }

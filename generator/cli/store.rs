@@ -88,7 +88,7 @@ pub fn differences(out: &Path, name: &str, files: &[OutputFile]) -> Result<Vec<S
     Ok(Survey::new(out, name, files)?.different)
 }
 
-/// Writes a single file that vouches for itself.
+/// Writes a single file that vouches for itself: it must contain the digest of its own text.
 ///
 /// # Errors
 /// Without `force`, fails if there is a file that Glint did not write or that was edited since. Fails if a directory

@@ -52,9 +52,9 @@ impl fmt::Display for VerilogSimulator {
 }
 
 /// Builds the bench `top` from `files`, pairs of a plain file name and contents, in a temporary directory and runs it
-/// there. Files that end in `.v` or `.sv` are compiled, in the given order. Other files, such as `.mem`, only lie
-/// beside them. The bench must end by itself after a line that begins with `PASS` or `FAIL`. For example, a last line
-/// `PASS rsqrt: 3210 clocks, no difference` is a verdict.
+/// there. The simulator compiles files that end in `.v` or `.sv`, in the given order. Other files, such as `.mem`, only
+/// lie beside them. The bench must end by itself after a line that begins with `PASS` or `FAIL`. For example, a last
+/// line `PASS rsqrt: 3210 clocks, no difference` is a verdict.
 ///
 /// # Errors
 /// Fails if the simulator is missing or rejects the sources (Verilator: or warns of them). Fails if building and
@@ -120,7 +120,7 @@ impl BuiltBench {
         waveform: Waveform,
         limit: Duration,
     ) -> Result<Self> {
-        // Missing tools are reported before anything is written.
+        // A missing tool must be an error before anything is written.
         let (compiler, runner) = match simulator {
             VerilogSimulator::Icarus => {
                 (Tool::find_in("iverilog", search)?, Some(Tool::find_in("vvp", search)?))

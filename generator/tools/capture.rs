@@ -13,7 +13,7 @@ const QUOTED_LINES: usize = 12;
 /// Characters of a line that an error quotes.
 const QUOTED_CHARACTERS: usize = 200;
 
-/// Output as far as it has come; clones share it.
+/// Output as far as it has come. Clones share it, so that one thread can read the output while another quotes it.
 #[derive(Clone, Default)]
 pub(super) struct Capture(Arc<Mutex<CaptureBuffer>>);
 

@@ -54,8 +54,8 @@ pub struct Tool {
 pub struct Run {
     /// How the program ended; not necessarily well.
     pub status: ExitStatus,
-    /// Standard output and standard error in the order of writing. Of more than about a megabyte
-    /// the middle is left out, and a line says so.
+    /// Standard output and standard error in the order of writing. It has at most about a megabyte. Longer output loses
+    /// its middle, and a line says so.
     pub output: String,
 }
 

@@ -33,7 +33,7 @@ impl<'a> YosysSources<'a> {
         Ok(sources)
     }
 
-    /// Writes another file beside them.
+    /// Writes another file beside them. The `name` must be plain.
     ///
     /// # Errors
     /// Fails if the file cannot be written.
@@ -58,7 +58,7 @@ impl<'a> YosysSources<'a> {
         Ok(())
     }
 
-    /// Reads a file that a tool has left.
+    /// Reads a file that a tool has left, for example `statistics.json`.
     ///
     /// # Errors
     /// Fails if the file is not there.

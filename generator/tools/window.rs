@@ -3,7 +3,7 @@
 use anyhow::Result;
 use glint_base::fill;
 
-/// The file to which the module writes.
+/// The file to which the module writes. The bench must not write a file of this name.
 pub const WINDOW_FILE: &str = "window.vcd";
 
 /// Units of time in which the bench has a clock.

@@ -243,8 +243,8 @@ fn found(
 /// Writes the scripts, each in a file: the accepted script of a proved statement, or the first script of an open one.
 /// For example, `red_out_3.g` has statement 3 of the output `red_out`.
 ///
-/// Scripts of an earlier run with more statements are deleted if they have the name that is in their first line. A
-/// copy under another name, or an edited script, belongs to the user and stays.
+/// It deletes scripts of an earlier run with more statements, if they have the name that is in their first line. A copy
+/// under another name, or an edited script, belongs to the user and stays.
 fn write(
     directory: &Path,
     config: &str,

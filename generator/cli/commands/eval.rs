@@ -98,8 +98,8 @@ fn point(
     let mut signals = signals(model, operands, &raw)?;
     let outside = outside(operands, &raw);
     let results = results(contract, &raw);
-    // The golden model of a pipeline is the model of its sequential core. Formats are the formats of the core's nets,
-    // and signals of the core that the pipeline does not have are left out.
+    // The golden model of a pipeline is the model of its sequential core. Formats are the formats of the core's nets.
+    // The list cannot have signals that only the core has.
     let pipeline = one.core.design.pipeline.as_ref();
     let sequential = pipeline.map(|_| one.core.device.sequential(&one.core.config)).transpose()?;
     if let Some(pipeline) = pipeline {

@@ -62,8 +62,8 @@ impl Staging {
             for path in stale {
                 fs::remove_file(path)
                     .with_context(|| format!("cannot delete `{}`", path.display()))?;
-                // The directories of a configuration are deleted with their last file. The directories above them are
-                // not.
+                // The last file takes the directories of the configuration with it. The directories above them must
+                // stay.
                 let parents = path.ancestors().skip(1);
                 let below = parents
                     .take_while(|it| it.strip_prefix(out).is_ok_and(|it| it.iter().count() > 1));

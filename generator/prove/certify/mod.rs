@@ -144,7 +144,8 @@ fn formulas(contract: &dyn Contract) -> Result<Vec<Formula>, String> {
     parsed.collect()
 }
 
-/// Returns the SHA-256 of all scripts of some statements, in their order.
+/// Returns the SHA-256 of all scripts of some statements, in their order. Two certificates with one digest are about
+/// the same statements.
 pub fn digest(statements: &[Statement]) -> String {
     let scripts = statements.iter().flat_map(|statement| &statement.scripts);
     let text: Vec<&str> = scripts.map(String::as_str).collect();

@@ -115,7 +115,8 @@ impl Task<'_> {
         Ok(())
     }
 
-    /// Returns the case's hypotheses on values that have a translation; others are left out, which leaves more to prove.
+    /// Returns the case's hypotheses on values that have a translation. It may leave out the others, because fewer
+    /// hypotheses only leave more to prove.
     fn presupposed(
         &self,
         case: &Case,

@@ -17,7 +17,7 @@ pub struct Statement {
     pub number: usize,
     /// Other outputs that have the same statement, under another name.
     pub also: Vec<String>,
-    /// Alternative scripts: one must be accepted. At a jump of the formula, two are right.
+    /// Alternative scripts: Gappa must accept one of them. At a jump of the formula, two values are right.
     pub scripts: Vec<String>,
 }
 

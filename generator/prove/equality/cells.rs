@@ -21,7 +21,7 @@ pub type Connection = Vec<Bit>;
 pub struct WireValues(Vec<Option<(VectorTermId, u32)>>);
 
 impl WireValues {
-    /// Makes the values of `wires` wires. No wire has a value yet.
+    /// Makes the values of `wires` wires. No wire has a value yet: a caller must set the inputs and registers.
     pub fn new(wires: usize) -> Self {
         Self(vec![None; wires])
     }

@@ -50,7 +50,7 @@ impl<'a> Execution<'a> {
         }
     }
 
-    /// Returns the state at power-up, which is unknown.
+    /// Returns the state at power-up: every register may have any value.
     pub fn power_up(&self, terms: &mut VectorTerms) -> SymbolicState {
         let design = self.design;
         let registers = design.registers.iter().map(|it| terms.unknown(design.width(it.q)));
@@ -59,7 +59,7 @@ impl<'a> Execution<'a> {
         SymbolicState { registers, words }
     }
 
-    /// Returns the term of every net, with these inputs; the products among them are added to `products`.
+    /// Returns the term of every net, with these inputs. It adds the products among them to `products`.
     pub fn settle(
         &self,
         terms: &mut VectorTerms,

@@ -157,7 +157,8 @@ fn delays(module: &Module, roles: &Roles) -> Result<Vec<Vec<usize>>> {
 const MOST_SLOTS: usize = 1024;
 
 /// Returns the clocks from write to read of each read port. `course` has the values at the write port and the read
-/// ports in each clock of a period, which repeats. Returns `None` if a read port has no fixed number of clocks.
+/// ports in each clock of a period, which repeats. Returns `None` if a read port has no fixed number of clocks. For
+/// example, if the write port has the addresses 0, 1, 2, 3 and a read port has 2, 3, 0, 1, the number is 2.
 fn lags(course: &[&[u64]], reads: usize) -> Option<Vec<usize>> {
     let period = course.len();
     let lag = |read: usize, now: usize| {

@@ -1,5 +1,5 @@
-//! Records where a test reads each word of a table, so that a fault in a word need not be looked for all over the
-//! test.
+//! Records where a test reads each word of a table. A fault in a word can show only where the test reads the word, so
+//! that a check need not run the whole test.
 
 use anyhow::Result;
 

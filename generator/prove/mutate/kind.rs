@@ -44,7 +44,7 @@ kinds! {
     MuxChoice = "mux choice fixed",
     /// The limit of a saturation is never taken.
     Saturation = "saturation lost",
-    /// A carry, or the bit that rounds, is left out or always there.
+    /// An adder ignores its carry, or does not add the bit that rounds.
     Rounding = "rounding wrong",
     /// The operands of a difference or a comparison change places.
     Operands = "operands swapped",

@@ -9,7 +9,8 @@ use glint_rtl::netlist::{Design, Driver, Net, NetId, Op, RegId, RomId};
 impl NetlistFault {
     /// Returns the design with this fault.
     ///
-    /// It is a design for simulation and emission: its nets keep the intervals of the fault-free design.
+    /// The result can be simulated and emitted. Its nets keep the intervals of the fault-free design, which the mutant
+    /// may leave.
     pub fn planted(&self, design: &Design) -> Design {
         let mut mutant = design.clone();
         match &self.site {

@@ -1,8 +1,8 @@
 //! Plants faults in the emitted Verilog, which an emitter could make, and finds whether lint or a bench notices them.
 //!
-//! They are planted in the text of the modules, one at a time. Lint or a bench must notice each fault. The bench is
-//! the one that is shipped with the fault-free text, or a longer one. Golden model and built-in simulator agree on
-//! its vectors. The faults that the shipped bench notices by itself are counted separately.
+//! Each mutant has one fault, in the text of the modules. Lint or a bench must notice each fault. The bench is the one
+//! that is shipped with the fault-free text, or a longer one. Golden model and built-in simulator agree on its vectors.
+//! The faults that the shipped bench notices by itself are counted separately.
 //!
 //! No register is moved to the other edge of the clock. Its input is stable by then, so it carries the same value at
 //! every edge that counts, and only timing analysis can tell.

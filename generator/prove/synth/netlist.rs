@@ -71,7 +71,8 @@ impl Netlist {
         Ok(Self { names, registers: registers.collect(), cells: cells.clone() })
     }
 
-    /// Makes sure that the delay of no DSP block is left out: every parameter of the cells of a kind must be `timed`.
+    /// Makes sure that the timing includes the delay of every DSP block: every parameter of the cells of a kind must be
+    /// `timed`.
     ///
     /// # Errors
     /// Fails if a parameter is not `timed`; `why` explains the consequence.

@@ -72,7 +72,7 @@ impl<'a> Search<'a> {
         Self { device, space, goal, progress, seen: Mutex::default() }
     }
 
-    /// Searches from `base` up to the goal, then down.
+    /// Searches from `base` up to the goal, then down. The result may be a local minimum.
     pub fn run(&self, base: &Config) -> Result<Answer> {
         let base = self.look(base).context("the configuration to start from makes no design")?;
         let mut best = self.reach(base)?;
@@ -110,7 +110,8 @@ impl<'a> Search<'a> {
         Ok(self.smallest(found))
     }
 
-    /// Looks at a configuration, once.
+    /// Returns the candidate of a configuration, or `None` if it makes no design with the same interface. It computes a
+    /// candidate once.
     fn look(&self, config: &Config) -> Option<Candidate> {
         let text = config.to_toml(self.space.schema());
         let known = |seen: &BTreeMap<String, Option<Candidate>>| seen.get(&text).cloned();

@@ -232,7 +232,7 @@ impl Check {
         (self.steps)(subject)
     }
 
-    /// Runs it. A tool that is missing, or that does not do its work, is a finding too.
+    /// Runs the check. A run cannot fail: a tool that is missing, or that does not do its work, is a finding too.
     pub fn run(&self, subject: &CheckSubject<'_>, progress: &(dyn Fn(u64) + Sync)) -> CheckAnswer {
         let begin = Instant::now();
         let (tools, finding) = self.find(subject, progress);

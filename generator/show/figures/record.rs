@@ -33,7 +33,7 @@ pub struct SynthesisRecord<F = Figures> {
 
 impl SynthesisRecord {
     /// Returns the record of a core, among all in a directory. Returns `None` if there is no such record, or no such
-    /// directory. Files that are no records are ignored.
+    /// directory. It ignores files that are no records.
     ///
     /// # Errors
     /// Fails if the directory or a file in it cannot be read, or if a record is damaged.

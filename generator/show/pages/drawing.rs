@@ -4,7 +4,7 @@ use anyhow::Result;
 use glint_base::fill;
 use glint_base::template::Template;
 
-/// A drawing. Its units are the units of the page at full size.
+/// A drawing. Its units are the units of the page at full size. Each [`Item::Open`] must have an [`Item::Close`].
 #[derive(Clone, Debug)]
 #[glint_base::template::template("drawing.svg")]
 pub struct Drawing {

@@ -56,8 +56,8 @@ pub struct RawCorner {
 }
 
 impl Mesh {
-    /// Makes a mesh of positions, normals, texture coordinates and triangles. Triangles without area are left out and
-    /// counted.
+    /// Makes a mesh of positions, normals, texture coordinates and triangles. It leaves out triangles without area, and
+    /// counts them. Every index of a corner must exist.
     ///
     /// A corner without a normal, or with one of length 0, gets a mean normal. It is the mean, weighted by area, of the
     /// triangles that meet in the corner's position and hang together there by edges of at most `crease` degrees.

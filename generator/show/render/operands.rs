@@ -321,7 +321,8 @@ impl Feed {
         })
     }
 
-    /// Returns the raw operands of a point, and whether dγ was beyond the device's domain.
+    /// Returns the raw operands of a point, and whether dγ was beyond the device's domain. The device must compute
+    /// points, and not lines.
     pub fn raw<'a>(
         &'a self,
         point: &'a Point,

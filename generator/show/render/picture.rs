@@ -60,7 +60,7 @@ impl Picture {
         captioned
     }
 
-    /// Puts pictures of one size side by side.
+    /// Puts pictures side by side. All must have one height.
     pub fn beside(pictures: &[&Self]) -> Self {
         let mut all = Self::new(pictures.iter().map(|picture| picture.width).sum());
         for row in 0..pictures.first().map_or(0, |picture| picture.height()) as usize {
@@ -112,7 +112,7 @@ pub struct PictureDifference {
 }
 
 impl PictureDifference {
-    /// Compares two pictures of one size; `shown` says of each pixel whether it shows a thing.
+    /// Compares two pictures, which must have one size. `shown` must say of each pixel whether it shows a thing.
     pub fn new(a: &Picture, b: &Picture, shown: &[bool]) -> Self {
         let pairs = a.pixels.iter().zip(&b.pixels);
         let differences: Vec<[u8; 3]> =

@@ -93,7 +93,8 @@ struct CandidateSurface {
 }
 
 impl<'a> Visibility<'a> {
-    /// Sorts a scene, which must lie in a ball of radius `size`.
+    /// Sorts a scene, which must lie in a ball of radius `size`. A surface nearer to the eye than a millionth of `size`
+    /// cannot be seen.
     pub fn new(scene: &'a Scene, camera: &Camera, raster: Raster, size: f64) -> Self {
         let mut visibility = Self {
             scene,

@@ -19,7 +19,7 @@ pub const MAPPING: &str =
 /// The load of a port, in pF. That there are constraints makes Yosys buffer nets and size cells.
 pub const LOAD: &str = "set_load 0.1 [all_outputs]\n";
 
-/// The contents of registers of cells before the first clock, on which nothing may depend.
+/// The contents of the registers before the first clock. No output may depend on them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Start {
     /// An unknown value.

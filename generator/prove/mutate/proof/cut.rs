@@ -7,8 +7,8 @@ use glint_rtl::netlist::{Design, Driver, NetId};
 /// Vertices of the flow: each net is divided in two, and the flow into it goes through its bits.
 type Vertex = (NetId, bool);
 
-/// Returns the nets with the fewest bits together that determine `wanted`, without any net in `affected`. Returns
-/// `None` if they have more than `most` bits, or if a net of `affected` is no cell.
+/// Returns the nets with the fewest bits together that determine `wanted`. The cut cannot have a net in `affected`.
+/// Returns `None` if they have more than `most` bits, or if a net of `affected` is no cell.
 pub(super) fn smallest_cut(
     design: &Design,
     wanted: &BTreeSet<NetId>,

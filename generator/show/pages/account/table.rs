@@ -38,12 +38,13 @@ impl TextTable {
         Self { columns: headings.split(" | ").map(column).collect(), rows: Vec::new() }
     }
 
-    /// Adds one row, with a cell for each column.
+    /// Adds one row, which must have a cell for each column.
     pub fn row(&mut self, cells: impl IntoIterator<Item = String>) {
         self.rows.push(cells.into_iter().collect());
     }
 
-    /// Leaves out a column in which no row says anything.
+    /// Leaves out the column `heading` if all of its cells are empty. For example, a device without numbers in a figure
+    /// has no column "no.".
     #[must_use]
     pub fn without_empty(mut self, heading: &str) -> Self {
         let at = self.columns.iter().position(|column| column.heading == heading);

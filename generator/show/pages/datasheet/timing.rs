@@ -131,7 +131,8 @@ impl Grid<'_> {
         self.left + self.clock * (at - self.places.start) as i32
     }
 
-    /// Returns the places before which clocks are left out.
+    /// Returns the places before which the diagram leaves clocks out. For example, after clocks 0, 1, 7 and 8 it is the
+    /// place of clock 7.
     fn gaps(&self) -> impl Iterator<Item = usize> + '_ {
         let clocks = &self.waves.clocks;
         self.places.clone().filter(|&at| at > 0 && clocks[at] != clocks[at - 1] + 1)

@@ -11,7 +11,7 @@ use glint_core::cosim::trial;
 use glint_core::package::sealed_json;
 use glint_rtl::netlist::{Design, Driver, Handshake, NetId, RegisterKind, Role};
 
-/// Clocks that are shown at most; of longer computations the middle is left out.
+/// The largest number of clocks that can be shown. The diagram leaves out the middle of a longer computation.
 const MOST: usize = 40;
 
 /// Clocks that are shown of the beginning of a long computation.
