@@ -17,7 +17,7 @@ use glint_tools::{BuiltBench, VerilogSimulator, Waveform};
 const LIMIT: u32 = 1 << 16;
 
 /// An outside simulator that runs the emitted Verilog under a bench that reads points from a file. A line of the file
-/// has the operands of a point in hexadecimal: for example, the raw values 5 and −1 in 8 bits are the line `5 ff`.
+/// has the operands of a point in hexadecimal. For example, the raw values 5 and −1 in 8 bits are the line `5 ff`.
 pub struct Verilog {
     bench: BuiltBench,
     limit: Duration,

@@ -127,8 +127,8 @@ fn misfit(one: &Loaded) -> Option<String> {
 pub struct Made {
     /// The files.
     pub files: Vec<OutputFile>,
-    /// The bench notices a fault in every word of the memories if this is 1, in every second word if it is 2, and so
-    /// on. For example, 4 means that the bench checks one of four words.
+    /// The bench notices a fault in every word of the memories if this is 1. For example, 4 means that the bench checks
+    /// one of four words.
     word_stride: usize,
 }
 

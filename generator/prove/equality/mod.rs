@@ -506,7 +506,8 @@ impl<'p> PipelineComparison<'p> {
         Ok(())
     }
 
-    /// Returns whether terms can all be 1: with the products divided as the pipeline has them, and else with all that is known of parts.
+    /// Returns whether terms can all be 1. It first divides the products as the pipeline does. If that leaves the
+    /// question open, it asks again with all facts about parts.
     fn ask(&mut self, wanted: Vec<VectorTermId>) -> Result<SolverAnswer> {
         self.divide_by_lowest(&wanted)?;
         let mut divided = wanted.clone();

@@ -338,7 +338,7 @@ fn unknown(terms: &mut VectorTerms, width: usize) -> Vec<VectorTermId> {
     columns.map(|at| terms.unknown((width - at).min(MAX_WIDTH as usize) as u32)).collect()
 }
 
-/// Returns the contents of a memory that is never written. The last digits of `INIT` are word 0: for example, `1101`
+/// Returns the contents of a memory that is never written. The last digits of `INIT` are word 0. For example, `1101`
 /// with words of 2 bits has word 0 = 1 and word 1 = 3.
 fn words(cell: &Value, width: usize) -> Result<Vec<u64>> {
     let contents = cell["parameters"]["INIT"].as_str().unwrap_or_default();

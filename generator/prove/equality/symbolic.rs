@@ -1,4 +1,5 @@
-//! Executes a design clock by clock on terms: operands are unknowns, and every net is an expression of them.
+//! Executes a design clock by clock on terms: operands are unknowns, and every net is an expression of them. For
+//! example, a net that adds the operands a and b is the term a + b, and no number.
 
 use super::term::{ADDRESS, VectorTerm, VectorTermId, VectorTerms};
 use glint_base::fixed::MAX_WIDTH;

@@ -103,8 +103,8 @@ impl Netlist {
     }
 }
 
-/// Returns a path, from pairs of a name and the time in nanoseconds at which it settles: each name once in a row, at
-/// its last time. For example, `a` at 1.0, `a` at 1.5 and `b` at 2.0 are two steps: `a` at 1.5 and `b` at 2.0.
+/// Returns a path, from pairs of a name and the time in nanoseconds at which it settles. Each name is there once in a
+/// row, at its last time. For example, `a` at 1.0, `a` at 1.5 and `b` at 2.0 are two steps: `a` at 1.5 and `b` at 2.0.
 pub fn path(points: impl IntoIterator<Item = (String, f64)>) -> Vec<PathPoint> {
     let mut steps: Vec<PathPoint> = Vec::new();
     for (name, ns) in points {

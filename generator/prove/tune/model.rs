@@ -1,7 +1,8 @@
 //! Estimates the cost of a configuration from its netlist.
 //!
 //! DSP blocks and block RAMs follow from the widths; look-up tables are a weighted sum of [`Features`], whose weights
-//! `benches/tune/fit` fits to the records in `records/synthesis/`. The clock is the longest path by the measured delays of the pipelines' targets.
+//! `benches/tune/fit` fits to the records in `records/synthesis/`. The clock is the longest path by the measured delays
+//! of the pipelines' targets.
 
 use std::collections::BTreeSet;
 

@@ -14,7 +14,7 @@ impl Vector {
         Self([x, y, z])
     }
 
-    /// Returns the scalar product.
+    /// Returns the scalar product. For example, (1, 2, 3) and (4, 5, 6) give 32.
     #[inline]
     pub fn dot(self, other: Self) -> f64 {
         let ([ax, ay, az], [bx, by, bz]) = (self.0, other.0);

@@ -31,8 +31,9 @@ pub enum Start {
 }
 
 impl Start {
-    /// Returns the starts from which a bench passes: a pipeline knows its state by the reset and the points alone. In gates around the
-    /// registers of a microprogram, which points write one after the other, unknown values stay that no circuit has.
+    /// Returns the starts from which a bench must pass. A pipeline knows its state by the reset and the points alone,
+    /// so that it may begin unknown. In gates around the registers of a microprogram, unknown values can stay that no
+    /// circuit has.
     pub fn of(pipelined: bool) -> &'static [Self] {
         if pipelined { &[Self::Unknown] } else { &[Self::Zeros, Self::Ones] }
     }
@@ -60,8 +61,8 @@ pub fn netlist(
     sources.text(NETLIST)
 }
 
-/// Returns the models of the cells, without their delays and with a flip-flop that begins as `start` says: the library's own becomes
-/// unknown by the first value on its constant inputs.
+/// Returns the models of the cells, without their delays and with a flip-flop that begins as `start` says. The
+/// library's own flip-flop becomes unknown by the first value on its constant inputs.
 ///
 /// # Errors
 /// Fails if the models are not beside the library, or have no flip-flop.

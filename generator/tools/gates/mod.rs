@@ -38,9 +38,9 @@ pub fn netlist(
     sources.text(NETLIST)
 }
 
-/// Returns the files of a test bench around a netlist. They are the `sources` of the device and its test bench without
-/// the files named in `rtl`, the netlist, and the models of the family's cells. For example, for the core `rsqrt` the
-/// file `rsqrt_datapath.v` goes, and `netlist.v` comes in its place.
+/// Returns the files of a test bench around a netlist. They are the `sources` of the device and its test bench, the
+/// netlist, and the models of the family's cells. The files named in `rtl` must go. For example, for the core `rsqrt`
+/// the file `rsqrt_datapath.v` goes, and `netlist.v` comes in its place.
 ///
 /// # Errors
 /// Fails if Yosys's directory does not have the models, or if the family has no models.

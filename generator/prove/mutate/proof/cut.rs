@@ -1,4 +1,5 @@
-//! Finds the fewest bits that determine some nets: a minimum cut.
+//! Finds the fewest bits that determine some nets: a minimum cut. For example, a sum of 5 bits is a smaller cut than
+//! its two operands of 4 bits.
 
 use std::collections::{BTreeMap, BTreeSet};
 

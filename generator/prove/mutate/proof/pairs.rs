@@ -7,10 +7,10 @@ use glint_base::fixed::mask;
 use glint_base::interval::Interval;
 use glint_rtl::netlist::{Design, Driver, NetId, Op};
 
-/// The pairs that each bit of a net can be: masks of the bits that can be 0 in both, 1 in the fault-free design alone,
-/// 1 in the mutant alone, and 1 in both. The number of a pair is the fault-free bit with the mutant's above it, so that
-/// an operation on bits is the same operation on numbers of pairs. For example, pair 2 is a bit that is 0 in the
-/// fault-free design and 1 in the mutant.
+/// The pairs that each bit of a net can be. The four masks are the bits that can be 0 in both, 1 in the fault-free
+/// design alone, 1 in the mutant alone, and 1 in both. The number of a pair is the fault-free bit with the mutant's
+/// above it, so that an operation on bits is the same operation on numbers of pairs. For example, pair 2 is a bit that
+/// is 0 in the fault-free design and 1 in the mutant.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Pairs([u64; 4]);
 
@@ -26,7 +26,7 @@ impl Pairs {
     }
 
     /// Makes the pairs of an interval: the bits that every value from `low` to `high` has, and any others, in both. For
-    /// example, in 4 bits the interval from 4 to 6 has bit 2 at 1, bit 3 at 0, and any value in bits 0 and 1.
+    /// example, the interval from 4 to 6 in 4 bits has bit 2 at 1 and bit 3 at 0. Bits 0 and 1 may have any value.
     pub(super) fn of_interval((low, high): Interval, width: u32) -> Self {
         let (low, high) = (low as u64 & mask(width), high as u64 & mask(width));
         let differ = low ^ high;

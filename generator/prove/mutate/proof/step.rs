@@ -156,8 +156,8 @@ impl<'a> Order<'a> {
         }
     }
 
-    /// Returns the word that a ROM has at its address. At power-up, before it reads any, a synchronous ROM shows 0: the first state
-    /// has that.
+    /// Returns the word that a ROM has at its address. The first state has the 0 that a synchronous ROM shows at
+    /// power-up, before it reads any word.
     fn read(&self, id: RomId, nets: &[Pairs], fault: Option<Injected>) -> Pairs {
         let rom = self.design.rom(id);
         let width = self.design.width(rom.data);

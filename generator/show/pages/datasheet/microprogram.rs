@@ -29,7 +29,7 @@ pub struct MicroinstructionRow {
     /// The name of the operation.
     pub name: String,
     /// For each line: whether a field begins here, whether it is 1, and the meaning of the field's value. For example,
-    /// the value 2 of a field of two bits has a line that begins the field and is 1, and a line that is 0.
+    /// the value 2 of a field of two bits has a line with `(true, true, …)` and a line with `(false, false, …)`.
     pub bits: Vec<(bool, bool, String)>,
     /// The successor, as HTML.
     pub then: String,

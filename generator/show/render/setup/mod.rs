@@ -102,8 +102,8 @@ impl Arc {
         let normal_2 = direction("normal_2", normal_2)?;
         let half_2 = direction("half_2", half_2)?;
         let turned_half = turned(normal_1, normal_2, half_2);
-        // (cos θ₂ − cos θ₁·cos γ)/sin γ is the cosine from N₁ to where H has turned a right angle: without differences of
-        // cosines, in which a small γ would leave little.
+        // (cos θ₂ − cos θ₁·cos γ)/sin γ is the cosine from N₁ to where H has turned a right angle: without differences
+        // of cosines, in which a small γ would leave little.
         let aside = half_1.cross(turned_half).cross(half_1).unit();
         Self::new_of(
             [angle(normal_1, half_1), angle(normal_1, turned_half)],

@@ -160,7 +160,8 @@ impl<'a> Groups<'a> {
         operands.any(|it| self.design.net(it).range == (0, 1))
     }
 
-    /// Returns the operators, registers and tables that a net takes, through wires and gates, and in a pipeline through registers.
+    /// Returns the operators, registers and tables that a net takes, through wires and gates. In a pipeline, it also
+    /// goes through registers.
     pub fn operators(&self, id: NetId) -> Vec<NetId> {
         self.through(self.operands(id))
     }

@@ -1,7 +1,8 @@
 //! Finds the blocks of a datapath: every register, table and operator of the netlist is in one of them.
 //!
-//! A statement of the description makes one block: a rounding with its limits, a tree of muxes, a product in parts. Wires, and
-//! gates with one signal, are part of the way from block to block; in a pipeline a register belongs to the block whose value it holds.
+//! A statement of the description makes one block: a rounding with its limits, a tree of muxes, a product in parts.
+//! Wires, and gates with one signal, are part of the way from block to block. In a pipeline, a register belongs to the
+//! block whose value it holds.
 
 mod groups;
 mod kind;
