@@ -28,8 +28,8 @@ enum Sink {
 }
 
 impl Destination {
-    /// Makes sure that `path` can be written, before any work is done for it. If `path` is a symbolic link, the file
-    /// behind it is replaced, and not the link.
+    /// Makes sure that `path` can be written. A command must call it before it does any work for the file. If `path` is
+    /// a symbolic link, the file behind it is replaced, and not the link.
     ///
     /// # Errors
     /// Fails if `path` cannot be written, if a link leads nowhere, or if its directory cannot be made.
@@ -92,7 +92,7 @@ impl Destination {
         &self.path
     }
 
-    /// Moves the file into its place.
+    /// Moves the file into its place. The caller must have written the whole file.
     ///
     /// # Errors
     /// Fails if the file cannot be moved; then nothing was changed.
@@ -115,7 +115,7 @@ impl Destination {
     }
 }
 
-/// Replaces the file `path` as a whole, or leaves it as it was.
+/// Replaces the file `path` as a whole, or leaves it as it was. For example, a full disk leaves the old file unchanged.
 ///
 /// # Errors
 /// Fails if the file cannot be written.

@@ -5,7 +5,8 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result};
 
-/// Directories that were made for a file. If the file is not written, they are removed again, unless something else is in them.
+/// Directories that were made for a file. If the file is not written, they are removed again, unless something else is
+/// in them. For example, for `made/for/it.txt` in an empty directory these are `made` and `made/for`.
 #[derive(Default)]
 pub struct MadeDirectories {
     /// The outermost first.
@@ -27,7 +28,7 @@ impl MadeDirectories {
         Ok(made)
     }
 
-    /// Keeps the directories: the file is written.
+    /// Keeps the directories. A caller must call it once the file is written.
     pub fn keep(&mut self) {
         self.paths.clear();
     }

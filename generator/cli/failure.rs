@@ -39,7 +39,8 @@ impl fmt::Display for Several {
 
 impl std::error::Error for Several {}
 
-/// Returns the exit code for an error.
+/// Returns the exit code for an error. For example, it is 2 for wrong usage, 130 after Ctrl-C, and 1 for a file that
+/// cannot be read.
 pub fn exit_code(error: &anyhow::Error) -> ExitCode {
     // Also when a context was put around it.
     if let Some(interrupted) = error.downcast_ref::<Interrupted>() {
@@ -102,7 +103,7 @@ fn print_text(error: &anyhow::Error) {
     }
 }
 
-/// Prints a warning to standard error.
+/// Prints a warning to standard error. For example, the line may begin with `warning: my_core.toml: no waveform`.
 pub fn warn(message: &str) {
     print_line(&format!("warning: {message}"));
 }

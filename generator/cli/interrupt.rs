@@ -19,7 +19,7 @@ pub struct Interrupted {
 }
 
 impl Interrupted {
-    /// Returns the exit code, as a shell has it.
+    /// Returns the exit code, as a shell has it. For example, SIGINT is signal 2 and gives 130.
     pub fn exit_code(&self) -> u8 {
         128 + self.signal as u8
     }
@@ -34,7 +34,7 @@ impl fmt::Display for Interrupted {
 impl std::error::Error for Interrupted {}
 
 /// While it lives, the first signal is only noted, so that the command can save its work. The second signal ends the
-/// process.
+/// process. For example, `cosim --exhaustive --resume FILE` saves the state of its proof in this way.
 pub struct Deferred(());
 
 impl Deferred {
@@ -44,7 +44,7 @@ impl Deferred {
         Self(())
     }
 
-    /// Returns whether a signal has come.
+    /// Returns whether a signal has come. If it has, the command must save its work and end.
     pub fn noted(&self) -> bool {
         NOTED.load(Ordering::SeqCst) != 0
     }
@@ -104,7 +104,8 @@ pub fn listen() -> std::io::Result<()> {
     Ok(())
 }
 
-/// Returns the signals that this process was told to ignore, a bit each. It is 0 if the system does not say.
+/// Returns the signals that this process was told to ignore, a bit each. It is 0 if the system does not say. For
+/// example, `nohup` has SIGHUP, signal 1, ignored: bit 0 is 1.
 #[cfg(unix)]
 fn ignored() -> u64 {
     let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();

@@ -158,13 +158,14 @@ fn parse(arguments: &[OsString]) -> Result<Cli, clap::Error> {
     Cli::from_arg_matches(&command.try_get_matches_from_mut(arguments)?)
 }
 
-/// Returns a finite number.
+/// Returns a finite number. For example, `0.75` and `12e6` are numbers, and `inf` is an error.
 fn number(text: &str) -> Result<f64, String> {
     let number = text.parse().ok().filter(|number: &f64| number.is_finite());
     number.ok_or_else(|| "a number is wanted, as 0.75 or 12e6".to_owned())
 }
 
-/// Returns a number of things, at least one: `1000000`, `1_000_000` or `1e6`.
+/// Returns a number of things, at least one. For example, `1000000`, `1_000_000` and `1e6` are a million, and `1.5e3`
+/// is 1500.
 fn count(text: &str) -> Result<u64, String> {
     let wanted = || "a whole number from 1 on is wanted, as 1000000 or 1e6".to_owned();
     let number = match text.split_once(['e', 'E']) {

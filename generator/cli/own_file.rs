@@ -45,7 +45,8 @@ impl OwnFile {
         Ok(Self { path, destination })
     }
 
-    /// Returns the record `<name>.json`, if there is a directory for records.
+    /// Returns the record `<name>.json`, if there is a directory for records. For example, `--out mutation` makes
+    /// `mutation/rough.json` the record of `rough`.
     ///
     /// # Errors
     /// Fails as [`OwnFile::new`] does.

@@ -84,7 +84,7 @@ fn template(width: usize) -> String {
     }
 }
 
-/// Writes a number with three digits, with k, M or G: as much as a rate is worth.
+/// Writes a number with three digits, with k, M or G: as much as a rate is worth. For example, 1234.5678 is `1.23k`.
 fn rounded(number: f64) -> String {
     let units = [(1e9, "G"), (1e6, "M"), (1e3, "k")];
     let found = units.into_iter().find(|(size, _)| number >= *size);
@@ -97,7 +97,8 @@ fn rounded(number: f64) -> String {
     format!("{number:.decimals$}{unit}")
 }
 
-/// Returns the time that is left at the pace so far; nothing before the first step, when nobody knows.
+/// Returns the time that is left at the pace so far; nothing before the first step, when nobody knows. For example,
+/// after 2 seconds for 10 of 40 steps, `6 s` are left.
 fn remaining(elapsed: Duration, done: u64, all: u64) -> Option<String> {
     if done == 0 || done >= all {
         return None;

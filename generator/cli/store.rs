@@ -80,7 +80,7 @@ fn locked(directory: &Path) -> Option<fs::File> {
 }
 
 /// Returns the files below `out` that differ from `files` or are missing, and the files of Glint's that are no longer
-/// in `files`.
+/// in `files`. For example, `rtl_out/rough/rough.v` after somebody edited it.
 ///
 /// # Errors
 /// Fails if a file cannot be read.
@@ -88,7 +88,7 @@ pub fn differences(out: &Path, name: &str, files: &[OutputFile]) -> Result<Vec<S
     Ok(Survey::new(out, name, files)?.different)
 }
 
-/// Writes a single file that vouches for itself.
+/// Writes a single file that vouches for itself: it must contain the digest of its own text.
 ///
 /// # Errors
 /// Without `force`, fails if there is a file that Glint did not write or that was edited since. Fails if a directory
@@ -138,7 +138,7 @@ pub fn differs(out: &Path, file: &OutputFile) -> Result<bool> {
     }
 }
 
-/// Returns the directories of a configuration.
+/// Returns the directories of a configuration: for example, `rtl_out/rough`, `testbench/rough` and `software/rough`.
 fn directories(out: &Path, name: &str) -> [PathBuf; 3] {
     ["rtl_out", "testbench", "software"].map(|top| out.join(top).join(name))
 }

@@ -16,15 +16,17 @@ struct TerminalColumn<'a> {
     heading: &'a str,
     /// Whether it has numbers: aligned to the right, and never broken.
     number: bool,
-    /// If there is too little room, columns are left out, beginning with the largest number. A column with 0 stays.
+    /// If there is too little room, the table leaves columns out, beginning with the largest number. It cannot leave
+    /// out a column with 0.
     dispensable: u8,
 }
 
 impl<'a> TerminalColumn<'a> {
-    /// Returns the columns of some headings, which are separated by bars.
+    /// Returns the columns of some headings, which are separated by bars. For example, `device | points:2` is a column
+    /// of words and a column of numbers.
     ///
     /// The cells below a heading with a colon are numbers. Other cells are words, which may be broken into lines. A
-    /// digit behind a colon or a semicolon says when a column is left out if there is too little room.
+    /// digit behind a colon or a semicolon says when the table may leave a column out.
     fn all(headings: &'a str) -> Vec<Self> {
         let column = |heading: &'a str| {
             let number = heading.contains(':');
@@ -35,16 +37,16 @@ impl<'a> TerminalColumn<'a> {
     }
 }
 
-/// Prints rows under headings, such as `device | points: | clocks:2 | remark;1`, no wider than the terminal. Columns
-/// with a digit are left out if there is too little room, beginning with the largest digit. If that is not enough,
-/// the cells of a row are printed below each other.
+/// Prints rows under headings, such as `device | points: | clocks:2 | remark;1`, no wider than the terminal. If there
+/// is too little room, the table may leave out columns with a digit, beginning with the largest digit. If that is not
+/// enough, the cells of a row are printed below each other.
 pub fn print(headings: &str, rows: impl IntoIterator<Item = Vec<String>>) {
     let rows: Vec<Vec<String>> = rows.into_iter().collect();
     print_line(&text(&TerminalColumn::all(headings), &rows, width()));
 }
 
 /// Returns the largest width of a line: the value of `COLUMNS`, or else the width of the terminal. Returns `None`
-/// without either, and a line may then have any width.
+/// without either, and a line may then have any width. For example, `COLUMNS=80` gives 80.
 fn width() -> Option<usize> {
     let said = std::env::var("COLUMNS").ok().and_then(|text| text.parse().ok());
     let terminal = || Some(usize::from(console::Term::stdout().size_checked()?.1));

@@ -16,7 +16,8 @@ use glint_tools::{BuiltBench, VerilogSimulator, Waveform};
 /// More clocks than any computation takes.
 const LIMIT: u32 = 1 << 16;
 
-/// An outside simulator that runs the emitted Verilog under a bench that reads points from a file.
+/// An outside simulator that runs the emitted Verilog under a bench that reads points from a file. A line of the file
+/// has the operands of a point in hexadecimal. For example, the raw values 5 and −1 in 8 bits are the line `5 ff`.
 pub struct Verilog {
     bench: BuiltBench,
     limit: Duration,

@@ -30,7 +30,7 @@ pub enum Target {
 pub const TARGETS: [Target; 4] = [Target::Ice40, Target::Ecp5, Target::Xilinx7, Target::Osu018];
 
 impl Target {
-    /// Returns the name for scripts: `ice40`.
+    /// Returns the name for scripts. For example, `ice40`.
     pub fn name(self) -> &'static str {
         match self {
             Self::Ice40 => "ice40",
@@ -40,7 +40,7 @@ impl Target {
         }
     }
 
-    /// Returns the name for people.
+    /// Returns the name for people. For example, `0.18 µm cells`.
     pub fn title(self) -> &'static str {
         self.family().map_or("0.18 µm cells", |family| family.title)
     }
@@ -128,7 +128,7 @@ pub struct Frequency {
 /// A point of a path.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct PathPoint {
-    /// The net, as the description names it. The name of a ROM has `ROM` before it.
+    /// The net, as the description names it. The name of a ROM has `ROM` before it. For example, `ROM coefficient`.
     pub name: String,
     /// When it settles, after the clock's edge, in nanoseconds.
     pub ns: f64,
@@ -148,13 +148,14 @@ impl Figures {
         }
     }
 
-    /// Returns the longest path as `first 0.4 → second 3.1 → third 7.9 ns`.
+    /// Returns the longest path in words. For example, `first 0.4 → second 3.1 → third 7.9 ns`.
     pub fn path_in_words(&self) -> String {
         let steps = self.critical_path.iter().map(|step| format!("{} {:.1}", step.name, step.ns));
         format!("{} ns", Vec::from_iter(steps).join(" → "))
     }
 
-    /// Puts the runs in, each a frequency in MHz and its longest path.
+    /// Puts the runs in, each a frequency in MHz and its longest path. For example, the median of runs with 100, 110,
+    /// 120 and 130 MHz is 110 MHz.
     pub fn with_runs(mut self, mut runs: Vec<(f64, Vec<PathPoint>)>) -> Self {
         runs.sort_by(|one, other| one.0.total_cmp(&other.0));
         let (Some(first), Some(last)) = (runs.first(), runs.last()) else {
@@ -191,7 +192,7 @@ impl From<Usage> for Area {
     }
 }
 
-/// Rounds to two decimals: more than a tool's figures are worth.
+/// Rounds to two decimals: more than a tool's figures are worth. For example, 3.14159 is 3.14.
 pub fn rounded(number: f64) -> f64 {
     (number * 100.0).round() / 100.0
 }

@@ -13,7 +13,7 @@ const QUOTED_LINES: usize = 12;
 /// Characters of a line that an error quotes.
 const QUOTED_CHARACTERS: usize = 200;
 
-/// Output as far as it has come; clones share it.
+/// Output as far as it has come. Clones share it, so that one thread can read the output while another quotes it.
 #[derive(Clone, Default)]
 pub(super) struct Capture(Arc<Mutex<CaptureBuffer>>);
 
@@ -34,7 +34,8 @@ impl Capture {
         }
     }
 
-    /// Returns the text that was kept; bytes that are not UTF-8 are replaced.
+    /// Returns the text that was kept; bytes that are not UTF-8 are replaced. If the capture dropped bytes, a line
+    /// between the two parts says how many, for example `... 4096 bytes left out ...`.
     pub(super) fn text(&self) -> String {
         let kept = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         let mut bytes = kept.first.clone();
@@ -63,8 +64,8 @@ impl CaptureBuffer {
     }
 }
 
-/// Returns the last lines of `output` as the end of an error message, indented and without control
-/// characters.
+/// Returns the last lines of `output` as the end of an error message, indented and without control characters. For
+/// example, the output `no module` gives `; its last lines:`, followed by `no module` on a line of its own.
 pub(super) fn quote(output: &str) -> String {
     let lines: Vec<&str> = output.lines().filter(|line| !line.trim().is_empty()).collect();
     if lines.is_empty() {

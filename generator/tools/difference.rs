@@ -25,7 +25,8 @@ pub struct BenchDifference {
 }
 
 impl BenchDifference {
-    /// Returns the first difference in the transcript of a bench, if there is one.
+    /// Returns the first difference in the transcript of a bench, if there is one. For example, the line `clock 9:
+    /// red_out is 1f, expected 20` is a difference of the output `red_out` at clock 9.
     pub fn first(transcript: &str) -> Option<Self> {
         transcript.lines().find_map(Self::of_line)
     }
@@ -50,8 +51,8 @@ impl BenchDifference {
     }
 }
 
-/// Runs the bench `top` of `files` once more, as [`super::run_bench`] does; returns the waveform (VCD) of
-/// clocks `from` to `to`.
+/// Runs the bench `top` of `files` once more, as [`super::run_bench`] does; returns the waveform (VCD) of clocks `from`
+/// to `to`. For example, for the bench `rsqrt_tb` it adds a module `rsqrt_tb_window` in a file `rsqrt_tb_window.v`.
 ///
 /// # Errors
 /// Fails as [`super::run_bench`] does, or if there is no waveform.

@@ -10,7 +10,7 @@ use super::sources::YosysSources;
 
 /// Reads Verilog and memory files, pairs of a plain name and contents, and returns the module `top` with everything
 /// that it instantiates. The result has word-level cells, registers and memories. Only logic that nothing reads is
-/// optimised away.
+/// optimised away. The caller finds the cells under the key `cells` of the result, and the nets under `netnames`.
 ///
 /// # Errors
 /// Fails if Yosys refuses the files, takes longer than `limit`, or writes no netlist.

@@ -54,8 +54,8 @@ pub struct Tool {
 pub struct Run {
     /// How the program ended; not necessarily well.
     pub status: ExitStatus,
-    /// Standard output and standard error in the order of writing. Of more than about a megabyte
-    /// the middle is left out, and a line says so.
+    /// Standard output and standard error in the order of writing. It has at most about a megabyte. Longer output loses
+    /// its middle, and a line says so.
     pub output: String,
 }
 
@@ -95,7 +95,8 @@ impl Tool {
         Self::find_in(name, &env::var_os("PATH").unwrap_or_default())
     }
 
-    /// Finds the tool `name` on the search path `search`, which is written as `PATH` is.
+    /// Finds the tool `name` on the search path `search`, which is written as `PATH` is. For example, on Windows the
+    /// tool `yosys` is the file `yosys.exe`.
     ///
     /// # Errors
     /// Fails if the tool is not there; the message says how to install it.
@@ -118,7 +119,8 @@ impl Tool {
         &self.path
     }
 
-    /// Returns the first line of the tool's answer to the question for its version.
+    /// Returns the first line of the tool's answer to the question for its version. For example, the answer of Yosys
+    /// 0.23 begins with `Yosys 0.23`.
     ///
     /// # Errors
     /// Fails if the tool does not start, does not end, fails, or says nothing.
@@ -194,7 +196,7 @@ impl Tool {
         )));
     }
 
-    /// Runs a tool as [`Tool::run`] does, but expects it to succeed; returns its output.
+    /// Runs a tool as [`Tool::run`] does, but the tool must exit with 0; returns its output.
     ///
     /// # Errors
     /// Fails if [`Tool::run`] fails, or if the exit status is not 0.
@@ -245,7 +247,8 @@ fn limit_memory(process: u32, bytes: u64) {
 #[cfg(not(target_os = "linux"))]
 fn limit_memory(_process: u32, _bytes: u64) {}
 
-/// Returns how to install a tool, for users with a checkout of Glint and for users without.
+/// Returns how to install a tool, for users with a checkout of Glint and for users without. For example, `vvp` comes
+/// with the package `iverilog`.
 fn remedy(name: &str) -> String {
     let package = match name {
         "vvp" => "iverilog",

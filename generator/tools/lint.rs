@@ -8,7 +8,7 @@ use anyhow::{Result, bail};
 use super::Tool;
 
 /// Returns the complaints of `iverilog` or `verilator`, at its strictest, about the Verilog files `sources` of a
-/// directory: nothing, if they are clean.
+/// directory. For example, clean sources give an empty text.
 ///
 /// # Errors
 /// Fails if the tool is neither of these, rejects the sources, or takes longer than `limit`.

@@ -11,8 +11,9 @@ use super::{LimitReached, Limits, Tool, capture};
 /// The limits of each command of a proof, unless less is asked for.
 pub const PROOF_LIMITS: Limits = Limits { time: Duration::from_secs(300), memory: Some(4 << 30) };
 
-/// Runs the commands that the head of the wrapper `<name>_formal.sv` gives to users. `directory` must have the
-/// wrapper and the files of its device.
+/// Runs the commands that the head of the wrapper `<name>_formal.sv` gives to users. `directory` must have the wrapper
+/// and the files of its device. The head must have three lines that begin with `$ yosys`. For example, the first
+/// command for AXI4-Lite is `yosys -q threshold_levels_axil_formal.ys`.
 ///
 /// # Errors
 /// Fails if the proof does not succeed, or if a tool is missing. Fails with [`LimitReached`], which says nothing

@@ -33,7 +33,7 @@ impl<'a> YosysSources<'a> {
         Ok(sources)
     }
 
-    /// Writes another file beside them.
+    /// Writes another file beside them. The `name` must be plain.
     ///
     /// # Errors
     /// Fails if the file cannot be written.
@@ -47,7 +47,8 @@ impl<'a> YosysSources<'a> {
         self.directory.path()
     }
 
-    /// Has Yosys read the Verilog and run commands.
+    /// Has Yosys read the Verilog and run commands. For example, for one file `rsqrt.v` and the commands `proc; opt`
+    /// the script is `read_verilog rsqrt.v; proc; opt`.
     ///
     /// # Errors
     /// Fails if Yosys fails or takes too long.
@@ -57,7 +58,7 @@ impl<'a> YosysSources<'a> {
         Ok(())
     }
 
-    /// Reads a file that a tool has left.
+    /// Reads a file that a tool has left, for example `statistics.json`.
     ///
     /// # Errors
     /// Fails if the file is not there.

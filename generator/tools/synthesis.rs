@@ -28,7 +28,7 @@ pub fn synthesise(
         .with_context(|| format!("`{}` for {}", family.command, family.title))
 }
 
-/// The command of Yosys whose result [`usage`] reads.
+/// The command of Yosys whose result [`usage`] reads. It must come after the synthesis in a script.
 pub const STATISTICS_COMMAND: &str = "tee -q -o statistics.json stat -json";
 
 /// Reads the statistics that [`STATISTICS_COMMAND`] has written.

@@ -33,7 +33,8 @@ struct Trials {
 }
 
 impl Tool {
-    /// Gives the tool a wrong input. If the exit status is all that the tool says, it also gets a right input.
+    /// Gives the tool a wrong input. If the exit status is all that the tool says, it also gets a right input. For
+    /// example, `yosys` gets a claim that does not hold, and must print `proof did fail`.
     ///
     /// # Errors
     /// Fails if the tool does not tell them apart, or if it does not run.
@@ -57,7 +58,8 @@ impl Tool {
     }
 }
 
-/// Returns whether the words are there: not at the end of another, as in `unsat`.
+/// Returns whether the words are in the output, and not at the end of another word. For example, the output `unsat`
+/// does not say `sat`.
 fn says(output: &str, words: &str) -> bool {
     let before = |at: usize| output[..at].chars().next_back();
     let mut found = output.match_indices(words);

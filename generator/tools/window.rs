@@ -3,14 +3,16 @@
 use anyhow::Result;
 use glint_base::fill;
 
-/// The file to which the module writes.
+/// The file to which the module writes. The bench must not write a file of this name.
 pub const WINDOW_FILE: &str = "window.vcd";
 
 /// Units of time in which the bench has a clock.
 const CLOCK: u64 = 10;
 
-/// Returns the Verilog of a module `name` around the module `bench`, which `glint_core::package::emit` made: it writes the
-/// waveform of clocks `from` to `to` to [`WINDOW_FILE`], and ends the run as one that fails.
+/// Returns the Verilog of a module `name` around the module `bench`, which must be a bench of
+/// `glint_core::package::emit`. The module writes the waveform of clocks `from` to `to` to [`WINDOW_FILE`], and ends
+/// the run as one that fails. For example, the waveform of clocks 3 to 5 begins at time 31 and has a length of 29,
+/// because a clock takes 10 units.
 ///
 /// # Errors
 /// Fails if the template fails, which would be a bug.

@@ -241,9 +241,10 @@ fn found(
 }
 
 /// Writes the scripts, each in a file: the accepted script of a proved statement, or the first script of an open one.
+/// For example, `red_out_3.g` has statement 3 of the output `red_out`.
 ///
-/// Scripts of an earlier run with more statements are deleted if they have the name that is in their first line. A
-/// copy under another name, or an edited script, belongs to the user and stays.
+/// It deletes scripts of an earlier run with more statements, if they have the name that is in their first line. A copy
+/// under another name, or an edited script, belongs to the user and stays.
 fn write(
     directory: &Path,
     config: &str,
@@ -272,8 +273,8 @@ fn write(
         let script = &scripts[chosen];
         let digest = digest(script.as_bytes());
         let text = format!("{head} To check: gappa {name}\n{DIGEST}{digest}\n{witness}\n{script}");
-        // All files are opened before the first is written. A file that Glint did not write is refused with nothing
-        // changed.
+        // All files are opened before the first is written. If Glint did not write one of them, the command fails and
+        // changes nothing.
         let file = OwnFile::new(directory, &name, MARKER)?;
         let path = directory.join(&name);
         if std::fs::read_to_string(&path).is_ok_and(|text| !is_unedited(&text)) {
@@ -309,7 +310,8 @@ fn write(
     Ok(())
 }
 
-/// Returns whether a file that Glint wrote has the script that it was written with.
+/// Returns whether a file that Glint wrote has the script that it was written with. For example, it returns false if
+/// somebody changed a number in the script, because the digest in the head differs then.
 fn is_unedited(text: &str) -> bool {
     let Some((head, script)) = text.split_once("\n\n") else { return false };
     head.lines().nth(1).and_then(|line| line.strip_prefix(DIGEST))

@@ -167,7 +167,8 @@ pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) ->
     Ok(failures.is_empty())
 }
 
-/// Returns the device's defaults with these keys replaced, if the device has them and accepts the value.
+/// Returns the device's defaults with these keys replaced, if the device has them and accepts the value. For example,
+/// `--bits 10` sets `colour.bits` to 10; a device that refuses the value keeps its default, and a note says so.
 fn with_widths(device: &Device, widths: &[(&str, Option<i64>)], notes: &mut Vec<String>) -> Config {
     let schema: Schema = (device.schema)();
     let name = schema.module();
@@ -242,7 +243,8 @@ fn synthesise(
     Ok(runs.chunks(FAMILIES.len()).map(<[_]>::to_vec).collect())
 }
 
-/// Returns why a configuration has no errors to show.
+/// Returns why a configuration has no errors to show. For example, `my_core.toml: n = 300 is not in its domain, n = 1
+/// to 255`.
 fn outside(entry: &ComparisonEntry, n: u32) -> String {
     let label = &entry.label;
     match domain(&entry.core) {

@@ -192,7 +192,7 @@ fn outcome(
     mismatch::traced(one, &lockstep, destination, points, 0)
 }
 
-/// Returns the operands of the largest error, as values.
+/// Returns the operands of the largest error, as values. For example, `red_out for cos_gamma=0.99 exponent=20`.
 pub fn worst_operands(one: &Loaded, worst: &Worst) -> String {
     let operands = one.core.contract.operands();
     let values: Vec<String> = worst

@@ -62,7 +62,8 @@ pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) ->
     }
 }
 
-/// Returns the operands that are outside the domain for which the contract is stated, in words.
+/// Returns the operands that are outside the domain for which the contract is stated, in words. For example, `exponent
+/// = 300 is not in 1 to 255`.
 fn outside(operands: &[Operand], raw: &[i64]) -> Vec<String> {
     let outside = operands.iter().zip(raw).filter_map(|(operand, raw)| {
         let (low, high) = operand.domain;
@@ -97,8 +98,8 @@ fn point(
     let mut signals = signals(model, operands, &raw)?;
     let outside = outside(operands, &raw);
     let results = results(contract, &raw);
-    // The golden model of a pipeline is the model of its sequential core. Formats are the formats of the core's nets,
-    // and signals of the core that the pipeline does not have are left out.
+    // The golden model of a pipeline is the model of its sequential core. Formats are the formats of the core's nets.
+    // The list cannot have signals that only the core has.
     let pipeline = one.core.design.pipeline.as_ref();
     let sequential = pipeline.map(|_| one.core.device.sequential(&one.core.config)).transpose()?;
     if let Some(pipeline) = pipeline {
@@ -152,7 +153,8 @@ struct ResultComparison {
     name: String,
     value: f64,
     exact: f64,
-    /// The error in last places of the result. At a jump of the formula, it is measured from the nearer side.
+    /// The error in last places of the result. At a jump of the formula, it is measured from the nearer side. For
+    /// example, an output of 200 for a formula of 200.3 has the error 0.3, in an output without fraction bits.
     error: f64,
 }
 

@@ -114,7 +114,8 @@ fn print_next_step(out: &Path, loaded: &[Loaded], with_bench: bool) {
     );
 }
 
-/// Returns the resources that a pipeline's chip lacks, in words. Returns `None` if the core fits, or has no target.
+/// Returns the resources that a pipeline's chip lacks, in words. Returns `None` if the core fits, or has no target. For
+/// example, `it does not fit the iCE40 UP5K: it takes 9 of 8 DSP blocks`.
 fn misfit(one: &Loaded) -> Option<String> {
     let pipeline = one.core.design.pipeline.as_ref()?;
     let target = TARGETS.into_iter().find(|target| target.name() == pipeline.target)?;
@@ -126,7 +127,8 @@ fn misfit(one: &Loaded) -> Option<String> {
 pub struct Made {
     /// The files.
     pub files: Vec<OutputFile>,
-    /// The bench notices a fault in every word of the memories if this is 1, in every second word if it is 2, and so on.
+    /// The bench notices a fault in every word of the memories if this is 1. For example, 4 means that the bench checks
+    /// one of four words.
     word_stride: usize,
 }
 

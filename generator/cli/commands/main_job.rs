@@ -104,13 +104,14 @@ fn print(loaded: &[Loaded], findings: &[MainJobResult], details: bool) -> Result
     Ok(())
 }
 
-/// Returns the name that tells a configuration in `configs/` from the others there.
+/// Returns the name that tells a configuration in `configs/` from the others there. For example, `configs/rough.toml`
+/// is `rough`.
 fn short(path: &str) -> &str {
     let name = path.strip_prefix(CONFIGS).and_then(|name| name.strip_prefix('/'));
     name.and_then(|name| name.strip_suffix(".toml")).unwrap_or(path)
 }
 
-/// Returns how many hold, how many are outside the contract, how many fail.
+/// Returns how many hold, how many are outside the contract, how many fail. For example, `19 of 21 hold; 2 FAIL.`
 fn counts(findings: &[MainJobResult]) -> String {
     let verdicts = findings.iter().map(|finding| verdict(&finding.bound, &finding.failures));
     let count = |wanted| verdicts.clone().filter(|verdict| *verdict == wanted).count();

@@ -83,8 +83,8 @@ impl Reproducer {
     }
 }
 
-/// Returns a difference for scripts. Values are bit patterns and may have 64 bits, which not every reader's
-/// numbers hold: they are text.
+/// Returns a difference for scripts. Values are bit patterns and may have 64 bits, which not every reader's numbers
+/// hold: they are text. For example, the key `golden` has the text `0x1f`.
 pub fn as_json(mismatch: &Mismatch) -> Value {
     json!({
         "seed": mismatch.seed,
@@ -101,12 +101,13 @@ fn window(one: &Loaded, mismatch: &Mismatch) -> (PathBuf, u64) {
     (waveform_of(one), first_clock(mismatch.clock))
 }
 
-/// Returns the file for the waveform of a difference, in the working directory.
+/// Returns the file for the waveform of a difference, in the working directory. For example, `rough_mismatch.vcd`.
 pub fn waveform_of(one: &Loaded) -> PathBuf {
     PathBuf::from(format!("{}_mismatch.vcd", one.core.config.name))
 }
 
-/// Returns the clock at which the waveform of a difference begins that ends at `clock`.
+/// Returns the clock at which the waveform of a difference begins that ends at `clock`. For example, a difference at
+/// clock 100 has a waveform from clock 36 on.
 pub fn first_clock(clock: u64) -> u64 {
     clock.saturating_sub(WINDOW)
 }

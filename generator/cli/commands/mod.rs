@@ -54,7 +54,7 @@ const CONFIGS: &str = "configs";
 
 /// A configuration file, and the core that it describes.
 pub struct Loaded {
-    /// As the command line names it, with `/`.
+    /// The path as the command line names it, with `/`: for example, `configs/rough.toml`.
     path: String,
     core: Core,
     /// No problems, but the locations of the keys in the file.
@@ -85,7 +85,8 @@ fn paths(named: &[PathBuf]) -> Result<Vec<PathBuf>> {
 
 /// Reads configurations and builds their designs.
 ///
-/// It reports the problems of all files, not only the problems of the first file.
+/// It reports the problems of all files, not only the problems of the first file. It fails if two files name the same
+/// module, for example `rough`.
 fn load(registry: &Registry, named: &[PathBuf]) -> Result<Vec<Loaded>> {
     if named.iter().filter(|path| path.as_path() == Path::new(input::STDIN)).count() > 1 {
         wrong_usage!("standard input, `-`, is read once: name it once");
@@ -114,7 +115,8 @@ fn load(registry: &Registry, named: &[PathBuf]) -> Result<Vec<Loaded>> {
     if failed.is_empty() { Ok(loaded) } else { Err(Several(failed).into()) }
 }
 
-/// Does the same as [`load`], for a command about microprograms: pipelines are left out unless they are named.
+/// Does the same as [`load`], for a command about microprograms. Without names, it leaves the pipelines of `configs/`
+/// out. If `named` has a pipeline, it fails.
 fn load_sequential(registry: &Registry, named: &[PathBuf], command: &str) -> Result<Vec<Loaded>> {
     let (pipelines, loaded): (Vec<Loaded>, Vec<Loaded>) =
         load(registry, named)?.into_iter().partition(|one| one.core.design.pipeline.is_some());
@@ -173,8 +175,8 @@ fn load_one(registry: &Registry, schemas: &[config::Schema], path: &Path) -> Res
     Ok(Loaded { path: name, core, locations })
 }
 
-/// Returns a text about a name that is none of `names`: the nearest name, and all of them. `what` is the word for
-/// such names.
+/// Returns a text about a name that is none of `names`: the nearest name, and all of them. `what` is the word for such
+/// names. For example, the text for `exponnt` begins with "; did you mean `exponent`?".
 fn none_of(name: &str, what: &str, names: &[&str]) -> String {
     let near = config::nearest(name, names.iter().copied())
         .map_or_else(|| ".".to_owned(), |near| format!("; did you mean `{near}`?"));

@@ -205,7 +205,8 @@ fn only(output: OutputOptions, one: &Loaded, id: &str) -> Result<bool> {
     Ok(*verdict != MutantVerdict::Undecided)
 }
 
-/// Describes where and how a mutant differs.
+/// Describes where and how a mutant differs. For example, the text begins with `seed 3, with exponent=#5, after clock
+/// 120`.
 fn shown_by(SignalDifference { held, mismatch }: &SignalDifference) -> String {
     let operands: Vec<String> = held.iter().map(|(name, raw)| format!(" {name}=#{raw}")).collect();
     let holding = if operands.is_empty() { "" } else { ", with" };
@@ -295,7 +296,8 @@ fn print_undecided(ids: &[String]) {
     }
 }
 
-/// Prints the shipped bench's share of the faults that anything notices, beside its goal.
+/// Prints the shipped bench's share of the faults that anything notices, beside its goal. For example, 96 of 100 upper
+/// bits of words in ROMs reach the goal of 95 %.
 fn print_shipped(faults: &str, share: Share, goal: Option<f64>) {
     let goal = goal.map_or(String::new(), |goal| {
         let reached = if share.value() >= goal { "reached" } else { "missed" };

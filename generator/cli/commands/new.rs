@@ -96,7 +96,8 @@ pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) ->
 }
 
 impl Arguments {
-    /// Returns the keys that the options set.
+    /// Returns the keys that the options set. For example, `--pipelined --clock 100` sets `architecture` and
+    /// `pipeline.clock_mhz`; `--clock 100` alone sets `package.constraints` and `package.clock_mhz`.
     fn settings(&self) -> Result<Vec<KeyAssignment>> {
         let mut settings = Vec::new();
         if self.pipelined {

@@ -88,7 +88,7 @@ fn write(directory: &Path, files: &[(&str, String)]) -> Result<()> {
     fs::rename(&made, directory).with_context(cannot)
 }
 
-/// Checks the name of a new device.
+/// Checks the name of a new device. For example, `sine-wave` can be a name, and `Sine`, `2x` and `sine--wave` cannot.
 ///
 /// # Errors
 /// Fails if the name is no name of a crate, a word of Rust or Verilog, or the name of a device that `registry` has.
@@ -112,7 +112,8 @@ fn check_name(registry: &Registry, name: &str) -> Result<()> {
     Ok(())
 }
 
-/// Returns a file of the template for another device.
+/// Returns a file of the template for another device. For example, the name `sine-wave` makes the crate
+/// `sine_wave_device` of `parabola_device`.
 fn text_for(text: &str, name: &str, glint: &str) -> String {
     let module = name.replace('-', "_");
     let glint = toml::Value::from(glint.replace('\\', "/")).to_string();

@@ -347,14 +347,14 @@ fn tell(
     }
 }
 
-/// Parses a size in pixels, as `640x480`.
+/// Parses a size in pixels. For example, `640x480` is 640 wide and 480 high.
 fn size(text: &str) -> Result<(u32, u32), String> {
     let sides = text.split_once(['x', 'X']);
     let sides = sides.and_then(|(width, height)| Some((width.parse().ok()?, height.parse().ok()?)));
     sides.ok_or_else(|| "a size is WxH in pixels, as in 640x480".to_owned())
 }
 
-/// Parses finite numbers with commas between.
+/// Parses finite numbers with commas between. For example, `1, 2.5` is 1 and 2.5; `inf` is an error.
 fn numbers(text: &str) -> Result<Vec<f64>, String> {
     text.split(',')
         .map(|word| match word.trim().parse::<f64>() {
@@ -364,7 +364,7 @@ fn numbers(text: &str) -> Result<Vec<f64>, String> {
         .collect()
 }
 
-/// Parses `NAME=VALUE`, where the value is one finite number.
+/// Parses `NAME=VALUE`, where the value is one finite number. For example, `alpha2=0.04`.
 fn operand(text: &str) -> Result<(String, f64), String> {
     let (name, value) = text.split_once('=').ok_or("it takes NAME=VALUE, as in alpha2=0.04")?;
     match numbers(value)?.as_slice() {

@@ -47,7 +47,8 @@ pub fn read<C, T>(
     Ok(rows)
 }
 
-/// Returns the line of a record that begins at `start`. Empty lines before the record count as a part of it.
+/// Returns the line of a record that begins at `start`. Empty lines before the record count as a part of it. For
+/// example, 2 is the first row below the headings.
 fn line(text: &str, start: usize) -> usize {
     let record = text[start..].trim_start_matches(['\r', '\n']);
     1 + text[..text.len() - record.len()].matches('\n').count()

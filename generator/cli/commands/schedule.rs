@@ -118,7 +118,8 @@ fn print(one: &Loaded, pipeline: &Pipeline) {
     tables::print(&headings.join(" | "), rows);
 }
 
-/// Returns the values that a stage computes, by name.
+/// Returns the names of the values that a stage computes. For example, a stage with one multiplier may have only
+/// `product`.
 fn computed<'a>(design: &'a Design, pipeline: &'a Pipeline, stage: usize) -> Vec<&'a str> {
     pipeline.computed(design, stage).map(|(value, _)| value).collect()
 }

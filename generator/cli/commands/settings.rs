@@ -13,7 +13,8 @@ pub struct KeyAssignment {
 }
 
 impl KeyAssignment {
-    /// Parses `KEY=VALUE`. A word needs no quotes: `architecture=pipelined` sets `architecture = "pipelined"`.
+    /// Parses `KEY=VALUE`. A word needs no quotes: for example, `architecture=pipelined` sets `architecture =
+    /// "pipelined"`.
     ///
     /// # Errors
     /// Fails if there is no `=`, or if the key has other characters than letters, digits, `_`, `-` and `.`.
@@ -38,7 +39,7 @@ impl KeyAssignment {
         KeyAssignment { key: key.to_owned(), value: quoted(word) }
     }
 
-    /// Returns the line of TOML that sets the key.
+    /// Returns the line of TOML that sets the key. For example, `cosine.fraction = 16`.
     pub fn line(&self) -> String {
         format!("{} = {}\n", self.key, self.value)
     }

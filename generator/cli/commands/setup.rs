@@ -181,7 +181,7 @@ impl<'a> HostInputs<'a> {
     }
 
     /// Returns the index of an input. If `name` is the name of a vector's component, it returns the index of the
-    /// component too.
+    /// component too. For example, `normal_1_y` gives the index of `normal_1`, and 1.
     fn place(&self, name: &str) -> Result<(usize, Option<usize>), String> {
         let all = &self.inputs;
         let at = |name: &str| all.iter().position(|it| it.name == name && self.concerns(name));
@@ -200,7 +200,8 @@ impl<'a> HostInputs<'a> {
         Err(format!("there is no input `{name}` of `{device}`{}", none_of(name, "inputs", &names)))
     }
 
-    /// Stores the numbers that a text gives to an input, which must not have any yet.
+    /// Stores the numbers that a text gives to an input, which must not have any yet. For example, a vector may be
+    /// `0,0,1` or `0 0 1`.
     fn put(
         &self,
         given: &mut Given,
@@ -233,13 +234,13 @@ impl<'a> HostInputs<'a> {
         given[at][0]
     }
 
-    /// Returns a number that there must be.
+    /// Returns the number of an input, which the user must give. For example, without `points` a line fails.
     fn needed(&self, given: &Given, name: &str) -> Result<f64, String> {
         let missing = || format!("input `{name}` is missing; give it as {name}=…, or as a column");
         self.number(given, name).ok_or_else(missing)
     }
 
-    /// Returns a whole number from `least` on, that there must be.
+    /// Returns the whole number of an input, which the user must give and which cannot be below `least`.
     fn whole(&self, given: &Given, name: &str, least: u32) -> Result<u32, String> {
         let value = self.needed(given, name)?;
         if value.fract() != 0.0 || !(f64::from(least)..=f64::from(u32::MAX)).contains(&value) {
@@ -248,7 +249,7 @@ impl<'a> HostInputs<'a> {
         Ok(value as u32)
     }
 
-    /// Returns a share of the light.
+    /// Returns a share of the light, which must be from 0 to 1. An input that is not given is 1.
     fn share(&self, given: &Given, name: &str) -> Result<f64, String> {
         let value = self.number(given, name).unwrap_or(1.0);
         let inside = (0.0..=1.0).contains(&value);
@@ -257,7 +258,7 @@ impl<'a> HostInputs<'a> {
         })
     }
 
-    /// Returns an angle in radians, that there must be.
+    /// Returns the angle of an input in radians. The user must give it in degrees: for example, 180 is π.
     fn angle(&self, given: &Given, name: &str, (low, high): (f64, f64)) -> Result<f64, String> {
         let degrees = self.needed(given, name)?;
         let inside = (low..=high).contains(&degrees);

@@ -121,7 +121,8 @@ pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) ->
     Ok(true)
 }
 
-/// Returns the targets that pipelines are scheduled for, if every configuration is a pipeline with such a target; else nothing.
+/// Returns the targets that pipelines are scheduled for, if every configuration is a pipeline with such a target; else
+/// nothing. For example, one pipeline for ECP5 gives ECP5; a pipeline and a sequential core give nothing.
 fn targets_of_pipelines(loaded: &[Loaded]) -> Vec<Target> {
     let target = |one: &Loaded| {
         let pipeline = one.core.design.pipeline.as_ref()?;
@@ -130,7 +131,8 @@ fn targets_of_pipelines(loaded: &[Loaded]) -> Vec<Target> {
     loaded.iter().map(target).collect::<Option<Vec<Target>>>().unwrap_or_default()
 }
 
-/// Returns the tools for each target, and a note about each target that is left out.
+/// Returns the tools for each target, and a note about each target whose tools are missing. A target that the user
+/// names must have its tools.
 fn flows(arguments: &Arguments, loaded: &[Loaded]) -> Result<(Vec<Flow>, Vec<String>)> {
     let search = std::env::var_os("PATH").unwrap_or_default();
     let find = |target: Target| {

@@ -167,7 +167,7 @@ fn base(registry: &Registry, arguments: &Arguments) -> Result<(Device, Config, V
     Ok((*device, config, fixed))
 }
 
-/// Returns the origin of the bounds.
+/// Returns the origin of the bounds, for people: for example, `proved`.
 fn origin(device: &Device) -> &'static str {
     if device.proved { "proved" } else { "stated by its author" }
 }
@@ -200,7 +200,7 @@ fn toml(device: &Device, best: &Candidate, arguments: &Arguments) -> String {
     head + &best.config.to_toml(&(device.schema)())
 }
 
-/// Returns the free keys of a candidate, as `key = value, …`.
+/// Returns the free keys of a candidate with their values. For example, `cosine.fraction = 16, exponent.bits = 8`.
 fn widths(answer: &Answer, candidate: &Candidate) -> String {
     let shown = answer.free.iter().map(|key| {
         let value: &Value = candidate.config.value(key);

@@ -57,7 +57,7 @@ pub struct Arguments {
     time_limit: TimeLimit<3600>,
 }
 
-/// The files of one configuration.
+/// The files of one configuration: for example, `rough.html`, `rough.json` and `rough.timings.json`.
 struct Files {
     page: OwnFile,
     record: OwnFile,

@@ -156,7 +156,7 @@ fn climbs(starts: u64) -> String {
 }
 
 /// Returns the file of the record, and the record that it holds if that is of the same contract; `None` without
-/// `--out`.
+/// `--out`. For example, the record of `configs/rough.toml` is `rough.json` in the directory.
 fn record(one: &Loaded, arguments: &Arguments) -> Result<Option<(OwnFile, Option<LargestError>)>> {
     let Some(directory) = &arguments.out else { return Ok(None) };
     let name = format!("{}.json", one.core.config.name);

@@ -62,8 +62,8 @@ impl Staging {
             for path in stale {
                 fs::remove_file(path)
                     .with_context(|| format!("cannot delete `{}`", path.display()))?;
-                // The directories of a configuration are deleted with their last file. The directories above them are
-                // not.
+                // The last file takes the directories of the configuration with it. The directories above them must
+                // stay.
                 let parents = path.ancestors().skip(1);
                 let below = parents
                     .take_while(|it| it.strip_prefix(out).is_ok_and(|it| it.iter().count() > 1));
@@ -87,7 +87,7 @@ fn place(out: &Path, staging: &Path, made: &[String]) -> Result<()> {
 }
 
 /// Deletes whatever is in the way of a file: a directory in its place, or a file in the place of one of its
-/// directories.
+/// directories. For example, a file `rtl_out/rough` must go before `rtl_out/rough/rough.v` can come.
 fn make_room(out: &Path, path: &str) -> Result<()> {
     let cannot = |path: &Path| format!("cannot delete `{}`, which is in the way", path.display());
     let ends = path.match_indices('/').map(|(at, _)| at).skip(1);

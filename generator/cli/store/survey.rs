@@ -82,7 +82,8 @@ enum Owner {
     Other,
 }
 
-/// The digests that a manifest holds; none when it is no manifest of Glint's.
+/// The digests that a manifest holds; none when it is no manifest of Glint's. For example, the manifest
+/// `rtl_out/rough/rough.json` has the digest of `rtl_out/rough/rough.v`.
 struct Digests {
     manifest: String,
     digests: Option<BTreeMap<String, String>>,

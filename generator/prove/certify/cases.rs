@@ -58,7 +58,8 @@ impl UnrolledComputation<'_> {
     }
 }
 
-/// Returns all ways to compute `results`, given `known` of the operands: together they cover every combination of operands.
+/// Returns all ways to compute `results`, given `known` of the operands: together they cover every combination of
+/// operands. For example, a saturation whose condition is open makes two ways.
 ///
 /// # Errors
 /// Fails if there are too many ways.
@@ -236,8 +237,8 @@ fn polynomial(
     }
 }
 
-/// Returns the node to split first, so that this undecided selection becomes known: a condition on which the
-/// selection depends.
+/// Returns the node to split first, so that this undecided selection becomes known: a condition on which the selection
+/// depends. For example, if the select is `a & b` of one bit, and only `b` is open, it is `b`.
 fn decider(graph: &Graph, id: NodeId, of: &dyn Fn(&NodeId) -> Interval) -> NodeId {
     let operands =
         match &graph.node(id).cell {
@@ -251,7 +252,8 @@ fn decider(graph: &Graph, id: NodeId, of: &dyn Fn(&NodeId) -> Interval) -> NodeI
 }
 
 /// Limits a node to the values of `range`, and limits the nodes that it comes from accordingly. Returns false if that
-/// is impossible. `ranges` are the values that nodes have without this limit.
+/// is impossible. `ranges` are the values that nodes have without this limit. For example, if the inverse of 8 bits `a`
+/// is limited to 0, then `a` is limited to 255.
 pub fn learn(
     graph: &Graph,
     known: &mut NodeIntervals,

@@ -1,4 +1,5 @@
 //! Translates the contract's formula to exact terms, with one branch for each way its `max`, `min` and `if` can choose.
+//! For example, `max(a, b)` has two branches: `a` where a − b ≥ 0, and `b` where a − b ≤ 0.
 //!
 //! A branch has the signs of differences as its conditions. Operands have the range of one case of the proof, which may
 //! decide a choice.
@@ -87,12 +88,14 @@ pub struct FormulaContext<'a> {
     pub operands: &'a [Operand],
 }
 
-/// Returns the variable for the word of a table, by the variable of the operand that addresses the table.
+/// Returns the variable for the word of a table, by the variable of the operand that addresses the table. For example,
+/// the table `coefficient` at `exponent` has the variable `coefficient_at_exponent`.
 pub fn word_variable(rom: &str, variable: &str) -> String {
     format!("{rom}_at_{variable}")
 }
 
 /// Notes by which power of two each operand is divided in the formula: the exponent if it is the same everywhere, or
+/// For example, `exponent` has 3 in `exponent / 8`, and 0 in `exponent / 8 + exponent`.
 /// 0.
 pub fn divisors(formula: &Expression, found: &mut HashMap<String, Option<i32>>) {
     let mut note = |name: &str, power: i32| {
@@ -294,7 +297,8 @@ fn constant(formula: &Expression, setting: &FormulaContext) -> Option<f64> {
     }
 }
 
-/// Returns whether a comparison of an operand with a number holds for all values of this case, or for none.
+/// Returns whether a comparison of an operand with a number holds for all values of this case, or for none. For
+/// example, `x < 4` holds if x is from 0 to 3, and is open if x is from 0 to 5.
 fn decided(comparison: &Comparison, setting: &FormulaContext) -> Option<bool> {
     let range = |formula: &Expression| match &formula.kind {
         Kind::Number(literal) => Some((literal.nearest(), literal.nearest())),
@@ -311,7 +315,7 @@ fn decided(comparison: &Comparison, setting: &FormulaContext) -> Option<bool> {
     None
 }
 
-/// Writes a power as products, by squaring, as the hardware has it.
+/// Writes a power as products, by squaring, as the hardware has it. For example, x⁵ is x times (x²)².
 fn power(terms: &mut RealTerms, base: RealTermId, exponent: u32) -> RealTermId {
     let mut result = None;
     let (mut square, mut rest) = (base, exponent);
@@ -331,7 +335,7 @@ fn power(terms: &mut RealTerms, base: RealTermId, exponent: u32) -> RealTermId {
 }
 
 /// Returns the id of a term, simplified by the rules of 0 and 1. If the term is a number and f64 holds it exactly, it
-/// is the id of that number.
+/// is the id of that number. For example, `x + 0` is `x`, and 0.5 + 0.25 is the number 0.75.
 pub fn folded(terms: &mut RealTerms, term: RealTerm) -> RealTermId {
     let value = |id: RealTermId| match terms.get(id) {
         RealTerm::Number(value) => Some(*value),

@@ -89,7 +89,8 @@ fn answer(
 }
 
 /// Returns the upper end of the interval that Gappa gives, rounded up to six digits behind the point. Returns 0 if
-/// Gappa says that the hypotheses contradict each other.
+/// Gappa says that the hypotheses contradict each other. For example, `|d_1| in [0, 43998467b-26 {0.655628,
+/// 2^(-0.60905)}]` gives 0.655629.
 fn largest(output: &str) -> Option<f64> {
     if output.contains("anything can be proved") {
         return Some(0.0);

@@ -333,7 +333,7 @@ impl<'a> Hardware<'a> {
     }
 }
 
-/// Drops `low` bits.
+/// Drops `low` bits. For example, the constant 14 without 2 bits is 3 rounded down, and 4 to the nearest.
 fn cut(
     terms: &mut RealTerms,
     value: NodeValue,
@@ -355,7 +355,7 @@ fn cut(
     }
 }
 
-/// Returns the value with zeros below.
+/// Returns the value with `position` zeros below. For example, the constant 3 with 2 zeros below is 12.
 fn raised(value: NodeValue, position: i32) -> NodeValue {
     match value {
         NodeValue::Constant(raw) => NodeValue::Constant(raw << position),
@@ -409,7 +409,8 @@ pub fn scaled(terms: &mut RealTerms, id: RealTermId, power: i32, name: &str) -> 
     terms.insert(RealTerm::Mul(id, factor), name)
 }
 
-/// Returns the value as a term and its fraction bits, which are `frac` for a constant.
+/// Returns the value as a term and its fraction bits, which are `frac` for a constant. For example, the constant 3 with
+/// a `frac` of 2 is the number 0.75.
 pub fn placed(terms: &mut RealTerms, value: NodeValue, frac: i32) -> (RealTermId, i32) {
     match value {
         NodeValue::Constant(raw) => (terms.number(raw as f64 * exp2(-frac)), frac),

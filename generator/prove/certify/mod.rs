@@ -1,9 +1,9 @@
 //! Writes the bound of a contract as statements that Gappa proves.
 //!
-//! The computation is unrolled into a graph of values. It is split into [`cases`] at saturations, clamps and tables;
-//! the cases together cover the domain. In each case, the [`hardware`] is an expression with roundings, and the
-//! formula is one without ([`exact`]). A statement says that the two differ by at most the bound. A formula that
-//! reads a table reads the hardware's words.
+//! The computation is unrolled into a graph of values, and split into [`cases`] at saturations, clamps and tables; the
+//! cases together cover the domain. In each case, the [`hardware`] is an expression with roundings, and the formula is
+//! one without ([`exact`]). A statement says that the two differ by at most the bound. A formula that reads a table
+//! reads the hardware's words.
 
 pub mod cases;
 pub mod exact;
@@ -34,7 +34,8 @@ pub use statement::Statement;
 use statement::Statements;
 use task::Task;
 
-/// Returns the statements whose conjunction is the contract of a sequential design.
+/// Returns the statements whose conjunction is the contract of a sequential design. For example, a saturation of an
+/// output makes a statement for each of its two ways.
 ///
 /// # Errors
 /// Fails if a step has no translation, if the contract states no bound, or if it takes longer than `limit` to write
@@ -144,7 +145,8 @@ fn formulas(contract: &dyn Contract) -> Result<Vec<Expression>, String> {
     parsed.collect()
 }
 
-/// Returns the SHA-256 of all scripts of some statements, in their order.
+/// Returns the SHA-256 of all scripts of some statements, in their order. Two certificates with one digest are about
+/// the same statements.
 pub fn digest(statements: &[Statement]) -> String {
     let scripts = statements.iter().flat_map(|statement| &statement.scripts);
     let text: Vec<&str> = scripts.map(String::as_str).collect();

@@ -17,7 +17,8 @@ use glint_rtl::pipeline::{Cell, NodeId, NodeOp};
 
 impl Task<'_> {
     /// Returns the variable and the divisor of each operand. If the formula divides an operand by a power of two
-    /// throughout, the variable is the quotient.
+    /// throughout, the variable is the quotient. For example, a formula that has `exponent` only in `exponent / 8` has
+    /// the variable `exponent_over_8` and the divisor 3.
     fn variables(&self) -> HashMap<String, (String, i32)> {
         let mut divisors = HashMap::new();
         self.formulas.iter().for_each(|formula| exact::divisors(formula, &mut divisors));
@@ -114,7 +115,8 @@ impl Task<'_> {
         Ok(())
     }
 
-    /// Returns the case's hypotheses on values that have a translation; others are left out, which leaves more to prove.
+    /// Returns the case's hypotheses on values that have a translation. It may leave out the others, because fewer
+    /// hypotheses only leave more to prove.
     fn presupposed(
         &self,
         case: &Case,
@@ -160,7 +162,8 @@ fn real_operand(
     Ok(branches[0].term)
 }
 
-/// Returns every way that the expressions can go together.
+/// Returns every way that the expressions can go together. For example, two expressions of two branches each have four
+/// ways, without the ways whose choices contradict each other.
 fn together(ways: &[Vec<Branch>]) -> Vec<Vec<Branch>> {
     let all = ways.iter().fold(vec![(Branch::default(), Vec::new())], |chosen, ways| {
         let longer = chosen.iter().flat_map(|(all, before)| {

@@ -1,4 +1,5 @@
-//! Finds the values that polynomials of the second degree in one operand take, which intervals overestimate.
+//! Finds the values that polynomials of the second degree in one operand take, which intervals overestimate. For
+//! example, x² − 16·x for x from 0 to 16 lies between −64 and 0; intervals alone give −256 to 256.
 
 use glint_base::interval::Interval;
 use glint_rtl::pipeline::NodeId;
@@ -42,7 +43,7 @@ impl RawPolynomial {
         self.with(other, [sum(0), sum(1), sum(2)])
     }
 
-    /// Returns the product.
+    /// Returns the product. It returns `None` if the product may have a degree above two, for example x² times x.
     pub fn times(self, other: Self) -> Option<Self> {
         let ([a, b, c], [d, e, f]) = (self.factors, other.factors);
         let small = |factors: [i128; 3]| factors.iter().all(|factor| factor.abs() <= 1 << 60);

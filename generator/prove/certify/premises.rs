@@ -123,7 +123,8 @@ impl PremiseTask<'_> {
 }
 
 /// Writes the statement that a step of a divider leaves a remainder between 0 and the divisor, whether the divisor fits
-/// into twice the remainder or not. The numbers are the shares of the divisor, which is 1.
+/// into twice the remainder or not. The numbers are the shares of the divisor, which is 1. For example, a remainder of
+/// 0.75 is doubled to 1.5, and leaves 0.5.
 fn step(fits: bool) -> String {
     let (condition, left) =
         if fits { ("doubled - 1 >= 0", "doubled - 1") } else { ("doubled - 1 <= 0", "doubled") };

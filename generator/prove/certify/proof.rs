@@ -13,7 +13,7 @@ use glint_tools::{LimitReached, Tool};
 /// The subject of a proved statement.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum ProofSubject {
-    /// A point at which its hypotheses hold, and others.
+    /// A point at which its hypotheses hold, for example `x = -0.5, y = 3`.
     Point(String),
     /// Nothing, as Gappa proves: its hypotheses contradict each other.
     Nothing,

@@ -9,7 +9,7 @@ use std::collections::BTreeMap;
 
 use glint_rtl::pipeline::{Cell, Graph, NodeId, NodeOp};
 
-/// A quotient that is found bit by bit.
+/// A quotient that is found bit by bit. For example, 1 by 3 in two bits is q = 1: 0.25 is below 1/3 by less than 2⁻².
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Quotient {
     /// The first remainder.

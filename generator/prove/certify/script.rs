@@ -205,7 +205,8 @@ impl GappaScript<'_> {
     }
 }
 
-/// Writes a value between a and 1, a + (1 − a)·x, as 1 − (1 − a)·(1 − x), which shows its range.
+/// Writes a value between a and 1, a + (1 − a)·x, as 1 − (1 − a)·(1 − x), which shows its range. For example, `f_9 -> 1
+/// - rest_4 * (1 - x);`.
 fn blend(terms: &RealTerms, id: RealTermId) -> Option<String> {
     let RealTerm::Add(first, second) = *terms.get(id) else { return None };
     let (product, a) = match terms.get(first) {
@@ -222,7 +223,8 @@ fn blend(terms: &RealTerms, id: RealTermId) -> Option<String> {
     is_rest(rest).then(|| format!("{name} -> 1 - {rest_name} * (1 - {x});"))
 }
 
-/// Writes the hint that one term is factor times another and an offset.
+/// Writes the hint that one term is factor times another and an offset. For example, the factor −1 and the offset 0.5
+/// give `f_9 -> 0.5 - cut_3;`.
 fn rewriting(
     terms: &RealTerms,
     left: RealTermId,
@@ -248,7 +250,7 @@ fn is_same(x: &[f64], y: &[f64]) -> bool {
 }
 
 /// Finds the line on which the values of `y` follow the values of `x`. Returns its factor and offset, both short
-/// numbers.
+/// numbers. For example, 0, 1, 2 and 1, 3, 5 give the factor 2 and the offset 1.
 fn line_through(x: &[f64], y: &[f64]) -> Option<(f64, f64)> {
     let other = x.iter().position(|value| *value != x[0])?;
     let factor = (y[other] - y[0]) / (x[other] - x[0]);
@@ -263,7 +265,7 @@ fn line_through(x: &[f64], y: &[f64]) -> Option<(f64, f64)> {
 }
 
 /// Returns the goal of a script. With a bound, it says that the difference is within the bound. Without one, it asks
-/// for a bound.
+/// for a bound. For example, the goals are `|difference_7| <= 0.5` and `|difference_7| in ?`.
 pub fn goal(difference: &str, bound: Option<f64>) -> String {
     match bound {
         Some(bound) => format!("|{difference}| <= {}", number(bound)),
@@ -271,7 +273,8 @@ pub fn goal(difference: &str, bound: Option<f64>) -> String {
     }
 }
 
-/// Returns the script with its names numbered as they come: equal ones say the same.
+/// Returns the script with its names numbered as they come: equal ones say the same. For example, `sum_2 = 0.5 + x;`
+/// becomes `n0 = 0.5 + n1;`.
 pub fn nameless(script: &str) -> String {
     let mut numbers: HashMap<&str, usize> = HashMap::new();
     let is_part = |c: char| c.is_ascii_alphanumeric() || c == '_' || c == '.';

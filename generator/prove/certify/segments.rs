@@ -86,7 +86,8 @@ pub fn statements(task: &Task, walk: &[WalkRegister]) -> Result<Vec<Statement>, 
     Ok(statements.list)
 }
 
-/// Returns x and k of cos(pi / 2 · x)ᵏ.
+/// Returns x and k of cos(pi / 2 · x)ᵏ. For example, `cos(pi / 2 * x) ** 16` gives x and 16; `cos(x) ** 2` gives
+/// `None`.
 fn lobe(formula: &Expression) -> Option<(&Expression, u32)> {
     let Kind::Binary(Operator::Power, base, exponent) = &formula.kind else { return None };
     let Kind::Unary(Function::Cos, angle) = &base.kind else { return None };
@@ -101,7 +102,8 @@ fn lobe(formula: &Expression) -> Option<(&Expression, u32)> {
 struct AngleWalk {
     /// The angle of the first point.
     start: String,
-    /// The angle as a point has it, as the formula of a point that is no first one says it: wrapped around.
+    /// The angle as a point has it, as the formula of a point that is no first one says it: wrapped around. For
+    /// example, `(a + index * d + 2) % 4 - 2` for a signed format of four right angles.
     wrapped: Expression,
 }
 
@@ -277,7 +279,8 @@ fn about_words(words: &[WordSegment], first: usize, power: u32, bound: f64) -> S
     text
 }
 
-/// Writes the definitions of a power of the cosine of an angle, in right angles.
+/// Writes the definitions of a power of the cosine of an angle, in right angles. For example, the last line for the
+/// name `x` and the power 2 is `f_x = c_x_0 * c_x_0;`.
 fn cosine(name: &str, angle: f64, power: u32) -> String {
     let angle = number(angle);
     let mut text = format!("y_{name} = right * {angle};\nsquare_{name} = y_{name} * y_{name};\n");

@@ -17,12 +17,13 @@ pub struct Statement {
     pub number: usize,
     /// Other outputs that have the same statement, under another name.
     pub also: Vec<String>,
-    /// Alternative scripts: one must be accepted. At a jump of the formula, two are right.
+    /// Alternative scripts: Gappa must accept one of them. At a jump of the formula, two values are right.
     pub scripts: Vec<String>,
 }
 
 impl Statement {
-    /// Puts a bound into the statement's scripts in place of the question for one.
+    /// Puts a bound into the statement's scripts in place of the question for one. For example, `|difference_7| in ? }`
+    /// becomes `|difference_7| <= 0.5 }`.
     #[must_use]
     pub fn within(&self, bound: f64) -> Self {
         let stated = format!("| <= {} }}", number(bound));

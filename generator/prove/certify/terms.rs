@@ -53,7 +53,8 @@ pub struct RealTerms {
 }
 
 impl RealTerms {
-    /// Returns the term; `name` becomes the name of its definition, if it gets one.
+    /// Returns the term; `name` becomes the name of its definition, if it gets one. The number of the term follows the
+    /// name: for example, term 2 with the name `sum` is `sum_2`.
     ///
     /// Operands of a sum and a product are put in one order, so that hardware and formula have the same: Gappa
     /// compares a product with another factor by factor.
@@ -208,7 +209,8 @@ impl RealTerms {
         self.insert(make(a, b), "unrounded")
     }
 
-    /// Writes the definitions of the terms that are needed, in order.
+    /// Writes the definitions of the terms that are needed, in order. For example, a sum and its rounding to 4 fraction
+    /// bits are `sum_2 = 0.5 + x;` and `cut_3 = fixed<-4,dn>(sum_2);`.
     pub fn definitions(&self, needed: &[bool]) -> String {
         let mut text = String::new();
         for (id, (term, name)) in self.terms.iter().enumerate() {
@@ -245,7 +247,7 @@ impl RealTerms {
     }
 }
 
-/// Returns a number in decimal, to its last bit.
+/// Returns a number in decimal, to its last bit. For example, 2⁻²⁰ is `0.00000095367431640625`.
 pub fn number(value: f64) -> String {
     let text = format!("{value:.1100}");
     let text = text.trim_end_matches('0').trim_end_matches('.');

@@ -28,7 +28,8 @@ const NEVER: &str = "1 in [2,3] }";
 /// The text between hypotheses and goal.
 const IMPLIES: &str = "\n  -> ";
 
-/// Returns the script with a goal that follows from a contradiction alone; nothing without hypotheses.
+/// Returns the script with a goal that follows from a contradiction alone; nothing without hypotheses. For example, the
+/// goal `|square| <= 1` becomes `1 in [2,3]`.
 pub fn contradiction(script: &str) -> Option<String> {
     let (hypotheses, rest) = script.split_once(IMPLIES)?;
     let (_, hints) = rest.split_once('}')?;
@@ -141,7 +142,8 @@ impl Hypotheses {
     }
 }
 
-/// Returns a point at which the hypotheses of a script hold, in words; `None` if no point is found.
+/// Returns a point at which the hypotheses of a script hold, in words; `None` if no point is found. For example, `x =
+/// -0.5`.
 pub fn witness(script: &str) -> Option<String> {
     if !script.contains(IMPLIES) {
         return Some("every point".to_owned());

@@ -21,7 +21,7 @@ pub type Connection = Vec<Bit>;
 pub struct WireValues(Vec<Option<(VectorTermId, u32)>>);
 
 impl WireValues {
-    /// Makes the values of `wires` wires. No wire has a value yet.
+    /// Makes the values of `wires` wires. No wire has a value yet: a caller must set the inputs and registers.
     pub fn new(wires: usize) -> Self {
         Self(vec![None; wires])
     }
@@ -41,7 +41,8 @@ impl WireValues {
         bits.chunks(MAX_WIDTH as usize).map(|bits| self.word(terms, bits)).collect()
     }
 
-    /// Returns the term of at most 64 bits. Copies of a highest bit are an extension by a sign.
+    /// Returns the term of at most 64 bits. Copies of a highest bit are an extension by a sign. For example, the wires
+    /// 6, 7, 7, 7, lowest first, are the bits 6 and 7 with the sign extended to four bits.
     pub fn word(&self, terms: &mut VectorTerms, bits: &[Bit]) -> VectorTermId {
         let copies = bits.iter().rev().take_while(|bit| Some(*bit) == bits.last()).count();
         if copies > 1 && matches!(bits.last(), Some(Bit::Wire(_))) {

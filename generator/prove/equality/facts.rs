@@ -1,9 +1,9 @@
-//! Makes instances of laws about products and words of memories. The solver treats both as uninterpreted functions.
+//! Makes instances of laws about products modulo 2^64 and words of memories. The solver treats both as uninterpreted
+//! functions.
 //!
-//! Products are of integers modulo 2^64. A product is the sum of the products of the parts of a factor. A product by
-//! 0, 1 and -1 is known. The product of factors within bounds is within bounds. A word of a small memory is the word
-//! at its address; a word of a larger one is within the bounds of all words. Every instance is true, whatever the
-//! terms are, so an unnecessary one does no harm.
+//! The laws say how a product follows from parts of a factor, from a factor 0, 1 or -1, or from bounds on both factors.
+//! A word of a small memory is the word at its address; a word of a larger one is within the bounds of all words. Every
+//! instance is true, whatever the terms are, so an unnecessary one does no harm.
 
 use std::collections::{HashMap, HashSet};
 
@@ -62,7 +62,8 @@ pub fn about(
     facts
 }
 
-/// Returns a product by 0, 1 and -1.
+/// Returns the facts about a product by 0, 1 and -1. For example, one says that the factor is not 1, or the product is
+/// the other factor.
 fn by_one_or_none(
     terms: &mut VectorTerms,
     product: VectorTermId,
@@ -120,7 +121,8 @@ struct ProductSum {
 }
 
 /// Divides a product if a factor is the upper bits of a larger term. The larger term times `other` is this product,
-/// shifted, plus the product of the lower bits and `other`.
+/// shifted, plus the product of the lower bits and `other`. For example, if u is the bits from 4 up of w, then w·x is
+/// 16·(u·x) plus the lowest 4 bits of w times x.
 fn in_parts(
     terms: &mut VectorTerms,
     factor: VectorTermId,
@@ -155,7 +157,8 @@ fn in_parts(
     Some(ProductSum { product, sum, there })
 }
 
-/// Returns the square of `u·2^r + l`, when `l` is multiplied by `u·2^(r+1) + l` somewhere: that product, and the square of u, shifted.
+/// Returns the square of `u·2^r + l`, if `l` is multiplied by `u·2^(r+1) + l` somewhere. The sum has that product, and
+/// the square of u, shifted. For example, 13² with u = 3, l = 1 and r = 2 is 1·25 plus 9·16.
 fn square_in_parts(
     terms: &mut VectorTerms,
     factor: VectorTermId,
@@ -189,7 +192,8 @@ fn square_in_parts(
     Some(ProductSum { product, sum, there: true })
 }
 
-/// Returns `bits` joined with the bits of the same term below their lowest, and the number of the bits below.
+/// Returns `bits` joined with the bits of the same term below their lowest, and the number of the bits below. For
+/// example, bits 4 to 7 of a term give bits 0 to 7, and 4.
 fn whole(terms: &mut VectorTerms, bits: VectorTermId) -> Option<(VectorTermId, u32)> {
     match *terms.term(bits) {
         VectorTerm::Slice { of, low } if low > 0 => {
@@ -265,7 +269,8 @@ fn between(terms: &mut VectorTerms, value: VectorTermId, range: Interval) -> Opt
     Some(terms.not(outside))
 }
 
-/// Returns the possible values of a memory's word: the words one by one, or the bits that any of them has, and the interval of all.
+/// Returns facts about the values of a memory's word. A memory of at most 16 words has a fact for each word. A larger
+/// one has facts about the bits that any word has, and about the interval of all words.
 fn contents(
     terms: &mut VectorTerms,
     word: VectorTermId,

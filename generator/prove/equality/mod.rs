@@ -79,7 +79,8 @@ pub struct EqualityProof {
     pub questions: usize,
 }
 
-/// A point for which the cores compute different outputs.
+/// A point for which the cores compute different outputs. For example, as text: "`red_out` is 0x1f in the pipeline and
+/// 0x20 in the sequential core for cos_gamma=0x3ff".
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct OutputDifference {
     /// Bit patterns, by name.
@@ -320,8 +321,8 @@ impl<'p> PipelineComparison<'p> {
         MicroprogramPath { conditions: Vec::new(), state, visits, clocks: 0 }
     }
 
-    /// Executes the microprogram to the results, or to a point at which operands decide. The ways from there are
-    /// added to `ways`.
+    /// Executes the microprogram to the results, or to a point at which operands decide. The ways from there are added
+    /// to `ways`. For example, a loop whose trip count depends on an operand makes a way for each trip count.
     fn follow(
         &mut self,
         core: &Execution<'_>,
@@ -364,8 +365,8 @@ impl<'p> PipelineComparison<'p> {
         bail!("the sequential core shows no result")
     }
 
-    /// Adds both ways from a point at which a register of the sequencer depends on operands. A way that is impossible
-    /// is left out.
+    /// Adds both ways from a point at which a register of the sequencer depends on operands. It leaves out a way that
+    /// the solver proves impossible.
     fn fork(
         &mut self,
         way: MicroprogramPath,
@@ -505,7 +506,8 @@ impl<'p> PipelineComparison<'p> {
         Ok(())
     }
 
-    /// Returns whether terms can all be 1: with the products divided as the pipeline has them, and else with all that is known of parts.
+    /// Returns whether terms can all be 1. It first divides the products as the pipeline does. If that leaves the
+    /// question open, it asks again with all facts about parts.
     fn ask(&mut self, wanted: Vec<VectorTermId>) -> Result<SolverAnswer> {
         self.divide_by_lowest(&wanted)?;
         let mut divided = wanted.clone();

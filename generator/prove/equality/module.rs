@@ -84,7 +84,7 @@ fn bits(value: &Value) -> Result<Connection> {
     bits.iter().map(bit).collect()
 }
 
-/// Returns a parameter, which Yosys writes in binary.
+/// Returns a parameter, which Yosys writes in binary. For example, `00000101` is 5.
 fn number(value: &Value) -> Result<usize> {
     let text = value.as_str().and_then(|text| usize::from_str_radix(text, 2).ok());
     text.or(value.as_u64().map(|it| it as usize)).context("a parameter of the netlist is no number")
@@ -338,7 +338,8 @@ fn unknown(terms: &mut VectorTerms, width: usize) -> Vec<VectorTermId> {
     columns.map(|at| terms.unknown((width - at).min(MAX_WIDTH as usize) as u32)).collect()
 }
 
-/// Returns the contents of a memory that is never written.
+/// Returns the contents of a memory that is never written. The last digits of `INIT` are word 0. For example, `1101`
+/// with words of 2 bits has word 0 = 1 and word 1 = 3.
 fn words(cell: &Value, width: usize) -> Result<Vec<u64>> {
     let contents = cell["parameters"]["INIT"].as_str().unwrap_or_default();
     ensure!(width <= MAX_WIDTH as usize, "its words have more than 64 bits");

@@ -59,8 +59,8 @@ impl<'a> DesignPair<'a> {
         })
     }
 
-    /// Returns the bit patterns of the outputs, of the sequential core and of the pipeline, for the bit patterns of
-    /// the `operands`.
+    /// Returns the bit patterns of the outputs, of the sequential core and of the pipeline, for the bit patterns of the
+    /// `operands`. For example, `[[31, 7], [31, 7]]` has two outputs that are equal.
     ///
     /// # Errors
     /// Fails if no result is shown.

@@ -159,7 +159,8 @@ fn expression(terms: &VectorTerms, id: VectorTermId) -> String {
     }
 }
 
-/// Returns the values that the solver gives to unknowns: `((t1 #x0f) (t2 #b1))`.
+/// Returns the values that the solver gives to unknowns. For example, `((t1 #x0f) (t2 #b1))` gives 15 to term 1, and 1
+/// to term 2.
 fn values(terms: &VectorTerms, output: &str) -> Vec<(VectorTermId, u64)> {
     let mut words = output.split(|c: char| c.is_whitespace() || c == '(' || c == ')');
     let mut values = Vec::new();

@@ -39,7 +39,8 @@ impl Candidates {
         Self { values, nets: known }
     }
 
-    /// Returns a net that has the values of a term of 64 bits, extended to as many.
+    /// Returns a net that has the values of a term of 64 bits, extended to as many. For example, a net of 20 bits may
+    /// have them with its sign extended.
     pub fn of(&self, id: VectorTermId) -> Option<VectorTermId> {
         let key: Vec<u64> = self.values.iter().map(|values| values[&id]).collect();
         self.nets.get(&key).copied()

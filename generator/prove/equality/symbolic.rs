@@ -1,4 +1,5 @@
-//! Executes a design clock by clock on terms: operands are unknowns, and every net is an expression of them.
+//! Executes a design clock by clock on terms: operands are unknowns, and every net is an expression of them. For
+//! example, a net that adds the operands a and b is the term a + b, and no number.
 
 use super::term::{ADDRESS, VectorTerm, VectorTermId, VectorTerms};
 use glint_base::fixed::MAX_WIDTH;
@@ -50,7 +51,7 @@ impl<'a> Execution<'a> {
         }
     }
 
-    /// Returns the state at power-up, which is unknown.
+    /// Returns the state at power-up: every register may have any value.
     pub fn power_up(&self, terms: &mut VectorTerms) -> SymbolicState {
         let design = self.design;
         let registers = design.registers.iter().map(|it| terms.unknown(design.width(it.q)));
@@ -59,7 +60,7 @@ impl<'a> Execution<'a> {
         SymbolicState { registers, words }
     }
 
-    /// Returns the term of every net, with these inputs; the products among them are added to `products`.
+    /// Returns the term of every net, with these inputs. It adds the products among them to `products`.
     pub fn settle(
         &self,
         terms: &mut VectorTerms,

@@ -101,7 +101,7 @@ impl VectorTerm {
     }
 }
 
-/// Returns a pattern of `width` bits as a number, two's complement.
+/// Returns a pattern of `width` bits as a number, two's complement. For example, 0b1110 of 4 bits is −2.
 fn signed(bits: u64, width: u32) -> i64 {
     let drop = MAX_WIDTH - width;
     (bits << drop) as i64 >> drop
@@ -164,7 +164,7 @@ impl VectorTerms {
         self.insert(VectorTerm::Constant(bits & mask(width)), width)
     }
 
-    /// Returns the number of a memory with these contents.
+    /// Returns the number of a memory with these contents. Two memories with equal contents have the same number.
     pub fn memory(&mut self, words: &[u64]) -> usize {
         if let Some(at) = self.memories.iter().position(|other| other == words) {
             return at;
@@ -183,7 +183,8 @@ impl VectorTerms {
         word
     }
 
-    /// Extends a term with zeros above it, or cuts it: to this width.
+    /// Extends a term with zeros above it, or cuts it: to this width. For example, the constant 0b101 becomes 0b0101 at
+    /// a width of 4, and 0b01 at a width of 2.
     pub fn resized(&mut self, id: VectorTermId, width: u32) -> VectorTermId {
         let own = self.width(id);
         if width <= own {
@@ -202,7 +203,7 @@ impl VectorTerms {
         self.make(VectorTerm::Slice { of, low }, width)
     }
 
-    /// Replaces the low bits of a term.
+    /// Replaces the low bits of a term. For example, the constant 0b1100 with the low bits 0b01 becomes 0b1101.
     pub fn with_low(&mut self, id: VectorTermId, low: VectorTermId) -> VectorTermId {
         let (width, at) = (self.width(id), self.width(low));
         if at == width {

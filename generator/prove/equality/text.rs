@@ -1,11 +1,9 @@
 //! Proves that the emitted Verilog of a pipeline shows what its netlist shows, for every point and from any state.
 //!
-//! The netlist and the text, as Yosys reads it, are executed on terms, from registers and memories that hold
-//! anything. The text only needs the right ports. A memory that is written must be a delay. For all values of the
-//! counter that addresses it, a read is shown to give the word that was written a fixed number of clocks before. A
-//! clock in which points stay changes nothing, and in any other clock the results are taken. It is therefore enough
-//! to follow a point while none stays. A register of the text that is equal to a net of the netlist takes its term,
-//! so that the solver sees one clock at a time.
+//! The netlist and the text, as Yosys reads it, are executed on terms, from registers and memories that hold anything.
+//! A memory that is written must be a delay: a read gives the word of a fixed number of clocks before (`delays`). A
+//! clock in which points stay changes nothing (`stays`), so that it is enough to follow a point while none stays. A
+//! register of the text that is equal to a net takes the net's term, so that the solver sees one clock at a time.
 
 use std::collections::{HashMap, HashSet};
 use std::time::Duration;
@@ -122,7 +120,8 @@ type Roles = HashMap<String, Role>;
 /// Registers with the constants that they hold, and the constants at the ports of each memory.
 type Constants = (HashMap<usize, u64>, Vec<Option<Vec<u64>>>);
 
-/// Finds for each memory the clocks from write to read, of each of its read ports, while all points move on.
+/// Finds for each memory the clocks from write to read, of each of its read ports, while all points move on. The number
+/// must be the same for all values of the counter that addresses the memory.
 fn delays(module: &Module, roles: &Roles) -> Result<Vec<Vec<usize>>> {
     let reset = constants(module, roles, 0, &HashMap::new())?.0;
     let mut delays = vec![None; module.memories.len()];
@@ -157,7 +156,8 @@ fn delays(module: &Module, roles: &Roles) -> Result<Vec<Vec<usize>>> {
 const MOST_SLOTS: usize = 1024;
 
 /// Returns the clocks from write to read of each read port. `course` has the values at the write port and the read
-/// ports in each clock of a period, which repeats. Returns `None` if a read port has no fixed number of clocks.
+/// ports in each clock of a period, which repeats. Returns `None` if a read port has no fixed number of clocks. For
+/// example, write addresses 0, 1, 2, 3 and read addresses 2, 3, 0, 1 give 2 clocks.
 fn lags(course: &[&[u64]], reads: usize) -> Option<Vec<usize>> {
     let period = course.len();
     let lag = |read: usize, now: usize| {
@@ -418,7 +418,8 @@ impl TextComparison<'_> {
         Ok(())
     }
 
-    /// Ends the comparison unless two terms are equal whenever a bit has a value.
+    /// Ends the comparison unless two terms are equal whenever a bit has a value. For example, outputs must be equal
+    /// whenever `out_valid` is 1.
     fn must_equal(
         &mut self,
         condition: Option<(VectorTermId, bool)>,

@@ -1,5 +1,5 @@
-//! Records where a test reads each word of a table, so that a fault in a word need not be looked for all over the
-//! test.
+//! Records where a test reads each word of a table. A fault in a word can show only where the test reads the word, so
+//! that a check need not run the whole test.
 
 use anyhow::Result;
 
@@ -14,7 +14,8 @@ const PLACES: usize = 6;
 /// Raw values of operands, by name.
 pub(super) type OperandValues = Vec<(String, i64)>;
 
-/// A place in a test.
+/// A place in a test. For example, seed 1 and 40 points are the clock of the stream with seed 1 before which 40 results
+/// have come.
 #[derive(Clone)]
 pub(super) struct TestPlace {
     /// The seed of the stream.
@@ -124,7 +125,8 @@ impl Coverage {
     }
 }
 
-/// Returns the operand that a register holds, which it takes from a port or from the buffer behind it.
+/// Returns the operand that a register holds, which it takes from a port or from the buffer behind it. For example, the
+/// operand register of `cos_gamma` gives the name of the port, `cos_gamma`.
 pub(super) fn operand_of<'d>(design: &'d Design, register: &NetlistRegister) -> Option<&'d str> {
     let before = |net: NetId| match &design.net(net).driver {
         Driver::Op(op) => op.operands(),

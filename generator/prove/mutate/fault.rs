@@ -34,7 +34,7 @@ impl BitChange {
     /// All that can be done to a bit.
     pub const ALL: [Self; 3] = [Self::Stuck0, Self::Stuck1, Self::Inverted];
 
-    /// Returns `bits` with bit number `bit` at fault.
+    /// Returns `bits` with bit number `bit` at fault. For example, bit 0 of 0b1010 inverted gives 0b1011.
     pub fn applied(self, bits: u64, bit: u32) -> u64 {
         match self {
             Self::Stuck0 => bits & !(1 << bit),
@@ -62,7 +62,8 @@ pub enum Site {
 /// One fault.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NetlistFault {
-    /// Made of the names in the design: `adder15[3]:stuck-at-0`. No two faults of a design have the same.
+    /// Made of the names in the design: `adder15[3]:stuck-at-0`. No two faults of a design have the same. A fault of a
+    /// ROM names the word: `coefficient@1005[2]` is a bit of word 1005, and `coefficient@1004,1005` swaps two words.
     pub id: String,
     /// The kind of the fault.
     pub kind: FaultKind,
@@ -101,7 +102,8 @@ impl Faults {
         faults
     }
 
-    /// Keeps `most` faults, spread evenly, if there are more.
+    /// Keeps `most` faults, spread evenly, if there are more. For example, 4 of 10 faults are the third, the fifth, the
+    /// eighth and the tenth.
     pub fn thin(&mut self, most: usize) {
         let all = self.0.len();
         let mut at = 0;
@@ -136,7 +138,8 @@ impl Faults {
     }
 
     /// Adds the faults of the bits of a net. A constant, which is at fault as a whole, and another name of a net have
-    /// no such faults.
+    /// no such faults. For example, a net `adder15` of 4 bits has 12 such faults, from `adder15[0]:stuck-at-0` to
+    /// `adder15[3]:inverted`.
     fn bits(&mut self, id: NetId, net: &Net) {
         if matches!(net.driver, Driver::Constant(_) | Driver::Undriven | Driver::Op(Op::Relabel(_)))
         {
@@ -223,7 +226,8 @@ impl Faults {
     }
 }
 
-/// Pairs of words that differ: all of a small ROM, neighbours and a sample of a large one.
+/// Pairs of words that differ: all of a small ROM, neighbours and a sample of a large one. For example, a ROM of the
+/// words 7, 7 and 9 has the pairs (0, 2) and (1, 2).
 fn pairs(words: &[u64], random: &mut Random) -> BTreeSet<(usize, usize)> {
     let mut pairs = BTreeSet::new();
     if words.len() <= ALL_WORDS {
@@ -241,7 +245,8 @@ fn pairs(words: &[u64], random: &mut Random) -> BTreeSet<(usize, usize)> {
     pairs
 }
 
-/// Returns the field of the control word that holds a bit, and which of its bits that is.
+/// Returns the field of the control word that holds a bit, and the number of the bit in the field. For example, the
+/// result is `difference_load[0]` for the field `difference_load` of one bit.
 fn field_bit(design: &Design, bit: u32) -> String {
     let fields = design.control.fields.iter().zip(design.field_positions());
     let mut holding =

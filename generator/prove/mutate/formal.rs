@@ -33,7 +33,8 @@ fn pattern(text: &str) -> Regex {
 }
 
 /// Returns whether Yosys proves that every port and register of the module `name` carries the same in the fault-free
-/// module and in the mutant, for all inputs. A proof that fails or takes more than `limit` proves nothing.
+/// module and in the mutant, for all inputs. A proof that fails or takes more than `limit` proves nothing. For example,
+/// a wire `above_2` may differ, and the register `intervals` must not.
 ///
 /// The proof is temporal induction from a state in which the two agree. Cells with the same inputs, including
 /// multipliers and ROMs, are merged first. At first all other nets of the same name are shown to be equal too, which

@@ -36,7 +36,7 @@ kinds! {
     StuckAt1 = "bit stuck at 1",
     /// A bit is inverted.
     Inverted = "bit inverted",
-    /// A constant is one more or one less.
+    /// A constant is one more or one less. For example, 9 becomes 8 or 10.
     Constant = "constant off by one",
     /// Two inputs of a mux change places.
     MuxInputs = "mux inputs swapped",
@@ -44,13 +44,13 @@ kinds! {
     MuxChoice = "mux choice fixed",
     /// The limit of a saturation is never taken.
     Saturation = "saturation lost",
-    /// A carry, or the bit that rounds, is left out or always there.
+    /// An adder ignores its carry, or does not add the bit that rounds.
     Rounding = "rounding wrong",
     /// The operands of a difference or a comparison change places.
     Operands = "operands swapped",
-    /// The cell has another operator.
+    /// The cell has another operator. For example, an AND becomes an OR.
     Operator = "operator wrong",
-    /// Bits next to the right ones are taken.
+    /// Bits next to the right ones are taken. For example, bits 1 to 4 in place of bits 2 to 5.
     Wiring = "wiring wrong",
     /// A register takes its data always, or never.
     Enable = "enable dropped",

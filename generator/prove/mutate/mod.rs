@@ -1,9 +1,9 @@
 //! Tests the tests by mutation: plants faults, and finds which of them the tests notice.
 //!
-//! Faults are planted one at a time, in the netlist ([`Faults`]) and in the emitted Verilog. Each mutant goes through
-//! the tests of the configuration. It is *caught*, or proved *equivalent*, or *undecided*. A fault is never called
-//! equivalent just because the test does not notice it. Separately, the bench that is shipped with the core runs on
-//! each mutant, because the core's user has nothing else.
+//! Faults are planted one at a time, in the netlist ([`Faults`]) and in the emitted Verilog. The tests of the
+//! configuration *catch* a mutant, or a proof shows that it is *equivalent*, or it is *undecided*. If no test notices
+//! it, only a proof can make it equivalent. Separately, the bench that is shipped with the core runs on each mutant,
+//! because the core's user has nothing else.
 
 mod coverage;
 mod fault;

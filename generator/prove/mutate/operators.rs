@@ -36,7 +36,8 @@ fn swapped(op: Op) -> (String, FaultKind, Op) {
     ("operands-swapped".to_owned(), FaultKind::Operands, op)
 }
 
-/// Lists the faults of a mux: inputs that are different nets change places; one input is taken always.
+/// Lists the faults of a mux: inputs that are different nets change places; one input is taken always. For example, a
+/// mux of two different inputs has the faults `inputs-0-1-swapped`, `input-0-always` and `input-1-always`.
 fn mux(design: &Design, select: NetId, inputs: &[NetId]) -> Vec<(String, FaultKind, Op)> {
     let mut faults = Vec::new();
     for b in 0..inputs.len() {
@@ -63,7 +64,8 @@ fn mux(design: &Design, select: NetId, inputs: &[NetId]) -> Vec<(String, FaultKi
     faults
 }
 
-/// Returns a sum without its carry or without the bit that rounds, and a difference.
+/// Returns a sum without its carry or without the bit that rounds, and a difference. For example, `a + b + carry`
+/// becomes `a - b` in the fault `sub` and `a + b` in the fault `no-carry`.
 fn add(design: &Design, a: NetId, b: NetId, carry: Option<NetId>) -> Vec<(String, FaultKind, Op)> {
     let mut faults = vec![operator("sub", Op::Sub(a, b))];
     if carry.is_some() {
@@ -79,7 +81,8 @@ fn add(design: &Design, a: NetId, b: NetId, carry: Option<NetId>) -> Vec<(String
     faults
 }
 
-/// Returns the bits one place beside.
+/// Returns the faults that take the bits one place lower or higher. For example, bits 2 to 5 of a net become bits 1 to
+/// 4 or bits 3 to 6.
 fn slice(of: NetId, low: u32, width: u32, have: u32) -> Vec<(String, FaultKind, Op)> {
     let mut faults = Vec::new();
     let mut shifted = |name: &str, low| {

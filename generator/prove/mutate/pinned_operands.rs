@@ -27,7 +27,8 @@ pub(super) const MOST_BITS: u32 = 22;
 /// All values of all operands are tried for each fault if they have no more bits than this.
 pub(super) const NARROW: u32 = 16;
 
-/// Returns the operand whose register addresses a ROM, held at a word.
+/// Returns the operand whose register addresses a ROM, held at a word. For example, for word 5 of a table that the
+/// operand `exponent` addresses, it returns `exponent` with the raw value 5.
 pub(super) fn addressing(core: &Core, rom: RomId, word: usize) -> Option<OperandValues> {
     let design = &core.design;
     let net = design.net(design.rom(rom).address);

@@ -9,7 +9,8 @@ use glint_rtl::netlist::{Design, Driver, Net, NetId, Op, RegId, RomId};
 impl NetlistFault {
     /// Returns the design with this fault.
     ///
-    /// It is a design for simulation and emission: its nets keep the intervals of the fault-free design.
+    /// The result can be simulated and emitted. Its nets keep the intervals of the fault-free design, which the mutant
+    /// may leave.
     pub fn planted(&self, design: &Design) -> Design {
         let mut mutant = design.clone();
         match &self.site {
@@ -37,7 +38,8 @@ pub(super) fn bare(design: &Design) -> Design {
     bare
 }
 
-/// Returns a net beside `like`.
+/// Adds a net of the format of `like`. For example, the suffix `sound` names the net `product_sound` after `product`,
+/// and `product_sound_` if that name is taken.
 fn add(design: &mut Design, like: NetId, suffix: &str, driver: Driver) -> NetId {
     let mut name = Cow::from(format!("{}_{suffix}", design.net(like).name));
     while design.find(&name).is_some() {
@@ -118,7 +120,7 @@ fn redirect(design: &mut Design, from: NetId, to: NetId, except: &[NetId]) {
     }
 }
 
-/// Makes a register keep its value.
+/// Makes a register keep its value: its data input becomes its own output.
 fn never(design: &mut Design, id: RegId) {
     let register = &mut design.registers[id.index()];
     register.data = Some(register.q);

@@ -211,7 +211,8 @@ impl Bench<'_> {
         self.shown(mutant, self.ends(self.beyond()?.places(rom, word)))
     }
 
-    /// Returns the streams that read words, each up to the end of the computation after the one that does.
+    /// Returns the streams that read words, each up to the end of the computation after the one that does. For example,
+    /// a read after 40 results in a pipeline of 7 stages gives the seed and 49.
     fn ends<'p>(&self, places: impl IntoIterator<Item = &'p TestPlace>) -> Vec<(u64, u64)> {
         let end = |place: &TestPlace| (place.seed, place.points + 2 + self.latency);
         places.into_iter().map(end).collect()

@@ -29,7 +29,7 @@ pub struct Share {
 }
 
 impl Share {
-    /// Returns the share as a number, 1 of nothing.
+    /// Returns the share as a number. For example, 3 noticed of 4 give 0.75, and 0 of 0 give 1.
     pub fn value(self) -> f64 {
         if self.of == 0 { 1.0 } else { self.noticed as f64 / self.of as f64 }
     }
@@ -73,7 +73,8 @@ impl Tally {
         self.equivalent.values().sum()
     }
 
-    /// Returns the share that is undecided.
+    /// Returns the share that is undecided. For example, 76 undecided faults of 10 457 are a share of 0.0073, which
+    /// [`TOLERATED`] allows.
     pub fn share_undecided(&self) -> f64 {
         if self.planted == 0 { 0.0 } else { self.undecided as f64 / self.planted as f64 }
     }

@@ -19,7 +19,7 @@ impl Shipped {
         core.shipped_vectors().map(Self)
     }
 
-    /// Returns whether a mutant differs in an output that the bench compares.
+    /// Returns whether a mutant differs in an output that the bench compares. The bench cannot see registers.
     ///
     /// # Errors
     /// Fails if the mutant cannot be simulated.

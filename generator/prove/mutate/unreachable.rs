@@ -26,8 +26,9 @@ impl BitWatch<'_> {
     }
 }
 
-/// Returns the faults that the default test never comes to: a bit of a register that is stuck at the value that it
-/// has anyway, words of tables that are never read. Of other faults it says nothing.
+/// Returns the faults that the default test never comes to. For example, a bit of a register may be stuck at the value
+/// that it always has. Or the test may never read a word of a table. It says nothing about other faults, for example
+/// swapped inputs of a mux.
 ///
 /// # Errors
 /// Fails if the design cannot be simulated.

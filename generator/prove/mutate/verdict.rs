@@ -51,7 +51,8 @@ impl fmt::Display for How {
 /// The difference that a check showed.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SignalDifference {
-    /// Operands that the stimulus held, by name, at raw values ([`glint_core::cosim::Lockstep::holding`]).
+    /// Operands that the stimulus held, by name, at raw values ([`glint_core::cosim::Lockstep::holding`]). For example,
+    /// `exponent` at 5.
     pub held: Vec<(String, i64)>,
     /// The signal, on a clock.
     pub mismatch: Mismatch,

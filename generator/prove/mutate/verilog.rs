@@ -1,11 +1,11 @@
-//! Plants faults in the emitted Verilog, which an emitter could make, and finds whether lint or a bench notices them.
+//! Plants faults in the emitted Verilog, and finds whether lint or a bench notices them.
 //!
-//! They are planted in the text of the modules, one at a time. Lint or a bench must notice each fault. The bench is
-//! the one that is shipped with the fault-free text, or a longer one. Golden model and built-in simulator agree on
-//! its vectors. The faults that the shipped bench notices by itself are counted separately.
+//! Each mutant has one fault in the text of the modules, as an emitter could make it. For example, `4'd9` becomes
+//! `4'd8`. Lint, the shipped bench or a longer bench must notice the fault; the score counts the share of the shipped
+//! bench separately.
 //!
-//! No register is moved to the other edge of the clock. Its input is stable by then, so it carries the same value at
-//! every edge that counts, and only timing analysis can tell.
+//! No fault moves a register to the other edge of the clock, because only timing analysis can tell: its input is stable
+//! by then.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -34,7 +34,8 @@ const PROOF_LIMIT: Duration = Duration::from_secs(120);
 /// A fault of a text.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct TextFault {
-    /// The file, the number of the line, and the change.
+    /// The file, the number of the line, the kind, and a number among the faults of this kind in the line. For example,
+    /// `blinn_datapath.v:127:operator:1` is the first wrong operator in line 127.
     pub id: String,
     /// The name of the fault's kind.
     pub kind: &'static str,
@@ -86,13 +87,15 @@ const TOOLS: [&str; 4] = ["iverilog", "vvp", "verilator", "yosys"];
 /// Files by name, with which ones are modules of the device.
 pub struct VerilogText {
     files: Vec<(String, String)>,
-    /// A bench with more points, all at random, and its vectors: they take the place of the shipped ones.
+    /// A bench with more points, all at random, and its vectors: they take the place of the shipped ones. Golden model
+    /// and built-in simulator agree on the vectors of both.
     longer: Vec<(String, String)>,
     top: String,
     modules: Vec<usize>,
 }
 
-/// A replacement of text, and its name. If the replacement equals the original text, there is no fault.
+/// A replacement of text, and its name. If the replacement equals the original text, there is no fault. For example,
+/// the kind `constant` replaces `4'd9` by `4'd8`.
 struct TextOperator {
     kind: &'static str,
     pattern: Regex,

@@ -184,7 +184,8 @@ fn value(random: &mut Random, operand: &Operand) -> i64 {
     }
 }
 
-/// Returns a raw value with one bit inverted.
+/// Returns a raw value with one bit inverted. For example, 0 in an unsigned format of 8 bits becomes a power of two up
+/// to 128.
 fn flipped(random: &mut Random, Operand { format, .. }: &Operand, raw: i64) -> i64 {
     format.raw(raw as u64 ^ 1 << random.below(format.width().into())) as i64
 }

@@ -35,8 +35,9 @@ pub fn measure(
     routed(figures, subject, done, |seed| route(nextpnr, &workspace, &netlist, chip, seed))
 }
 
-/// Returns whether nextpnr-ecp5 times a multiplier with this parameter: not its inside, with a register before its product, but the way
-/// to the register at its output.
+/// Returns whether nextpnr-ecp5 times a multiplier with this parameter. It times the way to the register at the output,
+/// and cannot time the inside of a multiplier with other registers. For example, `REG_OUTPUT_CLK` may be a clock, and
+/// `REG_INPUTA_CLK` must be `NONE`.
 fn is_timed(parameter: &str, value: &Value) -> bool {
     let clocked = parameter.starts_with("REG_") && parameter.ends_with("_CLK");
     !clocked || parameter == "REG_OUTPUT_CLK" || value == "NONE"

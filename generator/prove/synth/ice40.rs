@@ -49,7 +49,8 @@ pub fn measure(
     })
 }
 
-/// Returns whether a parameter leaves a DSP block a multiplier and nothing else.
+/// Returns whether a parameter leaves a DSP block a multiplier and nothing else. For example, `TOPOUTPUT_SELECT` must
+/// end with `11`.
 fn is_pure(parameter: &str, value: &Value) -> bool {
     let value = value.as_str().unwrap_or_default();
     match parameter {

@@ -1,8 +1,8 @@
 //! Measures area and frequency of a core: synthesis, placement, routing and timing analysis by outside tools.
 //!
-//! A core is measured with a register on each side of every port (`harness`), so that pins do not count. The delay of
-//! a DSP block is never left out. On iCE40 the blocks are pure multipliers, and `icetime` times the blocks, which
-//! nextpnr-ice40 does not. On ECP5 a netlist with registers inside the blocks is refused.
+//! A core is measured with a register on each side of every port (`harness`), so that pins do not count. The delay of a
+//! DSP block is never left out. On iCE40 the blocks are pure multipliers, and `icetime` times the blocks, which
+//! nextpnr-ice40 does not. On ECP5, the measurement refuses a netlist with registers inside the blocks.
 
 mod cells;
 mod ecp5;
@@ -46,7 +46,7 @@ pub struct SynthesisSubject<'a> {
     pub design: &'a Design,
     /// Its Verilog and ROM contents, pairs of a plain name and contents.
     pub files: &'a [(String, String)],
-    /// Runs of place and route, with the seeds 1, 2, ….
+    /// Runs of place and route, with the seeds 1, 2, …. For example, 3 means the seeds 1, 2 and 3.
     pub seeds: u32,
     /// After which a run of a tool is given up.
     pub limit: Duration,
@@ -85,7 +85,8 @@ impl Flow {
         self.target
     }
 
-    /// Tells a measurement from others: the sources, the tools and the number of seeds. SHA-256 in hexadecimal.
+    /// Returns the SHA-256 of everything that a measurement depends on, in hexadecimal. For example, another number of
+    /// seeds or another version of Yosys gives another digest.
     pub fn digest(&self, subject: &SynthesisSubject) -> String {
         let mut text = format!("{} {} {}\n", self.target, subject.seeds, env!("CARGO_PKG_VERSION"));
         text += &self.versions.join("\n");
@@ -98,7 +99,8 @@ impl Flow {
         package::digest(text.as_bytes())
     }
 
-    /// Returns the steps of work that [`Flow::measure`] reports as done.
+    /// Returns the steps of work that [`Flow::measure`] reports as done. For example, iCE40 with 3 seeds has 4 steps:
+    /// one synthesis and three routes.
     pub fn steps(target: Target, seeds: u32) -> u64 {
         match target {
             Target::Ice40 | Target::Ecp5 => 1 + u64::from(seeds),
@@ -129,7 +131,8 @@ impl Flow {
     }
 }
 
-/// Returns the version that a tool states, without the rest of its banner.
+/// Returns the version that a tool states, without the rest of its banner. For example, nextpnr gives `nextpnr-ice40
+/// 0.4-1+b1`.
 fn version(tool: &Tool) -> Result<String> {
     let said = tool.version()?;
     Ok(match said.split_once("(Version ") {

@@ -71,7 +71,8 @@ impl Netlist {
         Ok(Self { names, registers: registers.collect(), cells: cells.clone() })
     }
 
-    /// Makes sure that the delay of no DSP block is left out: every parameter of the cells of a kind must be `timed`.
+    /// Makes sure that the timing includes the delay of every DSP block: every parameter of the cells of a kind must be
+    /// `timed`.
     ///
     /// # Errors
     /// Fails if a parameter is not `timed`; `why` explains the consequence.
@@ -102,7 +103,8 @@ impl Netlist {
     }
 }
 
-/// Returns a path, from pairs of a name and the time in nanoseconds at which it settles: each name once in a row, at its last time.
+/// Returns a path, from pairs of a name and the time in nanoseconds at which it settles. Each name is there once in a
+/// row, at its last time. For example, `a` at 1.0, `a` at 1.5 and `b` at 2.0 are two steps: `a` at 1.5 and `b` at 2.0.
 pub fn path(points: impl IntoIterator<Item = (String, f64)>) -> Vec<PathPoint> {
     let mut steps: Vec<PathPoint> = Vec::new();
     for (name, ns) in points {
@@ -116,7 +118,8 @@ pub fn path(points: impl IntoIterator<Item = (String, f64)>) -> Vec<PathPoint> {
 }
 
 /// Returns the nets of a design by name, each with a rank and the text to show. If one wire has several names, a
-/// register's name comes first, then a ROM's, a product's, one that the author gave, any other.
+/// register's name comes first, then a ROM's, a product's, one that the author gave, any other. For example, the text
+/// for the output of the ROM `coefficient` is `ROM coefficient`.
 fn known(design: &Design) -> BTreeMap<&str, (u8, String)> {
     let known = design.nets.iter().map(|net| {
         let shown = match net.driver {
@@ -131,7 +134,8 @@ fn known(design: &Design) -> BTreeMap<&str, (u8, String)> {
     known.collect()
 }
 
-/// Returns a net's name without the instances that it lies in, and without the bit of one that was split.
+/// Returns a net's name without the instances that it lies in, and without the bit of one that was split. For example,
+/// `core.datapath.product[3]` is `product`.
 fn own_name(name: &str) -> &str {
     let inside = name.strip_prefix(CORE).and_then(|rest| rest.strip_prefix('.')).unwrap_or("");
     let units = ["control.", "datapath."];

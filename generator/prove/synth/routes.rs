@@ -9,7 +9,7 @@ use super::{Figures, PathPoint, SynthesisSubject};
 /// nothing if `figures` has a reason why the core cannot be timed.
 ///
 /// # Errors
-/// Fails if a run fails; the message has its seed.
+/// Fails if a run fails; the message has its seed, for example `seed 2`.
 pub fn routed(
     figures: Figures,
     subject: &SynthesisSubject,

@@ -31,7 +31,8 @@ impl<'a> Workspace<'a> {
         Ok(Self { sources, subject })
     }
 
-    /// Runs nextpnr on the netlist with a seed, with the `options` of its family, which a space divides.
+    /// Runs nextpnr on the netlist with a seed, with the `options` of its family, which a space divides. For example,
+    /// the options begin with `--up5k --package sg48` for iCE40.
     ///
     /// # Errors
     /// Fails if nextpnr fails or takes too long.

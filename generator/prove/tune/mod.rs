@@ -37,7 +37,7 @@ pub enum ErrorUnit {
 }
 
 impl ErrorUnit {
-    /// Returns the bound in this unit.
+    /// Returns the bound in this unit, which a caller must compare with an error of the same unit.
     pub fn of(self, bound: &Bound) -> f64 {
         match self {
             Self::F => bound.f,
@@ -136,7 +136,8 @@ pub fn tune(
     Ok(Answer { best, front: goal.front([own.front, pipeline.front].concat()), free, looked_at })
 }
 
-/// Returns the pipelines that could have the rate, and no more multipliers than are allowed, the longest interval first.
+/// Returns the pipelines that could have the rate, and no more multipliers than are allowed, the longest interval
+/// first. For example, a clock of 50 MHz and a rate of 10 million points a second allow the intervals 5, 4, 3, 2 and 1.
 fn pipelines(base: &Config, fixed: &[&str], goal: &TuningGoal) -> Vec<Config> {
     let Some(family) =
         goal.target.family().filter(|_| goal.rate.is_some() || goal.most_dsps.is_some())

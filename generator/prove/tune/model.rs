@@ -1,7 +1,8 @@
 //! Estimates the cost of a configuration from its netlist.
 //!
 //! DSP blocks and block RAMs follow from the widths; look-up tables are a weighted sum of [`Features`], whose weights
-//! `benches/tune/fit` fits to the records in `records/synthesis/`. The clock is the longest path by the measured delays of the pipelines' targets.
+//! `benches/tune/fit` fits to the records in `records/synthesis/`. The clock is the longest path by the measured delays
+//! of the pipelines' targets.
 
 use std::collections::BTreeSet;
 
@@ -17,7 +18,7 @@ use glint_rtl::pipeline::delay_of;
 pub struct Features {
     /// Bits of sums, differences and comparisons.
     pub adder: f64,
-    /// Bits of multiplexers, for each input beyond the first.
+    /// Bits of multiplexers, for each input beyond the first. For example, a mux of 3 inputs of 8 bits counts 16.
     pub mux: f64,
     /// Bits of gates; a reduction or an equality takes a look-up table for three bits.
     pub logic: f64,
@@ -71,14 +72,15 @@ impl Cost {
     }
 
     /// Returns the area in look-up tables: a block counts as many of them as a chip of the family has to each such
-    /// block.
+    /// block. For example, iCE40 UP5K has 5280 look-up tables and 8 DSP blocks, so that a DSP block counts as 660.
     pub fn area(&self, target: Target) -> f64 {
         let [luts, dsps, blocks] = family(target).chips[0].has.map(|has| has as f64);
         let (dsp, block) = ((luts / dsps).round(), (luts / blocks).round());
         self.luts + dsp * self.dsps as f64 + block * self.block_rams as f64
     }
 
-    /// Returns the resources that a usual chip of the target lacks, in words; empty if the core fits.
+    /// Returns the resources that a usual chip of the target lacks, in words; empty if the core fits. For example, `it
+    /// does not fit the iCE40 UP5K: it takes 9 of 8 DSP blocks`.
     pub fn excess(&self, target: Target) -> String {
         let chip = &family(target).chips[0];
         let wanted = [self.luts.ceil() as u64, self.dsps, self.block_rams];
@@ -154,7 +156,8 @@ fn dsps(design: &Design, family: &Family, a: NetId, b: NetId) -> u64 {
     either(a, b).min(either(b, a))
 }
 
-/// Returns the number of partial products of a product, the better way round.
+/// Returns the number of partial products of a product, the better way round. For example, on iCE40, whose blocks
+/// multiply 16 by 16 bits, a product of 20 by 12 bits has 2.
 fn blocks(family: &Family, a: u32, b: u32) -> u64 {
     let (wide, narrow) = family.timing.multiplier;
     let slices = |operand: u32, block: u32| {

@@ -1,4 +1,5 @@
-//! Finds the free keys of a configuration, and its neighbours: the configurations with other values of some keys.
+//! Finds the free keys of a configuration, and its neighbours: the configurations with other values of some keys. A key
+//! of the tables `domain` and `function` is never free, because it is part of the question.
 
 use anyhow::{Context, Result};
 
@@ -95,7 +96,7 @@ impl SearchSpace {
 /// Returns a configuration with values replaced; `None` if the device does not accept it.
 fn with(schema: &Schema, config: &Config, values: &[(&'static str, Value)]) -> Option<Config> {
     let changed = |name: &str| values.iter().find(|(key, _)| *key == name).map(|(_, value)| value);
-    // A choice decides which other keys apply; keys that no longer apply are left out.
+    // A choice decides which other keys apply. The draft must not have keys that no longer apply.
     let mut draft: Vec<(String, Value)> = config
         .values()
         .map(|(name, own)| (name.to_owned(), changed(name).unwrap_or(own).clone()))
@@ -180,7 +181,8 @@ fn alternatives(key: &Key, value: &Value) -> Vec<Value> {
     values
 }
 
-/// Returns the values next to one, inside the range.
+/// Returns the values next to one, inside the range. For example, the integer 8 has the neighbours 7, 9, 6, 10, 4 and
+/// 12. The list `[6, 6]` has `[5, 6]`, `[7, 6]`, `[6, 5]`, `[6, 7]`, `[6, 6, 6]` and `[6]`.
 fn neighbours(kind: &KeyKind, value: &Value) -> Vec<Value> {
     match (kind, value) {
         (KeyKind::Integer { min, max }, Value::Integer(value)) => {

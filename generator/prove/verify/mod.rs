@@ -65,7 +65,7 @@ impl<'a> CheckSubject<'a> {
 /// A file that a record speaks of.
 #[derive(Clone, Debug, Serialize)]
 pub struct FileDigest {
-    /// As `generate` names it.
+    /// The path as `generate` names it, for example `rtl_out/rsqrt/rsqrt.v`.
     pub path: String,
     /// SHA-256 in hexadecimal.
     pub sha256: String,
@@ -123,7 +123,8 @@ impl CheckVerdict {
         }
     }
 
-    /// Returns the conclusion of all checks if this verdict decides.
+    /// Returns the conclusion of all checks if this verdict decides. For example, a missing tool is
+    /// [`CheckVerdict::NotRun`], which makes the verification incomplete.
     pub fn conclusion(self) -> Conclusion {
         match self {
             Self::Failed => Conclusion::Failed,
@@ -169,7 +170,7 @@ impl Finding {
         Self { verdict, words: why.into(), ..Self::default() }
     }
 
-    /// Adds failures; the verdict is one of failure if there are any.
+    /// Adds failures. If there are any, the verdict becomes [`CheckVerdict::Failed`].
     fn failures(self, failures: Vec<String>) -> Self {
         let verdict = if failures.is_empty() { self.verdict } else { CheckVerdict::Failed };
         Self { verdict, failures, ..self }
@@ -185,9 +186,9 @@ type CheckFunction = fn(&CheckSubject<'_>, &[Tool], &(dyn Fn(u64) + Sync)) -> Re
 
 /// One question about a configuration.
 pub struct Check {
-    /// For scripts.
+    /// The name for scripts, for example `lockstep`.
     pub id: &'static str,
-    /// For people.
+    /// The name for people, for example "Golden model against simulation".
     pub title: &'static str,
     /// The two sides that it compares.
     pub question: &'static str,
@@ -231,7 +232,7 @@ impl Check {
         (self.steps)(subject)
     }
 
-    /// Runs it. A tool that is missing, or that does not do its work, is a finding too.
+    /// Runs the check. A run cannot fail: a tool that is missing, or that does not do its work, is a finding too.
     pub fn run(&self, subject: &CheckSubject<'_>, progress: &(dyn Fn(u64) + Sync)) -> CheckAnswer {
         let begin = Instant::now();
         let (tools, finding) = self.find(subject, progress);
@@ -329,7 +330,8 @@ pub enum Conclusion {
 }
 
 impl Conclusion {
-    /// Returns the conclusion from some answers.
+    /// Returns the conclusion from some answers. For example, one check that failed makes it [`Conclusion::Failed`],
+    /// whatever the others found.
     pub fn of(answers: &[CheckAnswer]) -> Self {
         let verdicts = answers.iter().map(|answer| answer.finding.verdict.conclusion());
         verdicts.max().unwrap_or(Self::Incomplete)

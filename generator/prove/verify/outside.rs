@@ -40,7 +40,8 @@ const EQUAL: Duration = Duration::from_secs(300);
 /// The version of cocotb that the benches in Python are written for.
 const COCOTB_VERSION: &str = "2.1.0";
 
-/// The suffixes of the modules that a system can instantiate.
+/// The suffixes of the modules that a system can instantiate. For example, `threshold_levels_axil` is the device with
+/// registers on AXI4-Lite.
 const TOPS: [&str; 4] = ["", "_axis", "_axil", "_wb"];
 
 /// Results of a bench around a netlist.

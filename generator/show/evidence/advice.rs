@@ -18,7 +18,8 @@ const GAIN: f64 = 1e-6;
 /// How many changes are tried one after the other to keep the contract.
 const MOST: usize = 40;
 
-/// Changes of keys that make the error bound smaller.
+/// Changes of keys that make the error bound smaller. For example, as text: "`intensity.fraction = 17` in place of 16
+/// would bring the bound to 0.812 units".
 #[derive(Clone, Debug, PartialEq)]
 pub struct Advice {
     /// Each key with its value, and the value that helps, as TOML.
@@ -85,7 +86,8 @@ fn has_same_units(device: &Device, config: &Config, other: &Config) -> bool {
     formats(one.as_ref()) == formats(other.as_ref())
 }
 
-/// Leaves out the changes without which the contract is kept too.
+/// Leaves out the changes without which the contract is kept too. For example, of two changes it keeps one, if that one
+/// is enough.
 fn needed(device: &Device, config: &Config, kept: Better) -> Better {
     let schema = (device.schema)();
     let changed = changes(device, config, &kept.config);
@@ -140,7 +142,7 @@ fn candidates(
     candidates
 }
 
-/// Returns the values next to one.
+/// Returns the values that differ from `value` by `step`. For example, the integer 8 and the step 2 give 6 and 10.
 fn neighbours(kind: &KeyKind, value: &Value, step: i64) -> Vec<Value> {
     match (kind, value) {
         (_, Value::Integer(value)) => [value - step, value + step].map(Value::Integer).to_vec(),

@@ -34,7 +34,8 @@ impl ChartAxis {
         Self { scale: AxisScale::Logarithmic, ..Self::linear(label, low, high) }
     }
 
-    /// Returns the place of a value: the value itself, or its power of ten. Returns `None` if it has no place.
+    /// Returns the place of a value: the value itself, or its power of ten. Returns `None` if it has no place. For
+    /// example, 100 is at 2 on a logarithmic axis, and 0 has no place there.
     pub fn place(&self, value: f64) -> Option<f64> {
         let place = match self.scale {
             AxisScale::Linear => value,
@@ -85,7 +86,8 @@ pub struct Chart {
 }
 
 impl Chart {
-    /// Returns about `rows` evenly spread indices into [`Chart::places`], the first and the last among them.
+    /// Returns about `rows` evenly spread indices into [`Chart::places`], the first and the last among them. For
+    /// example, 5 rows of 101 places are 0, 25, 50, 75 and 100.
     pub fn rows(&self, rows: usize) -> Vec<usize> {
         let last = self.places.len().saturating_sub(1);
         let mut chosen: Vec<usize> =
@@ -95,13 +97,14 @@ impl Chart {
     }
 }
 
-/// Returns `steps + 1` evenly spread values, both ends among them.
+/// Returns `steps + 1` evenly spread values, both ends among them. For example, 4 steps from 0 to 2 are 0, 0.5, 1, 1.5
+/// and 2.
 pub fn even(low: f64, high: f64, steps: u32) -> Vec<f64> {
     (0..=steps).map(|step| low + (high - low) * f64::from(step) / f64::from(steps)).collect()
 }
 
 /// Returns integers from `low` to `high` that a logarithmic axis shows evenly, about `per_decade` to a power of ten;
-/// both ends are among them.
+/// both ends are among them. For example, 1 to 1000 with 4 for each power of ten begins with 1, 2, 3, 6 and 10.
 pub fn exponents(low: u32, high: u32, per_decade: u32) -> Vec<u32> {
     let value = |step: u32| {
         let value = f64::from(low) * libm::pow(10.0, f64::from(step) / f64::from(per_decade));

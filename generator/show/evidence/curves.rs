@@ -130,8 +130,9 @@ fn places() -> Vec<f64> {
     even(0.0, REACH, PLACES)
 }
 
-/// Returns the signed formula error at each place, and the largest fixed-point error about it. It is zero beyond 90°,
-/// because nothing is reflected there. Returns `None` if the operands cannot denote `n`.
+/// Returns the signed formula error at each place, and the largest fixed-point error about it. Both are NaN beyond 90°,
+/// because nothing is reflected there. For example, the curve of n = 2 ends at √n·γ = 2.2. Returns `None` if the
+/// operands cannot denote `n`.
 fn over_angle(contract: &dyn Contract, n: f64) -> Option<Vec<AtAngle>> {
     let highlight = contract.highlight()?;
     let format = highlight.f_format();
@@ -236,7 +237,7 @@ fn charts(
     vec![over_n, over_gamma, fixed_point]
 }
 
-/// Returns a round number that no value exceeds.
+/// Returns a round number that no value exceeds. For example, values up to 0.013 give 0.02.
 fn reach(series: &[Series]) -> f64 {
     let largest = series
         .iter()

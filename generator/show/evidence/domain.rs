@@ -10,7 +10,7 @@ const PLACES: i64 = 160;
 /// The largest number of operands about each place. The worst of them counts.
 const OPERANDS: i64 = 256;
 
-/// Returns the charts; empty for other devices.
+/// Returns the charts; empty for other devices. A domain of fewer than 160 operands has a place for each operand.
 pub fn charts(contract: &dyn Contract) -> Vec<Chart> {
     let ([operand], [output]) = (contract.operands(), contract.outputs()) else {
         return Vec::new();

@@ -9,7 +9,7 @@ use glint_core::core::Core;
 
 /// A synthesis tool.
 pub trait Synthesis: Sync {
-    /// Returns its version, for people.
+    /// Returns the version of the tool, for people: for example, `Yosys 0.23`.
     ///
     /// # Errors
     /// Fails if the tool does not say its version.

@@ -4,7 +4,7 @@ use anyhow::Result;
 use glint_base::fill;
 use glint_base::template::Template;
 
-/// A drawing. Its units are the units of the page at full size.
+/// A drawing. Its units are the units of the page at full size. Each [`Item::Open`] must have an [`Item::Close`].
 #[derive(Clone, Debug)]
 #[glint_base::template::template("drawing.svg")]
 pub struct Drawing {
@@ -60,7 +60,7 @@ impl Item {
         Self::Text { class, x, y, text: text.into() }
     }
 
-    /// Makes lines, by SVG's path syntax.
+    /// Makes lines, by SVG's path syntax. For example, `M0 0H10V5` goes 10 to the right and 5 down.
     pub fn path(class: &'static str, d: impl Into<String>) -> Self {
         Self::Path { class, d: d.into() }
     }
@@ -91,7 +91,7 @@ impl Drawing {
 /// The size of the type of a drawing.
 pub const SIZE: f64 = 11.0;
 
-/// Estimates how wide a text is in the type of a drawing.
+/// Estimates how wide a text is in the type of a drawing. For example, 10 characters are 66 units wide.
 pub fn text_width(text: &str) -> i32 {
     (text.chars().count() as f64 * SIZE * 0.6).ceil() as i32
 }

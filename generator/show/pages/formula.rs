@@ -52,7 +52,7 @@ pub fn typeset(text: &str) -> String {
     }
 }
 
-/// Splits a formula into names, numbers and signs.
+/// Splits a formula into names, numbers and signs. For example, `n/2 + 1` has the tokens `n`, `/`, `2`, `+` and `1`.
 fn tokens(text: &str) -> Option<Vec<&str>> {
     let mut tokens = Vec::new();
     let mut rest = text.trim_start();
@@ -168,7 +168,8 @@ impl<'a> FormulaReader<'a> {
         Some(sum)
     }
 
-    /// Reads products and quotients from the left. Everything before a `/` is the numerator.
+    /// Reads products and quotients from the left. Everything before a `/` is the numerator. For example, `a * b / c`
+    /// is a fraction with a·b above c.
     fn product(&mut self) -> Option<String> {
         let mut product = self.power()?;
         while let Some(sign) = self.sign(&["*", "/"]) {
@@ -270,7 +271,7 @@ impl<'a> FormulaReader<'a> {
 }
 
 /// Returns a name. Greek letters are written by their names, `delta_x` is a difference, and the part after `_`, or a
-/// number at the end, is a subscript.
+/// number at the end, is a subscript. For example, `zeta_start` is ζ with the subscript "start", and `dgamma` is dγ.
 fn name(token: &str) -> String {
     if let Some(of) = token.strip_prefix("delta_") {
         return format!("<mrow><mi mathvariant=\"normal\">Δ</mi>{}</mrow>", name(of));

@@ -1,6 +1,6 @@
 //! Writes plain text as HTML.
 
-/// Writes plain text with names in backquotes as HTML.
+/// Writes plain text with names in backquotes as HTML. For example, `` `a<b` `` becomes `<code>a&lt;b</code>`.
 pub fn html(text: &str) -> String {
     let mut html = String::with_capacity(text.len());
     // An odd backquote is one.

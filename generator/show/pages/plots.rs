@@ -27,7 +27,8 @@ fn style(at: usize) -> RGBColor {
     RGBColor(4, 0, (at % STYLES) as u8)
 }
 
-/// Returns the class of series number `at` in the style sheet.
+/// Returns the class of series number `at` in the style sheet. For example, series 0 has the class `s1`, and so has
+/// series 10.
 pub fn class(at: usize) -> String {
     format!("s{}", at % STYLES + 1)
 }
@@ -159,7 +160,8 @@ fn points(chart: &Chart) -> Vec<(usize, (f64, f64), bool)> {
     points
 }
 
-/// Returns the stretches of a series that can be shown, as places; a line that leaves the range ends at its border.
+/// Returns the stretches of a series that can be shown, as places; a line that leaves the range ends at its border. For
+/// example, a line from 3 to 5 in a range that ends at 4 ends half way.
 fn runs(chart: &Chart, values: &[f64]) -> Vec<Vec<(f64, f64)>> {
     let low = chart.y.place(chart.y.range.0).unwrap_or(f64::NEG_INFINITY);
     let high = chart.y.place(chart.y.range.1).unwrap_or(f64::INFINITY);
@@ -201,7 +203,8 @@ fn runs(chart: &Chart, values: &[f64]) -> Vec<Vec<(f64, f64)>> {
     runs
 }
 
-/// Returns round values within the range of an axis, in order.
+/// Returns round values within the range of an axis, in order. For example, an even axis from 0 to 10 has 0, 2, 4, 6, 8
+/// and 10. A logarithmic axis from 2 to 60 has 2, 5, 10, 20 and 50.
 fn ticks(axis: &ChartAxis) -> Vec<f64> {
     let (low, high) = axis.range;
     match axis.scale {
@@ -233,7 +236,7 @@ fn ticks(axis: &ChartAxis) -> Vec<f64> {
 }
 
 /// Returns the label of a tick: at most six decimals, without trailing zeros; nearer to 0 than 0.001, two digits and an
-/// exponent.
+/// exponent. For example, `0.5`, or `1.5e−4`.
 fn number(value: f64) -> String {
     if value != 0.0 && value.abs() < 0.001 {
         return format!("{value:.1e}").replace(".0e", "e").replace("e-", "e\u{2212}");

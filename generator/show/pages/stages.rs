@@ -3,7 +3,8 @@
 use super::account::{TextTable, code};
 use glint_rtl::netlist::{Design, Pipeline};
 
-/// Returns the product that each shared multiplier computes in each slot. Returns `None` if no multiplier is shared.
+/// Returns the product that each shared multiplier computes in each slot. Returns `None` if no multiplier is shared. A
+/// slot in which the multiplier is idle has the cell `–`.
 pub fn reservations(pipeline: &Pipeline) -> Option<TextTable> {
     let slots = (0..pipeline.interval).map(|slot| format!("slot {slot}"));
     let headings: Vec<String> = ["multiplier".to_owned()].into_iter().chain(slots).collect();

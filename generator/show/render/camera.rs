@@ -90,7 +90,7 @@ impl Camera {
         self.eye
     }
 
-    /// Returns a point in the camera's coordinates.
+    /// Returns a point in the camera's coordinates. For example, a point 5 units in front of the eye is (0, 0, −5).
     #[inline]
     pub fn place(&self, point: Vector) -> Vector {
         let from = point - self.eye;

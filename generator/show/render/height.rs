@@ -88,7 +88,8 @@ impl Relief {
     }
 }
 
-/// Returns the rise per pixel to the right and upward: half the difference of the neighbours.
+/// Returns the rise per pixel to the right and upward: half the difference of the neighbours. For example, between the
+/// heights 0 and 1 a pixel has the rise 0.5.
 fn slopes(heights: &[f32], width: usize, height: usize) -> Vec<[f32; 2]> {
     let at = |column: usize, row: usize| heights[row % height * width + column % width];
     (0..height)

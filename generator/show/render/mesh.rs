@@ -56,12 +56,13 @@ pub struct RawCorner {
 }
 
 impl Mesh {
-    /// Makes a mesh of positions, normals, texture coordinates and triangles. Triangles without area are left out and
-    /// counted.
+    /// Makes a mesh of positions, normals, texture coordinates and triangles. It leaves out triangles without area, and
+    /// counts them. Every index of a corner must exist.
     ///
-    /// A corner without a normal, or with one of length 0, gets a mean normal. It is the mean, weighted by area, of
-    /// the triangles that meet in the corner's position and hang together there by edges of at most `crease` degrees.
-    /// Sharper edges stay sharp.
+    /// A corner without a normal, or with one of length 0, gets a mean normal. It is the mean, weighted by area, of the
+    /// triangles that meet in the corner's position and hang together there by edges of at most `crease` degrees.
+    /// Sharper edges stay sharp. For example, a cube without normals keeps its edges of 90 degrees at a `crease` of 40,
+    /// and looks round at 90.
     ///
     /// # Errors
     /// Fails if no triangle has an area, or if there are too many. Fails if numbers are not finite, or coordinates

@@ -117,7 +117,8 @@ pub struct PictureComparison {
     pub units: f64,
 }
 
-/// Returns the exponent at which a picture is rendered by default: one that the device takes.
+/// Returns the exponent at which a picture is rendered by default: one that the device takes. For example, 80, or 64
+/// for a device whose domain ends there.
 pub fn usual_exponent(contract: &dyn Contract) -> u32 {
     let (least, most) = exponents(contract).unwrap_or((0, i64::MAX));
     EXPONENT.clamp(least, most).max(0) as u32

@@ -53,7 +53,8 @@ impl ObjReader {
         Ok(())
     }
 
-    /// Adds a face of n corners as a fan of n − 2 triangles.
+    /// Adds a face of n corners as a fan of n − 2 triangles. For example, the face 1 2 3 4 is the triangles 1 2 3 and 1
+    /// 3 4.
     fn face<'a>(&mut self, words: impl Iterator<Item = &'a str>) -> Result<()> {
         let corners: Vec<RawCorner> = words
             .map(|word| {
@@ -66,7 +67,7 @@ impl ObjReader {
         Ok(())
     }
 
-    /// Reads a corner: `v`, `v/vt`, `v//vn` or `v/vt/vn`.
+    /// Reads a corner: `v`, `v/vt`, `v//vn` or `v/vt/vn`. For example, `3//1` has vertex 3 and normal 1.
     fn corner(&self, word: &str) -> Result<RawCorner> {
         let mut parts = word.split('/');
         let position = parts.next().unwrap_or_default();
@@ -105,7 +106,8 @@ fn number(word: &str) -> Result<f64> {
     Ok(value)
 }
 
-/// Returns an index into the `count` entries so far: from 1, or from −1 backward.
+/// Returns an index into the `count` entries so far: from 1, or from −1 backward. For example, of 4 entries `1` is
+/// index 0, and `-1` is index 3.
 fn index(part: &str, what: &str, count: usize) -> Result<u32> {
     let given: i64 = part.parse().map_err(|_| anyhow!("`{part}` is not an integer"))?;
     let index = match given {

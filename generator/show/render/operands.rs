@@ -321,7 +321,8 @@ impl Feed {
         })
     }
 
-    /// Returns the raw operands of a point, and whether dγ was beyond the device's domain.
+    /// Returns the raw operands of a point, and whether dγ was beyond the device's domain. The device must compute
+    /// points, and not lines.
     pub fn raw<'a>(
         &'a self,
         point: &'a Point,
@@ -401,13 +402,13 @@ impl Feed {
     }
 }
 
-/// Returns the raw value nearest to a number, in the domain.
+/// Returns the raw value nearest to a number, in the domain. For example, 300 in a domain from 1 to 255 is 255.
 fn number(value: f64, format: Format, (low, high): (i64, i64)) -> i64 {
     format.quantise(value).clamp(i128::from(low), i128::from(high)) as i64
 }
 
-/// Returns the raw value nearest to an angle in right angles. A format without room for the angle wraps around,
-/// modulo a turn.
+/// Returns the raw value nearest to an angle in right angles. A format without room for the angle wraps around, modulo
+/// a turn. For example, 2.5 right angles in a signed format from −2 to 2 are −1.5.
 fn raw_angle(right_angles: f64, format: Format) -> i64 {
     let scaled = nearest(right_angles * exp2(format.frac)) as i128;
     format.narrow(scaled, format.frac, Rounding::Truncate, Overflow::Wrap) as i64
@@ -427,7 +428,7 @@ fn fixed(operand: &Operand, value: f64) -> Result<OperandMeaning> {
 }
 
 /// Returns the quantity that an operand takes. In a unit with several lights, only one is lit: vectors to the others
-/// are zero.
+/// are zero. For example, `lx2` is 0 at every point.
 fn quantity(operand: &Operand, names: &[(&str, OperandMeaning)]) -> Option<OperandMeaning> {
     let of = |wanted: &str| {
         let mut names = names.iter();

@@ -60,7 +60,7 @@ impl Picture {
         captioned
     }
 
-    /// Puts pictures of one size side by side.
+    /// Puts pictures side by side. All must have one height.
     pub fn beside(pictures: &[&Self]) -> Self {
         let mut all = Self::new(pictures.iter().map(|picture| picture.width).sum());
         for row in 0..pictures.first().map_or(0, |picture| picture.height()) as usize {
@@ -90,7 +90,8 @@ impl Picture {
     }
 }
 
-/// Returns a colour of 0 … 255 a channel as a pixel: saturated, and rounded to the nearest.
+/// Returns a colour of 0 … 255 a channel as a pixel: saturated, and rounded to the nearest. For example, 127.5 is 128,
+/// and 900 is 255.
 #[inline]
 pub fn pixel(colour: Vector) -> [u8; 3] {
     colour.0.map(|value| (value + 0.5).clamp(0.0, 255.0) as u8)
@@ -103,14 +104,15 @@ pub struct PictureDifference {
     pub largest: u8,
     /// The peak signal-to-noise ratio in decibels, over the pixels of the things; none when they are equal.
     pub psnr: Option<f64>,
-    /// The factor of the differences in [`PictureDifference::picture`], which makes them visible.
+    /// The factor of the differences in [`PictureDifference::picture`], which makes them visible. For example, a
+    /// largest difference of 30 has the factor 8.
     pub gain: u8,
     /// The absolute differences.
     pub picture: Picture,
 }
 
 impl PictureDifference {
-    /// Compares two pictures of one size; `shown` says of each pixel whether it shows a thing.
+    /// Compares two pictures, which must have one size. `shown` must say of each pixel whether it shows a thing.
     pub fn new(a: &Picture, b: &Picture, shown: &[bool]) -> Self {
         let pairs = a.pixels.iter().zip(&b.pixels);
         let differences: Vec<[u8; 3]> =
@@ -137,7 +139,7 @@ impl PictureDifference {
     }
 }
 
-/// Mixes one colour over another; the coverage is in 255ths.
+/// Mixes one colour over another; the coverage is in 255ths. For example, 255 over 0 with a share of 51 is 51.
 fn mix(ground: [u8; 3], over: [u8; 3], share: u8) -> [u8; 3] {
     let share = u32::from(share);
     let channel = |at: usize| {

@@ -125,7 +125,8 @@ impl Scene {
         })
     }
 
-    /// Returns the middle and half the diagonal of the box around everything.
+    /// Returns the middle and half the diagonal of the box around everything. For example, a ball of radius 1 around
+    /// the origin has the origin and √3.
     pub fn extent(&self) -> (Vector, f64) {
         let mut low = Vector([f64::INFINITY; 3]);
         let mut high = Vector([f64::NEG_INFINITY; 3]);

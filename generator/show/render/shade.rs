@@ -225,7 +225,8 @@ impl Shader<'_> {
         SurfacePoint { colour: object.colour, smooth, perturbed, interpolated, toward_eye }
     }
 
-    /// Returns the normals of the smooth and of the perturbed surface, both toward the eye, and the latter as it was interpolated.
+    /// Returns the normals of the smooth and of the perturbed surface, both toward the eye, and the perturbed normal as
+    /// it was interpolated, of any length.
     fn normals(
         &self,
         object: &Object,
@@ -265,7 +266,7 @@ impl Shader<'_> {
     }
 }
 
-/// Returns the values of a point from which operands are made.
+/// Returns the values of a point from which operands are made. For example, cos dγ is 1 if both normals are the same.
 ///
 /// As the patent has it, roughness changes the angle γ between normal and half vector by dγ. With N′ the
 /// perturbed normal and γ′ its angle with H, dγ = γ′ − γ: cos dγ = cos γ·cos γ′ + sin γ·sin γ′, and dγ is

@@ -14,7 +14,7 @@ impl Vector {
         Self([x, y, z])
     }
 
-    /// Returns the scalar product.
+    /// Returns the scalar product. For example, (1, 2, 3) and (4, 5, 6) give 32.
     #[inline]
     pub fn dot(self, other: Self) -> f64 {
         let ([ax, ay, az], [bx, by, bz]) = (self.0, other.0);
@@ -34,7 +34,8 @@ impl Vector {
         self.dot(self).sqrt()
     }
 
-    /// Returns the vector of length 1 in its direction; `None` when it has none, or none that can be computed.
+    /// Returns the vector of length 1 in its direction; `None` when it has none, or none that can be computed. For
+    /// example, (0, 3, −4) gives (0, 0.6, −0.8).
     #[inline]
     pub fn unit(self) -> Option<Self> {
         let [x, y, z] = self.0.map(f64::abs);

@@ -93,7 +93,8 @@ struct CandidateSurface {
 }
 
 impl<'a> Visibility<'a> {
-    /// Sorts a scene, which must lie in a ball of radius `size`.
+    /// Sorts a scene, which must lie in a ball of radius `size`. A surface nearer to the eye than a millionth of `size`
+    /// cannot be seen.
     pub fn new(scene: &'a Scene, camera: &Camera, raster: Raster, size: f64) -> Self {
         let mut visibility = Self {
             scene,
@@ -270,7 +271,8 @@ impl Planes {
     }
 }
 
-/// Returns the place at which a ray enters a ball, as a multiple of the ray.
+/// Returns the place at which a ray enters a ball, as a multiple of the ray. For example, the ray (0, 0, −1) enters a
+/// ball of radius 2 around (0, 0, −5) at 3.
 #[inline]
 fn meet_ball(ray: Vector, middle: Vector, radius: f64) -> Option<f64> {
     let square = ray.dot(ray);

@@ -19,7 +19,7 @@ pub const MAPPING: &str =
 /// The load of a port, in pF. That there are constraints makes Yosys buffer nets and size cells.
 pub const LOAD: &str = "set_load 0.1 [all_outputs]\n";
 
-/// The contents of registers of cells before the first clock, on which nothing may depend.
+/// The contents of the registers before the first clock. No output may depend on them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Start {
     /// An unknown value.
@@ -31,14 +31,16 @@ pub enum Start {
 }
 
 impl Start {
-    /// Returns the starts from which a bench passes: a pipeline knows its state by the reset and the points alone. In gates around the
-    /// registers of a microprogram, which points write one after the other, unknown values stay that no circuit has.
+    /// Returns the starts from which a bench must pass. A pipeline knows its state by the reset and the points alone,
+    /// so that it may begin unknown. In gates around the registers of a microprogram, unknown values can stay that no
+    /// circuit has.
     pub fn of(pipelined: bool) -> &'static [Self] {
         if pipelined { &[Self::Unknown] } else { &[Self::Zeros, Self::Ones] }
     }
 }
 
-/// Returns the flat netlist of the module `top` in cells of [`LIBERTY`], as Verilog.
+/// Returns the flat netlist of the module `top` in cells of [`LIBERTY`], as Verilog. Its flip-flops, for example, are
+/// instances of the cell `DFFPOSX1`.
 ///
 /// # Errors
 /// Fails if the library cannot be read, or if Yosys fails or takes longer than `limit`.
@@ -59,8 +61,8 @@ pub fn netlist(
     sources.text(NETLIST)
 }
 
-/// Returns the models of the cells, without their delays and with a flip-flop that begins as `start` says: the library's own becomes
-/// unknown by the first value on its constant inputs.
+/// Returns the models of the cells, without their delays and with a flip-flop that begins as `start` says. The
+/// library's own flip-flop becomes unknown by the first value on its constant inputs.
 ///
 /// # Errors
 /// Fails if the models are not beside the library, or have no flip-flop.

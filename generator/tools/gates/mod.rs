@@ -15,7 +15,8 @@ use glint_base::target::Family;
 /// Models of the ECP5 cells for which Yosys has none.
 const ECP5: &str = include_str!("ecp5.v");
 
-/// Returns whether all cells to which devices are mapped have a model: in Yosys, or here.
+/// Returns whether all cells to which devices are mapped have a model: in Yosys, or here. For example, it returns true
+/// for iCE40 and ECP5, and false for Xilinx 7.
 pub fn is_simulated(family: &Family) -> bool {
     matches!(family.name(), "ice40" | "ecp5")
 }
@@ -37,8 +38,9 @@ pub fn netlist(
     sources.text(NETLIST)
 }
 
-/// Returns the files of a test bench around a netlist. They are the `sources` of the device and its test bench
-/// without the files named in `rtl`, the netlist, and the models of the family's cells.
+/// Returns the files of a test bench around a netlist. They are the `sources` of the device and its test bench, the
+/// netlist, and the models of the family's cells. The files named in `rtl` must go. For example, for the core `rsqrt`
+/// the file `rsqrt_datapath.v` goes, and `netlist.v` comes in its place.
 ///
 /// # Errors
 /// Fails if Yosys's directory does not have the models, or if the family has no models.
@@ -102,7 +104,8 @@ fn shipped(yosys: &Tool, family: &Family) -> Result<String> {
     })
 }
 
-/// Returns Verilog without a module, which is there without behaviour.
+/// Returns Verilog without a module that Yosys declares as a black box. For example, the module `DP16KD` must go before
+/// another file can define it.
 fn without(verilog: &str, module: &str) -> Result<String> {
     let start = format!("(* blackbox *)\nmodule {module}(");
     let parts = verilog.split_once(&start);

@@ -6,7 +6,8 @@ use std::time::Instant;
 
 use super::list;
 
-/// A process of a group of its own. It is killed with its descendants when it is dropped before its end.
+/// A process of a group of its own. Dropping it before its end kills it with its descendants. For example, an early
+/// return cannot leave a simulator running.
 #[derive(Debug)]
 pub struct Child {
     child: process::Child,

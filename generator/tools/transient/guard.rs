@@ -7,8 +7,8 @@ use std::os::unix::process::CommandExt;
 use std::process::{ChildStdin, Command, Stdio};
 
 /// Reads lists of children, a line each, until the pipe closes, which it does at the latest when this process ends.
-/// Then it kills the children on the last line, with their own groups and with their descendants in other groups.
-/// After an orderly end, the last line is empty.
+/// Then it kills the children on the last line, with their own groups and with their descendants in other groups. After
+/// an orderly end, the last line is empty. For example, the line `4711 4712` names two children.
 ///
 /// A pipe closes shortly before the process is gone. With the end of the process, the groups of its children become
 /// orphans. If a group has a stopped process then, the system sends SIGHUP and SIGCONT to the whole group. A child

@@ -2,8 +2,8 @@
 //!
 //! Each thing is on a list until it is gone. If a process is interrupted, [`clear`] ends and deletes all of them. A
 //! child is started, and a temporary path made, under the list's lock: nothing can appear between the end of the
-//! listing and the end of the process. If a process is killed, a guard ends its children. The next process deletes
-//! the killed one's temporary directories, which are locked while they are in use.
+//! listing and the end of the process. If a process is killed, a guard ends its children, and the next process deletes
+//! its temporary directories, which are locked while in use.
 
 mod child;
 #[cfg(unix)]
@@ -64,7 +64,7 @@ fn list() -> MutexGuard<'static, List> {
     LIST.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Does `work` as a whole: an interruption waits for its end. For renames that belong together.
+/// Does `work` as a whole: an interruption waits for its end. A caller must use it for renames that belong together.
 pub fn undivided<T>(work: impl FnOnce() -> T) -> T {
     let _guard = UNDIVIDED.lock().unwrap_or_else(PoisonError::into_inner);
     work()
@@ -76,9 +76,9 @@ pub struct Cleared {
     _list: MutexGuard<'static, List>,
 }
 
-/// Kills all children with everything that they have started, and deletes all temporary
-/// directories. Other threads stop at their next child or temporary path until the result is dropped,
-/// which is meant for the end of the process.
+/// Kills all children with everything that they have started, and deletes all temporary directories. Other threads stop
+/// at their next child or temporary path until the result is dropped, which is meant for the end of the process. For
+/// example, Ctrl-C during a bench kills `vvp` and deletes the bench's directory.
 pub fn clear() -> Cleared {
     let undivided = UNDIVIDED.lock().unwrap_or_else(PoisonError::into_inner);
     let list = list();

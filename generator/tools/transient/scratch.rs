@@ -27,7 +27,7 @@ pub struct Directory {
 
 impl Directory {
     /// Returns a directory for the use of a tool, where the system keeps temporary files. The first call deletes the
-    /// directories that killed processes have left there.
+    /// directories that killed processes have left there. The path cannot contain a blank.
     ///
     /// # Errors
     /// Fails if the directory cannot be made.
@@ -115,7 +115,7 @@ fn sweep(parent: &Path, prefix: &str) {
     }
 }
 
-/// Returns the text of the file in a directory.
+/// Returns the text of the lock file in a directory. For example, it begins with `Glint works in glint-a1B2c3.`
 fn title(directory: &Path) -> String {
     let name = directory.file_name().unwrap_or_default().to_string_lossy();
     format!("Glint works in {name}. The next run deletes what a killed one has left.\n")
@@ -138,14 +138,16 @@ pub fn files_below(directory: &Path) -> io::Result<Vec<PathBuf>> {
     Ok(found)
 }
 
-/// Returns the path below `root`, with `/`.
+/// Returns the path below `root`, with `/`. For example, below `out` the path `out/rtl_out/rsqrt/rsqrt.v` is
+/// `rtl_out/rsqrt/rsqrt.v` on every system.
 pub fn relative_name(root: &Path, path: &Path) -> String {
     let relative = path.strip_prefix(root).unwrap_or(path);
     let parts: Vec<_> = relative.iter().map(|part| part.to_string_lossy()).collect();
     parts.join("/")
 }
 
-/// Returns an error of a temporary path without its name, which says nothing to anybody.
+/// Returns an error of a temporary path without its name, which says nothing to anybody. For example, `Permission
+/// denied (os error 13) at path "/t/glint-a1B2c3"` becomes `Permission denied (os error 13)`.
 fn without_path(error: io::Error) -> io::Error {
     let text = error.to_string();
     io::Error::new(error.kind(), text.split(" at path ").next().unwrap_or_default())

@@ -188,12 +188,13 @@ fn print_speed(entries: &[ComparisonEntry]) {
     );
 }
 
-/// Writes a number of clocks, a whole one as an integer.
+/// Writes a number of clocks, a whole one as an integer. For example, 5 is `5`, and 5.5 is `5.500`.
 fn clocks(clocks: f64) -> String {
     if clocks.fract() == 0.0 { format!("{clocks}") } else { format!("{clocks:.3}") }
 }
 
-/// Writes the sizes of multipliers, as `21x10, 3 of 10x8`.
+/// Writes the sizes of multipliers, in the order of the list. For example, one of 21 by 10 bits and three of 10 by 8
+/// bits are `21x10, 3 of 10x8`.
 fn sizes(multipliers: &[MultiplierSize]) -> String {
     let alike = multipliers.chunk_by(|a, b| a == b);
     let texts: Vec<String> = alike
@@ -210,7 +211,8 @@ fn numbers(usage: &Usage) -> [(&'static str, u64); 3] {
     [("luts", usage.luts), ("dsps", usage.dsps), ("block_rams", usage.block_rams)]
 }
 
-/// Returns the heading, then a row for each entry. A value that is not known is empty.
+/// Returns the heading, then a row for each entry. A value that is not known is empty. For example, the columns of
+/// iCE40 are `ice40_luts`, `ice40_dsps` and `ice40_block_rams`.
 fn as_csv(arguments: &Arguments, entries: &[ComparisonEntry]) -> Vec<Vec<String>> {
     let synthesised = entries.iter().any(|entry| !entry.usage.is_empty());
     let mut heading: Vec<String> = ["name", "device", "exponent"].map(str::to_owned).to_vec();

@@ -111,7 +111,7 @@ fn bench(
     Ok(BenchRun { clocks, outcome, mismatch })
 }
 
-/// Returns the simulator as the command line names it.
+/// Returns the simulator as the command line names it. For example, `icarus`.
 fn name(arguments: &Arguments) -> String {
     format!("{:?}", arguments.simulator).to_lowercase()
 }

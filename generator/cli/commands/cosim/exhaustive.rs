@@ -24,7 +24,7 @@ const SAVE: Duration = Duration::from_secs(5);
 /// A shorter proof is not worth more cores.
 const WORTH_SHARING: Duration = Duration::from_secs(60);
 
-/// Numbers of cores for which the duration of a proof is estimated.
+/// Numbers of cores for which the duration of a proof is estimated. For example, `about 1 hour on 1 core`.
 const CORES: [u32; 3] = [1, 16, 1000];
 
 /// Runs `glint cosim --exhaustive`: the factored proof of the accuracy contract. It also runs every combination of

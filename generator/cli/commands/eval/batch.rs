@@ -68,7 +68,7 @@ pub fn batch(
 }
 
 /// Returns the operand of each column. A column of the real values that `glint setup` writes beside the operands has
-/// none.
+/// none. For example, it ignores a column `real_cos_gamma`.
 fn columns<'a>(
     one: &Loaded,
     given: &[Option<i64>],
@@ -146,8 +146,9 @@ fn points(
     Ok(())
 }
 
-/// Returns the first row of the results, ending with a newline. Operands, f and formulas are values. A result is a
-/// raw integer; its heading says so if the integer is not its value.
+/// Returns the first row of the results, ending with a newline. Operands, f and formulas are values. A result is a raw
+/// integer; its heading says so if the integer is not its value. For example, an output `y_out` with fraction bits has
+/// the heading `raw_y_out`.
 fn headings(contract: &dyn Contract) -> String {
     let mut headings: Vec<String> =
         contract.operands().iter().map(|operand| operand.name.clone()).collect();
@@ -187,7 +188,7 @@ fn integer(value: i64, text: &mut String) {
     text.push(',');
 }
 
-/// Appends a number as `{}` writes it, whole numbers quickly.
+/// Appends a number as `{}` writes it, whole numbers quickly. For example, it appends `2,` for 2 and `0.5,` for 0.5.
 fn decimal(value: f64, text: &mut String) {
     let whole = value as i64;
     let is_whole = whole as f64 == value && whole.unsigned_abs() < 1 << 53;

@@ -24,7 +24,7 @@ pub fn given(operands: &[Operand], settings: &[String]) -> Result<Vec<Option<i64
     Ok(raw)
 }
 
-/// Returns the place of an operand.
+/// Returns the index of an operand among `operands`. It fails for any other name, and the message has the nearest name.
 pub fn position(operands: &[Operand], name: &str) -> Result<usize, String> {
     operands.iter().position(|operand| operand.name == name).ok_or_else(|| {
         let names: Vec<&str> = operands.iter().map(|operand| operand.name.as_str()).collect();
@@ -32,7 +32,8 @@ pub fn position(operands: &[Operand], name: &str) -> Result<usize, String> {
     })
 }
 
-/// Returns all operands. An operand that is not given is 0, or the value nearest to 0 in its domain.
+/// Returns all operands. An operand that is not given is 0, or the value nearest to 0 in its domain. For example, an
+/// exponent with the domain 1 to 255 is 1.
 pub fn completed(contract: &dyn Contract, given: &[Option<i64>]) -> Vec<i64> {
     let operands = contract.operands().iter().zip(given);
     let value =
@@ -56,7 +57,8 @@ pub fn typical(contract: &dyn Contract, given: &[Option<i64>]) -> Vec<i64> {
     each.collect()
 }
 
-/// Returns the operands that are not given, with the values that [`completed`] gives them: `green = 0, blue = 0`.
+/// Returns the operands that are not given, with the values that [`completed`] gives them. For example, `green = 0` and
+/// `blue = 0`.
 pub fn missing(contract: &dyn Contract, given: &[Option<i64>]) -> Vec<String> {
     let operands = contract.operands().iter().zip(given);
     let missing = operands.filter(|(_, given)| given.is_none()).map(|(operand, _)| {
@@ -66,7 +68,8 @@ pub fn missing(contract: &dyn Contract, given: &[Option<i64>]) -> Vec<String> {
     missing.collect()
 }
 
-/// Returns the raw value that a text gives to an operand. The error message names the operand.
+/// Returns the raw value that a text gives to an operand. The error message names the operand. For example, `0.5` and
+/// `#128` both give 128 to an operand with 8 fraction bits.
 pub fn named_value(operand: &Operand, text: &str) -> Result<i64, String> {
     value(operand, text).map_err(|why| format!("operand `{}`: {why}", operand.name))
 }

@@ -14,7 +14,7 @@ use glint_prove::synth::{Figures, Target};
 const FOLDER: &str = ".glint";
 
 /// A folder with one file for each configuration and target. A file that is not readable is measured again, and a
-/// measurement that cannot be kept is not kept.
+/// measurement that cannot be kept is not kept. For example, `.glint/rough.ecp5.json`.
 pub struct Cache(PathBuf);
 
 #[derive(Serialize, Deserialize)]

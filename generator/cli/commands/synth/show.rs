@@ -37,7 +37,7 @@ pub fn print(measured: &[Measurement], notes: &[String]) {
     }
 }
 
-/// Returns the figures of a target in a line: `ECP5: 367 LUT, 1 DSP, 0 RAM, 112.30 MHz`.
+/// Returns the figures of a target in a line. For example, `ECP5: 367 LUT, 1 DSP, 0 RAM, 112.30 MHz`.
 pub fn in_a_line(figures: &Figures) -> String {
     let area = &figures.area;
     let counts = [("LUT", area.luts), ("DSP", area.dsps), ("RAM", area.block_rams)];

@@ -1,4 +1,5 @@
-//! Finds the fewest bits that determine some nets: a minimum cut.
+//! Finds the fewest bits that determine some nets: a minimum cut. For example, a sum of 5 bits is a smaller cut than
+//! its two operands of 4 bits.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -7,8 +8,8 @@ use glint_rtl::netlist::{Design, Driver, NetId};
 /// Vertices of the flow: each net is divided in two, and the flow into it goes through its bits.
 type Vertex = (NetId, bool);
 
-/// Returns the nets with the fewest bits together that determine `wanted`, without any net in `affected`. Returns
-/// `None` if they have more than `most` bits, or if a net of `affected` is no cell.
+/// Returns the nets with the fewest bits together that determine `wanted`. The cut cannot have a net in `affected`.
+/// Returns `None` if they have more than `most` bits, or if a net of `affected` is no cell.
 pub(super) fn smallest_cut(
     design: &Design,
     wanted: &BTreeSet<NetId>,

@@ -55,7 +55,8 @@ impl Flat {
 
     /// Gives each product a multiplier of its own in place of the shared one, whose nets are left without drivers.
     /// Returns the copies of these nets, by the original net and the slot in which the shared multiplier computes the
-    /// product.
+    /// product. For example, at an interval of 4, the copy for slot 0 has the factors that the multiplier chooses in
+    /// slot 3.
     fn unshared(&mut self, pipeline: &Pipeline) -> BTreeMap<(NetId, usize), NetId> {
         let mut made = BTreeMap::new();
         for unit in &pipeline.units {

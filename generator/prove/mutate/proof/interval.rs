@@ -8,7 +8,8 @@ use glint_base::interval::{Interval, fits, hull, of_values};
 use glint_rtl::netlist::interval::of_cell;
 use glint_rtl::netlist::{Design, Driver, NetId, NetlistRegister, Op, RegisterKind};
 
-/// Returns whether the stated interval of a register holds in every clock from power-up on.
+/// Returns whether the stated interval of a register holds in every clock from power-up on. For example, it is false
+/// for an interval from 1 to 255, because the register is 0 at power-up.
 pub(super) fn trusted(design: &Design, register: &NetlistRegister) -> bool {
     let (low, high) = design.net(register.q).range;
     register.kind != RegisterKind::Internal && low <= 0 && high >= 0

@@ -136,7 +136,8 @@ impl<'a> Prover<'a> {
     }
 }
 
-/// Joins two states: each bit may be as in either.
+/// Joins two states: each bit may be as in either. For example, a bit that is 0 in one state and 1 in the other may be
+/// both.
 fn join(one: &PairState, other: &PairState) -> PairState {
     one.iter().zip(other).map(|(one, other)| one.or(*other)).collect()
 }

@@ -7,9 +7,10 @@ use glint_base::fixed::mask;
 use glint_base::interval::Interval;
 use glint_rtl::netlist::{Design, Driver, NetId, Op};
 
-/// The pairs that each bit of a net can be: masks of the bits that can be 0 in both, 1 in the fault-free design alone, 1 in
-/// the mutant alone, and 1 in both. The number of a pair is the fault-free bit with the mutant's above it, so that an
-/// operation on bits is the same operation on numbers of pairs.
+/// The pairs that each bit of a net can be. The four masks are the bits that can be 0 in both, 1 in the fault-free
+/// design alone, 1 in the mutant alone, and 1 in both. The number of a pair is the fault-free bit with the mutant's
+/// above it, so that an operation on bits is the same operation on numbers of pairs. For example, pair 2 is a bit that
+/// is 0 in the fault-free design and 1 in the mutant.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Pairs([u64; 4]);
 
@@ -24,7 +25,8 @@ impl Pairs {
         Self([mask(width), 0, 0, mask(width)])
     }
 
-    /// Makes the pairs of an interval: the bits that every value from `low` to `high` has, and any others, in both.
+    /// Makes the pairs of an interval: the bits that every value from `low` to `high` has, and any others, in both. For
+    /// example, the interval from 4 to 6 in 4 bits has bit 2 at 1 and bit 3 at 0. Bits 0 and 1 may have any value.
     pub(super) fn of_interval((low, high): Interval, width: u32) -> Self {
         let (low, high) = (low as u64 & mask(width), high as u64 & mask(width));
         let differ = low ^ high;
@@ -216,7 +218,8 @@ pub(super) fn cell(
     }
 }
 
-/// Returns the pairs of a mux. Inputs with the same number are alike in the fault-free design.
+/// Returns the pairs of a mux. Inputs with the same number are alike in the fault-free design. For example, if the
+/// mutant selects another input that is alike, the result has only the pairs of that input.
 pub(super) fn chosen(select: Pairs, lines: u32, inputs: &[(Pairs, NetId)]) -> Pairs {
     let input = |number: u64| inputs[(number as usize).min(inputs.len() - 1)];
     let mut all = Pairs([0; 4]);

@@ -156,8 +156,8 @@ impl<'a> Order<'a> {
         }
     }
 
-    /// Returns the word that a ROM has at its address. At power-up, before it reads any, a synchronous ROM shows 0: the first state
-    /// has that.
+    /// Returns the word that a ROM has at its address. The first state has the 0 that a synchronous ROM shows at
+    /// power-up, before it reads any word.
     fn read(&self, id: RomId, nets: &[Pairs], fault: Option<Injected>) -> Pairs {
         let rom = self.design.rom(id);
         let width = self.design.width(rom.data);
@@ -245,8 +245,9 @@ pub(super) fn count(design: &Design) -> usize {
     }
 }
 
-/// Returns the microinstructions that may follow one, reset included, which leads to microinstruction 0 from any. A pipeline
-/// stays in a slot while it is held back.
+/// Returns the microinstructions that may follow one, reset included, which leads to microinstruction 0 from any. A
+/// pipeline stays in a slot while it is held back. For example, in a pipeline of interval 4, slots 0, 1 and 2 may
+/// follow slot 1.
 pub(super) fn following(design: &Design, at: usize) -> Vec<usize> {
     let mut following = vec![0];
     match &design.pipeline {
@@ -261,7 +262,8 @@ pub(super) fn following(design: &Design, at: usize) -> Vec<usize> {
     following
 }
 
-/// Finds for each net the first with the same driver.
+/// Finds for each net the first with the same driver. For example, two nets that both add `a` and `b` at one width are
+/// the same.
 pub(super) fn same(design: &Design, order: &[NetId]) -> Vec<NetId> {
     let mut same: Vec<NetId> = design.iter().map(|(id, _)| id).collect();
     let mut drivers: Vec<(Driver, u32, bool, NetId)> = Vec::new();

@@ -2,7 +2,7 @@
 //!
 //! A window reaches from the fault forward over some cells, at most to multipliers, registers, ROMs and outputs. It
 //! reaches backward to the fewest bits that determine it: a minimum cut. Each net of the cut takes every value of its
-//! interval.
+//! interval. For example, the window of an inverted bit may end at an AND that masks the bit.
 
 use std::borrow::Cow;
 use std::collections::{BTreeMap, BTreeSet};

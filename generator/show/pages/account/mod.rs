@@ -58,7 +58,7 @@ pub fn numbering(design: &Design) -> &'static str {
     }
 }
 
-/// Returns how a format is written: a single bit is no number.
+/// Returns how a format is written: a single bit is no number. For example, `u0.8`, or `1 bit`.
 pub fn format_text(format: Format) -> String {
     match format.width() {
         1 => "1 bit".to_owned(),
@@ -133,7 +133,8 @@ fn number(number: Option<u16>) -> String {
     number.map_or_else(String::new, |number| number.to_string())
 }
 
-/// Returns the ports; a strobe is in the row of its operand.
+/// Returns the ports; a strobe is in the row of its operand. For example, the row of `exponent` has `exponent_write` in
+/// the column "written by".
 pub fn ports(design: &Design) -> TextTable {
     let mut table =
         TextTable::of("port | no.: | direction | role | format | written by | what it is");
@@ -186,13 +187,13 @@ pub fn roms(design: &Design, config: &Config) -> TextTable {
     table.without_empty(NUMBER)
 }
 
-/// Returns the lines of a field as the source numbers them.
+/// Returns the lines of a field as the source numbers them. For example, `30 31`.
 fn lines(lines: &[u16]) -> String {
     let lines: Vec<String> = lines.iter().map(u16::to_string).collect();
     lines.join(" ")
 }
 
-/// Returns the fields of the control word.
+/// Returns the fields of the control word. For example, the bits of a field of three bits from bit 2 on are `4:2`.
 pub fn fields(design: &Design) -> TextTable {
     let mut table = TextTable::of("field | lines | bits | controls");
     for field in facts::fields(design) {
@@ -372,7 +373,7 @@ fn shortened(text: String) -> String {
     }
 }
 
-/// Returns a value in six decimals, without the zeros at their end.
+/// Returns a value in six decimals, without the zeros at their end. For example, `0.866026`, `-0.25` and `1000`.
 pub fn short(value: f64) -> String {
     let text = format!("{value:.6}");
     text.trim_end_matches('0').trim_end_matches('.').to_owned()

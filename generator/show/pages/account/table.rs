@@ -28,8 +28,8 @@ pub struct TextTable {
 }
 
 impl TextTable {
-    /// Makes a table with these headings, which bars part, yet without rows; the cells below a heading with a colon behind it
-    /// are numbers.
+    /// Makes a table with these headings, which bars part, yet without rows. The cells below a heading with a colon
+    /// behind it are numbers. For example, `port | bits:` has a column of words and a column of numbers.
     pub fn of(headings: &str) -> Self {
         let column = |heading: &'_ str| match heading.strip_suffix(':') {
             Some(heading) => Column { heading: heading.to_owned(), align: Align::Right },
@@ -38,12 +38,13 @@ impl TextTable {
         Self { columns: headings.split(" | ").map(column).collect(), rows: Vec::new() }
     }
 
-    /// Adds one row, with a cell for each column.
+    /// Adds one row, which must have a cell for each column.
     pub fn row(&mut self, cells: impl IntoIterator<Item = String>) {
         self.rows.push(cells.into_iter().collect());
     }
 
-    /// Leaves out a column in which no row says anything.
+    /// Leaves out the column `heading` if all of its cells are empty. For example, a device without numbers in a figure
+    /// has no column "no.".
     #[must_use]
     pub fn without_empty(mut self, heading: &str) -> Self {
         let at = self.columns.iter().position(|column| column.heading == heading);
@@ -59,7 +60,7 @@ impl TextTable {
     }
 }
 
-/// Returns a name or a number as the files write it; nothing for nothing.
+/// Returns a name or a number as the files write it; nothing for nothing. For example, clk becomes `clk` in backquotes.
 pub fn code(text: &str) -> String {
     match text {
         "" => String::new(),

@@ -38,8 +38,9 @@ impl RecordView {
     }
 }
 
-/// Returns the frequency and the rate on an FPGA, for a reader in a hurry: on `target` if it was measured, and else on the FPGA
-/// with the most points a second.
+/// Returns the frequency and the rate on one FPGA, for a reader in a hurry. It is `target` if that was measured, and
+/// else the FPGA with the most points a second. For example, a pipeline for ECP5 has the figures of ECP5, even if
+/// another FPGA is faster.
 pub fn leading<'r>(
     record: &'r SynthesisRecord,
     target: Option<&str>,

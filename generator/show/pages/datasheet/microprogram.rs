@@ -28,7 +28,8 @@ pub struct MicroinstructionRow {
     pub address: usize,
     /// The name of the operation.
     pub name: String,
-    /// For each line: whether a field begins here, whether it is 1, and the meaning of the field's value.
+    /// For each line: whether a field begins here, whether it is 1, and the meaning of the field's value. For example,
+    /// the value 2 of a field of two bits has a line with `(true, true, …)` and a line with `(false, false, …)`.
     pub bits: Vec<(bool, bool, String)>,
     /// The successor, as HTML.
     pub then: String,

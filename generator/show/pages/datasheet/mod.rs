@@ -84,7 +84,8 @@ struct HighlightPicture {
     gain: u8,
 }
 
-/// Returns the steps of work that [`datasheet`] reports as done.
+/// Returns the steps of work that [`datasheet`] reports as done. For example, without synthesis there are 26: 25 for
+/// the curves and 1 for the picture.
 pub fn steps(synthesis: bool) -> usize {
     curves::STEPS + 1 + if synthesis { FAMILIES.len() } else { 0 }
 }

@@ -276,7 +276,7 @@ fn first_usage<'u>(usage: &'u [FamilyUsage], target: Option<&str>) -> Option<&'u
     on_target.or_else(|| usage.first())
 }
 
-/// Returns how many there are of each size, the largest first.
+/// Returns how many there are of each size, the largest first. For example, `21 × 10, 3 of 10 × 8`, or `none`.
 fn multipliers(design: &Design) -> String {
     let all = comparison::multipliers(design);
     let sizes = all.chunk_by(|a, b| a == b).map(|alike| {

@@ -10,7 +10,7 @@ const NARROW: usize = 36;
 pub struct TableView {
     /// The text for a screen reader.
     pub label: &'static str,
-    /// Whether a narrow page shows each row as lines of its own.
+    /// Whether a narrow page shows each row as lines of its own. For example, a table with a sentence in a cell stacks.
     pub stacks: bool,
     /// Class and heading of each column.
     pub columns: Vec<(&'static str, String)>,

@@ -79,7 +79,8 @@ fn clock_widths(waves: &Waves) -> [i32; 2] {
     [wanted(&mut waves.lanes.iter()), wanted(&mut values)]
 }
 
-/// Returns the stretches of some places in which a value stays, as half-open ranges.
+/// Returns the stretches of some places in which a value stays, as half-open ranges. For example, the values 5, 5 and 6
+/// have the ranges from 0 to 2 and from 2 to 3.
 fn segments(lane: &Lane, places: Range<usize>) -> Vec<(usize, usize)> {
     let mut to = places.start;
     let stretch = |alike: &[Option<String>]| {
@@ -130,7 +131,8 @@ impl Grid<'_> {
         self.left + self.clock * (at - self.places.start) as i32
     }
 
-    /// Returns the places before which clocks are left out.
+    /// Returns the places before which the diagram leaves clocks out. For example, after clocks 0, 1, 7 and 8 it is the
+    /// place of clock 7.
     fn gaps(&self) -> impl Iterator<Item = usize> + '_ {
         let clocks = &self.waves.clocks;
         self.places.clone().filter(|&at| at > 0 && clocks[at] != clocks[at - 1] + 1)

@@ -11,7 +11,7 @@ use glint_core::cosim::trial;
 use glint_core::package::sealed_json;
 use glint_rtl::netlist::{Design, Driver, Handshake, NetId, RegisterKind, Role};
 
-/// Clocks that are shown at most; of longer computations the middle is left out.
+/// The largest number of clocks that can be shown. The diagram leaves out the middle of a longer computation.
 const MOST: usize = 40;
 
 /// Clocks that are shown of the beginning of a long computation.
@@ -45,7 +45,8 @@ pub struct Lane {
     pub number: Option<u16>,
     /// How it is drawn.
     pub shape: LaneStyle,
-    /// The value in each clock that is shown; `None` if it means nothing yet.
+    /// The value in each clock that is shown; `None` if it means nothing yet. For example, a result is `None` before
+    /// the first `valid`.
     pub values: Vec<Option<String>>,
 }
 
@@ -186,7 +187,8 @@ impl Waves {
         )
     }
 
-    /// Returns the waveform as WaveDrom's JSON, ending with a newline.
+    /// Returns the waveform as WaveDrom's JSON, ending with a newline. For example, a bit that is 0, 1, and after a gap
+    /// 1 and 0 has the wave `01|.0`.
     ///
     /// # Errors
     /// Fails only through a bug, not through anything that a user gives.
@@ -278,7 +280,7 @@ fn lane(design: &Design, probe: &Probe, bits: &[u64], valid: usize) -> Option<La
     })
 }
 
-/// Returns the microinstruction that is executed, by its name.
+/// Returns the microinstruction that is executed, by its name. For example, `3 result`, or `idle`.
 fn microprogram_lane(design: &Design, addresses: &[u64], busy: &[u64]) -> Lane {
     let name = |address: u64| match design.control.microprogram.get(address as usize) {
         Some(found) => format!("{address} {}", found.name),
@@ -310,7 +312,8 @@ fn text(format: Format, bits: u64) -> String {
     }
 }
 
-/// Returns the clocks that are shown of a computation of `clocks` clocks.
+/// Returns the clocks that are shown of a computation of `clocks` clocks. For example, 100 clocks are cut to the clocks
+/// 0 to 23 and 92 to 99.
 fn shown(clocks: usize) -> Vec<usize> {
     match clocks {
         0..=MOST => (0..clocks).collect(),

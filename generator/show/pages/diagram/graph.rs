@@ -155,7 +155,7 @@ impl<'a> GraphBuilder<'a> {
     }
 
     /// Returns a caption with the number of clocks for which registers hold a value that a stage makes, if they are
-    /// several.
+    /// several. For example, `adder · u0.8 · held 3 clocks`.
     fn held(&self, caption: String, net: NetId, stage: usize) -> String {
         let Some(pipeline) = &self.design.pipeline else { return caption };
         let held = self.blocks.held(net);
@@ -278,7 +278,8 @@ impl<'a> GraphBuilder<'a> {
     }
 }
 
-/// Returns a block's kind and format; the port above a register shows that it takes an operand.
+/// Returns a block's kind and format; the port above a register shows that it takes an operand. For example, `adder ·
+/// u0.8`.
 fn caption(block: &Block) -> String {
     match block.kind {
         BlockKind::Operand => format!("{} · {}", BlockKind::Register, block.format),
@@ -286,7 +287,7 @@ fn caption(block: &Block) -> String {
     }
 }
 
-/// Returns the tooltip of a box.
+/// Returns the tooltip of a box. For example, `exponent, u10.0: specular exponent n`.
 fn titled(name: &str, format: &str, doc: &str) -> String {
     match doc {
         "" => format!("{name}, {format}"),

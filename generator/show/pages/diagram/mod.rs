@@ -150,7 +150,8 @@ fn is_port(one: &DiagramBox) -> bool {
     matches!(one.form, BoxForm::Input | BoxForm::Output)
 }
 
-/// Returns the text of a box, with the class of each line; the lines that control it are the last.
+/// Returns the text of a box, with the class of each line; the lines that control it are the last. For example, the
+/// text may be `15 difference`, `adder · u0.8` and the control line `30`.
 fn lines(one: &DiagramBox) -> Vec<(&'static str, String)> {
     let head = match one.number {
         Some(number) => format!("{number} {}", one.name),

@@ -171,8 +171,8 @@ fn driven_by_control(graph: &DiagramGraph, output: usize) -> bool {
     drivers.any(|wire| graph.boxes[wire.from].form == BoxForm::Control)
 }
 
-/// Marks the wires that lead back. In each loop, it is the wire into the mux that chooses among the most inputs, if
-/// the loop has one.
+/// Marks the wires that lead back. In each loop, it is the wire into the mux that chooses among the most inputs, if the
+/// loop has one. For example, in an accumulator it is the wire from the register to the mux in front of the adder.
 pub fn back(graph: &DiagramGraph) -> Vec<bool> {
     let weight = |at: usize| match graph.boxes[at].form {
         BoxForm::Block(BlockKind::Mux(inputs)) if !graph.boxes[at].control.is_empty() => 2 + inputs,

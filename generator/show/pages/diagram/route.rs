@@ -97,7 +97,8 @@ impl Routes {
     }
 }
 
-/// Returns the boxes around which wires lead back, with the nets that do; each takes a [`LANE`].
+/// Returns the boxes around which wires lead back, with the nets that do; each takes a [`LANE`]. For example, a wire
+/// from box 5 back to box 2 gives both boxes a lane for the net of box 5.
 pub fn lanes(graph: &DiagramGraph, back: &[bool]) -> Vec<Vec<usize>> {
     let mut lanes = vec![Vec::new(); graph.boxes.len()];
     for (wire, _) in graph.wires.iter().zip(back).filter(|(_, back)| **back) {

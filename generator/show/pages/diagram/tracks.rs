@@ -63,14 +63,15 @@ impl Trunk {
         crossings + OVERLAP * overlaps
     }
 
-    /// Returns whether the two cannot share a track.
+    /// Returns whether the two cannot share a track. For example, trunks from 0 to 20 and from 50 to 80 can share one.
     fn meets(&self, other: &Self) -> bool {
         let ((low, high), (from, to)) = (self.reach(), other.reach());
         from < high + NEAR && low < to + NEAR
     }
 }
 
-/// Orders the trunks of a gap so that few wires cross, and gives each its track. How many there are.
+/// Orders the trunks of a gap so that few wires cross, gives each its track, and returns the number of tracks. For
+/// example, two trunks that go down from 0 to 40 and from 20 to 60 take two tracks.
 pub fn assign(trunks: &mut [Trunk]) -> usize {
     trunks.sort_by(|a, b| a.reach().0.total_cmp(&b.reach().0));
     // As long as it helps to exchange neighbours; each exchange lessens the sum.

@@ -39,7 +39,8 @@ pub fn table(table: &TextTable) -> String {
     lines.join("\n")
 }
 
-/// Escapes prose so that no sign is Markdown's, except names in backquotes.
+/// Escapes prose so that no sign is Markdown's, except names in backquotes. For example, `a*b` outside of backquotes
+/// becomes `a\*b`.
 pub fn prose(text: &str) -> String {
     let mut plain = String::with_capacity(text.len());
     let mut name = false;

@@ -102,8 +102,8 @@ impl Arc {
         let normal_2 = direction("normal_2", normal_2)?;
         let half_2 = direction("half_2", half_2)?;
         let turned_half = turned(normal_1, normal_2, half_2);
-        // (cos θ₂ − cos θ₁·cos γ)/sin γ is the cosine from N₁ to where H has turned a right angle: without differences of
-        // cosines, in which a small γ would leave little.
+        // (cos θ₂ − cos θ₁·cos γ)/sin γ is the cosine from N₁ to where H has turned a right angle: without differences
+        // of cosines, in which a small γ would leave little.
         let aside = half_1.cross(turned_half).cross(half_1).unit();
         Self::new_of(
             [angle(normal_1, half_1), angle(normal_1, turned_half)],
@@ -161,6 +161,7 @@ impl Arc {
     }
 
     /// Returns the line of `length` intervals with the light `intensity` (I·k_s, in output units) and the exponent n.
+    /// For example, 639 intervals have 640 points.
     pub fn line(&self, intensity: f64, exponent: u32, length: u32) -> LineParameters {
         LineParameters {
             amplitude: intensity * libm::pow(self.peak.min(1.0), f64::from(exponent)),
@@ -229,7 +230,7 @@ impl LineParameters {
         self.zeta_start + f64::from(index) * self.delta_zeta
     }
 
-    /// Returns a = √(n/2), by which a device without an exponent takes the angles.
+    /// Returns a = √(n/2), by which a device without an exponent takes the angles. For example, n = 8 gives 2.
     pub fn stretch(&self) -> f64 {
         (f64::from(self.exponent) / 2.0).sqrt()
     }

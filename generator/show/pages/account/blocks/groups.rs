@@ -94,7 +94,8 @@ impl<'a> Groups<'a> {
         at
     }
 
-    /// Puts a net into the group of the nets that it is made from, if one statement made both.
+    /// Puts a net into the group of the nets that it is made from, if one statement made both. For example, the muxes
+    /// of one tree are a group.
     fn join(&mut self, id: NetId) {
         let design = self.design;
         let net = design.net(id);
@@ -152,13 +153,15 @@ impl<'a> Groups<'a> {
         }
     }
 
-    /// Returns whether an adder adds a bit to a number, as rounding does.
+    /// Returns whether an adder adds a bit to a number, as rounding does. For example, `upper + half` rounds if `half`
+    /// is 0 or 1.
     pub fn rounds(&self, adder: NetId) -> bool {
         let mut operands = self.operands(adder).into_iter();
         operands.any(|it| self.design.net(it).range == (0, 1))
     }
 
-    /// Returns the operators, registers and tables that a net takes, through wires and gates, and in a pipeline through registers.
+    /// Returns the operators, registers and tables that a net takes, through wires and gates. In a pipeline, it also
+    /// goes through registers.
     pub fn operators(&self, id: NetId) -> Vec<NetId> {
         self.through(self.operands(id))
     }

@@ -4,7 +4,7 @@ use std::fmt;
 
 use glint_rtl::netlist::{Driver, Op};
 
-/// The kind of a block.
+/// The kind of a block. For example, as text: `3:1 mux`, `21 × 10 multiplier` or `2 adders, mux`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum BlockKind {
     /// A register that a port writes.

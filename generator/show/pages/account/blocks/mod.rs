@@ -1,7 +1,8 @@
 //! Finds the blocks of a datapath: every register, table and operator of the netlist is in one of them.
 //!
-//! A statement of the description makes one block: a rounding with its limits, a tree of muxes, a product in parts. Wires, and
-//! gates with one signal, are part of the way from block to block; in a pipeline a register belongs to the block whose value it holds.
+//! A statement of the description makes one block: a rounding with its limits, a tree of muxes, a product in parts.
+//! Wires, and gates with one signal, are part of the way from block to block. In a pipeline, a register belongs to the
+//! block whose value it holds.
 
 mod groups;
 mod kind;
@@ -194,7 +195,8 @@ impl<'a> Blocks<'a> {
         }
     }
 
-    /// Returns the constant that a net is.
+    /// Returns the constant that a net is made of, also through other cells. For example, an extension of the constant
+    /// 1 gives the constant 1.
     fn constant(&self, mut id: NetId) -> Option<NetId> {
         loop {
             match &self.design.net(id).driver {
@@ -262,6 +264,7 @@ impl<'a> Blocks<'a> {
     }
 
     /// Returns the name of the block, port or ROM that drives a net of [`Block::inputs`], or the value of a constant.
+    /// For example, `cos_gamma_reg`, or `0.5`.
     pub fn name(&self, id: NetId) -> String {
         let net = self.design.net(id);
         match &net.driver {
