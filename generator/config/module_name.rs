@@ -45,8 +45,9 @@ fn complaint(name: &str) -> Option<String> {
     }
 }
 
-/// Returns a legal name for a name or path: the part between its last slash and its first dot, with `_` for characters
-/// that are not legal, and `glint_` in front where that is no legal name.
+/// Returns a legal name for a name or path: the part between its last slash and its first dot, with `_` for characters that are
+/// not legal, and `glint_` in front where that is no legal name. For example, `cores/my-core.toml` gives `my_core`, and `2fast`
+/// gives `glint_2fast`.
 fn legalised(name: &str) -> String {
     let file = name.rsplit(['/', '\\']).find(|part| !part.is_empty()).unwrap_or("");
     let stem = file.split('.').find(|part| !part.is_empty()).unwrap_or("");

@@ -29,7 +29,7 @@ pub(super) const STANDARD_INPUT: &str = "standard input";
 /// The most problems that are kept: a file that is no configuration at all has no end of them.
 const LIMIT: usize = 200;
 
-/// One problem.
+/// One problem. For example, its `key` is `cosine.fraction`, and its `remedy` lists the integers that the key accepts.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Problem {
     /// The dotted name of the key; empty if the problem is one of the whole file.

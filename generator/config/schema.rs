@@ -22,7 +22,8 @@ pub struct Schema {
 }
 
 impl Schema {
-    /// Returns the default name of the module: the name of the device, or `my_` and that name if it is a keyword.
+    /// Returns the default name of the module: the name of the device, or `my_` and that name if it is a keyword. For example,
+    /// a device `table` would have the module `my_table`, because `table` is a keyword.
     pub fn module(&self) -> String {
         let name = self.device.replace('-', "_");
         if is_keyword(&name) { format!("my_{name}") } else { name }
@@ -100,7 +101,8 @@ impl Key {
         Key { name, kind, default, doc, condition: None, joined_later: false, drawn: None }
     }
 
-    /// Makes a key of an integer in a range.
+    /// Makes a key of an integer in a range. For example, `Key::integer("cosine.fraction", 20, 6..=24, "…")` accepts 6 to 24
+    /// and has the default 20.
     pub fn integer(
         name: &'static str,
         default: i64,
@@ -173,7 +175,8 @@ impl Key {
         Self::new(name, kind, Value::Integers(default.to_vec()), doc)
     }
 
-    /// Restricts the key to configurations in which the key `other` has a value.
+    /// Restricts the key to configurations in which the key `other` has a value. For example, `pipeline.stages` has
+    /// `only_when("architecture", "pipelined")`.
     ///
     /// `value` is written as [`Value`] displays it without quotes: `direct`, `true`, `16`.
     pub fn only_when(mut self, other: &'static str, value: &'static str) -> Self {

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-/// The value of a key. It is serialised as the value alone.
+/// The value of a key. It is serialised as the value alone. For example, `Value::Integer(20)` is serialised as `20`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(untagged)]
 pub enum Value {
@@ -34,7 +34,8 @@ impl Value {
         }
     }
 
-    /// Returns the value as TOML: [`Value::bare`], with quotes around a word.
+    /// Returns the value as TOML: [`Value::bare`], with quotes around a word. For example, the text `truncate` becomes
+    /// `"truncate"`, and the text `16` stays `16`.
     pub fn toml(&self) -> String {
         match self {
             Value::Text(text) if !is_integer(text) => format!("\"{text}\""),
@@ -52,7 +53,7 @@ pub struct Config {
     pub name: String,
     /// The name of the device.
     pub device: String,
-    /// Whether a configuration outside the accuracy contract is refused rather than warned about.
+    /// Whether Glint must refuse a configuration outside the accuracy contract, rather than warn of it.
     pub strict: bool,
     /// In the order of the schema.
     pub(super) values: Vec<(&'static str, Value)>,
@@ -144,7 +145,7 @@ impl Config {
         }
     }
 
-    /// Replaces a value. The caller answers for its range.
+    /// Replaces a value. The caller must make sure that the value is in the range of its key.
     pub fn set(&mut self, key: &str, value: Value) {
         if let Some(slot) = self.values.iter_mut().find(|(name, _)| *name == key) {
             slot.1 = value;

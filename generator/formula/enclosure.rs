@@ -10,7 +10,7 @@ const SMALL: f64 = 1e-280;
 /// The largest `f64` that is not above π.
 const HALF_TURN: f64 = std::f64::consts::PI;
 
-/// A lower and an upper limit of a real number.
+/// A lower and an upper limit of a real number. For example, the limits of π can be two neighbouring `f64` numbers.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Enclosure {
     /// The number is not below this.
@@ -45,7 +45,7 @@ impl Enclosure {
         (self.low..=self.high).contains(&value)
     }
 
-    /// Returns the smallest enclosure that contains both.
+    /// Returns the smallest enclosure that contains both. For example, the hull of 0 to 1 and 3 to 4 is 0 to 4.
     #[must_use]
     pub fn hull(self, other: Self) -> Self {
         Self { low: self.low.min(other.low), high: self.high.max(other.high) }

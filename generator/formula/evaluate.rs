@@ -60,7 +60,8 @@ impl Expression {
         })
     }
 
-    /// Returns the value of the formula, which has no operands, if it is a rational number and known to be one.
+    /// Returns the value of the formula, which has no operands, if it is a rational number and known to be one. For example,
+    /// `log2(16)` gives 4, and `sqrt(2)` gives `None`.
     pub fn rational(&self) -> Option<RBig> {
         let (_, value) = self.decided(&[], |_, _| true).ok()?;
         value.rational().cloned()
@@ -213,7 +214,7 @@ pub(super) fn binary<A: Arithmetic>(
     }
 }
 
-/// Computes the remainder of a division, which is between 0 and the divisor.
+/// Computes the remainder of a division, which is between 0 and the divisor. For example, the remainder of −1 by 4 is 3.
 fn remainder<A: Arithmetic>(
     arithmetic: &A,
     a: &A::Value,

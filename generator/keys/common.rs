@@ -14,12 +14,12 @@ glint_config::keys! {
 }
 
 impl Cosine {
-    /// Returns the format of cos γ.
+    /// Returns the format of cos γ. For example, `cosine.fraction = 20` gives `u1.20`, or `s1.20` with `cosine.signed`.
     pub fn format(&self) -> Format {
         Format { signed: self.signed, int: 1, frac: self.fraction as i32 }
     }
 
-    /// Returns 1.0 as a raw cosine.
+    /// Returns 1.0 as a raw cosine. For example, it is 1048576 for 20 fraction bits.
     pub fn one(&self) -> i64 {
         1 << self.fraction
     }
@@ -29,7 +29,7 @@ impl Cosine {
         exp2(-(self.fraction as i32))
     }
 
-    /// Returns a raw cosine as the register takes it.
+    /// Returns a raw cosine as the register takes it. For example, a negative cosine becomes 0.
     #[inline]
     pub fn clamped(&self, raw: i64) -> i64 {
         raw.clamp(0, self.one())
@@ -75,7 +75,7 @@ glint_config::keys! {
 }
 
 impl Operands {
-    /// Returns the format of n.
+    /// Returns the format of n. For example, `exponent.bits = 10` gives `u10.0`.
     pub fn exponent_format(&self) -> Format {
         Format::unsigned(self.exponent_bits as i32, 0)
     }
