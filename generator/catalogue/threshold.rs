@@ -99,7 +99,7 @@ fn level_rom<'d>(d: &'d Designer, keys: &Keys, exponent: Signal<'d>) -> Rom<'d> 
         .comments(comments)
 }
 
-/// Returns the level for n: the level of the octave of n.
+/// Returns the level for n: the level of the octave of n. For example, n = 20 is in octave 4, from 16 to 31.
 fn hundredths(keys: &Keys, n: i64) -> u32 {
     let levels = &keys.levels;
     let octave = n.max(1).ilog2() as usize;

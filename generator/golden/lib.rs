@@ -228,7 +228,7 @@ pub trait Contract: Send + Sync {
 }
 
 /// Returns the distance of `value` from the nearer of two right values. It is infinite if either is no finite number, since a
-/// formula without a value cannot confirm a result.
+/// formula without a value cannot confirm a result. For example, 2.5 is 0.5 away from the nearer of 2.0 and 4.0.
 #[inline]
 pub fn nearer(value: f64, right: [f64; 2]) -> f64 {
     let [a, b] = right.map(|right| (value - right).abs());
@@ -261,7 +261,7 @@ pub struct Axis {
 /// The values of an [`Axis`].
 #[derive(Clone, Debug, PartialEq)]
 pub enum Values {
-    /// All integers from the first to the last.
+    /// All integers from the first to the last. For example, `Range(1, 1000)` has 1000 values.
     Range(i64, i64),
     /// The values of this list.
     List(Vec<i64>),
@@ -282,7 +282,7 @@ impl Sweep {
         Self { axes: axes.collect(), omits: String::new() }
     }
 
-    /// Returns its axes in a sentence.
+    /// Returns its axes in a sentence. For example, two axes give `cos_gamma = 0 to 1048576 x exponent = 1 to 1000`.
     pub fn words(&self) -> String {
         let axes: Vec<String> = self.axes.iter().map(Axis::to_string).collect();
         axes.join(" x ")

@@ -24,7 +24,7 @@ impl Cosine {
         1 << self.fraction
     }
 
-    /// Returns an ulp of the cosine.
+    /// Returns an ulp of the cosine. For example, it is 2^−20 for `cosine.fraction = 20`.
     pub fn ulp(&self) -> f64 {
         exp2(-(self.fraction as i32))
     }

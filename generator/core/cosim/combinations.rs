@@ -45,7 +45,8 @@ impl Space {
         }
     }
 
-    /// Returns the bits of all operands together that are not held.
+    /// Returns the bits of all operands together that are not held. For example, three operands of 8 bits give 16 if one of
+    /// them is held.
     pub(super) fn bits(&self) -> u32 {
         let operands = self.ports.operands.iter().zip(&self.held);
         let free = operands.filter(|(_, held)| held.is_none());

@@ -223,7 +223,8 @@ impl Designer {
         self.inner.borrow_mut().design.about = about;
     }
 
-    /// Returns a constant of the given format; `value` must be exactly representable.
+    /// Returns a constant of the given format; `value` must be exactly representable. For example, 0.75 is representable in
+    /// `u0.8`, and 0.1 is not.
     #[track_caller]
     pub fn constant(&self, name: &str, value: f64, format: Format) -> Signal<'_> {
         let format = self.sound(name, format);

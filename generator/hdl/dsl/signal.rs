@@ -78,7 +78,8 @@ impl<'d> Signal<'d> {
         self
     }
 
-    /// Moves the point `places` to the left: the value divided by 2^places, by wiring.
+    /// Moves the point `places` to the left: the value divided by 2^places, by wiring. For example, 2 places make `u-2.10` of
+    /// `u0.8`.
     #[must_use]
     #[track_caller]
     pub fn shift_right(self, places: i32) -> Self {
@@ -95,7 +96,8 @@ impl<'d> Signal<'d> {
         self.shift_right(places.saturating_neg())
     }
 
-    /// Appends zeros up to `frac` fraction bits. Fewer than it has is an error.
+    /// Appends zeros up to `frac` fraction bits. Fewer than it has is an error. For example, `with_fraction(12)` makes `u0.12`
+    /// of `u0.8`.
     #[must_use]
     #[track_caller]
     pub fn with_fraction(self, frac: i32) -> Self {
@@ -165,7 +167,8 @@ impl<'d> Signal<'d> {
         self.wiring("above", format, format.range(), op)
     }
 
-    /// Returns the signal as a signed number of the same value, one bit wider when it was unsigned.
+    /// Returns the signal as a signed number of the same value, one bit wider when it was unsigned. For example, `u0.8` becomes
+    /// `s0.8`.
     #[must_use]
     #[track_caller]
     pub fn as_signed(self) -> Self {
@@ -212,7 +215,8 @@ impl<'d> Signal<'d> {
 
 /// The arithmetic blocks. Results are exact: their formats hold every value that the operands can give.
 impl Designer {
-    /// Returns `a + b`. Operands may differ in format: their points are aligned, and nothing is dropped.
+    /// Returns `a + b`. Operands may differ in format: their points are aligned, and nothing is dropped. For example, two
+    /// operands `u0.8` that may have any value give `u1.8`.
     #[track_caller]
     pub fn add<'d>(&'d self, name: &str, a: Signal<'d>, b: Signal<'d>) -> Signal<'d> {
         self.sum(name, a, b, None)
@@ -276,8 +280,8 @@ impl Designer {
         self.signal(self.add_net(name, format, format.range(), Driver::Op(op), true))
     }
 
-    /// Returns `a − b`, aligned as in [`Designer::add`]. The result is unsigned if the ranges show that it is never
-    /// negative.
+    /// Returns `a − b`, aligned as in [`Designer::add`]. The result is unsigned if the ranges show that it is never negative.
+    /// For example, two operands `u0.8` that may have any value give `s0.8`.
     #[track_caller]
     pub fn sub<'d>(&'d self, name: &str, a: Signal<'d>, b: Signal<'d>) -> Signal<'d> {
         let (a, b) = aligned(self.own(a), self.own(b));
@@ -288,7 +292,7 @@ impl Designer {
         self.signal(self.add_net(name, format, range, Driver::Op(op), true))
     }
 
-    /// Returns `a · b`, whole.
+    /// Returns `a · b`, whole. For example, two operands `u0.8` give `u0.16`.
     #[track_caller]
     pub fn mul<'d>(&'d self, name: &str, a: Signal<'d>, b: Signal<'d>) -> Signal<'d> {
         let (a, b) = (self.own(a), self.own(b));
@@ -317,8 +321,8 @@ impl Designer {
         self.signal(net)
     }
 
-    /// Puts `high` and `low` side by side, by wiring: an address made of two parts. Integers without a sign; a signed part is an
-    /// error, because its bits would be read as another number.
+    /// Puts `high` and `low` side by side, by wiring: an address made of two parts. Integers without a sign; a signed part is
+    /// an error, because its bits would be read as another number. For example, 2 in `u2.0` and 5 in `u3.0` give 21 in `u5.0`.
     #[track_caller]
     pub fn concat<'d>(&'d self, name: &str, high: Signal<'d>, low: Signal<'d>) -> Signal<'d> {
         let (mut high, mut low) = (self.own(high), self.own(low));

@@ -23,7 +23,8 @@ pub struct Control {
     pub overlaps: bool,
 }
 
-/// A field of the control word.
+/// A field of the control word. For example, `rough` has the field `operand_select` of two bits, which chooses among four pairs
+/// of factors.
 #[derive(Clone, Debug)]
 pub struct Field {
     /// A legal Verilog identifier.

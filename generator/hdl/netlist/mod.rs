@@ -150,7 +150,8 @@ pub struct NetlistRegister {
 /// The purpose of a register.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RegisterKind {
-    /// Loaded from an input port by its write strobe, or from its buffer by `start`; stable while the device is busy.
+    /// Loaded from an input port by its write strobe, or from its buffer by `start`; stable while the device is busy. For
+    /// example, `cos_gamma_reg` of `rough`.
     Operand,
     /// In front of such a register: takes writes at any time, for the next computation.
     Buffer,
@@ -166,7 +167,8 @@ pub enum RegisterKind {
 /// A read-only memory.
 #[derive(Clone, Debug)]
 pub struct NetlistRom {
-    /// A legal Verilog identifier; the contents go to `<design>_<name>.mem`.
+    /// A legal Verilog identifier; the contents go to `<design>_<name>.mem`. For example, the ROM `sine` of `rough` is in
+    /// `rough_sine.mem`.
     pub name: String,
     /// The word number; its range lies within the contents.
     pub address: NetId,
@@ -211,7 +213,7 @@ pub enum Role {
         /// One-bit input port.
         strobe: NetId,
     },
-    /// Input: a write strobe.
+    /// Input: a write strobe. For example, `cos_gamma_write` writes `cos_gamma_reg`.
     Strobe,
     /// Input `in_valid`: the operands belong to a point, which the pipeline takes in this clock if `in_ready` is 1.
     InValid,

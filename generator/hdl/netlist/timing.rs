@@ -4,7 +4,8 @@ use serde::Serialize;
 
 /// Clocks between the events of the handshake; `None` if they depend on the data.
 ///
-/// The clock in which `start` is taken is number 0.
+/// The clock in which `start` is taken is number 0. For example, `rough` has `valid` in clock 9 and `done` in clock 10, and may
+/// take the next `start` in clock 11.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct HandshakeTiming {
     /// The number of the first clock in which `valid` is high.
@@ -23,9 +24,9 @@ pub struct HandshakeTiming {
 }
 
 impl HandshakeTiming {
-    /// Returns the clocks from a point to the next without a pause. If a computation has several results, they are
-    /// the clocks between two points of a line under way. Otherwise they are the clocks between computations back to
-    /// back. `None` if they depend on the data.
+    /// Returns the clocks from a point to the next without a pause. If a computation has several results, they are the clocks
+    /// between two points of a line under way. Otherwise they are the clocks between computations back to back. `None` if they
+    /// depend on the data. For example, `rough` gives 11.
     pub fn clocks_per_point(&self) -> Option<u32> {
         self.valid_to_valid.or(self.start_to_start)
     }

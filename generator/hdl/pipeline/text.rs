@@ -49,7 +49,7 @@ pub fn printed(unrolled: &Unrolled) -> String {
     text
 }
 
-/// Reads a computation.
+/// Reads a computation. For example, `sum u6.0 = sub a b` is the difference of two operands.
 ///
 /// # Errors
 /// Fails if a line is not understood. The error is the line.

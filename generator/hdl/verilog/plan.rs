@@ -437,7 +437,7 @@ impl<'a> Plan<'a> {
     }
 }
 
-/// Returns the bits that number `depth` words; a memory of one word has one address bit.
+/// Returns the bits that number `depth` words; a memory of one word has one address bit. For example, 584 words need 10.
 pub fn address_width(depth: usize) -> u32 {
     depth.max(2).next_power_of_two().trailing_zeros()
 }

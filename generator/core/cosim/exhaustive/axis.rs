@@ -47,7 +47,8 @@ impl FromStr for AxisValues {
     }
 }
 
-/// Parses first, last and step from `5`, `0..1000` or `0..1000/10`.
+/// Parses first, last and step from `5`, `0..1000` or `0..1000/10`. For example, `0..1000/10` gives (0, 1000, 10), and `5`
+/// gives (5, 5, 1).
 fn range(item: &str) -> Option<(i64, i64, usize)> {
     let Some((first, rest)) = item.split_once("..") else {
         let value = item.parse().ok()?;

@@ -99,7 +99,8 @@ impl<'a> Clocks<'a> {
         self.binding.space.bits()
     }
 
-    /// Returns how many combinations there are; 0 if they are too many to go through.
+    /// Returns how many combinations there are; 0 if they are too many to go through. For example, operands of 20 bits in all
+    /// have 1048576 combinations, and operands of 27 bits give 0.
     pub fn count(&self) -> u64 {
         match self.bits() {
             bits @ ..=MOST_BITS => 1 << bits,
