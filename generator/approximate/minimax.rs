@@ -8,7 +8,7 @@ const MOST: usize = 4;
 const EXCHANGES: usize = 30;
 
 /// Returns the coefficients, from the constant on, of the polynomial of `degree` whose largest distance from `values` at the
-/// points `at` is least, and that distance. Points rise. With no more points than coefficients the degree is lowered.
+/// points `at` is least, and that distance. The points must rise. With no more points than coefficients the degree is lowered.
 pub fn minimax(at: &[f64], values: &[f64], degree: usize) -> ([f64; MOST], f64) {
     let count = degree.min(at.len().saturating_sub(1)) + 1;
     if at.len() <= count {

@@ -224,7 +224,7 @@ pub(super) const KEY: &str = "approximation.reduction";
 /// So many places leave nothing of a polynomial.
 const NOTHING: u32 = 64;
 
-/// The most bits of a reduced operand.
+/// The number of bits that a reduced operand may have.
 const MOST: u32 = 24;
 
 /// How near to each other two values are that count as equal.

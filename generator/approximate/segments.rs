@@ -23,8 +23,8 @@ impl Layout {
 }
 
 /// The domain, from 0 to 2^bits, cut into segments. An octave is the block of numbers with the same highest bit. The numbers
-/// below the last octave are a block too, and all blocks have the same number of segments. For example, `bits = 8`, `octaves =
-/// 0` and `prefix = 4` give 16 segments of 16 numbers.
+/// below the last octave are a block too, and all blocks have the same number of segments. For example, `bits = 8`,
+/// `octaves = 0` and `prefix = 4` give 16 segments of 16 numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Segments {
     /// Bits of the number of an operand.

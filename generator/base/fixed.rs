@@ -8,7 +8,7 @@
 use std::fmt;
 use std::str::FromStr;
 
-/// The widest net that Glint handles, in bits.
+/// The number of bits that a net may have at most.
 pub const MAX_WIDTH: u32 = 64;
 
 /// How many places the point can be off the bits: the value of an ulp is an f64.
@@ -64,8 +64,8 @@ impl Format {
     /// Returns the width in bits.
     ///
     /// # Panics
-    /// Panics if the width is negative. The constructors of the DSL and the configuration never accept such a format, so it is
-    /// a programming error.
+    /// Panics if the width is negative. The constructors of the DSL and the configuration never accept such a format, and no
+    /// caller may make one.
     pub fn width(self) -> u32 {
         u32::try_from(self.int + self.frac + i32::from(self.signed)).expect("a positive width")
     }
@@ -127,7 +127,7 @@ impl Format {
         raw as u64 & mask(self.width())
     }
 
-    /// Returns the raw value that a bit pattern denotes; bits above the width are ignored. For example, `0b111` is −1 in
+    /// Returns the raw value that a bit pattern denotes; it ignores the bits above the width. For example, `0b111` is −1 in
     /// `s2.0`, and 7 in `u3.0`.
     pub fn raw(self, bits: u64) -> i128 {
         let width = self.width();

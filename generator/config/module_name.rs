@@ -3,7 +3,7 @@
 use super::problems::{Violation, quoted};
 use glint_base::keywords::is_keyword;
 
-/// The longest name; the modules and files derived from it append to it.
+/// The number of characters that a name may have. It leaves room for the endings of derived modules and files.
 const LONGEST: usize = 60;
 
 /// Checks a module name; nothing is wrong if it is an identifier of Verilog and SystemVerilog

@@ -126,7 +126,7 @@ impl Problems {
         Problems { list: Vec::new(), further: 0, refused: self.is_refused(), ..self.clone() }
     }
 
-    /// Returns whether the file is refused, whatever else a check finds. A check can then skip work that takes long.
+    /// Returns whether Glint must refuse the file, whatever else a check finds. A check can then skip work that takes long.
     pub fn is_refused(&self) -> bool {
         self.refused || !self.is_empty()
     }

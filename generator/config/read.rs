@@ -11,7 +11,7 @@ use super::values::Config;
 use glint_base::input;
 use glint_base::program::Program;
 
-/// Larger than any configuration, and small enough not to exhaust the memory.
+/// The number of bytes that a configuration file may have. It is small enough not to exhaust the memory.
 const LARGEST: u64 = 1 << 16;
 
 /// Reads a configuration file, or standard input where the path is `-`.

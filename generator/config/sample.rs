@@ -20,8 +20,7 @@ const REPAIRS: usize = 100;
 /// `dot_product_7`.
 ///
 /// # Panics
-/// If the device refuses every one of a great many draws: its schema states ranges that are
-/// almost nowhere valid.
+/// Panics if the device refuses every draw. The ranges of a schema must not be invalid almost everywhere.
 pub fn sample(schema: &Schema, seed: u64) -> Config {
     let mut rng = ChaCha8Rng::seed_from_u64(seed);
     let name = format!("{}_{seed}", schema.device.replace('-', "_"));

@@ -79,7 +79,7 @@ impl Condition {
     }
 }
 
-/// The type of a key, and which of its values are accepted.
+/// The type of a key, and the values that it may have.
 #[derive(Clone, Debug, PartialEq)]
 pub enum KeyKind {
     /// An integer, both limits included.
@@ -113,7 +113,7 @@ impl Key {
         Self::new(name, KeyKind::Integer { min, max }, Value::Integer(default), doc)
     }
 
-    /// Makes a key of a number in a range.
+    /// Makes a key of a number in a range. The default must be in the range.
     pub fn number(
         name: &'static str,
         default: f64,
@@ -134,8 +134,8 @@ impl Key {
         Self::new(name, KeyKind::Number { min, max, or_zero: true }, Value::Number(0.0), doc)
     }
 
-    /// Makes a key whose value is one of some texts. With options that are all decimal integers, as `["2", "4"]`, a
-    /// file writes an integer, and [`Config::integer`] reads it as one.
+    /// Makes a key whose value is one of some texts. With options that are all decimal integers, as `["2", "4"]`, a file writes
+    /// an integer, and [`Config::integer`] reads it as one. The default must be one of the options.
     pub fn choice(
         name: &'static str,
         default: &'static str,
@@ -151,7 +151,7 @@ impl Key {
         Self::new(name, KeyKind::Flag, Value::Flag(default), doc)
     }
 
-    /// Makes a key of text of a pattern.
+    /// Makes a key of text of a pattern. The default must have the pattern.
     pub fn text(
         name: &'static str,
         default: &'static str,

@@ -19,16 +19,16 @@ pub enum TextPattern {
     Samples,
 }
 
-/// The most characters of a formula.
+/// The number of characters that a formula may have.
 const LONGEST_FORMULA: usize = 500;
 
-/// The most characters of samples.
+/// The number of characters that samples may have.
 const LONGEST_SAMPLES: usize = 1 << 20;
 
-/// The most characters of a name or a licence.
+/// The number of characters that a name or a licence may have.
 const LONGEST: usize = 60;
 
-/// The most digits of a number of a version.
+/// The number of digits that a number of a version may have.
 const DIGITS: usize = 4;
 
 impl TextPattern {

@@ -63,7 +63,7 @@ impl Config {
     /// Returns the value of an integer key, or of a choice among integers.
     ///
     /// # Panics
-    /// If the device has no such key, or it is of another kind: a mistake in the caller.
+    /// Panics if the device has no such key, or if the key is of another kind. The caller must know both.
     pub fn integer(&self, key: &str) -> i64 {
         match self.value(key) {
             Value::Integer(value) => *value,
@@ -137,7 +137,7 @@ impl Config {
     /// Returns the value of a key of any kind.
     ///
     /// # Panics
-    /// If the device has no such key: a mistake in the caller.
+    /// Panics if the device has no such key. The caller must know the keys.
     pub fn value(&self, key: &str) -> &Value {
         match self.values.iter().find(|(name, _)| *name == key) {
             Some((_, value)) => value,

@@ -258,7 +258,7 @@ impl Core {
         package::emit(&self.design, &inputs)
     }
 
-    /// Returns of a pipeline the design with the microprogram, if it is wanted.
+    /// Returns the design with the microprogram if the core is a pipeline and `is_wanted` is true, and else `None`.
     fn microprogram(&self, is_wanted: bool) -> Result<Option<Design>> {
         let wanted = is_wanted && self.design.pipeline.is_some();
         Ok(wanted.then(|| self.device.sequential(&self.config)).transpose()?)

@@ -119,7 +119,7 @@ impl Enclosure {
         Self { low: (low - reach).next_down().max(-1.0), high: (high + reach).next_up().min(1.0) }
     }
 
-    /// Returns the square root, of no negative number.
+    /// Returns the square root. The number must not be negative.
     pub(super) fn sqrt(self) -> Self {
         let root = |value: f64| {
             let root = value.sqrt();
@@ -139,7 +139,7 @@ impl Enclosure {
         }
     }
 
-    /// Returns a power with an exponent that is a whole number above 0.
+    /// Returns a power with a whole exponent, which must be above 0.
     pub(super) fn repeated_product(self, exponent: u32) -> Self {
         let base = if exponent.is_multiple_of(2) { self.abs() } else { self };
         let power = |value: f64| {
@@ -150,7 +150,7 @@ impl Enclosure {
         Self { low: power(base.low).low, high: power(base.high).high }
     }
 
-    /// Returns a power of no negative number, by `libm`.
+    /// Returns a power, by `libm`. The base must not be negative.
     pub(super) fn power(self, exponent: Self) -> Self {
         self.corners(exponent, |base, exponent| {
             let power = libm::pow(base, exponent);
@@ -219,7 +219,7 @@ impl std::ops::Mul for Enclosure {
 impl std::ops::Div for Enclosure {
     type Output = Self;
 
-    /// Divides by a number that is not 0.
+    /// Divides. The divisor must not contain 0.
     fn div(self, other: Self) -> Self {
         self.corners(other, |a, b| {
             if b.is_infinite() {

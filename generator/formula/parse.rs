@@ -59,11 +59,11 @@ const CONSTANTS: [(&str, f64); 2] = [("pi", std::f64::consts::PI), ("e", std::f6
 /// The sign of the first of them.
 const PI: &str = "π";
 
-/// The deepest nesting of parts. It limits the depth of recursion of the parser.
+/// The depth to which parts may be nested. It limits the depth of recursion of the parser.
 const DEEPEST: usize = 200;
 
-/// The most parts of a formula once its functions are written out. For example, `silu(x)` has 6 parts more than x, and names x
-/// twice, so that each `silu` around another doubles the parts.
+/// The number of parts that a formula may have once its functions are written out. For example, `silu(x)` has 6 parts more than
+/// x, and names x twice, so that each `silu` around another doubles the parts.
 const MOST_PARTS: usize = 4096;
 
 /// Reads a formula: sums, products, powers (`^` or `**`), parentheses, numbers, pi, e, operands by their names,

@@ -74,8 +74,8 @@ pub fn where_it_faces(expression: &str) -> String {
     format!("{expression} if {COSINE} > 0 else 0")
 }
 
-/// Returns the raw value of the operand for the exponent `n`; `None` where its domain or its format has none. For example, n =
-/// 20 gives 20 in `u10.0`, and 20.5 gives `None`.
+/// Returns the raw value of the operand for the exponent `n`; `None` where its domain or its format has none. For example,
+/// n = 20 gives 20 in `u10.0`, and 20.5 gives `None`.
 pub fn exponent_at(operand: &Operand, n: f64) -> Option<i64> {
     let raw = operand.format.quantise(n);
     let held = operand.format.to_f64(raw) == n;

@@ -151,8 +151,8 @@ pub fn gauss(c: f64, n: f64) -> f64 {
     libm::exp(-n * gamma * gamma / 2.0)
 }
 
-/// Returns Schlick's function (seed 002): `c / (n − n·c + c)`, 0 where `c ≤ 0`, `n = 0` included. For example, c = 0.5 and n =
-/// 1 give 0.5.
+/// Returns Schlick's function (seed 002): `c / (n − n·c + c)`, 0 where `c ≤ 0`, `n = 0` included. For example, c = 0.5 and
+/// n = 1 give 0.5.
 #[inline]
 pub fn schlick(c: f64, n: f64) -> f64 {
     // Near c = 1, n − n·c loses digits to cancellation, and n·(1 − c) does not.

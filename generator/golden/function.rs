@@ -42,8 +42,7 @@ fn device(it: &Arc<Piecewise>) -> device::Device {
 
 /// Returns the golden model.
 ///
-/// # Panics
-/// If the check of the schema has not accepted the configuration.
+/// # Panics Panics if the check of the schema has not accepted the configuration. The caller must check it first.
 pub fn model(config: &Config) -> Box<dyn Model> {
     device(&found(config).expect("a configuration that is checked").1).model()
 }

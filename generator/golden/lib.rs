@@ -245,7 +245,7 @@ pub fn nearer(value: f64, right: [f64; 2]) -> f64 {
 pub struct Sweep {
     /// The outermost first.
     pub axes: Vec<Axis>,
-    /// The operands that are left out, in a sentence; empty when every combination is covered.
+    /// The operands that the sweep leaves out, in a sentence; empty when every combination is covered.
     pub omits: String,
 }
 

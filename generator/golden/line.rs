@@ -107,7 +107,7 @@ pub fn length_operand(length_bits: u32) -> Operand {
 }
 
 /// Returns the leading `kept` fraction bits of an angle's magnitude, complement for a negative one; `None` outside −90° ≤ angle
-/// < 90°. For example, with 4 fraction bits of which all are kept, 5 gives 5, −6 gives 5, and 16 gives `None`.
+/// < 90°. For example, with `fraction` 4 and `kept` 4, 5 gives 5, −6 gives 5, and 16 gives `None`.
 #[inline]
 pub fn magnitude(angle: i64, fraction: u32, kept: u32) -> Option<i64> {
     let right = 1i64 << fraction;

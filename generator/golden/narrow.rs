@@ -19,7 +19,7 @@ pub struct Narrow {
 }
 
 impl Narrow {
-    /// Makes the conversion of values with `from_frac` fraction bits to `format`, which is at most 63 bits wide.
+    /// Makes the conversion of values with `from_frac` fraction bits to `format`, which may be at most 63 bits wide.
     pub fn new(from_frac: u32, format: Format, rounding: Rounding) -> Self {
         let places = from_frac as i32 - format.frac;
         let right = places.max(0) as u32;

@@ -25,7 +25,7 @@ struct ThresholdArithmetic {
     square: Narrow,
     /// By octave of n.
     thresholds: Vec<i64>,
-    /// The distance from ROM(n) within which either outcome of the comparison is accepted: the bound of f.
+    /// The distance from ROM(n) within which the comparison may have either outcome: the bound of f.
     margin: f64,
 }
 

@@ -214,7 +214,7 @@ pub fn line_stages(choices: &'static [&'static str]) -> Key {
     .joined_later()
 }
 
-/// Checks that the domain of n is not empty and fits the operand.
+/// Checks that the domain of n is not empty and fits the operand. For example, `exponent.bits = 8` cannot hold n = 1000.
 pub fn check_exponents(domain: &Domain, bits: u32, problems: &mut Problems) {
     let (min, max) = domain.exponents();
     if min > max {
@@ -228,10 +228,11 @@ pub fn check_exponents(domain: &Domain, bits: u32, problems: &mut Problems) {
     }
 }
 
-/// The most bits of a ROM: a megabit.
+/// The number of bits that a ROM may have: a megabit.
 const ROM_LIMIT: i64 = 1 << 20;
 
-/// Checks that a ROM with this number of address bits and bits in a word is not too large. `key` governs its size.
+/// Checks that a ROM has at most 2^20 bits. For example, 15 address bits may have words of up to 32 bits. `key` governs its
+/// size.
 pub fn check_rom_size(
     key: &str,
     rom: &str,
@@ -247,8 +248,9 @@ pub fn check_rom_size(
     }
 }
 
-/// Returns every range of `key`, each a quarter of the one before it, has as many of the `bits` bits of 1 − cos as it is cut by.
-/// The most bits that a segment is left with, up to a range that has too few.
+/// Checks that every range of `key` has the bits of 1 − cos that it is cut by. Range j has `bits` − 2·j of them, because each
+/// range is a quarter of the range before. Returns the largest number of bits that a segment keeps, up to the first range that
+/// has too few. For example, 20 bits and prefixes of 6 and 5 bits give 14.
 pub fn check_segments(segments: &[u32], key: &str, bits: u32, problems: &mut Problems) -> u32 {
     let mut most = 0;
     for (range, &prefix) in (0u32..).zip(segments) {

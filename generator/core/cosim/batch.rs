@@ -36,7 +36,7 @@ impl Points {
     /// Adds a computation with its raw operands and the number of its results.
     ///
     /// # Panics
-    /// If there are not as many operands as [`Points::new`] said.
+    /// Panics unless there are as many operands as [`Points::new`] said.
     pub fn push(&mut self, operands: impl IntoIterator<Item = i64>, results: usize) {
         self.values.extend(operands);
         self.results.push(self.result_count() + results);

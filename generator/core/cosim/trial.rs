@@ -44,8 +44,8 @@ struct ComputationTrial {
 }
 
 impl ComputationTrial {
-    /// Returns the clocks from each result to the next; where it is as from the one before, it is left out. For example,
-    /// results in the clocks 5, 6, 7 and 9 give 1 and 2.
+    /// Returns the clocks from each result to the next. It leaves out a number that equals the one before. For example, results
+    /// in the clocks 5, 6, 7 and 9 give 1 and 2.
     fn distances(&self) -> Vec<u32> {
         let pairs = self.results.windows(2);
         let mut distances: Vec<u32> = pairs.map(|pair| pair[1].0 - pair[0].0).collect();

@@ -223,8 +223,8 @@ fn placed(design: &Design, port: &Port, strobe: String, place: &mut u32) -> Port
     PortPlacement { name: net.name.clone(), format: net.format, strobe, parts }
 }
 
-/// Returns all results in one register, each in whole bytes, where they fit; else each in its own. For example, three colours
-/// of 8 bits share a register, from bits 0, 8 and 16 on.
+/// Returns the places of the results. All share one register, each in whole bytes, if they fit there; else each has its own.
+/// For example, three colours of 8 bits share a register, from bits 0, 8 and 16 on.
 fn results(design: &Design, place: &mut u32) -> Vec<PortPlacement> {
     let ports: Vec<&Port> = design.outputs().filter(|port| port.role == Role::Result).collect();
     let padded = |port: &Port| design.width(port.net).next_multiple_of(8);

@@ -215,7 +215,7 @@ impl Frame {
     /// Adds an output that shows a register.
     ///
     /// # Panics
-    /// If the slot is no register.
+    /// Panics if the slot is no register. An output that is logic must use [`Frame::output`].
     pub fn shows(&mut self, name: &str, register: Slot) {
         let of = self.shown.iter().find(|shown| shown.slot == register);
         let format = of.expect("a register that is shown").format;

@@ -58,7 +58,7 @@ impl<'d> Signal<'d> {
         self
     }
 
-    /// States a comment on `topic`. A comment on another topic than the device is left out in a pipeline.
+    /// States a comment on `topic`. A pipeline leaves out a comment on any topic but the device.
     #[must_use]
     pub fn doc_on(self, topic: Topic, line: &str) -> Self {
         self.designer.with(|inner| inner.design.nets[self.id.index()].doc_topic = topic);
@@ -256,7 +256,8 @@ impl Designer {
         self.signal(self.add_net(name, format, range, Driver::Op(op), true))
     }
 
-    /// Returns `a + b` modulo the width, with the carry in when given: words without an integer position.
+    /// Returns `a + b` modulo the width, with the carry in when given: words without an integer position. Both must have the
+    /// same format.
     #[track_caller]
     pub fn add_modulo<'d>(
         &'d self,
@@ -321,8 +322,9 @@ impl Designer {
         self.signal(net)
     }
 
-    /// Puts `high` and `low` side by side, by wiring: an address made of two parts. Integers without a sign; a signed part is
-    /// an error, because its bits would be read as another number. For example, 2 in `u2.0` and 5 in `u3.0` give 21 in `u5.0`.
+    /// Puts `high` and `low` side by side, by wiring: an address made of two parts. Both must be integers without a sign,
+    /// because the bits of a signed part would be read as another number. For example, 2 in `u2.0` and 5 in `u3.0` give 21 in
+    /// `u5.0`.
     #[track_caller]
     pub fn concat<'d>(&'d self, name: &str, high: Signal<'d>, low: Signal<'d>) -> Signal<'d> {
         let (mut high, mut low) = (self.own(high), self.own(low));
@@ -385,14 +387,14 @@ impl Designer {
         self.signal(self.add_wiring(name, format, range, Driver::Op(Op::Concat(parts))))
     }
 
-    /// Returns the signal that is 1 when both are 1; operands of one bit.
+    /// Returns the signal that is 1 when both are 1. Both must have one bit.
     #[track_caller]
     pub fn and<'d>(&'d self, name: &str, a: Signal<'d>, b: Signal<'d>) -> Signal<'d> {
         let (a, b) = (self.one_bit(a), self.one_bit(b));
         self.signal(self.add_named(name, Format::BIT, Driver::Op(Op::And(a, b))))
     }
 
-    /// Returns the signal that is 1 when either is 1; operands of one bit.
+    /// Returns the signal that is 1 when either is 1. Both must have one bit.
     #[track_caller]
     pub fn or<'d>(&'d self, name: &str, a: Signal<'d>, b: Signal<'d>) -> Signal<'d> {
         let (a, b) = (self.one_bit(a), self.one_bit(b));
@@ -425,8 +427,8 @@ impl Designer {
         self.signal(self.add_named(name, Format::BIT, Driver::Op(Op::All(self.own(a).id()))))
     }
 
-    /// Returns input 0 or 1 by the one-bit signal `select`, a signal of the datapath. Inputs have one point; the result holds
-    /// them all.
+    /// Returns input 0 or 1 by the one-bit signal `select`, a signal of the datapath. The inputs must have one binary point;
+    /// the result can hold both.
     #[track_caller]
     pub fn choose<'d>(
         &'d self,
@@ -440,8 +442,8 @@ impl Designer {
 
     /// Returns a mux that the microprogram controls, with a select field of its own, `<name>_select`.
     ///
-    /// The inputs have one point ([`Signal::with_fraction`] aligns them; [`Designer::bus`] carries
-    /// any); integer bits and signs may differ.
+    /// The inputs must have one binary point ([`Signal::with_fraction`] aligns them; [`Designer::bus`] carries any); integer
+    /// bits and signs may differ.
     #[track_caller]
     pub fn mux<'d>(&'d self, name: &str, inputs: impl IntoIterator<Item = Signal<'d>>) -> Mux<'d> {
         let inputs: Vec<_> = inputs.into_iter().collect();

@@ -101,8 +101,8 @@ impl Pipeline {
         self.units.iter().any(|unit| unit.nets.contains(&net))
     }
 
-    /// Returns the named nets whose logic is in a stage, each with the name of its value, in the order of the
-    /// design's nets. Nets of the handshake are left out.
+    /// Returns the named nets whose logic is in a stage, each with the name of its value, in the order of the design's nets. It
+    /// leaves out the nets of the handshake.
     pub fn computed<'a>(
         &'a self,
         design: &'a Design,

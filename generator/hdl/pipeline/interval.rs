@@ -24,8 +24,8 @@ pub struct Unreached {
 /// Returns the clocks from a point to the next. A sequential core takes a point every `most`.
 ///
 /// # Errors
-/// Fails if the interval is longer than the sequential core's, or if no interval reaches the rate. Fails if a rate is
-/// wanted without a clock. Fails if every interval needs more multipliers than are allowed.
+/// Fails if the interval is longer than the sequential core's, or if no interval reaches the rate. Fails if a rate is wanted
+/// without a clock. Fails if every interval needs more multipliers than the configuration allows.
 pub fn clocks<'a>(
     name: &str,
     options: &Options,

@@ -4,7 +4,7 @@ use super::naming::Naming;
 use super::text::literal;
 use crate::netlist::{Design, Partition, RegisterKind};
 
-/// Returns the assertions of a partition as lines of Verilog; the caller puts them under `FORMAL`.
+/// Returns the assertions of a partition as lines of Verilog; the caller must put them under `FORMAL`.
 pub fn invariants(design: &Design, naming: &Naming, partition: Partition) -> Vec<String> {
     let mut names = naming.names.clone();
     let lines = match partition {

@@ -243,7 +243,7 @@ impl<'a> Plan<'a> {
         }
     }
 
-    /// Finds the cells that are written. Cells that nobody named and nothing needs are left out.
+    /// Finds the cells that are written. It leaves out cells that nobody named and nothing needs.
     fn find_live(&mut self, order: &[NetId]) {
         let mut live = vec![false; self.design.nets.len()];
         // Registers and ROMs: no cell is known to be written yet.

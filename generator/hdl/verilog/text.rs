@@ -4,7 +4,7 @@ use std::collections::HashSet;
 
 use crate::netlist::Design;
 
-/// The longest line that Glint writes into Verilog.
+/// The number of columns that a line of the Verilog may have.
 pub const COLUMNS: usize = 100;
 
 /// Returns `text` in ASCII: the signs of the formulas spelled out, anything else unknown as `?`. For example, `cos²γ ≤ ½`

@@ -65,7 +65,8 @@ struct LaneTask {
 }
 
 impl Team {
-    /// Returns every instance takes the next point as soon as it can: a core when it is free, a pipeline when it is ready.
+    /// Returns the results of the points in `range`. Every instance takes the next point as soon as it can: a core must be
+    /// free, and a pipeline must be ready.
     fn compute(&mut self, points: &Points, range: Range<usize>) -> Result<Vec<i64>> {
         let Self { instances, latency, in_ready } = self;
         let width = instances.ports.results.len();

@@ -7,7 +7,7 @@ use anyhow::{Result, ensure};
 use glint_base::text::grouped;
 use glint_golden::{Contract, Sweep, Values};
 
-/// More values than this are a slip of the pen.
+/// The number of values that an axis may have. More are a slip of the pen.
 const MOST_VALUES: usize = 1 << 20;
 
 /// An operand and its raw values, as `cos_dgamma=908094,950000..960000/1000`: single values, and ranges with both

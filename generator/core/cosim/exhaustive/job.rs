@@ -18,7 +18,7 @@ use super::places::{Peak, Places};
 use glint_base::text::grouped;
 use glint_golden::{Contract, Sweep};
 
-/// A division into more parts than machines would ever take is a slip of the pen.
+/// The number of shards that a job may have. More than any number of machines is a slip of the pen.
 pub const MOST_SHARDS: u64 = 1_000_000;
 
 /// Missing shards that are named.

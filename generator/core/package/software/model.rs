@@ -288,7 +288,8 @@ fn of_line(design: &Design, tables: &[String]) -> Result<(Vec<String>, Vec<RomId
     Ok((body, read))
 }
 
-/// Returns all registers take their new values at once.
+/// Returns the statements of a rising edge, at which all registers take their new values at once. A value that depends on the
+/// state must be computed before the state changes.
 fn clocked(
     graph: &Graph,
     printer: &Printer,
