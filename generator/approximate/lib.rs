@@ -252,7 +252,7 @@ impl Piecewise {
         [if self.reduction.is_some() { "polynomial" } else { "result" }, "sum1", "sum2"]
     }
 
-    /// Returns the polynomial's degree.
+    /// Returns the polynomial's degree. For example, words of three coefficients have degree 2.
     pub fn degree(&self) -> usize {
         self.coefficients.len() - 1
     }
@@ -309,7 +309,8 @@ impl Piecewise {
         self.reduced(raw).1.result(polynomial)
     }
 
-    /// Returns the number of bits of the table.
+    /// Returns the number of bits of the table. For example, the table of `configs/function.toml`, for 1/√x from 1 to 2, has 16
+    /// words of 35 bits, which are 560 bits.
     pub fn rom_bits(&self) -> u64 {
         let width: u32 = self.coefficients.iter().map(|format| format.width()).sum();
         self.words.len() as u64 * u64::from(width)

@@ -19,7 +19,7 @@ pub struct Wish {
     pub identity: Identity,
 }
 
-/// The largest degree.
+/// The degree that a polynomial may have at most.
 const DEGREES: u32 = 3;
 
 /// The number of bits that the number of a word may have.

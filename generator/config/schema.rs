@@ -92,7 +92,7 @@ pub enum KeyKind {
     Flag,
     /// Text of a pattern.
     Text(TextPattern),
-    /// A list of integers; its entries and its length have limits.
+    /// A list of integers; its entries and its length have limits. For example, `visibility.levels = [50, 100, 200, 400, 800]`.
     Integers { min: i64, max: i64, len_min: usize, len_max: usize },
 }
 

@@ -45,13 +45,14 @@ pub fn brief(schema: &Schema, config: &Config, given: &[String]) -> String {
     text
 }
 
-/// Returns `key = value` with the dotted name of the key.
+/// Returns `key = value` with the dotted name of the key. For example, `cosine.fraction = 20`.
 fn assignment(config: &Config, key: &str) -> String {
     format!("{key} = {}", config.value(key).toml())
 }
 
 /// Returns the meaning of a key in a few words: its first clause, and the values of a choice. If the values are too long for
-/// both, the remark is the list of values alone.
+/// both, the remark is the list of values alone. For example, `cosine.fraction` has the remark "Fraction bits of the cosine
+/// operands".
 fn remark(key: &Key) -> String {
     let ends = [". ", ": ", "; "].map(|mark| key.doc.find(mark).unwrap_or(key.doc.len()));
     let end = ends.into_iter().min().unwrap_or(key.doc.len());

@@ -39,7 +39,7 @@
 use super::frame::{ClockedModel, Frame, FrameStep, idle};
 use super::{Bound, Contract, Model, Operand, Output, Sweep, Term};
 
-/// More clocks than any computation takes.
+/// The number of clocks that a computation may take.
 const LONGEST: u32 = 1 << 20;
 
 /// In the place of a result that is never shown.

@@ -43,7 +43,7 @@ impl Points {
         assert_eq!(self.values.len(), self.operands * self.len(), "operands");
     }
 
-    /// Adds the computations of another list with as many operands.
+    /// Adds the computations of another list, which must have as many operands.
     pub fn append(&mut self, other: &Self) {
         let before = self.result_count();
         self.values.extend(&other.values);

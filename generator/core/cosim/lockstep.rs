@@ -218,9 +218,9 @@ impl<'a> Lockstep<'a> {
         Ok(())
     }
 
-    /// Runs golden model and simulation from power-up on under recorded inputs, for example the inputs of
-    /// [`Lockstep::record`]: by stream, then by clock, then by input. Each stream runs for `clocks` clocks, and begins again
-    /// after its end. Results are compared with the golden model, and not with the formula.
+    /// Runs golden model and simulation from power-up on under recorded inputs, for example the inputs of [`Lockstep::record`]:
+    /// by stream, then by clock, then by input. Each stream runs for `clocks` clocks, and begins again after its end. Results
+    /// are compared with the golden model, and not with the formula. Every stream must have at least one clock.
     ///
     /// # Errors
     /// As of [`Lockstep::run`]; a stream without a clock, or a clock with more or fewer inputs than the design.
@@ -281,7 +281,8 @@ impl<'a> Lockstep<'a> {
         Outcome::of(self.binding.registers, self.binding.outputs.len(), streams)
     }
 
-    /// Returns the number of streams into which a run is divided.
+    /// Returns the number of streams into which a run is divided. For example, the default test of 100 000 results has 64
+    /// streams for `rough`, and 49 for `rough_pipelined`.
     fn streams(&self, points: u64) -> u64 {
         if self.binding.is_pipeline() {
             let streams = points.div_ceil(PIPELINE_POINTS);

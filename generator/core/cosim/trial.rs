@@ -13,7 +13,7 @@ use glint_golden::{Contract, Highlight, Operand};
 use glint_rtl::netlist::{self, Design, HandshakeTiming, NetId};
 use glint_rtl::sim::Simulator;
 
-/// More clocks than any device takes.
+/// The number of clocks that a computation may take.
 const LIMIT: u32 = 1 << 16;
 
 /// Computations in a list, the first of them the corners of the domain.

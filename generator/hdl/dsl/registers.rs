@@ -105,7 +105,8 @@ impl Designer {
         InputOperand { port: self.signal(port), strobe: self.signal(strobe), q: self.signal(q) }
     }
 
-    /// Returns a register of the datapath, loaded in the microinstructions that say so; its field is `<name>_load`.
+    /// Returns a register of the datapath, loaded in the microinstructions that say so; its field is `<name>_load`. For
+    /// example, the register `reg11_cos_cos` of `rough` has the field `reg11_cos_cos_load`.
     ///
     /// It has no reset, and an operand cannot have its name, because both would own `<name>_load`.
     #[track_caller]

@@ -29,7 +29,7 @@ impl Design {
         NetId(self.nets.len() as u32 - 1)
     }
 
-    /// Lets a new register, which takes nothing yet, drive a net.
+    /// Lets a new register, which takes nothing yet, drive a net. The caller must connect its data.
     pub fn add_register(&mut self, q: NetId, kind: RegisterKind) -> &mut NetlistRegister {
         let at = self.registers.len();
         self.nets[q.index()].driver = Driver::Register(RegId(at as u32));

@@ -10,13 +10,13 @@ use serde::Serialize;
 pub struct HandshakeTiming {
     /// The number of the first clock in which `valid` is high.
     pub start_to_valid: Option<u32>,
-    /// Clocks from a result to the next one of the same computation, if it has several.
+    /// Clocks from a result to the next one of the same computation, if it has several. For example, `quad_cosine` has 1.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub valid_to_valid: Option<u32>,
     /// The number of the clock in which `done` is high.
     pub start_to_done: Option<u32>,
-    /// If that depends on the data: the number of the latest clock in which `done` can be high, if the microprogram
-    /// has a bound.
+    /// If that depends on the data: the number of the latest clock in which `done` can be high, if the microprogram has a
+    /// bound. For example, `lyon` has 36.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub start_to_done_at_most: Option<u32>,
     /// The number of the first clock in which the next `start` is taken.

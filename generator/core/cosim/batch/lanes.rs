@@ -14,7 +14,7 @@ use crate::cosim::instances::Instances;
 use glint_golden::Contract;
 use glint_rtl::netlist::{Design, NetId, Role};
 
-/// More clocks than any computation takes.
+/// The number of clocks that a computation may take.
 const LIMIT: u64 = 1 << 16;
 
 /// rust_hdl: as many simulators as there are threads, each of many instances of the design.

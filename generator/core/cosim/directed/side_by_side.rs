@@ -12,7 +12,7 @@ use glint_rtl::sim::Machine;
 /// Computations that run together.
 pub const LANES: usize = 32;
 
-/// More clocks than any computation takes.
+/// The number of clocks that a computation may take.
 const LIMIT: u32 = 1 << 16;
 
 /// A set of lanes.

@@ -59,7 +59,7 @@ fn range(item: &str) -> Option<(i64, i64, usize)> {
     Some((first.parse().ok()?, last.parse().ok()?, step))
 }
 
-/// Returns the sweep of a contract with other values of some operands.
+/// Returns the sweep of a contract with other values of some operands. Each operand may be named once.
 ///
 /// # Errors
 /// Fails if an operand is no axis of the sweep, or if a value is outside the operand's domain.

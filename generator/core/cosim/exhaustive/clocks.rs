@@ -22,7 +22,7 @@ use glint_base::program::Program;
 use glint_golden::{Contract, Model};
 use glint_rtl::netlist::Design;
 
-/// The most bits of all operands together for which all combinations are visited.
+/// The number of bits that all operands together may have. With more, the combinations cannot all be visited.
 pub const MOST_BITS: u32 = 26;
 
 /// Combinations of a lane.
