@@ -40,7 +40,7 @@ const MOST_SUMS: usize = 4;
 const POLES: u32 = 1 << 16;
 const BESIDE: f64 = 1.0 / 1024.0;
 
-/// The widest operand, in bits, for which every value is computed.
+/// The number of bits that an operand may have if every value is to be computed.
 pub const MOST_BITS: u32 = 26;
 
 glint_config::choices! {

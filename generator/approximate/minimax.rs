@@ -1,7 +1,7 @@
 //! Finds the polynomial with the smallest largest error on given points, by exchanging reference points (the Remez
 //! algorithm).
 
-/// The most coefficients.
+/// The number of coefficients that a polynomial may have.
 const MOST: usize = 4;
 
 /// The most exchanges. The search ends earlier once the largest error equals the error at the reference points.

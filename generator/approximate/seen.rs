@@ -5,7 +5,7 @@ use rayon::prelude::*;
 use super::{Reduction, Refusal, TargetFunction};
 use glint_base::fixed::{Format, exp2, nearest};
 
-/// The most operands that the search looks at. If there are more, the search takes evenly spread ones.
+/// The number of operands that the search may look at. If there are more, the search takes evenly spread ones.
 const HELD: u64 = 1 << 25;
 
 /// The most of them where there are more than can be computed.

@@ -106,7 +106,8 @@ fn hundredths(keys: &Keys, n: i64) -> u32 {
     levels[octave.min(levels.len() - 1)]
 }
 
-/// Returns the smallest word of f, but the largest word at most, whose product with the largest colour reaches a level.
+/// Returns the smallest word of f, but the largest word at most, whose product with the largest colour reaches a level. For
+/// example, the level 100 gives 258 for colours of 8 bits and an f of 16 fraction bits.
 fn level_word(keys: &Keys, hundredths: u32) -> i128 {
     let unit = 100 * ((1 << keys.operands.colours.bits) - 1);
     let words = 1i128 << keys.f.fraction;

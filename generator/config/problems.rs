@@ -26,7 +26,7 @@ pub struct Problems {
 /// The name of standard input in problems.
 pub(super) const STANDARD_INPUT: &str = "standard input";
 
-/// The most problems that are kept: a file that is no configuration at all has no end of them.
+/// The number of problems that a list may keep: a file that is no configuration at all has no end of them.
 const LIMIT: usize = 200;
 
 /// One problem. For example, its `key` is `cosine.fraction`, and its `remedy` lists the integers that the key accepts.

@@ -4,13 +4,13 @@ use super::schema::{Key, KeyKind, Schema};
 use super::shared::shared_keys;
 use super::values::Config;
 
-/// The widest line of a comment.
+/// The number of columns that a line of a comment may have.
 const WIDTH: usize = 90;
 
 /// The width that a value of [`brief`] is padded to, so that the remarks begin in one column.
 const REMARK_COLUMN: usize = 38;
 
-/// The most letters that a remark has.
+/// The most letters that a remark may have.
 const REMARK_WIDTH: usize = 80;
 
 /// Returns the short file that `glint new` prints: one line for each key of the device, with a remark.

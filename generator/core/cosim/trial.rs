@@ -19,7 +19,7 @@ const LIMIT: u32 = 1 << 16;
 /// Computations in a list, the first of them the corners of the domain.
 const COMPUTATIONS: usize = 40;
 
-/// The longest line of a computation in a list, in intervals.
+/// The number of intervals that a line of a computation in a list may have.
 const SHORT: i64 = 9;
 
 /// The longest line whose clocks are measured, in intervals beyond the shortest.

@@ -119,7 +119,8 @@ impl Segmentation {
         self.blocks().iter().map(|block| block.bits - block.prefix).max().unwrap_or(0).max(1)
     }
 
-    /// Returns the number of words of the table.
+    /// Returns the number of words of the table. For example, 20 bits and the segments 6, 8, 7, 6, 5, 4, 3, 3, 2 give the 584
+    /// words of ROM 18 in `rough`.
     pub fn entries(&self) -> usize {
         self.blocks()
             .iter()

@@ -96,8 +96,8 @@ impl<'d> Signal<'d> {
         self.shift_right(places.saturating_neg())
     }
 
-    /// Appends zeros up to `frac` fraction bits. Fewer than it has is an error. For example, `with_fraction(12)` makes `u0.12`
-    /// of `u0.8`.
+    /// Appends zeros up to `frac` fraction bits. The signal must not have more fraction bits than that. For example,
+    /// `with_fraction(12)` makes `u0.12` of `u0.8`.
     #[must_use]
     #[track_caller]
     pub fn with_fraction(self, frac: i32) -> Self {
