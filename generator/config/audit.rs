@@ -1,4 +1,4 @@
-//! Finds mistakes in a schema itself, for the tests of devices.
+//! Finds mistakes in a schema itself, for the tests of devices. For example, a default may be outside the range of its key.
 
 use super::problems::Problems;
 use super::schema::{Condition, Key, KeyKind, Schema};

@@ -62,8 +62,8 @@ pub fn parabola(c: f64, n: f64) -> f64 {
     rough(c, 1.0, false, n)
 }
 
-/// Returns a reflectance where it reaches UA 30041's level of visibility, otherwise 0. For example, 0.3 at the level 0.5 gives
-/// 0.
+/// Returns a reflectance where it reaches UA 30041's level of visibility, otherwise 0. For example, the level 0.5 makes 0 of
+/// 0.3.
 #[inline]
 pub fn threshold(square: f64, level: f64) -> f64 {
     if square < level { 0.0 } else { square }

@@ -1,4 +1,5 @@
-//! Generates the self-checking test bench of a core and its vectors: stimulus, and the outputs that are expected.
+//! Generates the self-checking test bench of a core and its vectors: stimulus, and the outputs that are expected. For example,
+//! `rough` has `rough_tb.v`, `rough_stimulus.mem` and `rough_expected.mem`.
 
 use anyhow::{Result, ensure};
 use glint_base::fill;

@@ -12,8 +12,8 @@ pub struct Quadrant<'d> {
     pub negative: Signal<'d>,
 }
 
-/// Returns the quadrant of `turn`, an integer without a sign whose steps are a whole turn, after `ahead` more quadrants. For
-/// example, step 20 of 64 is in the second quadrant, 12 steps before the next zero of the sine.
+/// Returns the quadrant of `turn`, which must be an integer without a sign and whose steps are a whole turn, after `ahead` more
+/// quadrants. For example, step 20 of 64 is in the second quadrant, 12 steps before the next zero of the sine.
 #[track_caller]
 pub fn quadrant<'d>(d: &'d Designer, name: &str, turn: Signal<'d>, ahead: u32) -> Quadrant<'d> {
     let steps = turn.format().width() - 2;

@@ -170,7 +170,7 @@ pub(crate) struct Inner {
 }
 
 impl Designer {
-    /// Makes an empty design; `name` becomes the name of the top module.
+    /// Makes an empty design; `name` becomes the name of the top module. It must be a Verilog identifier.
     ///
     /// The common handshake is there from the start: inputs `rst_n` and `start`, outputs `valid`,
     /// `busy` and `done` (the outputs join when the microprogram is known).

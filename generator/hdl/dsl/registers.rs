@@ -131,8 +131,8 @@ impl Designer {
         self.signal(q)
     }
 
-    /// Makes select lines that several muxes share. `choices` names each value of the lines: all inputs that the
-    /// muxes then pass on together.
+    /// Makes select lines that several muxes share. `choices` names each value of the lines: all inputs that the muxes then
+    /// pass on together. For example, `select("operand_select", &["cosines", "sines", "half_n", "square"])` has two lines.
     #[track_caller]
     pub fn select(&self, name: &str, choices: &[&str]) -> Select<'_> {
         let width = usize::BITS - choices.len().saturating_sub(1).leading_zeros();

@@ -180,7 +180,8 @@ impl<'d> Signal<'d> {
         self.designer.signal(self.designer.resized(self, signed))
     }
 
-    /// Reads the bits in another format of the same width: the bit pattern is not converted.
+    /// Reads the bits in another format, which must have the same width. The bit pattern is not converted. For example, 255 in
+    /// `u8.0` is read as −1 in `s7.0`.
     #[must_use]
     #[track_caller]
     pub fn read_as(self, format: Format) -> Self {
@@ -360,8 +361,8 @@ impl Designer {
         low.wiring("beside", format, (from, to), Op::Concat(vec![top.id(), low.id()]))
     }
 
-    /// Returns the bits of the parts side by side, the first in the top bits, read in `format`, which is as wide
-    /// as all together: wiring.
+    /// Returns the bits of the parts side by side, the first in the top bits, read in `format`, which must be as wide as all
+    /// together: wiring.
     #[track_caller]
     pub fn join<'d>(&'d self, name: &str, parts: &[Signal<'d>], format: Format) -> Signal<'d> {
         let parts = self.own_all(parts);
@@ -453,7 +454,7 @@ impl Designer {
         self.mux_on(name, select, inputs)
     }
 
-    /// Returns a mux that shares its select field with others.
+    /// Returns a mux that shares its select field with others. It must have an input for each value of the field.
     #[track_caller]
     pub fn mux_on<'d>(
         &'d self,

@@ -8,7 +8,8 @@ use super::{Goal, Options};
 pub enum IntervalGoal {
     /// A number of clocks.
     Clocks(usize),
-    /// The longest interval with this number of million points a second at the clock of the goal.
+    /// The longest interval with this number of million points a second at the clock of the goal. For example, 26 million
+    /// points a second at 130 MHz allow an interval of at most 5 clocks.
     Rate(f64),
     /// The fewest with which there are no more multipliers than this.
     Multipliers(usize),

@@ -1,4 +1,5 @@
-//! Writes the assertions of a partition, for formal tools alone: the proof of the handshake rests on them.
+//! Writes the assertions of a partition, for formal tools alone: the proof of the handshake rests on them. For example, the
+//! control unit of `rough` asserts that `word_address` is 0 while `run` is 0.
 
 use super::naming::Naming;
 use super::text::literal;
