@@ -23,7 +23,8 @@ pub struct Distance<'d> {
 
 /// Describes everything behind the operand `cos_gamma`: operands, the products, 2^−y, outputs, microprogram.
 ///
-/// # Panics Panics if the check of the schema has not accepted the configuration. The caller must check it first.
+/// # Panics
+/// Panics if the check of the schema has not accepted the configuration. The caller must check it first.
 pub fn describe<'d>(
     d: &'d Designer,
     config: &Config,

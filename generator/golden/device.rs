@@ -55,7 +55,8 @@ pub struct Device {
 impl Frame {
     /// Returns the device at power-up, as [`Frame::model`] takes it.
     ///
-    /// # Panics Panics if there is no microinstruction. A program must have at least one.
+    /// # Panics
+    /// Panics if there is no microinstruction. A program must have at least one.
     pub fn device(self, program: impl IntoIterator<Item = FrameStep>) -> Device {
         let operands = self.operands().map(|(name, format, domain)| Operand {
             name: name.to_owned(),

@@ -42,7 +42,8 @@ fn device(it: &Arc<Piecewise>) -> device::Device {
 
 /// Returns the golden model.
 ///
-/// # Panics Panics if the check of the schema has not accepted the configuration. The caller must check it first.
+/// # Panics
+/// Panics if the check of the schema has not accepted the configuration. The caller must check it first.
 pub fn model(config: &Config) -> Box<dyn Model> {
     device(&found(config).expect("a configuration that is checked").1).model()
 }

@@ -123,7 +123,8 @@ fn parts(keys: &Keys) -> PartConfigs {
 
 /// Returns the golden model.
 ///
-/// # Panics Panics if the check of the schema has not accepted the configuration. The caller must check it first.
+/// # Panics
+/// Panics if the check of the schema has not accepted the configuration. The caller must check it first.
 pub fn model(config: &Config) -> Box<dyn Model> {
     let keys = Keys::of(config);
     device(&keys, &parts(&keys)).model()

@@ -55,7 +55,8 @@ impl Frame {
     /// Returns the model at power-up. The first microinstruction is the one in which the device idles, the last ends
     /// the program.
     ///
-    /// # Panics Panics if there is no microinstruction. A program must have at least one.
+    /// # Panics
+    /// Panics if there is no microinstruction. A program must have at least one.
     pub fn model(mut self, program: impl IntoIterator<Item = FrameStep>) -> ClockedModel {
         let program: Vec<_> = program.into_iter().collect();
         assert!(!program.is_empty(), "a device idles in its first microinstruction");

@@ -142,7 +142,8 @@ impl<const LANES: usize> Machine<LANES> {
     /// Returns for each lane a pattern that is 0 exactly if every net carries its `expected` value. Only the bits in
     /// `known` are compared, or all bits if it is `None`.
     ///
-    /// # Panics Panics if the compiler has optimised a net away, which it may do only if the net has no name.
+    /// # Panics
+    /// Panics if the compiler has optimised a net away, which it may do only if the net has no name.
     pub fn differences(
         &self,
         nets: &[NetId],
@@ -200,7 +201,8 @@ impl<const LANES: usize> Machine<LANES> {
 
     /// Returns the bit pattern of a net in each lane.
     ///
-    /// # Panics Panics if the compiler has optimised the net away, which it may do only if the net has no name.
+    /// # Panics
+    /// Panics if the compiler has optimised the net away, which it may do only if the net has no name.
     pub fn lanes(&self, net: NetId) -> [u64; LANES] {
         match self.program.place(net) {
             ValueSlot::Narrow(slot) => self.narrow[slot as usize].map(u64::from),
@@ -210,8 +212,9 @@ impl<const LANES: usize> Machine<LANES> {
 
     /// Returns the bit pattern of a net in one lane.
     ///
-    /// # Panics Panics if there is no such lane, or if the compiler has optimised the net away, which it may do only if the net
-    /// has no name.
+    /// # Panics
+    /// Panics if there is no such lane, or if the compiler has optimised the net away, which it may do only if the net has no
+    /// name.
     pub fn lane(&self, net: NetId, lane: usize) -> u64 {
         match self.program.place(net) {
             ValueSlot::Narrow(slot) => self.narrow[slot as usize][lane].into(),

@@ -109,15 +109,17 @@ impl<const LANES: usize> Simulator<LANES> {
 
     /// Returns the bit pattern of a net in each lane, after the latest clock.
     ///
-    /// # Panics Panics if the compiler has optimised the net away, which it may do only if the net has no name.
+    /// # Panics
+    /// Panics if the compiler has optimised the net away, which it may do only if the net has no name.
     pub fn lanes(&self, net: NetId) -> [u64; LANES] {
         self.circuit.machine.lanes(net)
     }
 
     /// Returns the bit pattern of a net in one lane, after the latest clock.
     ///
-    /// # Panics Panics if there is no such lane, or if the compiler has optimised the net away, which it may do only if the net
-    /// has no name.
+    /// # Panics
+    /// Panics if there is no such lane, or if the compiler has optimised the net away, which it may do only if the net has no
+    /// name.
     pub fn lane(&self, net: NetId, lane: usize) -> u64 {
         self.circuit.machine.lane(net, lane)
     }
@@ -125,7 +127,8 @@ impl<const LANES: usize> Simulator<LANES> {
     /// Returns for each lane a pattern that is 0 exactly if every net carries its `expected` value. Only the bits in
     /// `known` are compared, or all bits if it is `None`.
     ///
-    /// # Panics Panics if the compiler has optimised a net away, which it may do only if the net has no name.
+    /// # Panics
+    /// Panics if the compiler has optimised a net away, which it may do only if the net has no name.
     pub fn differences(
         &self,
         nets: &[NetId],
@@ -219,7 +222,8 @@ impl Simulator {
 
     /// Returns the bit pattern of a net after the latest clock.
     ///
-    /// # Panics Panics if the compiler has optimised the net away, which it may do only if the net has no name.
+    /// # Panics
+    /// Panics if the compiler has optimised the net away, which it may do only if the net has no name.
     #[inline]
     pub fn value(&self, net: NetId) -> u64 {
         self.lane(net, 0)
