@@ -24,7 +24,7 @@ const OPERANDS_BUFFERED: &str = "operands.buffered";
 /// one's own, in full.
 #[derive(Clone, Copy)]
 pub struct Device {
-    /// As the key `device` names it: the same as [`Schema::device`].
+    /// The name that the key `device` gives. It must be the same as [`Schema::device`].
     pub name: &'static str,
     /// One line for `glint list`.
     pub summary: &'static str,

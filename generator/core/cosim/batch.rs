@@ -28,7 +28,7 @@ pub struct Points {
 }
 
 impl Points {
-    /// Makes an empty list of points. Each point has `operands` operands, in the order of the [`Contract`].
+    /// Makes an empty list of points. Each point must have `operands` operands, in the order of the [`Contract`].
     pub fn new(operands: usize) -> Self {
         Self { operands, values: Vec::new(), results: vec![0] }
     }

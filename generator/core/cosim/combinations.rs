@@ -29,8 +29,8 @@ impl Space {
         Self { held: vec![None; ports.operands.len()], listed: Vec::new(), ports: ports.clone() }
     }
 
-    /// Makes the space of all combinations, with these raw operands, each in the order of the contract, at its first
-    /// places.
+    /// Makes the space of all combinations, with these raw operands at its first places. Each list must be in the order of the
+    /// contract.
     pub(super) fn listed(ports: &Arc<Ports>, list: &[Vec<i64>]) -> Self {
         Self { listed: list.to_vec(), ..Self::new(ports) }
     }

@@ -68,7 +68,7 @@ impl<'a> Lockstep<'a> {
         Ok(Self { binding: Binding::new(design, model, contract)?, seed })
     }
 
-    /// Holds some operands at raw values: the stimulus seldom draws others for them.
+    /// Holds some operands at raw values: the stimulus may draw others for them, but seldom does.
     #[must_use]
     pub fn holding(self, held: &[(String, i64)]) -> Self {
         Self { binding: self.binding.holding(held), ..self }

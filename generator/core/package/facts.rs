@@ -57,7 +57,7 @@ pub struct FieldFacts<'a> {
     pub lines: &'a [u16],
 }
 
-/// A microinstruction.
+/// A microinstruction. For example, microinstruction 3 of `rough` is named `12 <- sin gamma * sin dgamma`.
 #[derive(Serialize)]
 pub struct MicroinstructionFacts<'a> {
     /// Its address.

@@ -7,7 +7,7 @@ use sha2::{Digest, Sha256};
 pub struct OutputFile {
     /// Relative to the output directory, with `/`: `rtl_out/<name>/<name>.v`.
     pub path: String,
-    /// The whole text, ending with a newline.
+    /// The whole text, which must end with a newline.
     pub contents: String,
 }
 

@@ -227,7 +227,8 @@ impl Frame {
         });
     }
 
-    /// Adds an output of one bit that is 1 in the microinstructions that assert it.
+    /// Adds an output of one bit that is 1 in the microinstructions that assert it. A microinstruction must assert it by
+    /// [`FrameStep::asserts`].
     pub fn flag(&mut self, name: &str) -> Slot {
         let slot = self.shown(name.to_owned(), Format::BIT, true);
         self.flags.push(slot);

@@ -39,8 +39,8 @@ pub struct Entry {
     pub slope: i128,
 }
 
-/// Returns the straight line through a segment of a concave function with the least error: the slope of the chord,
-/// and the base that puts the error of the segment's points symmetrically about 0.
+/// Returns the straight line through a segment with the least error, for a function that must be concave: the slope of the
+/// chord, and the base that puts the error of the segment's points symmetrically about 0.
 pub fn chord(segment: Segment, shape: SegmentedFormats, function: impl Fn(f64) -> f64) -> Entry {
     let value = Format::unsigned(0, shape.fraction);
     let (from, length) = (segment.from as f64, segment.length as f64);
@@ -149,7 +149,7 @@ impl Segmentation {
     }
 }
 
-/// Returns the table as hardware: `u` is an integer from 0 to 2^C; the result is `u0.S`.
+/// Returns the table as hardware: `u` must be an integer from 0 to 2^C; the result is `u0.S`.
 ///
 /// With `shape.synchronous` the ROM and the remainder are registered, and the result belongs to the
 /// `u` of the clock before.

@@ -23,7 +23,7 @@ impl Design {
         }
     }
 
-    /// Adds a net.
+    /// Adds a net. Its name must be distinct in the design.
     pub fn add_net(&mut self, net: Net) -> NetId {
         self.nets.push(net);
         NetId(self.nets.len() as u32 - 1)

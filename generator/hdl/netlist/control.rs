@@ -27,7 +27,7 @@ pub struct Control {
 /// of factors.
 #[derive(Clone, Debug)]
 pub struct Field {
-    /// A legal Verilog identifier.
+    /// The name, which must be a legal Verilog identifier.
     pub name: String,
     /// The net that it drives in the datapath or the sequencer.
     pub net: NetId,

@@ -50,7 +50,7 @@ impl<const LANES: usize> Machine<LANES> {
     /// Performs a rising edge, if there is one; then changes the inputs, if there are new ones; then brings all nets
     /// up to date. Returns whether anything that starts a change has changed.
     ///
-    /// At the edge, registers and synchronous ROMs take the values of their operands. `inputs` has the bit pattern of
+    /// At the edge, registers and synchronous ROMs take the values of their operands. `inputs` must have the bit pattern of
     /// each input port, in order of declaration; bits beyond the width of a port are ignored.
     pub fn update(&mut self, edge: bool, inputs: Option<&[[u64; LANES]]>) -> bool {
         #[cfg(target_arch = "x86_64")]

@@ -155,7 +155,7 @@ impl<const LANES: usize> Simulator<LANES> {
     /// Fails as [`Simulator::clock`] does.
     ///
     /// # Panics
-    /// Panics if `inputs` has more or fewer entries than there are ports.
+    /// Panics if `inputs` has more or fewer entries than there are ports. It must have one for each.
     #[inline]
     pub fn clock_with(&mut self, inputs: &mut Vec<[u64; LANES]>) -> Result<()> {
         assert_eq!(inputs.len(), self.inputs.len(), "one for each input port");
