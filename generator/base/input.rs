@@ -50,7 +50,7 @@ pub fn open(path: &Path) -> io::Result<Box<dyn Read>> {
 /// Returns the text of a file, if there is one.
 ///
 /// # Errors
-/// As of [`open`], but for a file that is not there.
+/// Fails as [`open`] does, except for a file that does not exist.
 pub fn text(path: &Path) -> Result<Option<String>> {
     let mut text = String::new();
     match open(path).and_then(|mut file| file.read_to_string(&mut text)) {

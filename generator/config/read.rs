@@ -27,7 +27,7 @@ pub fn read(path: &Path, schemas: &[Schema]) -> Result<Config, Problems> {
 /// there.
 ///
 /// # Errors
-/// As of [`read`].
+/// Fails as [`read`] does.
 pub fn read_located(path: &Path, schemas: &[Schema]) -> Result<(Config, Problems), Problems> {
     let file_name = if path == Path::new(input::STDIN) {
         STANDARD_INPUT.to_owned()

@@ -77,7 +77,7 @@ impl Config {
     /// Returns the value of a number key.
     ///
     /// # Panics
-    /// As [`Config::integer`].
+    /// Panics as [`Config::integer`] does.
     pub fn number(&self, key: &str) -> f64 {
         match self.value(key) {
             Value::Number(value) => *value,
@@ -88,7 +88,7 @@ impl Config {
     /// Returns the value of a choice.
     ///
     /// # Panics
-    /// As [`Config::integer`].
+    /// Panics as [`Config::integer`] does.
     pub fn choice(&self, key: &str) -> &str {
         match self.value(key) {
             Value::Text(value) => value,
@@ -99,7 +99,7 @@ impl Config {
     /// Returns the value of a text.
     ///
     /// # Panics
-    /// As [`Config::integer`].
+    /// Panics as [`Config::integer`] does.
     pub fn text(&self, key: &str) -> &str {
         match self.value(key) {
             Value::Text(value) => value,
@@ -110,7 +110,7 @@ impl Config {
     /// Returns the value of a flag.
     ///
     /// # Panics
-    /// As [`Config::integer`].
+    /// Panics as [`Config::integer`] does.
     pub fn flag(&self, key: &str) -> bool {
         match self.value(key) {
             Value::Flag(value) => *value,
@@ -121,7 +121,7 @@ impl Config {
     /// Returns the value of a list of integers.
     ///
     /// # Panics
-    /// As [`Config::integer`].
+    /// Panics as [`Config::integer`] does.
     pub fn integers(&self, key: &str) -> &[i64] {
         match self.value(key) {
             Value::Integers(values) => values,

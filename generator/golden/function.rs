@@ -51,7 +51,7 @@ pub fn model(config: &Config) -> Box<dyn Model> {
 /// Returns the accuracy contract.
 ///
 /// # Panics
-/// As [`model`].
+/// Panics as [`model`] does.
 pub fn contract(config: &Config) -> Box<dyn Contract> {
     let (function, it) = found(config).expect("a configuration that is checked");
     let bound = it.bound;

@@ -133,7 +133,7 @@ pub fn model(config: &Config) -> Box<dyn Model> {
 /// Returns the accuracy contract.
 ///
 /// # Panics
-/// As [`model`].
+/// Panics as [`model`] does.
 pub fn contract(config: &Config) -> Box<dyn Contract> {
     let keys = Keys::of(config);
     let parts = parts(&keys);

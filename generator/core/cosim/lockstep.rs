@@ -137,7 +137,7 @@ impl<'a> Lockstep<'a> {
     /// Runs the same as [`Lockstep::run`], but in one stream.
     ///
     /// # Errors
-    /// As of [`Lockstep::run`].
+    /// Fails as [`Lockstep::run`] does.
     pub fn run_alone(&self, points: u64) -> Result<Outcome> {
         let mut alone = self.alone(points)?;
         alone.go_on(u64::MAX)?;
@@ -149,7 +149,7 @@ impl<'a> Lockstep<'a> {
     /// in the order of the streams.
     ///
     /// # Errors
-    /// As of [`Lockstep::run`].
+    /// Fails as [`Lockstep::run`] does.
     pub fn watch<W: Send>(
         &self,
         points: u64,
@@ -223,7 +223,8 @@ impl<'a> Lockstep<'a> {
     /// are compared with the golden model, and not with the formula. Every stream must have at least one clock.
     ///
     /// # Errors
-    /// As of [`Lockstep::run`]; a stream without a clock, or a clock with more or fewer inputs than the design.
+    /// Fails as [`Lockstep::run`] does. Fails also if a stream has no clock, or if a clock has more or fewer inputs than the
+    /// design.
     pub fn replay(&self, streams: &[Vec<Vec<u64>>], clocks: u64) -> Result<Outcome> {
         let inputs = self.binding.ports.inputs;
         for (number, stream) in streams.iter().enumerate() {
@@ -252,7 +253,7 @@ impl<'a> Lockstep<'a> {
     /// on.
     ///
     /// # Errors
-    /// As of [`Lockstep::run`]; the file cannot be written.
+    /// Fails as [`Lockstep::run`] does, or if the file cannot be written.
     pub fn trace(
         &self,
         points: u64,

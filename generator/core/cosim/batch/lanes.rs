@@ -26,7 +26,7 @@ impl RustHdl {
     /// Makes a simulator of a design for each thread, after power-up and reset.
     ///
     /// # Errors
-    /// As of [`glint_rtl::sim::Simulator::new`], and a contract that speaks of ports that the design does not have.
+    /// Fails as [`glint_rtl::sim::Simulator::new`] does, or if the contract names ports that the design does not have.
     pub fn new(design: &Design, contract: &dyn Contract) -> Result<Self> {
         let latency = design.pipeline.as_ref().map(|pipeline| pipeline.stages.len() as u64);
         let in_ready = design.port(|role| role == Role::InReady).map(|port| port.net);

@@ -86,7 +86,7 @@ impl SideBySide {
     /// through all ROMs.
     ///
     /// # Errors
-    /// As of [`SideBySide::run`].
+    /// Fails as [`SideBySide::run`] does.
     pub fn run_with(
         &mut self,
         computations: &[&[i64]],

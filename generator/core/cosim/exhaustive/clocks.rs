@@ -194,7 +194,7 @@ impl<'a> Clocks<'a> {
     /// Writes the waveform of the clocks that end with a difference, from clock `from` of its lane on.
     ///
     /// # Errors
-    /// As of [`Clocks::difference`]; the file cannot be written.
+    /// Fails as [`Clocks::difference`] does, or if the file cannot be written.
     pub fn trace(&self, place: u64, from: u64, file: impl Write + Send + 'static) -> Result<()> {
         self.alone(place)?.trace(from, file)
     }
@@ -210,7 +210,7 @@ impl<'a> Clocks<'a> {
     /// Returns how long one combination takes on one thread.
     ///
     /// # Errors
-    /// As of [`Clocks::check`].
+    /// Fails as [`Clocks::check`] does.
     pub(super) fn pace(&self) -> Result<Duration> {
         let places = 0..self.count().min(BLOCK / 8);
         let count = places.end as u32;
