@@ -40,7 +40,7 @@ const MOST_SUMS: usize = 4;
 const POLES: u32 = 1 << 16;
 const BESIDE: f64 = 1.0 / 1024.0;
 
-/// The widest operand, in bits, for which every value is computed.
+/// The number of bits that an operand may have if every value is to be computed.
 pub const MOST_BITS: u32 = 26;
 
 glint_config::choices! {
@@ -49,7 +49,8 @@ glint_config::choices! {
     pub enum Outside {
         /// The result of the nearer end.
         Clamp = "clamp",
-        /// The result of the operand as many whole domains away.
+        /// The result of the operand as many whole domains away. For example, on the domain 0 to 1 the operand 1.25 gives the
+        /// result of 0.25.
         Wrap = "wrap",
         /// Any result.
         Anything = "anything",
@@ -70,7 +71,7 @@ pub enum Curve {
 pub struct TargetFunction {
     /// The values that are approximated.
     pub curve: Curve,
-    /// The raw operands, first and last.
+    /// The raw operands, first and last. For example, the domain from 1 to below 4 with 16 fraction bits is (65536, 262143).
     pub domain: (i64, i64),
     /// The operand's format.
     pub operand: Format,
@@ -112,7 +113,8 @@ pub struct HornerStep {
 }
 
 impl HornerStep {
-    /// Returns the addend of the next coefficient: the product of a sum and an offset of `rest` bits, both cut.
+    /// Returns the addend of the next coefficient: the product of a sum and an offset of `rest` bits, both cut. For example,
+    /// the sum 5 and the offset −3 give −4 if no bit of the offset and two bits of the product are cut.
     #[inline]
     pub fn product(self, sum: i64, offset: i64, rest: u32) -> i64 {
         let product = i128::from(sum) * i128::from(offset >> (rest - self.offset));
@@ -250,7 +252,7 @@ impl Piecewise {
         [if self.reduction.is_some() { "polynomial" } else { "result" }, "sum1", "sum2"]
     }
 
-    /// Returns the polynomial's degree.
+    /// Returns the polynomial's degree. For example, words of three coefficients have degree 2.
     pub fn degree(&self) -> usize {
         self.coefficients.len() - 1
     }
@@ -307,7 +309,8 @@ impl Piecewise {
         self.reduced(raw).1.result(polynomial)
     }
 
-    /// Returns the number of bits of the table.
+    /// Returns the number of bits of the table. For example, the table of `configs/function.toml`, for 1/√x from 1 to 2, has 16
+    /// words of 35 bits, which are 560 bits.
     pub fn rom_bits(&self) -> u64 {
         let width: u32 = self.coefficients.iter().map(|format| format.width()).sum();
         self.words.len() as u64 * u64::from(width)

@@ -1,14 +1,14 @@
-//! Finds the polynomial with the smallest largest error on given points, by exchanging reference points (the Remez
-//! algorithm).
+//! Finds the polynomial with the smallest largest error on given points, by exchanging reference points (the Remez algorithm).
+//! For example, the best line for x² from −1 to 1 is off by 1/2.
 
-/// The most coefficients.
+/// The number of coefficients that a polynomial may have.
 const MOST: usize = 4;
 
 /// The most exchanges. The search ends earlier once the largest error equals the error at the reference points.
 const EXCHANGES: usize = 30;
 
 /// Returns the coefficients, from the constant on, of the polynomial of `degree` whose largest distance from `values` at the
-/// points `at` is least, and that distance. Points rise. With no more points than coefficients the degree is lowered.
+/// points `at` is least, and that distance. The points must rise. With no more points than coefficients the degree is lowered.
 pub fn minimax(at: &[f64], values: &[f64], degree: usize) -> ([f64; MOST], f64) {
     let count = degree.min(at.len().saturating_sub(1)) + 1;
     if at.len() <= count {

@@ -57,7 +57,8 @@ pub enum Rule {
     Size(Option<i64>),
     /// To the distance from the nearer zero of the sine, after a turn by this number of quadrants.
     Quadrants(u32),
-    /// To the bits behind the leading bit; where octaves come in pairs, with a bit that tells the two apart.
+    /// To the bits behind the leading bit; where octaves come in pairs, with a bit that tells the two apart. For example, the
+    /// raw operand 5 of 8 bits has five leading zeros, and the bits 01 behind its leading bit give the number 32.
     Octaves {
         /// Bits of the operand.
         width: u32,
@@ -119,7 +120,8 @@ impl Restore {
 }
 
 impl Reduction {
-    /// Returns the number of a raw operand, and the way to restore its result from the polynomial there.
+    /// Returns the number of a raw operand, and the way to restore its result from the polynomial there. For example, an even
+    /// function has the number 3 for the raw operands 3 and −3.
     pub fn reduce(&self, raw: i64) -> (i64, Restore) {
         let mask = (1i64 << self.bits) - 1;
         let mirrored = |low: i64| if low == 0 { mask } else { mask + 1 - low };
@@ -222,7 +224,7 @@ pub(super) const KEY: &str = "approximation.reduction";
 /// So many places leave nothing of a polynomial.
 const NOTHING: u32 = 64;
 
-/// The most bits of a reduced operand.
+/// The number of bits that a reduced operand may have.
 const MOST: u32 = 24;
 
 /// How near to each other two values are that count as equal.

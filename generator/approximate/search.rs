@@ -19,10 +19,10 @@ pub struct Wish {
     pub identity: Identity,
 }
 
-/// The largest degree.
+/// The degree that a polynomial may have at most.
 const DEGREES: u32 = 3;
 
-/// The most bits of a word's number.
+/// The number of bits that the number of a word may have.
 const ADDRESS: u32 = 16;
 
 /// The most operands by which degree, segments and widths are chosen.
@@ -31,7 +31,7 @@ const CHOOSING: usize = 1 << 16;
 /// The most operands by which widths are widened, before all have their say.
 const WIDENING: usize = 1 << 20;
 
-/// The most bits of an operand's number.
+/// The number of bits that the number of an operand may have.
 const WIDEST: u32 = 46;
 
 /// How much stricter the search is if it does not look at every operand. Each number is a fraction of the allowed error minus

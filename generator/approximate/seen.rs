@@ -1,11 +1,12 @@
-//! Computes, at each operand that a search looks at, the lowest and the highest result within the allowed error.
+//! Computes, at each operand that a search looks at, the lowest and the highest result within the allowed error. For example,
+//! the value 10.3 with an allowed error of 1.0 has the lowest result 10 and the highest 11.
 
 use rayon::prelude::*;
 
 use super::{Reduction, Refusal, TargetFunction};
 use glint_base::fixed::{Format, exp2, nearest};
 
-/// The most operands that the search looks at. If there are more, the search takes evenly spread ones.
+/// The number of operands that the search may look at. If there are more, the search takes evenly spread ones.
 const HELD: u64 = 1 << 25;
 
 /// The most of them where there are more than can be computed.

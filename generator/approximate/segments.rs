@@ -23,7 +23,8 @@ impl Layout {
 }
 
 /// The domain, from 0 to 2^bits, cut into segments. An octave is the block of numbers with the same highest bit. The numbers
-/// below the last octave are a block too, and all blocks have the same number of segments.
+/// below the last octave are a block too, and all blocks have the same number of segments. For example, `bits = 8`,
+/// `octaves = 0` and `prefix = 4` give 16 segments of 16 numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Segments {
     /// Bits of the number of an operand.
@@ -46,7 +47,7 @@ pub struct SegmentOffset {
 }
 
 impl Segments {
-    /// Returns the number of bits of an offset in the longest segment.
+    /// Returns the number of bits of an offset in the longest segment. For example, it is 4 for 8 bits in 16 uniform segments.
     pub fn rest(&self) -> u32 {
         self.bits - self.prefix - u32::from(self.octaves > 0)
     }
@@ -57,7 +58,7 @@ impl Segments {
         (self.bits + block.max(1) - 1) - self.octaves - self.prefix
     }
 
-    /// Returns the number of words of the whole table.
+    /// Returns the number of words of the whole table. For example, 3 octaves with a prefix of 2 bits give 16 words.
     pub fn words(&self) -> usize {
         (self.octaves as usize + 1) << self.prefix
     }
@@ -70,7 +71,8 @@ impl Segments {
         }
     }
 
-    /// Returns where the operand of a number lies.
+    /// Returns where the operand of a number lies. For example, number 0x35 of 8 bits in 16 uniform segments has the word 3 and
+    /// the offset −3.
     #[inline]
     pub fn place(&self, number: u64) -> SegmentOffset {
         let number = self.turned(number);
@@ -89,7 +91,8 @@ impl Segments {
         SegmentOffset { word, offset: ((low << places) as i64) - middle }
     }
 
-    /// Returns the numbers that read a word: the lowest and how many there are.
+    /// Returns the numbers that read a word: the lowest and how many there are. For example, word 3 of 16 uniform segments over
+    /// 8 bits gives (48, 16).
     pub fn numbers(&self, word: usize) -> (u64, u64) {
         let block = (word >> self.prefix) as u32;
         let rest = self.rest_of(block);

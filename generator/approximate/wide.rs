@@ -89,7 +89,7 @@ impl Piecewise {
     /// Proves the bound over intervals, as [`Piecewise::prove`] does over operands.
     ///
     /// # Errors
-    /// As of [`Piecewise::prove`]; or the proof takes too long.
+    /// Fails as [`Piecewise::prove`] does, or if the proof takes too long.
     pub(super) fn prove_by_segments(&self, function: &TargetFunction) -> Result<f64, Refusal> {
         let left = AtomicU64::new(MOST);
         let of = |word: usize| {
@@ -159,7 +159,7 @@ impl Piecewise {
     }
 }
 
-/// Returns the proof takes too long.
+/// Returns the refusal of a proof that takes too long.
 fn unproved() -> Refusal {
     let message = format!("the bound is not proved with 2^{} intervals", MOST.ilog2());
     Refusal::new("result.error", message, "allow a larger error, or fewer operand.fraction bits")

@@ -3,7 +3,7 @@
 
 use std::fmt;
 
-/// A kind of mistake: `G`, the number of its group, and its own.
+/// A kind of mistake: `G`, the number of its group, and its own. For example, `Code(203)` prints as `G0203`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Code(u16);
 

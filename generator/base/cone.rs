@@ -3,7 +3,8 @@
 use std::collections::HashSet;
 use std::hash::Hash;
 
-/// Marks the nodes that any root depends on, including the roots. Each of the `count` nodes must come after its operands.
+/// Marks the nodes that any root depends on, including the roots. Each of the `count` nodes must come after its operands. For
+/// example, the root y of y = a + b needs a and b, but not a node c that only another root reads.
 pub fn needed<I: IntoIterator<Item = usize>>(
     count: usize,
     roots: impl IntoIterator<Item = usize>,

@@ -9,7 +9,8 @@ use crate::program::Program;
 /// Where a description says something.
 pub type SourceLocation = &'static Location<'static>;
 
-/// A mistake in a description.
+/// A mistake in a description. For example, it prints as `error[G0203]: …`, with `  --> ` and the place in the Rust source on
+/// the next line.
 #[derive(Clone, Debug)]
 pub struct Diagnostic {
     /// The kind of the mistake.
@@ -31,7 +32,7 @@ impl Diagnostic {
         Self { code, message, location, notes: Vec::new(), key: None, nearest: None }
     }
 
-    /// Makes it a problem of a configuration's key, with a remedy.
+    /// Attributes the mistake to a configuration key. The remedy becomes the line "help" of the printed message.
     pub fn of_key(mut self, key: &'static str, remedy: String) -> Self {
         self.key = Some((key, remedy));
         self

@@ -8,7 +8,7 @@
 use std::fmt;
 use std::str::FromStr;
 
-/// The widest net that Glint handles, in bits.
+/// The number of bits that a net may have at most.
 pub const MAX_WIDTH: u32 = 64;
 
 /// How many places the point can be off the bits: the value of an ulp is an f64.
@@ -16,8 +16,8 @@ pub const MAX_POINT: i32 = 1000;
 
 /// A fixed-point format, `uI.F` or `sI.F`.
 ///
-/// I and F may be negative as long as the width stays positive: `u-3.15` is a 12-bit fraction whose
-/// three leading bits are known to be zero.
+/// I and F may be negative as long as the width stays positive: `u-3.15` is a 12-bit fraction whose three leading bits are
+/// known to be zero. For example, `u1.20` has 21 bits, and `s1.20` has 22.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Format {
     /// Two's complement, with a sign bit above the integer bits.
@@ -50,7 +50,8 @@ impl Format {
     /// One bit without a point: a flag, an enable, a select line.
     pub const BIT: Self = Self::unsigned(1, 0);
 
-    /// Returns the smallest format with `frac` fraction bits that holds every raw value from `low` to `high`.
+    /// Returns the smallest format with `frac` fraction bits that holds every raw value from `low` to `high`. For example, 0 to
+    /// 255 with 8 fraction bits gives `u0.8`, and −1 to 3 with none gives `s2.0`.
     pub fn holding(low: i128, high: i128, frac: i32) -> Self {
         let magnitude = |raw: i128| 128 - if raw < 0 { !raw } else { raw }.leading_zeros() as i32;
         let signed = low < 0;
@@ -63,8 +64,8 @@ impl Format {
     /// Returns the width in bits.
     ///
     /// # Panics
-    /// Panics if the width is negative. The constructors of the DSL and the configuration never accept such a format, so it is
-    /// a programming error.
+    /// Panics if the width is negative. The constructors of the DSL and the configuration never accept such a format, and no
+    /// caller may make one.
     pub fn width(self) -> u32 {
         u32::try_from(self.int + self.frac + i32::from(self.signed)).expect("a positive width")
     }
@@ -80,7 +81,7 @@ impl Format {
         i128::MAX >> 127u32.saturating_sub(self.width().saturating_sub(u32::from(self.signed)))
     }
 
-    /// Returns the smallest and the largest raw value.
+    /// Returns the smallest and the largest raw value. For example, `s2.0` gives (−4, 3).
     pub fn range(self) -> (i128, i128) {
         (self.min_raw(), self.max_raw())
     }
@@ -100,14 +101,15 @@ impl Format {
     /// Returns the raw value nearest to `x`, ties upward; `None` if `x` is not a number or is more than half a place beyond
     /// the values of the format.
     ///
-    /// For example, `u0.8` holds 0 to 255/256: 0.998 is rounded to 255/256, and 0.999 is refused.
+    /// For example, `u0.8` holds 0 to 255/256: 0.998 is rounded to 255/256, and 0.999 gives `None`.
     pub fn nearest_raw(self, x: f64) -> Option<i128> {
         let raw = nearest(x * exp2(self.frac));
         let (low, high) = (self.min_raw() as f64, self.max_raw() as f64);
         (low..=high).contains(&raw).then(|| self.quantise(x))
     }
 
-    /// Returns the raw value nearest to `x`, ties upward, saturated to the format.
+    /// Returns the raw value nearest to `x`, ties upward, saturated to the format. For example, in `u8.0` 2.5 gives 3, and
+    /// 300.0 gives 255.
     pub fn quantise(self, x: f64) -> i128 {
         let scaled = nearest(x * exp2(self.frac));
         let (low, high) = (self.min_raw(), self.max_raw());
@@ -120,12 +122,13 @@ impl Format {
         }
     }
 
-    /// Returns the bit pattern of `raw`, wrapped to the width.
+    /// Returns the bit pattern of `raw`, wrapped to the width. For example, −1 in `s2.0` is `0b111`.
     pub fn bits(self, raw: i128) -> u64 {
         raw as u64 & mask(self.width())
     }
 
-    /// Returns the raw value that a bit pattern denotes; bits above the width are ignored.
+    /// Returns the raw value that a bit pattern denotes; it ignores the bits above the width. For example, `0b111` is −1 in
+    /// `s2.0`, and 7 in `u3.0`.
     pub fn raw(self, bits: u64) -> i128 {
         let width = self.width();
         let bits = bits & mask(width);
@@ -136,7 +139,8 @@ impl Format {
         }
     }
 
-    /// Brings `raw`, which has `from_frac` fraction bits, to this format.
+    /// Brings `raw`, which has `from_frac` fraction bits, to this format. For example, 6 with two fraction bits is 1.5: in
+    /// `u4.0` it becomes 1 if truncated, and 2 if rounded to the nearest.
     pub fn narrow(self, raw: i128, from_frac: i32, rounding: Rounding, overflow: Overflow) -> i128 {
         let shifted = rounding.shift(raw, from_frac - self.frac);
         match overflow {
@@ -184,7 +188,8 @@ pub enum Rounding {
 }
 
 impl Rounding {
-    /// Divides `raw` by `2^places` and rounds; a negative `places` multiplies (exactly).
+    /// Divides `raw` by `2^places` and rounds; a negative `places` multiplies (exactly). For example, −3 by one place gives −2
+    /// if truncated, and −1 if rounded to the nearest.
     pub fn shift(self, raw: i128, places: i32) -> i128 {
         match (self, places) {
             (_, ..=0) => raw << -places,

@@ -5,7 +5,7 @@ use crate::keywords::is_keyword;
 /// Checks that `name` can name a net, a ROM or a module of the emitted Verilog.
 ///
 /// # Errors
-/// Fails if the name is refused. The error says why.
+/// Fails if Verilog does not take the name. The error says why. For example, `wire` gives "it is a keyword".
 pub fn check(name: &str) -> Result<(), &'static str> {
     let mut characters = name.chars();
     match characters.next() {

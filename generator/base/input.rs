@@ -10,7 +10,8 @@ use serde::de::DeserializeOwned;
 /// The path that means standard input.
 pub const STDIN: &str = "-";
 
-/// Returns the name by which written files know the file `path`: without directories, so that they are the same on every machine.
+/// Returns the name by which written files know the file `path`: without directories, so that they are the same on every
+/// machine. For example, `configs/rough.toml` becomes `rough.toml`.
 ///
 /// A name with blanks is in single quotes, as a shell takes it: `'my core.toml'`. A character that could end a comment or a string of
 /// an emitted file becomes `%` with its bytes in hexadecimal, as in a URL.
@@ -49,7 +50,7 @@ pub fn open(path: &Path) -> io::Result<Box<dyn Read>> {
 /// Returns the text of a file, if there is one.
 ///
 /// # Errors
-/// As of [`open`], but for a file that is not there.
+/// Fails as [`open`] does, except for a file that does not exist.
 pub fn text(path: &Path) -> Result<Option<String>> {
     let mut text = String::new();
     match open(path).and_then(|mut file| file.read_to_string(&mut text)) {

@@ -1,6 +1,7 @@
 //! Tells whether a word is reserved in SystemVerilog.
 
-/// Returns whether a word is reserved in IEEE 1800-2017 (annex B). Annex B contains the reserved words of Verilog-2005.
+/// Returns whether a word is reserved in IEEE 1800-2017 (annex B). Annex B contains the reserved words of Verilog-2005. For
+/// example, `wire` and `logic` are reserved.
 pub fn is_keyword(word: &str) -> bool {
     KEYWORDS.split_ascii_whitespace().any(|keyword| keyword == word)
 }

@@ -34,7 +34,8 @@ pub struct DelayMemory {
 }
 
 impl DelayMemory {
-    /// Returns whether a line with its counter takes fewer look-up tables and registers than it takes the place of.
+    /// Returns whether a line with its counter takes fewer look-up tables and registers than it takes the place of. For
+    /// example, a memory of ECP5 pays for 3 words of 4 bits, but not for 2.
     pub fn pays(self, words: usize, bits: u32) -> bool {
         let words = words as u32;
         let memories = bits.div_ceil(self.width) * words.div_ceil(self.words);
@@ -101,7 +102,8 @@ pub struct Chip {
 
 impl Chip {
     /// Returns each resource that the chip has too little of: its index, the amount wanted and the amount on the chip. The
-    /// index counts look-up tables, DSP blocks and block RAMs from 0.
+    /// index counts look-up tables, DSP blocks and block RAMs from 0. For example, a design with 6000 look-up tables and 8 DSP
+    /// blocks gives `(0, 6000, 5280)` on the iCE40 UP5K.
     pub fn lack(&self, wanted: [u64; 3]) -> Vec<(usize, u64, u64)> {
         let all = wanted.into_iter().zip(self.has).enumerate();
         all.filter(|(_, (wanted, has))| wanted > has)
@@ -127,7 +129,8 @@ pub struct Estimate {
     pub least_block: u64,
 }
 
-/// Kinds of cells, each with the number of resources that one cell of it counts for.
+/// Kinds of cells, each with the number of resources that one cell of it counts for. For example, `("CCU2C", 2)` counts each
+/// carry cell of ECP5 as two look-up tables.
 pub type Kinds = &'static [(&'static str, u64)];
 
 /// A family of FPGAs.
@@ -158,7 +161,8 @@ pub struct Family {
 }
 
 impl Family {
-    /// Returns the commands of Yosys that map the module `top` and its instances to cells of the family.
+    /// Returns the commands of Yosys that map the module `top` and its instances to cells of the family. For example, the
+    /// commands for ECP5 end with `synth_ecp5 -top rough` if `top` is `rough`.
     pub fn script(&self, top: &str) -> String {
         format!(
             "{}hierarchy -check -top {top}; {}{} -top {top}",
@@ -346,7 +350,7 @@ impl Timing {
         TIMINGS.iter().find(|timing| timing.name == name)
     }
 
-    /// Returns the delay of an adder with `width` bits, in nanoseconds.
+    /// Returns the delay of an adder with `width` bits, in nanoseconds. For example, 21 bits take 2.4 ns on ECP5.
     pub fn chain(&self, width: u32) -> f64 {
         self.carry + self.carry_bit * f64::from(width)
     }

@@ -5,7 +5,7 @@ pub use askama;
 pub use askama::Template;
 pub use glint_templates::template;
 
-/// Returns a template's text. Askama drops the newline that ends a template.
+/// Returns a template's text. Askama drops the newline that ends a template; the returned text always has it.
 ///
 /// # Errors
 /// Fails if a value cannot be printed.

@@ -1,6 +1,6 @@
 //! Writes numbers for sentences: `1 234`, `12 nets`, or a limit rounded up.
 
-/// Returns an integer with spaces between the thousands.
+/// Returns an integer with spaces between the thousands. For example, 20530 becomes `20 530`.
 pub fn grouped(number: u64) -> String {
     let digits = number.to_string();
     let mut text = String::new();
@@ -19,7 +19,8 @@ pub fn counted(number: usize, thing: &str) -> String {
     format!("{} {thing}{plural}", grouped(number as u64))
 }
 
-/// Returns a limit with `places` decimals. It is rounded up, so that it is still a limit.
+/// Returns a limit with `places` decimals. It is rounded up, so that it is still a limit. For example, 0.12 with one decimal
+/// becomes `0.2`.
 pub fn rounded_up(limit: f64, places: usize) -> String {
     let text = format!("{limit:.places$}");
     match text.parse::<f64>() {

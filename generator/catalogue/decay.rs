@@ -24,7 +24,7 @@ pub struct Distance<'d> {
 /// Describes everything behind the operand `cos_gamma`: operands, the products, 2^−y, outputs, microprogram.
 ///
 /// # Panics
-/// If the check of the schema has not accepted the configuration.
+/// Panics if the check of the schema has not accepted the configuration. The caller must check it first.
 pub fn describe<'d>(
     d: &'d Designer,
     config: &Config,

@@ -16,7 +16,7 @@ use crate::piecewise::{PolynomialDatapath, StepMultiplier, Tables, flipped};
 /// Describes `function`: a table of coefficients, and Horner's rule on one multiplier.
 ///
 /// # Panics
-/// If the check of the schema has not accepted the configuration.
+/// Panics if the check of the schema has not accepted the configuration. The caller must check it first.
 pub fn describe(d: &Designer, config: &Config) {
     let (function, it) = found(config).expect("a configuration that is checked");
     d.about(about(&Keys::of(config), function.proof(), &it));

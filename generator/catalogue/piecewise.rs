@@ -102,7 +102,8 @@ impl<'d, 'p> PolynomialDatapath<'d, 'p> {
         Self { d, it, prefix: prefix.to_owned(), coefficients, offsets, registers }
     }
 
-    /// Returns the steps, in the order in which they are carried out; the last is number 0.
+    /// Returns the steps, in the order in which they are carried out; the last is number 0. For example, two registers give the
+    /// steps 1 and 0.
     pub fn steps(&self) -> impl Iterator<Item = usize> + use<> {
         (0..self.registers.len()).rev()
     }

@@ -98,7 +98,7 @@ fn decoder<'d>(d: &'d Designer, exponent: Signal<'d>) -> Signal<'d> {
     d.concat("power_code", high, low).block(10).doc("the number of the decoder's output that is 1")
 }
 
-/// Returns the place of the power for the exponent n.
+/// Returns the place of the power for the exponent n. For example, n = 5 gives 2, and `POWERS[2]` is 4.
 fn power_of(n: i64) -> usize {
     match n {
         1 => 0,

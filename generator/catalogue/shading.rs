@@ -11,7 +11,7 @@ use glint_rtl::dsl::{About, Designer, Signal};
 /// Describes `shading`: colours from normals, by parts that are other devices.
 ///
 /// # Panics
-/// If the check of the schema has not accepted the configuration.
+/// Panics if the check of the schema has not accepted the configuration. The caller must check it first.
 pub fn describe<'d>(d: &'d Designer, config: &Config) {
     let keys = Keys::of(config);
     let parts = keys.parts().unwrap_or_else(|(part, _)| panic!("`{part}` is checked"));

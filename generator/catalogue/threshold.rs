@@ -99,14 +99,15 @@ fn level_rom<'d>(d: &'d Designer, keys: &Keys, exponent: Signal<'d>) -> Rom<'d> 
         .comments(comments)
 }
 
-/// Returns the level for n: the level of the octave of n.
+/// Returns the level for n: the level of the octave of n. For example, n = 20 is in octave 4, from 16 to 31.
 fn hundredths(keys: &Keys, n: i64) -> u32 {
     let levels = &keys.levels;
     let octave = n.max(1).ilog2() as usize;
     levels[octave.min(levels.len() - 1)]
 }
 
-/// Returns the smallest word of f, but the largest word at most, whose product with the largest colour reaches a level.
+/// Returns the smallest word of f, but the largest word at most, whose product with the largest colour reaches a level. For
+/// example, the level 100 gives 258 for colours of 8 bits and an f of 16 fraction bits.
 fn level_word(keys: &Keys, hundredths: u32) -> i128 {
     let unit = 100 * ((1 << keys.operands.colours.bits) - 1);
     let words = 1i128 << keys.f.fraction;

@@ -1,4 +1,4 @@
-//! Finds mistakes in a schema itself, for the tests of devices.
+//! Finds mistakes in a schema itself, for the tests of devices. For example, a default may be outside the range of its key.
 
 use super::problems::Problems;
 use super::schema::{Condition, Key, KeyKind, Schema};
@@ -10,7 +10,8 @@ impl Schema {
     /// TOML, or that name both a table and a value; defaults outside their range or refused by `check`; and conditions on
     /// keys or values that do not exist.
     ///
-    /// A schema without mistakes gives an empty list. The reader relies on a schema without mistakes.
+    /// A schema without mistakes gives an empty list. The schema of a device must have no mistakes, because the reader relies
+    /// on it.
     pub fn mistakes(&self) -> Vec<String> {
         let mut mistakes = Vec::new();
         for (index, key) in self.keys.iter().enumerate() {

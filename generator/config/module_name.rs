@@ -3,7 +3,7 @@
 use super::problems::{Violation, quoted};
 use glint_base::keywords::is_keyword;
 
-/// The longest name; the modules and files derived from it append to it.
+/// The number of characters that a name may have. It leaves room for the endings of derived modules and files.
 const LONGEST: usize = 60;
 
 /// Checks a module name; nothing is wrong if it is an identifier of Verilog and SystemVerilog
@@ -45,8 +45,9 @@ fn complaint(name: &str) -> Option<String> {
     }
 }
 
-/// Returns a legal name for a name or path: the part between its last slash and its first dot, with `_` for characters
-/// that are not legal, and `glint_` in front where that is no legal name.
+/// Returns a legal name for a name or path: the part between its last slash and its first dot, with `_` for characters that are
+/// not legal, and `glint_` in front where that is no legal name. For example, `cores/my-core.toml` gives `my_core`, and `2fast`
+/// gives `glint_2fast`.
 fn legalised(name: &str) -> String {
     let file = name.rsplit(['/', '\\']).find(|part| !part.is_empty()).unwrap_or("");
     let stem = file.split('.').find(|part| !part.is_empty()).unwrap_or("");

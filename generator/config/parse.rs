@@ -32,7 +32,7 @@ pub fn parse(file_name: &str, text: &str, schemas: &[Schema]) -> Result<Config, 
 /// Parses a text as [`parse`] does. It also returns the location of each key in the text, for problems that are found later.
 ///
 /// # Errors
-/// As of [`parse`].
+/// Fails as [`parse`] does.
 pub(super) fn located(
     file_name: &str,
     text: &str,

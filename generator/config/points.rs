@@ -5,8 +5,8 @@ use std::{fs, io};
 
 /// Reads the points of a file as `x,y x,y`.
 ///
-/// A line has two numbers, with or without quotes, with a comma, a semicolon, blanks or a tab between them. A first line of words is a
-/// heading, and `#` begins a comment.
+/// A line has two numbers, with or without quotes, with a comma, a semicolon, blanks or a tab between them. A first line of
+/// words is a heading, and `#` begins a comment. For example, the lines `x,y`, `0,0` and `1; -0.5 # low` give `0,0 1,-0.5`.
 ///
 /// # Errors
 /// Fails if the file cannot be read, or if a line is not two numbers. The error is a message and a remedy.
@@ -57,7 +57,7 @@ fn has_decimal_commas(line: &str) -> bool {
     is_decimal.len() == 2 && is_decimal.contains(&true)
 }
 
-/// Reads a file in UTF-8, with line ends of any system. A pipe, which may never end, is refused.
+/// Reads a file in UTF-8, with line ends of any system. The path must name a regular file, because a pipe may never end.
 fn text(path: &Path) -> io::Result<String> {
     let refused = |message: String| Err(io::Error::new(io::ErrorKind::InvalidInput, message));
     if !fs::metadata(path)?.is_file() {

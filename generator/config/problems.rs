@@ -26,10 +26,10 @@ pub struct Problems {
 /// The name of standard input in problems.
 pub(super) const STANDARD_INPUT: &str = "standard input";
 
-/// The most problems that are kept: a file that is no configuration at all has no end of them.
+/// The number of problems that a list may keep: a file that is no configuration at all has no end of them.
 const LIMIT: usize = 200;
 
-/// One problem.
+/// One problem. For example, its `key` is `cosine.fraction`, and its `remedy` lists the integers that the key accepts.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Problem {
     /// The dotted name of the key; empty if the problem is one of the whole file.
@@ -126,7 +126,7 @@ impl Problems {
         Problems { list: Vec::new(), further: 0, refused: self.is_refused(), ..self.clone() }
     }
 
-    /// Returns whether the file is refused, whatever else a check finds. A check can then skip work that takes long.
+    /// Returns whether Glint must refuse the file, whatever else a check finds. A check can then skip work that takes long.
     pub fn is_refused(&self) -> bool {
         self.refused || !self.is_empty()
     }

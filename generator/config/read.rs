@@ -11,7 +11,7 @@ use super::values::Config;
 use glint_base::input;
 use glint_base::program::Program;
 
-/// Larger than any configuration, and small enough not to exhaust the memory.
+/// The number of bytes that a configuration file may have. It is small enough not to exhaust the memory.
 const LARGEST: u64 = 1 << 16;
 
 /// Reads a configuration file, or standard input where the path is `-`.
@@ -27,7 +27,7 @@ pub fn read(path: &Path, schemas: &[Schema]) -> Result<Config, Problems> {
 /// there.
 ///
 /// # Errors
-/// As of [`read`].
+/// Fails as [`read`] does.
 pub fn read_located(path: &Path, schemas: &[Schema]) -> Result<(Config, Problems), Problems> {
     let file_name = if path == Path::new(input::STDIN) {
         STANDARD_INPUT.to_owned()

@@ -14,14 +14,13 @@ const REPAIRS: usize = 100;
 
 /// Returns a valid configuration drawn from the whole stated ranges; the same for the same seed.
 ///
-/// Ends of ranges come up far more often than a uniform draw would give. Keys that do not apply
-/// keep their defaults. Combinations that the device refuses are drawn again, the offending key
-/// first, so that keys with narrow conditions vary too. Its name is the device's, with `_` for `-`,
-/// and the seed.
+/// Ends of ranges come up far more often than a uniform draw would give. Keys that do not apply keep their defaults.
+/// Combinations that the device refuses are drawn again, the offending key first, so that keys with narrow conditions vary too.
+/// Its name is the device's, with `_` for `-`, and the seed. For example, seed 7 of `dot-product` gives the name
+/// `dot_product_7`.
 ///
 /// # Panics
-/// If the device refuses every one of a great many draws: its schema states ranges that are
-/// almost nowhere valid.
+/// Panics if the device refuses every draw. The ranges of a schema must not be invalid almost everywhere.
 pub fn sample(schema: &Schema, seed: u64) -> Config {
     let mut rng = ChaCha8Rng::seed_from_u64(seed);
     let name = format!("{}_{seed}", schema.device.replace('-', "_"));

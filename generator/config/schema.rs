@@ -22,7 +22,8 @@ pub struct Schema {
 }
 
 impl Schema {
-    /// Returns the default name of the module: the name of the device, or `my_` and that name if it is a keyword.
+    /// Returns the default name of the module: the name of the device, or `my_` and that name if it is a keyword. For example,
+    /// a device `table` would have the module `my_table`, because `table` is a keyword.
     pub fn module(&self) -> String {
         let name = self.device.replace('-', "_");
         if is_keyword(&name) { format!("my_{name}") } else { name }
@@ -78,7 +79,7 @@ impl Condition {
     }
 }
 
-/// The type of a key, and which of its values are accepted.
+/// The type of a key, and the values that it may have.
 #[derive(Clone, Debug, PartialEq)]
 pub enum KeyKind {
     /// An integer, both limits included.
@@ -91,7 +92,7 @@ pub enum KeyKind {
     Flag,
     /// Text of a pattern.
     Text(TextPattern),
-    /// A list of integers; its entries and its length have limits.
+    /// A list of integers; its entries and its length have limits. For example, `visibility.levels = [50, 100, 200, 400, 800]`.
     Integers { min: i64, max: i64, len_min: usize, len_max: usize },
 }
 
@@ -100,7 +101,8 @@ impl Key {
         Key { name, kind, default, doc, condition: None, joined_later: false, drawn: None }
     }
 
-    /// Makes a key of an integer in a range.
+    /// Makes a key of an integer in a range. For example, `Key::integer("cosine.fraction", 20, 6..=24, "…")` accepts 6 to 24
+    /// and has the default 20.
     pub fn integer(
         name: &'static str,
         default: i64,
@@ -111,7 +113,7 @@ impl Key {
         Self::new(name, KeyKind::Integer { min, max }, Value::Integer(default), doc)
     }
 
-    /// Makes a key of a number in a range.
+    /// Makes a key of a number in a range. The default must be in the range.
     pub fn number(
         name: &'static str,
         default: f64,
@@ -132,8 +134,8 @@ impl Key {
         Self::new(name, KeyKind::Number { min, max, or_zero: true }, Value::Number(0.0), doc)
     }
 
-    /// Makes a key whose value is one of some texts. With options that are all decimal integers, as `["2", "4"]`, a
-    /// file writes an integer, and [`Config::integer`] reads it as one.
+    /// Makes a key whose value is one of some texts. With options that are all decimal integers, as `["2", "4"]`, a file writes
+    /// an integer, and [`Config::integer`] reads it as one. The default must be one of the options.
     pub fn choice(
         name: &'static str,
         default: &'static str,
@@ -149,7 +151,7 @@ impl Key {
         Self::new(name, KeyKind::Flag, Value::Flag(default), doc)
     }
 
-    /// Makes a key of text of a pattern.
+    /// Makes a key of text of a pattern. The default must have the pattern.
     pub fn text(
         name: &'static str,
         default: &'static str,
@@ -173,7 +175,8 @@ impl Key {
         Self::new(name, kind, Value::Integers(default.to_vec()), doc)
     }
 
-    /// Restricts the key to configurations in which the key `other` has a value.
+    /// Restricts the key to configurations in which the key `other` has a value. For example, `pipeline.stages` has
+    /// `only_when("architecture", "pipelined")`.
     ///
     /// `value` is written as [`Value`] displays it without quotes: `direct`, `true`, `16`.
     pub fn only_when(mut self, other: &'static str, value: &'static str) -> Self {

@@ -6,28 +6,29 @@
 pub enum TextPattern {
     /// Who makes or sells something: a letter, then letters, digits, `.`, `-` and `_`.
     Name,
-    /// Three numbers without leading zeros and with dots between them.
+    /// Three numbers without leading zeros and with dots between them. For example, `0.1.0`.
     Version,
     /// An SPDX licence expression. Only the characters are checked: letters, digits, blanks, `.`, `-`, `+` and parentheses,
-    /// beginning with a letter or a parenthesis.
+    /// beginning with a letter or a parenthesis. For example, `MIT OR Apache-2.0`.
     Licence,
     /// Letters, digits, blanks and the signs of a formula. The formula parser decides whether the text is a formula. Only
     /// this pattern allows signs that XML must escape.
     Formula,
-    /// Measured points `x,y x,y`, or nothing. A file may write the path of a CSV file, whose points are read.
+    /// Measured points `x,y x,y`, or nothing. A file may write the path of a CSV file, whose points are read. For example, `0,0
+    /// 0.5,0.25 1,1`.
     Samples,
 }
 
-/// The most characters of a formula.
+/// The number of characters that a formula may have.
 const LONGEST_FORMULA: usize = 500;
 
-/// The most characters of samples.
+/// The number of characters that samples may have.
 const LONGEST_SAMPLES: usize = 1 << 20;
 
-/// The most characters of a name or a licence.
+/// The number of characters that a name or a licence may have.
 const LONGEST: usize = 60;
 
-/// The most digits of a number of a version.
+/// The number of digits that a number of a version may have.
 const DIGITS: usize = 4;
 
 impl TextPattern {

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-/// The value of a key. It is serialised as the value alone.
+/// The value of a key. It is serialised as the value alone. For example, `Value::Integer(20)` is serialised as `20`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(untagged)]
 pub enum Value {
@@ -34,7 +34,8 @@ impl Value {
         }
     }
 
-    /// Returns the value as TOML: [`Value::bare`], with quotes around a word.
+    /// Returns the value as TOML: [`Value::bare`], with quotes around a word. For example, the text `truncate` becomes
+    /// `"truncate"`, and the text `16` stays `16`.
     pub fn toml(&self) -> String {
         match self {
             Value::Text(text) if !is_integer(text) => format!("\"{text}\""),
@@ -52,7 +53,7 @@ pub struct Config {
     pub name: String,
     /// The name of the device.
     pub device: String,
-    /// Whether a configuration outside the accuracy contract is refused rather than warned about.
+    /// Whether Glint must refuse a configuration outside the accuracy contract, rather than warn of it.
     pub strict: bool,
     /// In the order of the schema.
     pub(super) values: Vec<(&'static str, Value)>,
@@ -62,7 +63,7 @@ impl Config {
     /// Returns the value of an integer key, or of a choice among integers.
     ///
     /// # Panics
-    /// If the device has no such key, or it is of another kind: a mistake in the caller.
+    /// Panics if the device has no such key, or if the key is of another kind. The caller must know both.
     pub fn integer(&self, key: &str) -> i64 {
         match self.value(key) {
             Value::Integer(value) => *value,
@@ -76,7 +77,7 @@ impl Config {
     /// Returns the value of a number key.
     ///
     /// # Panics
-    /// As [`Config::integer`].
+    /// Panics as [`Config::integer`] does.
     pub fn number(&self, key: &str) -> f64 {
         match self.value(key) {
             Value::Number(value) => *value,
@@ -87,7 +88,7 @@ impl Config {
     /// Returns the value of a choice.
     ///
     /// # Panics
-    /// As [`Config::integer`].
+    /// Panics as [`Config::integer`] does.
     pub fn choice(&self, key: &str) -> &str {
         match self.value(key) {
             Value::Text(value) => value,
@@ -98,7 +99,7 @@ impl Config {
     /// Returns the value of a text.
     ///
     /// # Panics
-    /// As [`Config::integer`].
+    /// Panics as [`Config::integer`] does.
     pub fn text(&self, key: &str) -> &str {
         match self.value(key) {
             Value::Text(value) => value,
@@ -109,7 +110,7 @@ impl Config {
     /// Returns the value of a flag.
     ///
     /// # Panics
-    /// As [`Config::integer`].
+    /// Panics as [`Config::integer`] does.
     pub fn flag(&self, key: &str) -> bool {
         match self.value(key) {
             Value::Flag(value) => *value,
@@ -120,7 +121,7 @@ impl Config {
     /// Returns the value of a list of integers.
     ///
     /// # Panics
-    /// As [`Config::integer`].
+    /// Panics as [`Config::integer`] does.
     pub fn integers(&self, key: &str) -> &[i64] {
         match self.value(key) {
             Value::Integers(values) => values,
@@ -136,7 +137,7 @@ impl Config {
     /// Returns the value of a key of any kind.
     ///
     /// # Panics
-    /// If the device has no such key: a mistake in the caller.
+    /// Panics if the device has no such key. The caller must know the keys.
     pub fn value(&self, key: &str) -> &Value {
         match self.values.iter().find(|(name, _)| *name == key) {
             Some((_, value)) => value,
@@ -144,7 +145,7 @@ impl Config {
         }
     }
 
-    /// Replaces a value. The caller answers for its range.
+    /// Replaces a value. The caller must make sure that the value is in the range of its key.
     pub fn set(&mut self, key: &str, value: Value) {
         if let Some(slot) = self.values.iter_mut().find(|(name, _)| *name == key) {
             slot.1 = value;

@@ -4,13 +4,13 @@ use super::schema::{Key, KeyKind, Schema};
 use super::shared::shared_keys;
 use super::values::Config;
 
-/// The widest line of a comment.
+/// The number of columns that a line of a comment may have.
 const WIDTH: usize = 90;
 
 /// The width that a value of [`brief`] is padded to, so that the remarks begin in one column.
 const REMARK_COLUMN: usize = 38;
 
-/// The most letters that a remark has.
+/// The most letters that a remark may have.
 const REMARK_WIDTH: usize = 80;
 
 /// Returns the short file that `glint new` prints: one line for each key of the device, with a remark.
@@ -45,13 +45,14 @@ pub fn brief(schema: &Schema, config: &Config, given: &[String]) -> String {
     text
 }
 
-/// Returns `key = value` with the dotted name of the key.
+/// Returns `key = value` with the dotted name of the key. For example, `cosine.fraction = 20`.
 fn assignment(config: &Config, key: &str) -> String {
     format!("{key} = {}", config.value(key).toml())
 }
 
 /// Returns the meaning of a key in a few words: its first clause, and the values of a choice. If the values are too long for
-/// both, the remark is the list of values alone.
+/// both, the remark is the list of values alone. For example, `cosine.fraction` has the remark "Fraction bits of the cosine
+/// operands".
 fn remark(key: &Key) -> String {
     let ends = [". ", ": ", "; "].map(|mark| key.doc.find(mark).unwrap_or(key.doc.len()));
     let end = ends.into_iter().min().unwrap_or(key.doc.len());

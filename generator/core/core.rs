@@ -217,7 +217,7 @@ impl Core {
     /// handshake, and directed ones, which show the datapath and its tables.
     ///
     /// # Errors
-    /// As of [`Core::vectors`].
+    /// Fails as [`Core::vectors`] does.
     pub fn shipped_vectors(&self) -> Result<Vectors> {
         self.shipped_vectors_of(&directed::ComputationCache::default())
     }
@@ -226,7 +226,7 @@ impl Core {
     /// and adds new ones to it.
     ///
     /// # Errors
-    /// As of [`Core::vectors`].
+    /// Fails as [`Core::vectors`] does.
     pub fn shipped_vectors_of(&self, known: &directed::ComputationCache) -> Result<Vectors> {
         let contract = self.contract.as_ref();
         // A pipeline has the datapath of the microprogram that it was made of.
@@ -258,7 +258,7 @@ impl Core {
         package::emit(&self.design, &inputs)
     }
 
-    /// Returns of a pipeline the design with the microprogram, if it is wanted.
+    /// Returns the design with the microprogram if the core is a pipeline and `is_wanted` is true, and else `None`.
     fn microprogram(&self, is_wanted: bool) -> Result<Option<Design>> {
         let wanted = is_wanted && self.design.pipeline.is_some();
         Ok(wanted.then(|| self.device.sequential(&self.config)).transpose()?)

@@ -39,7 +39,7 @@ pub struct Linear {
 }
 
 impl Linear {
-    /// Returns the number for a length.
+    /// Returns the number for a length. For example, `4 + length` gives 24 for the length 20.
     pub fn at(self, length: i64) -> i64 {
         self.constant + self.each * length
     }
@@ -54,7 +54,8 @@ impl Linear {
     }
 }
 
-/// The contract of a device's results, as far as a program can use it.
+/// The contract of a device's results, as far as a program can use it. For example, `rough` promises for `exponent` 1 to 1000
+/// that each output is within 0.97 units of the formula.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ContractFacts {
     /// The operands with the smallest and the largest raw value for which it promises anything.
@@ -96,7 +97,8 @@ impl ContractFacts {
     }
 }
 
-/// A computation as its handshake shows it. The clock in which `start` is taken is number 0.
+/// A computation as its handshake shows it. The clock in which `start` is taken is number 0. For example, `rough` shows its
+/// result in clock 9, and `done` in clock 10.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Computation {
     /// Raw, in the order of [`ContractFacts::domain`].
@@ -124,7 +126,7 @@ pub struct TimedResult {
     pub outputs: Vec<i64>,
 }
 
-/// A number on a port.
+/// A number on a port. For example, `cos_gamma` with 20 fraction bits has the raw integer 1044480 and the value 0.99609375.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Quantity {
     /// The port.

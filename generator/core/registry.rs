@@ -20,17 +20,17 @@ const OPERANDS_BUFFERED: &str = "operands.buffered";
 
 /// A device that Glint can generate, simulate and check.
 ///
-/// All functions are called with configurations that the schema accepts. The file
-/// `examples/fresnel` is a device of one's own, in full.
+/// Callers must call the functions only with configurations that the schema accepts. The file `examples/fresnel` is a device of
+/// one's own, in full.
 #[derive(Clone, Copy)]
 pub struct Device {
-    /// As the key `device` names it: the same as [`Schema::device`].
+    /// The name that the key `device` gives. It must be the same as [`Schema::device`].
     pub name: &'static str,
     /// One line for `glint list`.
     pub summary: &'static str,
     /// Its configuration keys.
     pub schema: fn() -> Schema,
-    /// Its description: builds on a designer that has the module's name, and does not finish it.
+    /// Its description: builds on a designer that has the module's name, and must not finish it.
     pub describe: fn(&Designer, &Config),
     /// Its golden model.
     pub model: fn(&Config) -> Box<dyn Model>,

@@ -27,16 +27,16 @@ pub(super) trait Arithmetic {
 
     fn multiply(&self, a: &Self::Value, b: &Self::Value) -> Result<Self::Value, String>;
 
-    /// Divides; `b` does not contain 0.
+    /// Divides. The interval `b` must not contain 0.
     fn divide(&self, a: &Self::Value, b: &Self::Value) -> Result<Self::Value, String>;
 
-    /// Multiplies `a` by itself: `exponent` is at least 1.
+    /// Multiplies `a` by itself: `exponent` must be at least 1.
     fn repeated_product(&self, a: &Self::Value, exponent: u32) -> Result<Self::Value, String>;
 
-    /// Computes a power of a base that is not below 0.
+    /// Computes a power. The base `a` must not be below 0.
     fn power(&self, a: &Self::Value, b: &Self::Value) -> Result<Self::Value, String>;
 
-    /// Computes a function within its domain, which the caller has checked.
+    /// Computes a function. The caller must make sure that `a` is within its domain.
     fn function(&self, function: Function, a: &Self::Value) -> Result<Self::Value, String>;
 
     fn minimum(&self, a: &Self::Value, b: &Self::Value) -> Self::Value;

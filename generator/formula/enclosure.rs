@@ -10,7 +10,7 @@ const SMALL: f64 = 1e-280;
 /// The largest `f64` that is not above π.
 const HALF_TURN: f64 = std::f64::consts::PI;
 
-/// A lower and an upper limit of a real number.
+/// A lower and an upper limit of a real number. For example, the limits of π can be two neighbouring `f64` numbers.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Enclosure {
     /// The number is not below this.
@@ -45,7 +45,7 @@ impl Enclosure {
         (self.low..=self.high).contains(&value)
     }
 
-    /// Returns the smallest enclosure that contains both.
+    /// Returns the smallest enclosure that contains both. For example, the hull of 0 to 1 and 3 to 4 is 0 to 4.
     #[must_use]
     pub fn hull(self, other: Self) -> Self {
         Self { low: self.low.min(other.low), high: self.high.max(other.high) }
@@ -119,7 +119,7 @@ impl Enclosure {
         Self { low: (low - reach).next_down().max(-1.0), high: (high + reach).next_up().min(1.0) }
     }
 
-    /// Returns the square root, of no negative number.
+    /// Returns the square root. The number must not be negative.
     pub(super) fn sqrt(self) -> Self {
         let root = |value: f64| {
             let root = value.sqrt();
@@ -139,7 +139,7 @@ impl Enclosure {
         }
     }
 
-    /// Returns a power with an exponent that is a whole number above 0.
+    /// Returns a power with a whole exponent, which must be above 0.
     pub(super) fn repeated_product(self, exponent: u32) -> Self {
         let base = if exponent.is_multiple_of(2) { self.abs() } else { self };
         let power = |value: f64| {
@@ -150,7 +150,7 @@ impl Enclosure {
         Self { low: power(base.low).low, high: power(base.high).high }
     }
 
-    /// Returns a power of no negative number, by `libm`.
+    /// Returns a power, by `libm`. The base must not be negative.
     pub(super) fn power(self, exponent: Self) -> Self {
         self.corners(exponent, |base, exponent| {
             let power = libm::pow(base, exponent);
@@ -219,7 +219,7 @@ impl std::ops::Mul for Enclosure {
 impl std::ops::Div for Enclosure {
     type Output = Self;
 
-    /// Divides by a number that is not 0.
+    /// Divides. The divisor must not contain 0.
     fn div(self, other: Self) -> Self {
         self.corners(other, |a, b| {
             if b.is_infinite() {

@@ -43,8 +43,8 @@ impl Expression {
         Ok(precise.enclosure(&value))
     }
 
-    /// Returns the smallest integer that is not below the formula, which has no operands, times 2 to the power `fraction`; and
-    /// whether that integer is the value.
+    /// Returns the smallest integer that is not below the value times 2 to the power `fraction`, and whether both are equal.
+    /// The formula must have no operands.
     ///
     /// For example, `0.3` with two fraction bits gives (2, false), and `log2(16)` with none gives (4, true).
     ///
@@ -60,7 +60,8 @@ impl Expression {
         })
     }
 
-    /// Returns the value of the formula, which has no operands, if it is a rational number and known to be one.
+    /// Returns the value of the formula, which must have no operands, if it is a rational number and known to be one. For
+    /// example, `log2(16)` gives 4, and `sqrt(2)` gives `None`.
     pub fn rational(&self) -> Option<RBig> {
         let (_, value) = self.decided(&[], |_, _| true).ok()?;
         value.rational().cloned()
@@ -213,7 +214,7 @@ pub(super) fn binary<A: Arithmetic>(
     }
 }
 
-/// Computes the remainder of a division, which is between 0 and the divisor.
+/// Computes the remainder of a division, which is between 0 and the divisor. For example, the remainder of −1 by 4 is 3.
 fn remainder<A: Arithmetic>(
     arithmetic: &A,
     a: &A::Value,

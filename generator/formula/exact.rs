@@ -11,7 +11,7 @@ use dashu_ratio::RBig;
 
 use super::{Function, Operator};
 
-/// The most bits of a numerator and a denominator together. Beyond it, a value counts as not exact.
+/// The number of bits that a numerator and a denominator together may have. Beyond it, a value counts as not exact.
 const MOST_BITS: usize = 1 << 14;
 
 /// The largest exponent for which the powers of a base are tried when a logarithm is divided by another.
@@ -164,7 +164,8 @@ impl Exact {
     }
 }
 
-/// Returns the root of a number if the root is rational. A negative number gives a root only if `degree` is 1.
+/// Returns the root of a number if the root is rational. A negative number gives a root only if `degree` is 1. For example, the
+/// root of degree 3 of 8/27 is 2/3.
 fn root(value: &RBig, degree: usize) -> Option<RBig> {
     if degree == 1 {
         return Some(value.clone());
@@ -185,7 +186,8 @@ fn root(value: &RBig, degree: usize) -> Option<RBig> {
     Some(RBig::from_parts(IBig::from(numerator), denominator))
 }
 
-/// Returns the integer k with baseᵏ = value, if there is one. Both numbers are above 0.
+/// Returns the integer k with baseᵏ = value, if there is one. Both numbers must be above 0. For example, 1/8 and base 2 give
+/// −3.
 fn logarithm(value: &RBig, base: &RBig) -> Option<isize> {
     if base.is_one() {
         return None;

@@ -120,7 +120,8 @@ impl Fault {
         Self { span, message: message.into() }
     }
 
-    /// Returns the text on one line. The next line has carets under the mistake, and the message after the carets.
+    /// Returns the text on one line. The next line has carets under the mistake, and the message after the carets. For example,
+    /// in `sqrt(y)` the operand y has the fault "there is no `y`: the operand is `x`", and the next line has a caret under y.
     pub fn under(&self, text: &str) -> String {
         let count = |range: Range<usize>| text.get(range).map_or(0, |it| it.chars().count());
         let carets = count(self.span.clone()).max(1);
@@ -186,7 +187,7 @@ impl Expression {
         count
     }
 
-    /// Refuses names other than `operand`, and words of ROMs.
+    /// Returns the formula if it has no names other than `operand`, and no words of ROMs.
     ///
     /// # Errors
     /// Fails at the first such name.

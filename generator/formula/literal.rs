@@ -76,14 +76,14 @@ impl Literal {
     }
 
     /// Returns the number of significant digits in the text: all digits from the first that is not 0. The digits of the
-    /// exponent are not counted.
+    /// exponent are not counted. For example, `0.0125` and `1.25e-2` both have three.
     pub(super) fn significant_digits(&self) -> usize {
         let digits = self.text.split(['e', 'E']).next().unwrap_or_default();
         let from_first = digits.trim_start_matches(['0', '.']);
         from_first.bytes().filter(u8::is_ascii_digit).count()
     }
 
-    /// Returns decimal digits that state the number exactly, as C and Python read them.
+    /// Returns decimal digits that state the number exactly, as C and Python read them. For example, `1.25e-3` gives `0.00125`.
     pub fn digits(&self) -> String {
         let shortest = format!("{:?}", self.nearest);
         match Self::read(&shortest) {

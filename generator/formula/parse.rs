@@ -22,7 +22,8 @@ pub const FUNCTIONS: [(&str, Function); 13] = [
     ("erf", Function::Erf),
 ];
 
-/// Functions that are combinations of others, of a number u.
+/// Functions that are combinations of others, of a number u. For example, `cosh(2 * x)` is parsed as its formula with `2 * x`
+/// in the place of u.
 const DEFINED: [(&str, &str); 14] = [
     ("reciprocal", "1 / u"),
     ("rsqrt", "1 / sqrt(u)"),
@@ -58,11 +59,11 @@ const CONSTANTS: [(&str, f64); 2] = [("pi", std::f64::consts::PI), ("e", std::f6
 /// The sign of the first of them.
 const PI: &str = "π";
 
-/// The deepest nesting of parts. It limits the depth of recursion of the parser.
+/// The depth to which parts may be nested. It limits the depth of recursion of the parser.
 const DEEPEST: usize = 200;
 
-/// The most parts of a formula once its functions are written out. For example, `silu(x)` has 6 parts more than x, and names x
-/// twice, so that each `silu` around another doubles the parts.
+/// The number of parts that a formula may have once its functions are written out. For example, `silu(x)` has 6 parts more than
+/// x, and names x twice, so that each `silu` around another doubles the parts.
 const MOST_PARTS: usize = 4096;
 
 /// Reads a formula: sums, products, powers (`^` or `**`), parentheses, numbers, pi, e, operands by their names,
@@ -84,7 +85,7 @@ pub fn parse(text: &str) -> Result<Expression, Fault> {
     }
 }
 
-/// Returns the places of names, numbers and signs.
+/// Returns the places of names, numbers and signs. For example, `2*x` gives 0..1, 1..2 and 2..3.
 fn tokens(text: &str) -> Result<Vec<Range<usize>>, Fault> {
     let mut tokens = Vec::new();
     let mut at = 0;
@@ -137,7 +138,8 @@ fn instead_of_sign(sign: char) -> Option<&'static str> {
     })
 }
 
-/// Returns the length of the number at the beginning of a text: digits with a point, and a power of ten.
+/// Returns the length of the number at the beginning of a text: digits with a point, and a power of ten. For example, `1.5e3*x`
+/// gives 5.
 fn number(text: &str) -> usize {
     let digits = |from: usize, also: char| {
         let rest = &text[from..];
@@ -248,7 +250,7 @@ impl Parser<'_> {
         self.chain(&signs, Self::signed)
     }
 
-    /// Returns a power with a sign before it, which is weaker.
+    /// Returns a power with a sign before it, which is weaker. For example, `-x^2` is −(x²).
     fn signed(&mut self) -> Result<Expression, Fault> {
         let from = self.at;
         let mut negations = 0;

@@ -10,7 +10,8 @@ const POWER: u8 = 3;
 const ATOM: u8 = 4;
 
 impl Expression {
-    /// Returns the text as [`super::parse()`] reads it, and Python with `from math import *`.
+    /// Returns the text as [`super::parse()`] reads it, and Python with `from math import *`. For example, `x^2 + 1` becomes `x
+    /// ** 2.0 + 1.0`.
     pub fn python(&self) -> String {
         python(self).0
     }

@@ -64,17 +64,18 @@ pub fn bound(
     Bound { f, ..Bound::of(terms) }
 }
 
-/// Returns an expression of Python, 0 where it would be negative.
+/// Returns an expression of Python, 0 where it would be negative. For example, `x - 1` becomes `max(x - 1, 0)`.
 pub fn clamped_at_0(expression: &str) -> String {
     format!("max({expression}, 0)")
 }
 
-/// Returns an expression of Python, 0 where the surface faces away.
+/// Returns an expression of Python, 0 where the surface faces away. For example, `f` becomes `f if cos_gamma > 0 else 0`.
 pub fn where_it_faces(expression: &str) -> String {
     format!("{expression} if {COSINE} > 0 else 0")
 }
 
-/// Returns the raw value of the operand for the exponent `n`; `None` where its domain or its format has none.
+/// Returns the raw value of the operand for the exponent `n`; `None` where its domain or its format has none. For example,
+/// n = 20 gives 20 in `u10.0`, and 20.5 gives `None`.
 pub fn exponent_at(operand: &Operand, n: f64) -> Option<i64> {
     let raw = operand.format.quantise(n);
     let held = operand.format.to_f64(raw) == n;

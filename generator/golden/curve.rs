@@ -55,7 +55,7 @@ pub struct SegmentedCurve {
 }
 
 impl SegmentedCurve {
-    /// Returns the table of `function`, of u as an integer: increasing from 0 to 1.
+    /// Returns the table of `function`, which takes u as an integer and must increase from 0 to 1.
     pub fn new(params: &CurveParams, function: impl Fn(f64) -> f64) -> Self {
         let mut curve = Self {
             params: params.clone(),

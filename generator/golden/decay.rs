@@ -40,7 +40,7 @@ impl DecayArithmetic {
     /// Makes the tables of a configuration, and the roundings between them.
     ///
     /// # Panics
-    /// If the check of the schema has not accepted the configuration.
+    /// Panics if the check of the schema has not accepted the configuration. The caller must check it first.
     fn new(of: Decay, keys: Keys) -> Self {
         let ratio = keys.ratio(of).expect("a configuration that is checked");
         let power = keys.power().expect("a configuration that is checked");

@@ -39,7 +39,7 @@
 use super::frame::{ClockedModel, Frame, FrameStep, idle};
 use super::{Bound, Contract, Model, Operand, Output, Sweep, Term};
 
-/// More clocks than any computation takes.
+/// The number of clocks that a computation may take.
 const LONGEST: u32 = 1 << 20;
 
 /// In the place of a result that is never shown.
@@ -56,7 +56,7 @@ impl Frame {
     /// Returns the device at power-up, as [`Frame::model`] takes it.
     ///
     /// # Panics
-    /// If there is no microinstruction.
+    /// Panics if there is no microinstruction. A program must have at least one.
     pub fn device(self, program: impl IntoIterator<Item = FrameStep>) -> Device {
         let operands = self.operands().map(|(name, format, domain)| Operand {
             name: name.to_owned(),
@@ -94,7 +94,7 @@ impl Device {
     /// States the contract for fewer values of an operand than its register holds.
     ///
     /// # Panics
-    /// If there is no such operand.
+    /// Panics if there is no such operand.
     #[must_use]
     pub fn domain(mut self, operand: &str, low: i64, high: i64) -> Self {
         let found = self.operands.iter_mut().find(|it| it.name == operand);

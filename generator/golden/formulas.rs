@@ -8,7 +8,8 @@ use std::f64::consts::FRAC_PI_2;
 
 /// Returns Blinn's function `cⁿ` itself (seeds 000–002), which all the others approximate.
 ///
-/// `c` is the cosine of the angle between the normal and the half vector, `n` the exponent.
+/// `c` is the cosine of the angle between the normal and the half vector, `n` the exponent. For example, c = 0.5 and n = 2 give
+/// 0.25.
 pub fn blinn(c: f64, n: f64) -> f64 {
     if c <= 0.0 { 0.0 } else { libm::pow(c, n) }
 }
@@ -61,7 +62,8 @@ pub fn parabola(c: f64, n: f64) -> f64 {
     rough(c, 1.0, false, n)
 }
 
-/// Returns a reflectance where it reaches UA 30041's level of visibility, otherwise 0.
+/// Returns a reflectance where it reaches UA 30041's level of visibility, otherwise 0. For example, the level 0.5 makes 0 of
+/// 0.3.
 #[inline]
 pub fn threshold(square: f64, level: f64) -> f64 {
     if square < level { 0.0 } else { square }
@@ -78,7 +80,7 @@ pub fn lyon(distance: f64, beta: f64, m: u32) -> f64 {
 
 /// Returns the formula of UA 20998 (seed 001): `c + a·(c² − c)` with a = a(n), 0 where that is negative.
 ///
-/// For a < 0, which no table has, it would exceed c.
+/// For a < 0, which no table has, it would exceed c. For example, c = 0.5 and a = 1 give 0.25.
 #[inline]
 pub fn quadratic(c: f64, a: f64) -> f64 {
     if c <= 0.0 {
@@ -89,7 +91,7 @@ pub fn quadratic(c: f64, a: f64) -> f64 {
 
 /// Returns the paper's W (seed 002): `(n/m·(c − 1) + 1)^m`, 0 where the base is negative.
 ///
-/// `m` is a power of two, 2 … 16 in the seed.
+/// `m` is a power of two, 2 … 16 in the seed. For example, c = 0.5, n = 1 and m = 2 give 0.5625.
 #[inline]
 pub fn cosine_power(c: f64, n: f64, m: u32) -> f64 {
     if c <= 0.0 {
@@ -149,7 +151,8 @@ pub fn gauss(c: f64, n: f64) -> f64 {
     libm::exp(-n * gamma * gamma / 2.0)
 }
 
-/// Returns Schlick's function (seed 002): `c / (n − n·c + c)`, 0 where `c ≤ 0`, `n = 0` included.
+/// Returns Schlick's function (seed 002): `c / (n − n·c + c)`, 0 where `c ≤ 0`, `n = 0` included. For example, c = 0.5 and
+/// n = 1 give 0.5.
 #[inline]
 pub fn schlick(c: f64, n: f64) -> f64 {
     // Near c = 1, n − n·c loses digits to cancellation, and n·(1 − c) does not.

@@ -43,7 +43,7 @@ fn device(it: &Arc<Piecewise>) -> device::Device {
 /// Returns the golden model.
 ///
 /// # Panics
-/// If the check of the schema has not accepted the configuration.
+/// Panics if the check of the schema has not accepted the configuration. The caller must check it first.
 pub fn model(config: &Config) -> Box<dyn Model> {
     device(&found(config).expect("a configuration that is checked").1).model()
 }
@@ -51,7 +51,7 @@ pub fn model(config: &Config) -> Box<dyn Model> {
 /// Returns the accuracy contract.
 ///
 /// # Panics
-/// As [`model`].
+/// Panics as [`model`] does.
 pub fn contract(config: &Config) -> Box<dyn Contract> {
     let (function, it) = found(config).expect("a configuration that is checked");
     let bound = it.bound;

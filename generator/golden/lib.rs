@@ -59,7 +59,7 @@ pub trait Model: CloneModel + Send + Sync {
     /// block (pipeline stages, synchronous ROMs) need not be there.
     fn signals(&self) -> &[String];
 
-    /// Takes one rising edge. `inputs` are the values just before the edge.
+    /// Takes one rising edge. `inputs` are the values just before the edge. They must be in the order of [`Model::inputs`].
     fn clock(&mut self, inputs: &[u64]);
 
     /// Returns the device at power-up with a register `<output>_reg` behind each result that is logic, loaded in the
@@ -149,8 +149,8 @@ pub trait Contract: Send + Sync {
     /// Returns the outputs, in the order in which results are given.
     fn outputs(&self) -> &[Output];
 
-    /// Appends the raw outputs that the device computes from raw operands: of result number `index` (from 0),
-    /// where a computation has several.
+    /// Appends the raw outputs that the device computes from raw operands: of result number `index` (from 0), where a
+    /// computation has several. The operands must be in the order of [`Contract::operands`].
     fn results(&self, operands: &[i64], index: u64, raw: &mut Vec<i64>);
 
     /// Refuses a contract whose results are never shown.
@@ -228,7 +228,7 @@ pub trait Contract: Send + Sync {
 }
 
 /// Returns the distance of `value` from the nearer of two right values. It is infinite if either is no finite number, since a
-/// formula without a value cannot confirm a result.
+/// formula without a value cannot confirm a result. For example, 2.5 is 0.5 away from the nearer of 2.0 and 4.0.
 #[inline]
 pub fn nearer(value: f64, right: [f64; 2]) -> f64 {
     let [a, b] = right.map(|right| (value - right).abs());
@@ -245,7 +245,7 @@ pub fn nearer(value: f64, right: [f64; 2]) -> f64 {
 pub struct Sweep {
     /// The outermost first.
     pub axes: Vec<Axis>,
-    /// The operands that are left out, in a sentence; empty when every combination is covered.
+    /// The operands that the sweep leaves out, in a sentence; empty when every combination is covered.
     pub omits: String,
 }
 
@@ -261,7 +261,7 @@ pub struct Axis {
 /// The values of an [`Axis`].
 #[derive(Clone, Debug, PartialEq)]
 pub enum Values {
-    /// All integers from the first to the last.
+    /// All integers from the first to the last. For example, `Range(1, 1000)` has 1000 values.
     Range(i64, i64),
     /// The values of this list.
     List(Vec<i64>),
@@ -282,7 +282,7 @@ impl Sweep {
         Self { axes: axes.collect(), omits: String::new() }
     }
 
-    /// Returns its axes in a sentence.
+    /// Returns its axes in a sentence. For example, two axes give `cos_gamma = 0 to 1048576 x exponent = 1 to 1000`.
     pub fn words(&self) -> String {
         let axes: Vec<String> = self.axes.iter().map(Axis::to_string).collect();
         axes.join(" x ")
@@ -335,7 +335,8 @@ pub struct Bound {
     pub terms: Vec<Term>,
 }
 
-/// One contribution to a [`Bound`].
+/// One contribution to a [`Bound`]. For example, `output.rounding` contributes 0.5 units to the bound of `rough`, for the
+/// rounding of the colour outputs.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Term {
     /// The configuration key that governs it.
@@ -355,7 +356,7 @@ impl Bound {
         Self { f: units, units, limit: 1.0, terms }
     }
 
-    /// Returns the bound in units, or says that there is none.
+    /// Returns the bound in units, or says that there is none. For example, `rough` has `0.969`.
     pub fn words(&self) -> String {
         if self.is_stated() { text::rounded_up(self.units, 3) } else { "not stated".to_owned() }
     }
@@ -370,7 +371,8 @@ impl Bound {
         self.units.is_finite()
     }
 
-    /// Returns the largest contribution: the key to change first.
+    /// Returns the largest contribution: the key to change first. For example, it is `output.rounding` for `rough`, with 0.5 of
+    /// 0.969 units.
     pub fn limiting(&self) -> Option<&Term> {
         self.terms.iter().max_by(|a, b| a.units.total_cmp(&b.units))
     }

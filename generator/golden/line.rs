@@ -9,7 +9,8 @@ use super::contract::control;
 use super::frame::{Frame, FrameStep, Slot, idle, step};
 use glint_base::fixed::{Format, MAX_WIDTH, exp2};
 
-/// Returns the raw value of an angle operand that is nearest to `angle`, in radians, or the end of its domain.
+/// Returns the raw value of an angle operand that is nearest to `angle`, in radians, or the end of its domain. For example, π/4
+/// gives 32768 with 16 fraction bits.
 pub fn raw_angle(operand: &Operand, angle: f64) -> i64 {
     let (low, high) = operand.domain;
     let raw = operand.format.quantise(angle / FRAC_PI_2) as i64;
@@ -74,12 +75,14 @@ pub fn angle_at(format: Format, start: i64, delta: i64, index: u64) -> i64 {
     wrapped(format, start.wrapping_add(delta.wrapping_mul(index as i64)))
 }
 
-/// Returns the step of a line of `length` intervals from an angle to another; of none that given.
+/// Returns the step of a line of `length` intervals from an angle to another; of none that given. For example, 3 intervals from
+/// 0 to 300 give 100.
 pub fn interval(first: i64, last: i64, length: i64, given: i64) -> i64 {
     if length == 0 { given } else { (last - first) / length }
 }
 
-/// Returns the angle of the point `index` of a line, in right angles, as an expression of Python.
+/// Returns the angle of the point `index` of a line, in right angles, as an expression of Python. For example, `s1.16` gives
+/// `((zeta_start + index * delta_zeta + 2) % 4 - 2)`.
 pub fn angle_expression(format: Format) -> String {
     let turn = exp2(format.width() as i32 - format.frac);
     let half = turn / 2.0;
@@ -103,8 +106,8 @@ pub fn length_operand(length_bits: u32) -> Operand {
     control("length", format, (0, format.max_raw() as i64), doc)
 }
 
-/// Returns the leading `kept` fraction bits of an angle's magnitude, complement for a negative one; `None`
-/// outside −90° ≤ angle < 90°.
+/// Returns the leading `kept` fraction bits of an angle's magnitude, complement for a negative one; `None` outside −90° ≤ angle
+/// < 90°. For example, with `fraction` 4 and `kept` 4, 5 gives 5, −6 gives 5, and 16 gives `None`.
 #[inline]
 pub fn magnitude(angle: i64, fraction: u32, kept: u32) -> Option<i64> {
     let right = 1i64 << fraction;
@@ -156,7 +159,8 @@ impl CosineTable {
         table
     }
 
-    /// Returns the word for an angle with `fraction` fraction bits, in right angles; the last one beyond them.
+    /// Returns the word for an angle with `fraction` fraction bits, in right angles; the last one beyond them. For example,
+    /// half a right angle reads word 128 of 256.
     #[inline]
     pub fn address(scaled: i64, fraction: u32, address: u32) -> usize {
         let most = (1usize << address) - 1;

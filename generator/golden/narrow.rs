@@ -6,7 +6,8 @@ use glint_base::fixed::{Format, Rounding};
 
 /// Brings raw values of a fixed number of fraction bits to one format, saturating.
 ///
-/// It computes [`Format::narrow`] with `Overflow::Saturate`, on `i64`.
+/// It computes [`Format::narrow`] with `Overflow::Saturate`, on `i64`. For example, from 3 fraction bits to a rounded `s0.1`
+/// the raw value 5 gives 1, and so does 12.
 #[derive(Clone, Copy, Debug)]
 pub struct Narrow {
     /// Added before the shift: half an ulp of the result, or 0.
@@ -18,7 +19,7 @@ pub struct Narrow {
 }
 
 impl Narrow {
-    /// Makes the conversion of values with `from_frac` fraction bits to `format`, which is at most 63 bits wide.
+    /// Makes the conversion of values with `from_frac` fraction bits to `format`, which may be at most 63 bits wide.
     pub fn new(from_frac: u32, format: Format, rounding: Rounding) -> Self {
         let places = from_frac as i32 - format.frac;
         let right = places.max(0) as u32;
@@ -41,8 +42,8 @@ impl Narrow {
     }
 }
 
-/// Returns the largest error of rounding away fraction bits, in the value's own unit: from `from_frac`
-/// fraction bits to `frac`, saturation not counted.
+/// Returns the largest error of rounding away fraction bits, in the value's own unit: from `from_frac` fraction bits to `frac`,
+/// saturation not counted. For example, 5 to 4 fraction bits give 1/16 if truncated, and 1/32 if rounded to the nearest.
 pub fn rounding_error(from_frac: u32, frac: u32, rounding: Rounding) -> f64 {
     let ulp = glint_base::fixed::exp2(-(frac as i32));
     match rounding {

@@ -15,7 +15,8 @@ pub struct Occupancy<P> {
 }
 
 impl<P> Occupancy<P> {
-    /// Makes a pipeline of `latency` stages without any point, which takes one every `interval` clocks.
+    /// Makes a pipeline of `latency` stages without any point, which takes one every `interval` clocks. For example, a point
+    /// that `empty(2, 1)` takes has its results on the outputs after two rising edges, the taking one included.
     pub fn empty(latency: usize, interval: usize) -> Self {
         Self { stages: (0..latency).map(|_| None).collect(), interval, slot: 0 }
     }

@@ -15,7 +15,8 @@ use glint_base::fixed::Format;
 use glint_config::Config;
 use glint_keys::quad_cosine::Keys;
 
-/// Returns the power that serves n, as a number of a table: the seed's ranges.
+/// Returns the power that serves n, as a number of a table: the seed's ranges. For example, n = 5 gives 2, the number of the
+/// table of cos⁴.
 #[inline]
 fn range_of(n: i64) -> usize {
     match n {

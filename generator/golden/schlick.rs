@@ -23,8 +23,8 @@ impl SchlickArithmetic {
     }
 }
 
-/// Returns the first `bits` bits of the quotient, and the remainder that they leave. A quotient of 1.0 is the
-/// largest fraction.
+/// Returns the first `bits` bits of the quotient, and the remainder that they leave. A quotient of 1.0 is the largest fraction.
+/// For example, 4 bits of 1/3 are 5, and the remainder is 1.
 #[inline]
 fn divide(dividend: i64, divisor: i64, bits: u32) -> (i64, i64) {
     let quotient = ((dividend << bits) / divisor).min((1 << bits) - 1);

@@ -124,7 +124,7 @@ fn parts(keys: &Keys) -> PartConfigs {
 /// Returns the golden model.
 ///
 /// # Panics
-/// If the check of the schema has not accepted the configuration.
+/// Panics if the check of the schema has not accepted the configuration. The caller must check it first.
 pub fn model(config: &Config) -> Box<dyn Model> {
     let keys = Keys::of(config);
     device(&keys, &parts(&keys)).model()
@@ -133,7 +133,7 @@ pub fn model(config: &Config) -> Box<dyn Model> {
 /// Returns the accuracy contract.
 ///
 /// # Panics
-/// As [`model`].
+/// Panics as [`model`] does.
 pub fn contract(config: &Config) -> Box<dyn Contract> {
     let keys = Keys::of(config);
     let parts = parts(&keys);

@@ -25,7 +25,7 @@ struct ThresholdArithmetic {
     square: Narrow,
     /// By octave of n.
     thresholds: Vec<i64>,
-    /// The distance from ROM(n) within which either outcome of the comparison is accepted: the bound of f.
+    /// The distance from ROM(n) within which the comparison may have either outcome: the bound of f.
     margin: f64,
 }
 
@@ -46,8 +46,8 @@ impl ThresholdArithmetic {
         it
     }
 
-    /// Returns the least word of f that is shown, one entry for each octave of n: `levels / 100` units, rounded up to a word.
-    /// A word is at most 1.0 − ulp.
+    /// Returns the least word of f that is shown, one entry for each octave of n: `levels / 100` units, rounded up to a word. A
+    /// word is at most 1.0 − ulp. For example, the level 100 gives 258 for colours of 8 bits and an f of 16 fraction bits.
     fn thresholds(keys: &Keys) -> Vec<i64> {
         // 100 · largest · word ≥ level · 2^F, for the least word; less than 2^30 · 2^24.
         let unit = 100 * ((1 << keys.operands.colours.bits) - 1);

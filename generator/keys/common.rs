@@ -14,22 +14,22 @@ glint_config::keys! {
 }
 
 impl Cosine {
-    /// Returns the format of cos γ.
+    /// Returns the format of cos γ. For example, `cosine.fraction = 20` gives `u1.20`, or `s1.20` with `cosine.signed`.
     pub fn format(&self) -> Format {
         Format { signed: self.signed, int: 1, frac: self.fraction as i32 }
     }
 
-    /// Returns 1.0 as a raw cosine.
+    /// Returns 1.0 as a raw cosine. For example, it is 1048576 for 20 fraction bits.
     pub fn one(&self) -> i64 {
         1 << self.fraction
     }
 
-    /// Returns an ulp of the cosine.
+    /// Returns an ulp of the cosine. For example, it is 2^−20 for `cosine.fraction = 20`.
     pub fn ulp(&self) -> f64 {
         exp2(-(self.fraction as i32))
     }
 
-    /// Returns a raw cosine as the register takes it.
+    /// Returns a raw cosine as the register takes it. For example, a negative cosine becomes 0.
     #[inline]
     pub fn clamped(&self, raw: i64) -> i64 {
         raw.clamp(0, self.one())
@@ -75,7 +75,7 @@ glint_config::keys! {
 }
 
 impl Operands {
-    /// Returns the format of n.
+    /// Returns the format of n. For example, `exponent.bits = 10` gives `u10.0`.
     pub fn exponent_format(&self) -> Format {
         Format::unsigned(self.exponent_bits as i32, 0)
     }
@@ -214,7 +214,7 @@ pub fn line_stages(choices: &'static [&'static str]) -> Key {
     .joined_later()
 }
 
-/// Checks that the domain of n is not empty and fits the operand.
+/// Checks that the domain of n is not empty and fits the operand. For example, `exponent.bits = 8` cannot hold n = 1000.
 pub fn check_exponents(domain: &Domain, bits: u32, problems: &mut Problems) {
     let (min, max) = domain.exponents();
     if min > max {
@@ -228,10 +228,11 @@ pub fn check_exponents(domain: &Domain, bits: u32, problems: &mut Problems) {
     }
 }
 
-/// The most bits of a ROM: a megabit.
+/// The number of bits that a ROM may have: a megabit.
 const ROM_LIMIT: i64 = 1 << 20;
 
-/// Checks that a ROM with this number of address bits and bits in a word is not too large. `key` governs its size.
+/// Checks that a ROM has at most 2^20 bits. For example, 15 address bits may have words of up to 32 bits. `key` governs its
+/// size.
 pub fn check_rom_size(
     key: &str,
     rom: &str,
@@ -247,8 +248,9 @@ pub fn check_rom_size(
     }
 }
 
-/// Returns every range of `key`, each a quarter of the one before it, has as many of the `bits` bits of 1 − cos as it is cut by.
-/// The most bits that a segment is left with, up to a range that has too few.
+/// Checks that every range of `key` has the bits of 1 − cos that it is cut by. Range j has `bits` − 2·j of them, because each
+/// range is a quarter of the range before. Returns the largest number of bits that a segment keeps, up to the first range that
+/// has too few. For example, 20 bits and prefixes of 6 and 5 bits give 14.
 pub fn check_segments(segments: &[u32], key: &str, bits: u32, problems: &mut Problems) -> u32 {
     let mut most = 0;
     for (range, &prefix) in (0u32..).zip(segments) {

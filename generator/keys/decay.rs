@@ -72,12 +72,14 @@ impl Decay {
 }
 
 impl Keys {
-    /// Returns the number of bits of u, the distance 1 − c less an ulp of the cosine.
+    /// Returns the number of bits of u, the distance 1 − c less an ulp of the cosine. For example, a cosine of 20 fraction bits
+    /// has 19 of them in `blinn`, and 20 in `gauss`.
     pub fn distance(&self, decay: Decay) -> u32 {
         self.operands.cosine.fraction - decay.known()
     }
 
-    /// Returns the format of the decay, or of the part to which octaves are added. Its values are below 2.0.
+    /// Returns the format of the decay, or of the part to which octaves are added. Its values are below 2.0. For example, the
+    /// default `decay.fraction = 26` gives `u1.26`.
     pub fn decay_format(&self) -> Format {
         Format::unsigned(1, self.decay_fraction as i32)
     }
@@ -94,14 +96,14 @@ impl Keys {
         (self.decay_fraction - 2).max(self.whole_bits(decay) + self.coarse_fraction)
     }
 
-    /// Returns the format of n·decay.
+    /// Returns the format of n·decay. For example, the defaults of `gauss` give `u11.18`.
     pub fn halvings(&self, decay: Decay) -> Format {
         let whole = self.operands.exponent_bits + self.whole_bits(decay);
         Format::unsigned(whole as i32, self.argument as i32)
     }
 
     /// Returns the number of low bits of u that the table of the ratio does not read. The table reads one bit more of 1 − c
-    /// than the ratio has.
+    /// than the ratio has. For example, the defaults of 20 cosine and 16 ratio bits leave 3 of them.
     pub fn unseen(&self) -> u32 {
         self.operands.cosine.fraction.saturating_sub(self.ratio_fraction + 1)
     }

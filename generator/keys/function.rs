@@ -131,7 +131,8 @@ fn function(keys: &Keys) -> Result<TargetFunction, Refusal> {
     })
 }
 
-/// An end of the domain, in units of the operand's last place.
+/// An end of the domain, in units of the operand's last place. For example, `1.5` with no fraction bits has the `ceiling` 2,
+/// and is no operand.
 #[derive(Clone, Copy)]
 struct End {
     /// The smallest raw operand that is not below the end.

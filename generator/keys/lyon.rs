@@ -37,7 +37,7 @@ glint_config::keys! {
 }
 
 impl Keys {
-    /// Returns s, the number of squarings.
+    /// Returns s, the number of squarings. For example, the power 16 takes 4.
     pub fn squarings(&self) -> u32 {
         self.power.ilog2()
     }

@@ -34,7 +34,8 @@ pub fn names() -> impl Iterator<Item = &'static str> {
     PRESETS.iter().map(|preset| preset.0)
 }
 
-/// Returns the values of the keys of a name.
+/// Returns the values of the keys of a name. For example, `sqrt` gives `function.formula = "sqrt(x)"`, `function.to = "256"`
+/// and five more.
 pub fn values(name: &str) -> Option<Vec<(String, Value)>> {
     let (_, formula, [from, to], outside, [operand, result], reduction) =
         PRESETS.into_iter().find(|preset| preset.0 == name)?;

@@ -4,7 +4,7 @@
 //! peak; the distance is largest where the slopes agree. Farther away it is below cⁿ; the distance is largest at the
 //! parabola's own zero.
 
-/// Returns n − 1: value and slope agree with cⁿ at c = 1. For n = 0, where that is negative, 0.
+/// Returns n − 1: value and slope agree with cⁿ at c = 1. For n = 0, where that is negative, 0. For example, n = 20 gives 19.
 pub fn taylor(n: u32) -> f64 {
     f64::from(n.max(1) - 1)
 }

@@ -28,7 +28,7 @@ pub struct Points {
 }
 
 impl Points {
-    /// Makes an empty list of points. Each point has `operands` operands, in the order of the [`Contract`].
+    /// Makes an empty list of points. Each point must have `operands` operands, in the order of the [`Contract`].
     pub fn new(operands: usize) -> Self {
         Self { operands, values: Vec::new(), results: vec![0] }
     }
@@ -36,14 +36,14 @@ impl Points {
     /// Adds a computation with its raw operands and the number of its results.
     ///
     /// # Panics
-    /// If there are not as many operands as [`Points::new`] said.
+    /// Panics unless there are as many operands as [`Points::new`] said.
     pub fn push(&mut self, operands: impl IntoIterator<Item = i64>, results: usize) {
         self.values.extend(operands);
         self.results.push(self.result_count() + results);
         assert_eq!(self.values.len(), self.operands * self.len(), "operands");
     }
 
-    /// Adds the computations of another list with as many operands.
+    /// Adds the computations of another list, which must have as many operands.
     pub fn append(&mut self, other: &Self) {
         let before = self.result_count();
         self.values.extend(&other.values);

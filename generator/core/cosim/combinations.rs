@@ -29,8 +29,8 @@ impl Space {
         Self { held: vec![None; ports.operands.len()], listed: Vec::new(), ports: ports.clone() }
     }
 
-    /// Makes the space of all combinations, with these raw operands, each in the order of the contract, at its first
-    /// places.
+    /// Makes the space of all combinations, with these raw operands at its first places. Each list must be in the order of the
+    /// contract.
     pub(super) fn listed(ports: &Arc<Ports>, list: &[Vec<i64>]) -> Self {
         Self { listed: list.to_vec(), ..Self::new(ports) }
     }
@@ -45,7 +45,8 @@ impl Space {
         }
     }
 
-    /// Returns the bits of all operands together that are not held.
+    /// Returns the bits of all operands together that are not held. For example, three operands of 8 bits give 16 if one of
+    /// them is held.
     pub(super) fn bits(&self) -> u32 {
         let operands = self.ports.operands.iter().zip(&self.held);
         let free = operands.filter(|(_, held)| held.is_none());

@@ -18,7 +18,7 @@ pub struct Driven {
 }
 
 impl Driven {
-    /// Takes a model at power-up, and finds its inputs of the handshake and of the operands that are named.
+    /// Takes a model, which must be at power-up, and finds its inputs of the handshake and of the operands that are named.
     ///
     /// # Errors
     /// Fails if the model does not have one of the names.

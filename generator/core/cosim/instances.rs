@@ -17,7 +17,7 @@ impl<const LANES: usize> Instances<LANES> {
     /// Makes a simulator of a design after its reset.
     ///
     /// # Errors
-    /// As of [`Ports::new`] and [`Simulator::new`].
+    /// Fails if [`Ports::new`] or [`Simulator::new`] fails.
     pub(super) fn new(design: &Design, contract: &dyn Contract) -> Result<Self> {
         let ports = Ports::new(design, contract)?;
         let mut simulator = Simulator::<LANES>::new(design)?;

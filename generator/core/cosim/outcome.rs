@@ -141,7 +141,7 @@ pub(super) fn stream_seed(seed: u64, number: u64) -> u64 {
     }
 }
 
-/// Returns the points of stream `number` of a run of `points`.
+/// Returns the points of stream `number` of a run of `points`. For example, 10 points in 4 streams are 3, 3, 2 and 2.
 pub(super) fn share(points: u64, streams: u64, number: u64) -> u64 {
     points / streams + u64::from(number < points % streams)
 }

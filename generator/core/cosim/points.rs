@@ -77,7 +77,7 @@ impl<'a> PointSource<'a> {
         points
     }
 
-    /// Holds an operand at a raw value: seldom is anything else drawn for it.
+    /// Holds an operand at a raw value: other values may be drawn for it, but seldom are.
     pub fn hold(&mut self, name: &str, raw: i64) {
         let held = self.operands.iter_mut().filter(|operand| operand.name == name);
         held.for_each(|operand| operand.domain = (raw, raw));

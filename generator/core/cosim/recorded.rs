@@ -11,7 +11,7 @@ pub(super) struct Recording {
 }
 
 impl Recording {
-    /// Makes the recording of the inputs of each clock, as many in each; of at least one clock.
+    /// Makes the recording of the inputs of each clock, as many in each. There must be at least one clock.
     pub(super) fn new(clocks: &[Vec<u64>]) -> Self {
         Self { words: clocks.concat(), inputs: clocks[0].len() }
     }

@@ -174,7 +174,7 @@ impl<'a, const LANES: usize> Runner<'a, LANES> {
     /// Returns the record of each, up to the first that differs.
     ///
     /// # Errors
-    /// As of [`Runner::run`].
+    /// Fails as [`Runner::run`] does.
     pub(super) fn into_seen(self) -> Result<Vec<StreamRecord>> {
         let mut all = Vec::new();
         for (stream, differs) in self.streams.into_iter().zip(self.differ) {
@@ -194,7 +194,7 @@ impl Runner<'_, 1> {
     /// Continues to the end, or until the given number of clocks is done.
     ///
     /// # Errors
-    /// As of [`Runner::run`].
+    /// Fails as [`Runner::run`] does.
     pub(super) fn go_on(&mut self, clocks: u64) -> Result<()> {
         while !self.ended() && self.first().seen.clocks < clocks {
             self.run()?;
@@ -205,7 +205,7 @@ impl Runner<'_, 1> {
     /// Goes to the end; `file` takes the waveform from clock `from` on.
     ///
     /// # Errors
-    /// As of [`Runner::run`].
+    /// Fails as [`Runner::run`] does.
     pub(super) fn trace(&mut self, from: u64, file: impl Write + Send + 'static) -> Result<()> {
         self.go_on(from)?;
         self.simulator.trace(file)?;

@@ -13,13 +13,13 @@ use glint_golden::{Contract, Highlight, Operand};
 use glint_rtl::netlist::{self, Design, HandshakeTiming, NetId};
 use glint_rtl::sim::Simulator;
 
-/// More clocks than any device takes.
+/// The number of clocks that a computation may take.
 const LIMIT: u32 = 1 << 16;
 
 /// Computations in a list, the first of them the corners of the domain.
 const COMPUTATIONS: usize = 40;
 
-/// The longest line of a computation in a list, in intervals.
+/// The number of intervals that a line of a computation in a list may have.
 const SHORT: i64 = 9;
 
 /// The longest line whose clocks are measured, in intervals beyond the shortest.
@@ -44,7 +44,8 @@ struct ComputationTrial {
 }
 
 impl ComputationTrial {
-    /// Returns the clocks from each result to the next; where it is as from the one before, it is left out.
+    /// Returns the clocks from each result to the next. It leaves out a number that equals the one before. For example, results
+    /// in the clocks 5, 6, 7 and 9 give 1 and 2.
     fn distances(&self) -> Vec<u32> {
         let pairs = self.results.windows(2);
         let mut distances: Vec<u32> = pairs.map(|pair| pair[1].0 - pair[0].0).collect();
@@ -100,7 +101,7 @@ fn corners(contract: &dyn Contract, ends: fn(&Operand) -> (i128, i128)) -> [Vec<
 /// computes the same results.
 ///
 /// # Errors
-/// As of [`timing`]; golden model and simulation do not agree.
+/// Fails as [`timing`] does, or if golden model and simulation do not agree.
 pub fn computations(design: &Design, contract: &dyn Contract) -> Result<Vec<Computation>> {
     let mut random = Random::new(1);
     let mut points = PointSource::new(contract);
@@ -147,7 +148,7 @@ fn listed<'a>(names: impl Iterator<Item = &'a str>, raw: &[i64]) -> String {
 /// Returns the clocks of one computation, from `start` to the next, and the results that it shows.
 ///
 /// # Errors
-/// As of [`timing`].
+/// Fails as [`timing`] does.
 pub fn throughput(
     design: &Design,
     contract: &dyn Contract,
@@ -162,7 +163,7 @@ pub fn throughput(
 /// walks none, or whose clocks are no constant and a multiple of the length.
 ///
 /// # Errors
-/// As of [`timing`].
+/// Fails as [`timing`] does.
 pub fn line(design: &Design, contract: &dyn Contract) -> Result<Option<LineClocks>> {
     let mut operands = typical(contract, &[]);
     let Some(at) = length(contract) else { return Ok(None) };
@@ -192,7 +193,7 @@ pub fn line(design: &Design, contract: &dyn Contract) -> Result<Option<LineClock
 /// results it shows the first.
 ///
 /// # Errors
-/// As of [`timing`].
+/// Fails as [`timing`] does.
 pub fn example(design: &Design, contract: &dyn Contract) -> Result<WorkedExample> {
     let operands = typical(contract, &[]);
     let trial = run(design, contract, &operands, &mut |_| Ok(()))?;
@@ -311,7 +312,7 @@ fn hinted(contract: &dyn Contract) -> Option<Vec<i64>> {
 /// rising edge, in the order of `nets`. All of these nets must have names.
 ///
 /// # Errors
-/// As of [`timing`].
+/// Fails as [`timing`] does.
 pub fn record(design: &Design, contract: &dyn Contract, nets: &[NetId]) -> Result<Vec<Vec<u64>>> {
     let mut clocks = Vec::new();
     run(design, contract, &typical(contract, &[]), &mut |simulator| {
@@ -326,7 +327,7 @@ pub fn record(design: &Design, contract: &dyn Contract, nets: &[NetId]) -> Resul
 /// [`example`]. One clock has no point, and the first result waits for two clocks if the pipeline can wait.
 ///
 /// # Errors
-/// As of [`timing`].
+/// Fails as [`timing`] does.
 pub fn record_points(
     design: &Design,
     contract: &dyn Contract,

@@ -11,15 +11,15 @@ use glint_rtl::verilog::naming::Naming;
 /// The purpose of a file, in the order in which files are listed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum ArtifactKind {
-    /// Verilog of the core, the top module first.
+    /// Verilog of the core, the top module first. For example, `rough.v`, `rough_control.v` and `rough_datapath.v`.
     Rtl,
     /// Verilog of a target, `<target>/<file>`, in place of the file of that name among the portable ones.
     Primitive,
     /// Verilog around the core.
     Wrapper,
-    /// ROM contents.
+    /// ROM contents. For example, `rough_sine.mem`.
     Memory,
-    /// The FuseSoC core of the device.
+    /// The FuseSoC core of the device. For example, `rough.core`.
     Core,
     /// Timing constraints.
     Constraint,
@@ -33,7 +33,8 @@ pub enum ArtifactKind {
     WrapperProof,
     /// The proof of the core.
     Proof,
-    /// Benches in Verilog with their vectors. The bench of the core comes first.
+    /// Benches in Verilog with their vectors. The bench of the core comes first. For example, `rough_tb.v` with
+    /// `rough_stimulus.mem` and `rough_expected.mem`.
     Bench,
     /// The FuseSoC core of the benches.
     BenchCore,

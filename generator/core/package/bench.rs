@@ -1,4 +1,5 @@
-//! Generates the self-checking test bench of a core and its vectors: stimulus, and the outputs that are expected.
+//! Generates the self-checking test bench of a core and its vectors: stimulus, and the outputs that are expected. For example,
+//! `rough` has `rough_tb.v`, `rough_stimulus.mem` and `rough_expected.mem`.
 
 use anyhow::{Result, ensure};
 use glint_base::fill;
@@ -170,7 +171,8 @@ fn vector_file(design: &Design, title: &str, ports: &[&Port], rows: &[Vec<u64>])
     Ok(lines.join("\n") + "\n")
 }
 
-/// Returns the values side by side, the first on top, in hexadecimal digits.
+/// Returns the values side by side, the first on top, in hexadecimal digits. For example, 1 in one bit and 5 in three bits give
+/// `d`.
 pub(super) fn packed(row: &[u64], widths: &[u32]) -> String {
     let total: u32 = widths.iter().sum();
     let mut digits = vec![0u8; total.div_ceil(4) as usize];

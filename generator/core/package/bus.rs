@@ -10,7 +10,7 @@ pub struct Bus {
     pub key: &'static str,
     /// For people.
     pub title: &'static str,
-    /// The end of the name of a module on it.
+    /// The end of the name of a module on it. For example, `axil` in `threshold_levels_axil`.
     pub suffix: &'static str,
     /// The level of the reset that resets.
     pub reset_level: u8,

@@ -1,4 +1,5 @@
-//! Generates the test bench in Python, for cocotb, and the driver that the benches of all configurations share.
+//! Generates the test bench in Python, for cocotb, and the driver that the benches of all configurations share. For example,
+//! the bench of `rough` is `test_rough.py`.
 
 use anyhow::Result;
 use glint_base::fill;

@@ -7,7 +7,8 @@ use serde::{Serialize, Serializer, ser::SerializeMap};
 use glint_rtl::netlist::{self, Design, FieldKind, NetId, Role, RomId};
 use glint_rtl::verilog::naming::{Naming, is_control_rom};
 
-/// A port of the top module.
+/// A port of the top module. For example, `cos_gamma` of `rough` is an operand of 21 bits in `u1.20`, and `cos_gamma_write`
+/// writes it.
 #[derive(Default, Serialize)]
 pub struct PortFacts<'a> {
     /// Its name.
@@ -36,7 +37,8 @@ pub struct PortFacts<'a> {
     pub doc: &'a str,
 }
 
-/// A field of the control word.
+/// A field of the control word. For example, `operand_select` of `rough` has 2 bits from bit 7 on, and the choices `cosines`,
+/// `sines`, `half_n` and `square`.
 #[derive(Serialize)]
 pub struct FieldFacts<'a> {
     /// Its name.
@@ -55,7 +57,7 @@ pub struct FieldFacts<'a> {
     pub lines: &'a [u16],
 }
 
-/// A microinstruction.
+/// A microinstruction. For example, microinstruction 3 of `rough` is named `12 <- sin gamma * sin dgamma`.
 #[derive(Serialize)]
 pub struct MicroinstructionFacts<'a> {
     /// Its address.
@@ -93,7 +95,7 @@ pub enum SequenceFacts<'a> {
     },
 }
 
-/// A ROM.
+/// A ROM. For example, `sine` of `rough` has 584 words of 35 bits, which are 20440 bits in all.
 #[derive(Serialize)]
 pub struct RomFacts<'a> {
     /// Its name in the description.

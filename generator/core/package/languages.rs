@@ -124,14 +124,15 @@ fn std_logic(width: u32, vector: bool) -> String {
     }
 }
 
-/// Returns the type of a number, whose bits are numbered by their weights.
+/// Returns the type of a number, whose bits are numbered by their weights. For example, `u1.20` becomes `ufixed(0 downto -20)`.
 fn fixed(format: Format) -> String {
     let kind = if format.signed { "sfixed" } else { "ufixed" };
     let low = -format.frac;
     format!("{kind}({} downto {low})", low + format.width() as i32 - 1)
 }
 
-/// Returns a name as VHDL takes it: extended, which keeps upper and lower case, where a plain one does not do.
+/// Returns a name as VHDL takes it: extended, which keeps upper and lower case, where a plain one does not do. For example,
+/// `signal` becomes `\signal\`.
 fn vhdl_name(name: &str) -> String {
     let reserved = VHDL_2008.split_ascii_whitespace().any(|word| word == name.to_ascii_lowercase());
     let plain = !name.starts_with('_') && !name.ends_with('_') && !name.contains("__");

@@ -1,4 +1,5 @@
-//! Generates the manifest, `<name>.json`, which describes the device for programs.
+//! Generates the manifest, `<name>.json`, which describes the device for programs. For example, `rough.json` has the ports, the
+//! timing, the ROMs and the digests of all files of `rough`.
 
 use anyhow::{Context, Result};
 use serde::Serialize;

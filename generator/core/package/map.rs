@@ -78,13 +78,14 @@ pub struct BusRegister {
 }
 
 impl BusRegister {
-    /// Returns the address offset in bytes.
+    /// Returns the address offset in bytes. For example, the first operand, at place 8, has the offset 32.
     pub fn offset(&self) -> u32 {
         4 * self.place
     }
 }
 
-/// A port of the core in the registers that hold it, the lowest bits first.
+/// A port of the core in the registers that hold it, the lowest bits first. For example, an operand of 40 bits takes two
+/// registers, the first with 32 bits and the second with 8.
 #[derive(Clone, Debug)]
 pub struct PortPlacement {
     /// The name of the port.
@@ -179,7 +180,7 @@ impl Map {
         last_place(&self.results)
     }
 
-    /// Returns the number of bits of an address in bytes.
+    /// Returns the number of bits of an address in bytes. For example, a map whose last register has place 15 needs 6.
     pub fn address_bits(&self) -> u32 {
         (4 * self.last()).ilog2() + 1
     }
@@ -222,7 +223,8 @@ fn placed(design: &Design, port: &Port, strobe: String, place: &mut u32) -> Port
     PortPlacement { name: net.name.clone(), format: net.format, strobe, parts }
 }
 
-/// Returns all results in one register, each in whole bytes, where they fit; else each in its own.
+/// Returns the places of the results. All share one register, each in whole bytes, if they fit there; else each has its own.
+/// For example, three colours of 8 bits share a register, from bits 0, 8 and 16 on.
 fn results(design: &Design, place: &mut u32) -> Vec<PortPlacement> {
     let ports: Vec<&Port> = design.outputs().filter(|port| port.role == Role::Result).collect();
     let padded = |port: &Port| design.width(port.net).next_multiple_of(8);

@@ -7,18 +7,18 @@ use sha2::{Digest, Sha256};
 pub struct OutputFile {
     /// Relative to the output directory, with `/`: `rtl_out/<name>/<name>.v`.
     pub path: String,
-    /// The whole text, ending with a newline.
+    /// The whole text, which must end with a newline.
     pub contents: String,
 }
 
 impl OutputFile {
-    /// Returns the last part of the path.
+    /// Returns the last part of the path. For example, `rtl_out/rough/rough.v` gives `rough.v`.
     pub fn name(&self) -> &str {
         self.path.rsplit('/').next().unwrap_or(&self.path)
     }
 
     /// Returns the target of a file that is in a target's directory, `rtl_out/<name>/<target>/…`, and `None` for any other
-    /// file.
+    /// file. For example, `rtl_out/blinn_pipelined/ecp5/blinn_pipelined_multiplier.v` gives `ecp5`.
     fn target(&self) -> Option<&str> {
         match self.path.split('/').collect::<Vec<_>>()[..] {
             [_, _, target, _] => Some(target),

@@ -21,7 +21,7 @@ pub enum Seal {
 const MEMBER: &str = "sha256";
 
 /// Returns the text, which must end with a newline, with a last line that has the digest of the text. JSON has no such line,
-/// and stays as it is: see [`sealed_json`].
+/// and stays as it is: see [`sealed_json`]. For example, the last line of a Python file is `# sha256` and 64 digits.
 pub fn sealed(text: String, seal: Seal) -> String {
     let line = last_line(text.as_bytes(), seal);
     text + &line

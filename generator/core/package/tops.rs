@@ -36,7 +36,8 @@ pub struct TopPort {
     pub doc: String,
 }
 
-/// A module that a system can instantiate.
+/// A module that a system can instantiate. For example, `threshold_levels` has the core, `threshold_levels_axis` between
+/// streams, and `threshold_levels_axil` on AXI4-Lite.
 #[derive(Clone, Debug)]
 pub struct Top {
     /// Its name.

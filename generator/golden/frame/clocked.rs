@@ -56,7 +56,7 @@ impl Frame {
     /// the program.
     ///
     /// # Panics
-    /// If there is no microinstruction.
+    /// Panics if there is no microinstruction. A program must have at least one.
     pub fn model(mut self, program: impl IntoIterator<Item = FrameStep>) -> ClockedModel {
         let program: Vec<_> = program.into_iter().collect();
         assert!(!program.is_empty(), "a device idles in its first microinstruction");

@@ -215,7 +215,7 @@ impl Frame {
     /// Adds an output that shows a register.
     ///
     /// # Panics
-    /// If the slot is no register.
+    /// Panics if the slot is no register. An output that is logic must use [`Frame::output`].
     pub fn shows(&mut self, name: &str, register: Slot) {
         let of = self.shown.iter().find(|shown| shown.slot == register);
         let format = of.expect("a register that is shown").format;
@@ -227,7 +227,8 @@ impl Frame {
         });
     }
 
-    /// Adds an output of one bit that is 1 in the microinstructions that assert it.
+    /// Adds an output of one bit that is 1 in the microinstructions that assert it. A microinstruction must assert it by
+    /// [`FrameStep::asserts`].
     pub fn flag(&mut self, name: &str) -> Slot {
         let slot = self.shown(name.to_owned(), Format::BIT, true);
         self.flags.push(slot);

@@ -44,7 +44,7 @@ impl Part {
     /// Returns the result of this name.
     ///
     /// # Panics
-    /// If the part has no such output.
+    /// Panics if the part has no such output.
     pub fn out(&self, name: &str) -> Slot {
         let found = self.outputs.iter().find(|(output, _)| output == name);
         found.unwrap_or_else(|| panic!("`{}` has no output `{name}`", self.name)).1
@@ -56,7 +56,8 @@ impl Frame {
     /// before. The names of the part's registers get `name` in front.
     ///
     /// # Panics
-    /// If the model was not made by a [`Frame`], gives several results, or has no operand of one of the names.
+    /// Panics if a [`Frame`] did not make the model. Panics if the model gives several results, or has no operand of one of the
+    /// names.
     pub fn part<V>(
         &mut self,
         name: &str,

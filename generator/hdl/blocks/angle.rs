@@ -15,7 +15,8 @@ pub struct Folded<'d> {
     pub within: Signal<'d>,
 }
 
-/// Returns the magnitude of a signed `angle` to `fraction` bits, at most as many as it has.
+/// Returns the magnitude of a signed `angle` to `fraction` bits. The angle must have at least as many fraction bits. For
+/// example, in `s1.4` the raw angles 5 and −6 both have the magnitude 5.
 ///
 /// The magnitude of a negative angle is its complement: truncation has made a positive angle smaller by
 /// up to an ulp, and the complement makes a negative one smaller by as much, without an adder.
@@ -75,7 +76,8 @@ pub fn cosine_power_table(power: u32, bits: i32, fraction: i32) -> Vec<i128> {
     (0..steps - 1).map(middle).chain([0]).collect()
 }
 
-/// Returns the comments of a table from [`cosine_power_table`]: for each word, the angle at which its step begins.
+/// Returns the comments of a table from [`cosine_power_table`]: for each word, the angle at which its step begins. For example,
+/// word 1 of 2048 for the square has the comment `cos^2, 0.044 degrees`.
 pub fn step_comments(power: u32, bits: i32) -> Vec<String> {
     let degrees = |step: u32| f64::from(step) * exp2(-bits) * 90.0;
     let steps = 1u32 << bits;

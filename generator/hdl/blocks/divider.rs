@@ -47,8 +47,8 @@ pub struct Divider<'d> {
 }
 
 impl<'d> Divider<'d> {
-    /// Makes a divider of `bits` quotient bits, two or more. The register of the quotient is `name`; the others are
-    /// `<name>_divisor`, `<name>_remainder` and the counter `<name>_remaining`.
+    /// Makes a divider of `bits` quotient bits, which must be at least two. The register of the quotient is `name`; the others
+    /// are `<name>_divisor`, `<name>_remainder` and the counter `<name>_remaining`.
     #[track_caller]
     pub fn new(
         d: &'d Designer,

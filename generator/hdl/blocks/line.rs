@@ -57,7 +57,8 @@ pub struct Line<'d> {
 }
 
 impl<'d> Line<'d> {
-    /// Makes a line with angles of `format`, signed, and up to 2^`length_bits` − 1 intervals.
+    /// Makes a line with angles of `format`, which must be signed. The line may have up to 2^`length_bits` − 1 intervals. For
+    /// example, 12 bits allow 4095 intervals and 4096 points.
     #[track_caller]
     pub fn new(
         d: &'d Designer,

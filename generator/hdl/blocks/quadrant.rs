@@ -12,7 +12,8 @@ pub struct Quadrant<'d> {
     pub negative: Signal<'d>,
 }
 
-/// Returns the quadrant of `turn`, an integer without a sign whose steps are a whole turn, after `ahead` more quadrants.
+/// Returns the quadrant of `turn`, which must be an integer without a sign and whose steps are a whole turn, after `ahead` more
+/// quadrants. For example, step 20 of 64 is in the second quadrant, 12 steps before the next zero of the sine.
 #[track_caller]
 pub fn quadrant<'d>(d: &'d Designer, name: &str, turn: Signal<'d>, ahead: u32) -> Quadrant<'d> {
     let steps = turn.format().width() - 2;
@@ -30,7 +31,7 @@ pub fn quadrant<'d>(d: &'d Designer, name: &str, turn: Signal<'d>, ahead: u32) -
     Quadrant { way, negative: number.bit(1) }
 }
 
-/// Returns 2^bits − `way`, and the largest number in place of 2^bits itself.
+/// Returns 2^bits − `way`, and the largest number in place of 2^bits itself. For example, 5 of 4 bits gives 11, and 0 gives 15.
 #[track_caller]
 pub fn mirrored<'d>(d: &'d Designer, name: &str, way: Signal<'d>) -> Signal<'d> {
     let format = way.format();

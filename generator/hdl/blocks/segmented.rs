@@ -39,8 +39,8 @@ pub struct Entry {
     pub slope: i128,
 }
 
-/// Returns the straight line through a segment of a concave function with the least error: the slope of the chord,
-/// and the base that puts the error of the segment's points symmetrically about 0.
+/// Returns the straight line through a segment with the least error, for a function that must be concave: the slope of the
+/// chord, and the base that puts the error of the segment's points symmetrically about 0.
 pub fn chord(segment: Segment, shape: SegmentedFormats, function: impl Fn(f64) -> f64) -> Entry {
     let value = Format::unsigned(0, shape.fraction);
     let (from, length) = (segment.from as f64, segment.length as f64);
@@ -119,7 +119,8 @@ impl Segmentation {
         self.blocks().iter().map(|block| block.bits - block.prefix).max().unwrap_or(0).max(1)
     }
 
-    /// Returns the number of words of the table.
+    /// Returns the number of words of the table. For example, 20 bits and the segments 6, 8, 7, 6, 5, 4, 3, 3, 2 give the 584
+    /// words of ROM 18 in `rough`.
     pub fn entries(&self) -> usize {
         self.blocks()
             .iter()
@@ -148,7 +149,7 @@ impl Segmentation {
     }
 }
 
-/// Returns the table as hardware: `u` is an integer from 0 to 2^C; the result is `u0.S`.
+/// Returns the table as hardware: `u` must be an integer from 0 to 2^C; the result is `u0.S`.
 ///
 /// With `shape.synchronous` the ROM and the remainder are registered, and the result belongs to the
 /// `u` of the clock before.

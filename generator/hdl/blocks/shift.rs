@@ -8,7 +8,7 @@ use glint_base::fixed::Format;
 /// Divides `x` by 2^`places` and rounds down to the fraction bits that it has: a barrel shifter, with one row of muxes for each
 /// bit of `places`.
 ///
-/// `x` is unsigned, `places` an unsigned integer.
+/// `x` must be unsigned, and `places` an unsigned integer. For example, 13 in `u4.0` by 2 places gives 3.
 #[track_caller]
 pub fn right_by<'d>(d: &'d Designer, name: &str, x: Signal<'d>, places: Signal<'d>) -> Signal<'d> {
     let format = x.format();
@@ -37,8 +37,8 @@ pub struct Normalised<'d> {
 
 /// Shifts `x` to the left until its top bit is 1, and returns the shifted bits and the number of places.
 ///
-/// Each row of muxes gives one bit of the number, so the number needs no encoder. For a word of zeros, it returns
-/// zeros and a number whose bits are all ones.
+/// Each row of muxes gives one bit of the number, so the number needs no encoder. For a word of zeros, it returns zeros and a
+/// number whose bits are all ones. For example, 22 in 8 bits has 3 leading zeros and becomes 176.
 #[track_caller]
 pub fn normalise<'d>(d: &'d Designer, name: &str, x: Signal<'d>) -> Normalised<'d> {
     let width = x.format().width();

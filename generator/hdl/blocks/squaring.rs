@@ -15,7 +15,7 @@ pub struct Squarings<'d> {
 }
 
 impl<'d> Squarings<'d> {
-    /// Makes `count` squarings, 1 to 4: the power is 2^count.
+    /// Makes `count` squarings, which must be 1 to 4: the power is 2^count. For example, 3 squarings give the eighth power.
     #[track_caller]
     pub fn new(designer: &'d Designer, count: u32) -> Self {
         let counter = (count > 1).then(|| {

@@ -20,7 +20,7 @@ use glint_base::cone;
 use glint_base::diagnostic::{Diagnostic, Diagnostics, SourceLocation};
 use glint_base::fixed::Format;
 
-/// The most parts within parts: an instance of itself would have no end.
+/// The depth to which parts may contain parts. An instance of itself would have no end.
 const DEEPEST: u32 = 8;
 
 /// A part of a description: its results.

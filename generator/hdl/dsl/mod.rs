@@ -49,7 +49,7 @@ macro_rules! described {
                 self
             }
 
-            /// States a comment on `topic`. A comment on another topic than the device is left out in a pipeline.
+            /// States a comment on `topic`. A pipeline leaves out a comment on any topic but the device.
             #[must_use]
             pub fn doc_on(self, topic: crate::netlist::Topic, line: &str) -> Self {
                 let _ = self.$net.doc_on(topic, line);
@@ -170,7 +170,7 @@ pub(crate) struct Inner {
 }
 
 impl Designer {
-    /// Makes an empty design; `name` becomes the name of the top module.
+    /// Makes an empty design; `name` becomes the name of the top module. It must be a Verilog identifier.
     ///
     /// The common handshake is there from the start: inputs `rst_n` and `start`, outputs `valid`,
     /// `busy` and `done` (the outputs join when the microprogram is known).
@@ -223,7 +223,8 @@ impl Designer {
         self.inner.borrow_mut().design.about = about;
     }
 
-    /// Returns a constant of the given format; `value` must be exactly representable.
+    /// Returns a constant of the given format; `value` must be exactly representable. For example, 0.75 is representable in
+    /// `u0.8`, and 0.1 is not.
     #[track_caller]
     pub fn constant(&self, name: &str, value: f64, format: Format) -> Signal<'_> {
         let format = self.sound(name, format);
@@ -254,7 +255,7 @@ impl Designer {
         self.signal(self.add_named(name, format, Driver::Undriven))
     }
 
-    /// Connects a [`Designer::wire`].
+    /// Connects a [`Designer::wire`]. Every wire must have exactly one driver.
     #[track_caller]
     pub fn drive(&self, wire: Signal<'_>, source: Signal<'_>) {
         let wire = self.own(wire);
@@ -332,8 +333,8 @@ impl Designer {
         self.signal(id)
     }
 
-    /// Sets the microprogram. The device waits for `start` in microinstruction 0, and executes it once more after
-    /// `start`, so that operands written together with `start` have settled.
+    /// Sets the microprogram. A description cannot have two. The device waits for `start` in microinstruction 0, and executes
+    /// it once more after `start`, so that operands written together with `start` have settled.
     #[track_caller]
     pub fn microprogram(&self, steps: impl IntoIterator<Item = Step>) {
         self.program(steps.into_iter().collect(), false);
@@ -383,9 +384,9 @@ impl Designer {
         self.inner.borrow_mut().registers_operand_logic = false;
     }
 
-    /// Puts a buffer in front of every operand register. Writes go into the buffers, at any time; `start` takes them into
-    /// the registers, and is heard in the last clock of a computation too, so that no clock is lost between two.
-    /// To be called before the first operand is declared. The key `operands.buffered` asks for it.
+    /// Puts a buffer in front of every operand register. Writes go into the buffers, at any time; `start` takes them into the
+    /// registers, and is heard in the last clock of a computation too, so that no clock is lost between two. A description must
+    /// call this before it declares its first operand. The key `operands.buffered` asks for it.
     #[track_caller]
     pub fn buffer_operands(&self) {
         if self.with(|inner| inner.design.ports.iter().any(|it| it.role == Role::Strobe)) {

@@ -112,7 +112,8 @@ pub fn hold() -> StepSetting {
     StepSetting::sequence(SettingKind::Hold)
 }
 
-/// Returns the setting that says that the results are on the outputs: `valid` is high in this microinstruction.
+/// Returns the setting that says that the results are on the outputs: `valid` is high in this microinstruction. No
+/// microinstruction may raise it before the results are loaded.
 #[track_caller]
 pub fn valid() -> StepSetting {
     StepSetting::sequence(SettingKind::Valid)
@@ -131,8 +132,8 @@ pub fn wait_for_start() -> StepSetting {
     StepSetting::sequence(SettingKind::WaitForStart)
 }
 
-/// Returns the setting that goes back to the microinstruction named `to` while `condition`, one bit, is 1; then on to
-/// the next microinstruction.
+/// Returns the setting that goes back to the microinstruction named `to` while `condition`, one bit, is 1; then on to the next
+/// microinstruction. The loop must change the condition: a loop cannot be endless.
 #[track_caller]
 pub fn loop_while(condition: Signal<'_>, to: &str) -> StepSetting {
     let kind = SettingKind::LoopWhile { condition: condition.id(), to: to.to_owned() };

@@ -105,7 +105,8 @@ impl Designer {
         InputOperand { port: self.signal(port), strobe: self.signal(strobe), q: self.signal(q) }
     }
 
-    /// Returns a register of the datapath, loaded in the microinstructions that say so; its field is `<name>_load`.
+    /// Returns a register of the datapath, loaded in the microinstructions that say so; its field is `<name>_load`. For
+    /// example, the register `reg11_cos_cos` of `rough` has the field `reg11_cos_cos_load`.
     ///
     /// It has no reset, and an operand cannot have its name, because both would own `<name>_load`.
     #[track_caller]
@@ -130,8 +131,8 @@ impl Designer {
         self.signal(q)
     }
 
-    /// Makes select lines that several muxes share. `choices` names each value of the lines: all inputs that the
-    /// muxes then pass on together.
+    /// Makes select lines that several muxes share. `choices` names each value of the lines: all inputs that the muxes then
+    /// pass on together. For example, `select("operand_select", &["cosines", "sines", "half_n", "square"])` has two lines.
     #[track_caller]
     pub fn select(&self, name: &str, choices: &[&str]) -> Select<'_> {
         let width = usize::BITS - choices.len().saturating_sub(1).leading_zeros();

@@ -58,7 +58,7 @@ impl<'d> Signal<'d> {
         self
     }
 
-    /// States a comment on `topic`. A comment on another topic than the device is left out in a pipeline.
+    /// States a comment on `topic`. A pipeline leaves out a comment on any topic but the device.
     #[must_use]
     pub fn doc_on(self, topic: Topic, line: &str) -> Self {
         self.designer.with(|inner| inner.design.nets[self.id.index()].doc_topic = topic);
@@ -78,7 +78,8 @@ impl<'d> Signal<'d> {
         self
     }
 
-    /// Moves the point `places` to the left: the value divided by 2^places, by wiring.
+    /// Moves the point `places` to the left: the value divided by 2^places, by wiring. For example, 2 places make `u-2.10` of
+    /// `u0.8`.
     #[must_use]
     #[track_caller]
     pub fn shift_right(self, places: i32) -> Self {
@@ -95,7 +96,8 @@ impl<'d> Signal<'d> {
         self.shift_right(places.saturating_neg())
     }
 
-    /// Appends zeros up to `frac` fraction bits. Fewer than it has is an error.
+    /// Appends zeros up to `frac` fraction bits. The signal must not have more fraction bits than that. For example,
+    /// `with_fraction(12)` makes `u0.12` of `u0.8`.
     #[must_use]
     #[track_caller]
     pub fn with_fraction(self, frac: i32) -> Self {
@@ -165,7 +167,8 @@ impl<'d> Signal<'d> {
         self.wiring("above", format, format.range(), op)
     }
 
-    /// Returns the signal as a signed number of the same value, one bit wider when it was unsigned.
+    /// Returns the signal as a signed number of the same value, one bit wider when it was unsigned. For example, `u0.8` becomes
+    /// `s0.8`.
     #[must_use]
     #[track_caller]
     pub fn as_signed(self) -> Self {
@@ -177,7 +180,8 @@ impl<'d> Signal<'d> {
         self.designer.signal(self.designer.resized(self, signed))
     }
 
-    /// Reads the bits in another format of the same width: the bit pattern is not converted.
+    /// Reads the bits in another format, which must have the same width. The bit pattern is not converted. For example, 255 in
+    /// `u8.0` is read as −1 in `s7.0`.
     #[must_use]
     #[track_caller]
     pub fn read_as(self, format: Format) -> Self {
@@ -212,7 +216,8 @@ impl<'d> Signal<'d> {
 
 /// The arithmetic blocks. Results are exact: their formats hold every value that the operands can give.
 impl Designer {
-    /// Returns `a + b`. Operands may differ in format: their points are aligned, and nothing is dropped.
+    /// Returns `a + b`. Operands may differ in format: their points are aligned, and nothing is dropped. For example, two
+    /// operands `u0.8` that may have any value give `u1.8`.
     #[track_caller]
     pub fn add<'d>(&'d self, name: &str, a: Signal<'d>, b: Signal<'d>) -> Signal<'d> {
         self.sum(name, a, b, None)
@@ -252,7 +257,8 @@ impl Designer {
         self.signal(self.add_net(name, format, range, Driver::Op(op), true))
     }
 
-    /// Returns `a + b` modulo the width, with the carry in when given: words without an integer position.
+    /// Returns `a + b` modulo the width, with the carry in when given: words without an integer position. Both must have the
+    /// same format.
     #[track_caller]
     pub fn add_modulo<'d>(
         &'d self,
@@ -276,8 +282,8 @@ impl Designer {
         self.signal(self.add_net(name, format, format.range(), Driver::Op(op), true))
     }
 
-    /// Returns `a − b`, aligned as in [`Designer::add`]. The result is unsigned if the ranges show that it is never
-    /// negative.
+    /// Returns `a − b`, aligned as in [`Designer::add`]. The result is unsigned if the ranges show that it is never negative.
+    /// For example, two operands `u0.8` that may have any value give `s0.8`.
     #[track_caller]
     pub fn sub<'d>(&'d self, name: &str, a: Signal<'d>, b: Signal<'d>) -> Signal<'d> {
         let (a, b) = aligned(self.own(a), self.own(b));
@@ -288,7 +294,7 @@ impl Designer {
         self.signal(self.add_net(name, format, range, Driver::Op(op), true))
     }
 
-    /// Returns `a · b`, whole.
+    /// Returns `a · b`, whole. For example, two operands `u0.8` give `u0.16`.
     #[track_caller]
     pub fn mul<'d>(&'d self, name: &str, a: Signal<'d>, b: Signal<'d>) -> Signal<'d> {
         let (a, b) = (self.own(a), self.own(b));
@@ -317,8 +323,9 @@ impl Designer {
         self.signal(net)
     }
 
-    /// Puts `high` and `low` side by side, by wiring: an address made of two parts. Integers without a sign; a signed part is an
-    /// error, because its bits would be read as another number.
+    /// Puts `high` and `low` side by side, by wiring: an address made of two parts. Both must be integers without a sign,
+    /// because the bits of a signed part would be read as another number. For example, 2 in `u2.0` and 5 in `u3.0` give 21 in
+    /// `u5.0`.
     #[track_caller]
     pub fn concat<'d>(&'d self, name: &str, high: Signal<'d>, low: Signal<'d>) -> Signal<'d> {
         let (mut high, mut low) = (self.own(high), self.own(low));
@@ -354,8 +361,8 @@ impl Designer {
         low.wiring("beside", format, (from, to), Op::Concat(vec![top.id(), low.id()]))
     }
 
-    /// Returns the bits of the parts side by side, the first in the top bits, read in `format`, which is as wide
-    /// as all together: wiring.
+    /// Returns the bits of the parts side by side, the first in the top bits, read in `format`, which must be as wide as all
+    /// together: wiring.
     #[track_caller]
     pub fn join<'d>(&'d self, name: &str, parts: &[Signal<'d>], format: Format) -> Signal<'d> {
         let parts = self.own_all(parts);
@@ -381,14 +388,14 @@ impl Designer {
         self.signal(self.add_wiring(name, format, range, Driver::Op(Op::Concat(parts))))
     }
 
-    /// Returns the signal that is 1 when both are 1; operands of one bit.
+    /// Returns the signal that is 1 when both are 1. Both must have one bit.
     #[track_caller]
     pub fn and<'d>(&'d self, name: &str, a: Signal<'d>, b: Signal<'d>) -> Signal<'d> {
         let (a, b) = (self.one_bit(a), self.one_bit(b));
         self.signal(self.add_named(name, Format::BIT, Driver::Op(Op::And(a, b))))
     }
 
-    /// Returns the signal that is 1 when either is 1; operands of one bit.
+    /// Returns the signal that is 1 when either is 1. Both must have one bit.
     #[track_caller]
     pub fn or<'d>(&'d self, name: &str, a: Signal<'d>, b: Signal<'d>) -> Signal<'d> {
         let (a, b) = (self.one_bit(a), self.one_bit(b));
@@ -421,8 +428,8 @@ impl Designer {
         self.signal(self.add_named(name, Format::BIT, Driver::Op(Op::All(self.own(a).id()))))
     }
 
-    /// Returns input 0 or 1 by the one-bit signal `select`, a signal of the datapath. Inputs have one point; the result holds
-    /// them all.
+    /// Returns input 0 or 1 by the one-bit signal `select`, a signal of the datapath. The inputs must have one binary point;
+    /// the result can hold both.
     #[track_caller]
     pub fn choose<'d>(
         &'d self,
@@ -436,8 +443,8 @@ impl Designer {
 
     /// Returns a mux that the microprogram controls, with a select field of its own, `<name>_select`.
     ///
-    /// The inputs have one point ([`Signal::with_fraction`] aligns them; [`Designer::bus`] carries
-    /// any); integer bits and signs may differ.
+    /// The inputs must have one binary point ([`Signal::with_fraction`] aligns them; [`Designer::bus`] carries any); integer
+    /// bits and signs may differ.
     #[track_caller]
     pub fn mux<'d>(&'d self, name: &str, inputs: impl IntoIterator<Item = Signal<'d>>) -> Mux<'d> {
         let inputs: Vec<_> = inputs.into_iter().collect();
@@ -447,7 +454,7 @@ impl Designer {
         self.mux_on(name, select, inputs)
     }
 
-    /// Returns a mux that shares its select field with others.
+    /// Returns a mux that shares its select field with others. It must have an input for each value of the field.
     #[track_caller]
     pub fn mux_on<'d>(
         &'d self,

@@ -23,13 +23,13 @@ impl Design {
         }
     }
 
-    /// Adds a net.
+    /// Adds a net. Its name must be distinct in the design.
     pub fn add_net(&mut self, net: Net) -> NetId {
         self.nets.push(net);
         NetId(self.nets.len() as u32 - 1)
     }
 
-    /// Lets a new register, which takes nothing yet, drive a net.
+    /// Lets a new register, which takes nothing yet, drive a net. The caller must connect its data.
     pub fn add_register(&mut self, q: NetId, kind: RegisterKind) -> &mut NetlistRegister {
         let at = self.registers.len();
         self.nets[q.index()].driver = Driver::Register(RegId(at as u32));

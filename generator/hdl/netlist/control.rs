@@ -23,10 +23,11 @@ pub struct Control {
     pub overlaps: bool,
 }
 
-/// A field of the control word.
+/// A field of the control word. For example, `rough` has the field `operand_select` of two bits, which chooses among four pairs
+/// of factors.
 #[derive(Clone, Debug)]
 pub struct Field {
-    /// A legal Verilog identifier.
+    /// The name, which must be a legal Verilog identifier.
     pub name: String,
     /// The net that it drives in the datapath or the sequencer.
     pub net: NetId,
@@ -93,9 +94,9 @@ impl Control {
         }
     }
 
-    /// Returns the microinstructions that can follow microinstruction `at`, in ascending order. If the last
-    /// microinstruction does not end, its successor is the number of microinstructions. An idle device stays in
-    /// microinstruction 0.
+    /// Returns the microinstructions that can follow microinstruction `at`, in ascending order. If the last microinstruction
+    /// does not end, its successor is the number of microinstructions. An idle device stays in microinstruction 0. For example,
+    /// microinstruction 0 has the successors 0 and 1.
     pub fn successors(&self, at: usize) -> Vec<usize> {
         let next = at + 1;
         let mut successors = match self.microprogram[at].sequence {
@@ -123,8 +124,8 @@ impl Control {
 }
 
 impl Design {
-    /// Returns the number of the lowest bit of each field in the control word. It is empty for a pipeline, which has
-    /// no control word.
+    /// Returns the number of the lowest bit of each field in the control word. It is empty for a pipeline, which has no control
+    /// word. For example, `rough` has 7 for `operand_select` and 0 for `go_on`.
     pub fn field_positions(&self) -> Vec<u32> {
         if self.control.fields.is_empty() {
             return Vec::new();

@@ -28,8 +28,8 @@ pub struct Delayed {
 }
 
 impl DelayLine {
-    /// Returns the number of words of a memory that does the same. A register behind the memory holds the value that
-    /// comes out.
+    /// Returns the number of words of a memory that does the same. A register behind the memory holds the value that comes out.
+    /// For example, five registers in a row become four words.
     pub fn words(&self) -> usize {
         self.values[0].passed().len()
     }

@@ -101,7 +101,7 @@ impl<'a> Interpreter<'a> {
         Ok(Self { design, order: design.levelise()?, values: vec![[0]; design.nets.len()] })
     }
 
-    /// Applies the bit patterns of all input ports, in port order, and evaluates every net.
+    /// Applies the bit patterns of all input ports, which must be in port order, and evaluates every net.
     pub fn settle(&mut self, inputs: &[u64]) {
         let design = self.design;
         for (port, &bits) in design.inputs().zip(inputs) {

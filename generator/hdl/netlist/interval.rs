@@ -1,4 +1,5 @@
-//! Computes the interval of raw values that a cell can give from the intervals of its operands.
+//! Computes the interval of raw values that a cell can give from the intervals of its operands. For example, the sum of two
+//! nets from 0 to 3 is from 0 to 6 if its format can hold 6.
 
 use super::Op;
 use glint_base::fixed::{Format, mask};

@@ -90,7 +90,7 @@ pub enum Partition {
 /// A wire of the design.
 #[derive(Clone, Debug)]
 pub struct Net {
-    /// A legal Verilog identifier, distinct in the design.
+    /// The name, which must be a legal Verilog identifier and distinct in the design.
     pub name: String,
     /// The place of the binary point, and whether the top bit is a sign.
     pub format: Format,
@@ -150,7 +150,8 @@ pub struct NetlistRegister {
 /// The purpose of a register.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RegisterKind {
-    /// Loaded from an input port by its write strobe, or from its buffer by `start`; stable while the device is busy.
+    /// Loaded from an input port by its write strobe, or from its buffer by `start`; stable while the device is busy. For
+    /// example, `cos_gamma_reg` of `rough`.
     Operand,
     /// In front of such a register: takes writes at any time, for the next computation.
     Buffer,
@@ -166,11 +167,12 @@ pub enum RegisterKind {
 /// A read-only memory.
 #[derive(Clone, Debug)]
 pub struct NetlistRom {
-    /// A legal Verilog identifier; the contents go to `<design>_<name>.mem`.
+    /// The name, which must be a legal Verilog identifier. The contents go to `<design>_<name>.mem`. For example, the ROM
+    /// `sine` of `rough` is in `rough_sine.mem`.
     pub name: String,
-    /// The word number; its range lies within the contents.
+    /// The word number; its range must lie within the contents.
     pub address: NetId,
-    /// The net that carries the word read; all words have its width.
+    /// The net that carries the word read; no word may be wider.
     pub data: NetId,
     /// Reads on the rising edge (block RAM) instead of at once (logic).
     pub synchronous: bool,
@@ -211,7 +213,7 @@ pub enum Role {
         /// One-bit input port.
         strobe: NetId,
     },
-    /// Input: a write strobe.
+    /// Input: a write strobe. For example, `cos_gamma_write` writes `cos_gamma_reg`.
     Strobe,
     /// Input `in_valid`: the operands belong to a point, which the pipeline takes in this clock if `in_ready` is 1.
     InValid,
@@ -314,7 +316,7 @@ impl<T: Into<String>> From<T> for Note {
 /// A device: datapath, control unit and ports.
 #[derive(Clone, Debug)]
 pub struct Design {
-    /// The name of the top module: a legal Verilog identifier.
+    /// The name of the top module, which must be a legal Verilog identifier.
     pub name: String,
     /// The title, formula, source and notes of the device, for people.
     pub about: About,

@@ -15,8 +15,8 @@ pub struct Pipeline {
     pub clock_mhz: f64,
     /// The fastest clock that any number of stages can reach. The slowest operation alone limits it.
     pub most_mhz: f64,
-    /// The least number of clocks between two points, which are taken in slot 0. A point is in stage s while the slot
-    /// is s modulo this number.
+    /// The least number of clocks between two points, which are taken in slot 0. A point is in stage s while the slot is s
+    /// modulo this number. For example, with an interval of 4 a point is in stage 6 while the slot is 2.
     pub interval: usize,
     /// The counter of the slots, which moves on with the points; none with an interval of 1.
     pub slot: Option<NetId>,
@@ -30,8 +30,8 @@ pub struct Pipeline {
     pub side: u32,
     /// The memory that the Verilog has in place of registers that nothing reads; `None` if these registers stay.
     pub delay_memory: Option<DelayMemory>,
-    /// From the operands on. Results are behind the registers of the last: there are as many stages as
-    /// clocks from a point to its results.
+    /// From the operands on. Results are behind the registers of the last: there are as many stages as clocks from a point to
+    /// its results. For example, `rough_pipelined` has 18 stages, and its results come 18 clocks after a point is taken.
     pub stages: Vec<Stage>,
     /// For each net, its stage. A register of stage k holds a value that stage k - 1 made.
     pub stage_of: Vec<usize>,
@@ -61,7 +61,8 @@ pub struct Unit {
     pub serves: Vec<Option<String>>,
 }
 
-/// The logic between two rows of registers.
+/// The logic between two rows of registers. For example, the first stage of `rough_pipelined` has 4.4 ns of logic and 86
+/// register bits.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Stage {
     /// The microinstructions of the sequential design that compute the values of this stage.
@@ -100,8 +101,8 @@ impl Pipeline {
         self.units.iter().any(|unit| unit.nets.contains(&net))
     }
 
-    /// Returns the named nets whose logic is in a stage, each with the name of its value, in the order of the
-    /// design's nets. Nets of the handshake are left out.
+    /// Returns the named nets whose logic is in a stage, each with the name of its value, in the order of the design's nets. It
+    /// leaves out the nets of the handshake.
     pub fn computed<'a>(
         &'a self,
         design: &'a Design,

@@ -1,7 +1,7 @@
 //! Computes how many clocks a computation can take at most, from its microprogram alone.
 //!
-//! A loop of one microinstruction ends because a counter counts down: its condition depends on nothing else. That the
-//! counter does count in every iteration is not assumed anywhere; the formal proof has to show it.
+//! A loop of one microinstruction ends because a counter counts down: its condition depends on nothing else. Nothing here
+//! assumes that the counter counts in every iteration; the formal proof must show it.
 
 use crate::netlist::{Design, Driver, NetId, RegId, Sequence};
 use glint_base::cone;

@@ -62,7 +62,8 @@ impl Label {
         Self { name, doc: String::new(), block: None, named: true, part_of: None, location }
     }
 
-    /// Returns the label of a part of the value, or of the value that this is a part of: names do not grow with the depth.
+    /// Returns the label of a part of the value, or of the value that this is a part of: names do not grow with the depth. For
+    /// example, the part `low` of `base` is named `base_low`, and the part `high` of this part `base_high`.
     pub fn part(&self, name: &str) -> Self {
         let whole = self.part_of.as_ref().unwrap_or(&self.name);
         let part_of = Some(whole.clone());
@@ -466,7 +467,7 @@ impl Cell {
     }
 }
 
-/// Returns how many bits a number of this range needs.
+/// Returns how many bits a number of this range needs. For example, 0 to 5 need 3 bits, and −4 to 3 need 3 with the sign.
 fn bits_for(range: Interval, signed: bool) -> u32 {
     let bits = |raw: i128| 128 - if raw < 0 { !raw } else { raw }.leading_zeros();
     (bits(range.0).max(bits(range.1)) + u32::from(signed)).max(1)

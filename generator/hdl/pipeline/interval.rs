@@ -8,7 +8,8 @@ use super::{Goal, Options};
 pub enum IntervalGoal {
     /// A number of clocks.
     Clocks(usize),
-    /// The longest interval with this number of million points a second at the clock of the goal.
+    /// The longest interval with this number of million points a second at the clock of the goal. For example, 26 million
+    /// points a second at 130 MHz allow an interval of at most 5 clocks.
     Rate(f64),
     /// The fewest with which there are no more multipliers than this.
     Multipliers(usize),
@@ -24,8 +25,8 @@ pub struct Unreached {
 /// Returns the clocks from a point to the next. A sequential core takes a point every `most`.
 ///
 /// # Errors
-/// Fails if the interval is longer than the sequential core's, or if no interval reaches the rate. Fails if a rate is
-/// wanted without a clock. Fails if every interval needs more multipliers than are allowed.
+/// Fails if the interval is longer than the sequential core's, or if no interval reaches the rate. Fails if a rate is wanted
+/// without a clock. Fails if every interval needs more multipliers than the configuration allows.
 pub fn clocks<'a>(
     name: &str,
     options: &Options,

@@ -6,7 +6,7 @@ use super::graph::{Cell, Graph, NodeId};
 use crate::netlist::eval;
 use glint_base::fixed::mask;
 
-/// The largest number of bits for which all combinations are tried.
+/// The number of bits that a condition may depend on. With more, the combinations cannot all be tried.
 const MOST_BITS: u32 = 16;
 
 /// The most bits of a node that selects among a number for each of its values.

@@ -86,8 +86,8 @@ struct ClockedNode {
     apart: usize,
 }
 
-/// Returns the frequency of a `period` in nanoseconds, in MHz to one decimal. It is rounded down, so that the stated
-/// clock can be reached.
+/// Returns the frequency of a `period` in nanoseconds, in MHz to one decimal. It is rounded down, so that the stated clock can
+/// be reached. For example, 7 ns give 142.8 MHz.
 pub fn megahertz(period: f64) -> f64 {
     (10_000.0 / period).floor() / 10.0
 }

@@ -49,8 +49,9 @@ pub fn products(graph: &Graph, target: &Timing, live: &[NodeId]) -> Vec<NodeId> 
     products.filter(|&id| factors(graph, id).is_some()).collect()
 }
 
-/// Returns the products of a computation that share multipliers; empty with an interval of 1. Products without a sign
-/// are treated as products with one if the multiplier has a bit to spare and this saves multipliers.
+/// Returns the products of a computation that share multipliers; empty with an interval of 1. Products without a sign are
+/// treated as products with one if the multiplier has a bit to spare and this saves multipliers. For example, six products with
+/// an interval of 4 need two multipliers.
 pub fn kinds(
     graph: &Graph,
     target: &Timing,

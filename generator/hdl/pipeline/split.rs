@@ -200,7 +200,9 @@ fn shifted(
     graph.op(NodeOp::Concat(vec![value, zeros]), format, &unnamed(label))
 }
 
-/// Returns the terms of a product whose wider factor is cut into its `limit` upper bits and the rest.
+/// Returns the terms of a product whose wider factor is cut into its `limit` upper bits and the rest. For example, a limit of
+/// 18 bits cuts a factor of 21 bits into 18 upper bits and 3 lower bits. On ECP5 the lower bits become rows if the other factor
+/// has at most 22 bits.
 fn cut(
     graph: &mut Graph,
     target: &Timing,

@@ -195,7 +195,8 @@ impl StageBuilder<'_> {
         }
     }
 
-    /// Returns `wish`, with a number added if another value has that name in any stage.
+    /// Returns `wish`, with a number added if another value has that name in any stage. For example, a second value `base` is
+    /// named `base_2`.
     fn distinct(&self, wish: &str) -> String {
         let taken = |name: &String| self.names.values().any(|other| other == name);
         let mut name = wish.to_owned();
@@ -207,7 +208,7 @@ impl StageBuilder<'_> {
         name
     }
 
-    /// Returns `name` in a stage, as no other net has it.
+    /// Returns `name` in a stage, as no other net has it. For example, `base` in stage 3 is `base_s3`.
     fn staged(&self, name: &str, stage: usize) -> String {
         self.free(format!("{name}_s{stage}"))
     }

@@ -1,9 +1,9 @@
 //! Prints and reads unrolled computations as text, for the tests of passes.
 //!
-//! A value is a line, `name format [low, high] = operation operands`. A line without an operation is an operand.
-//! `constant` is followed by a bit pattern, `slice` by its value and the lowest bit, `mux` by the select and its
-//! inputs. `add` has a third operand if a carry comes in. The range is left out if it is the range of the format. The
-//! last lines are `result name`.
+//! A value is a line, `name format [low, high] = operation operands`. A line without an operation is an operand. `constant` is
+//! followed by a bit pattern, `slice` by its value and the lowest bit, `mux` by the select and its inputs. `add` has a third
+//! operand if a carry comes in. A line may leave out the range if it is the range of the format. The last lines are
+//! `result name`.
 
 use std::collections::{HashMap, HashSet};
 use std::fmt::Write;
@@ -49,7 +49,7 @@ pub fn printed(unrolled: &Unrolled) -> String {
     text
 }
 
-/// Reads a computation.
+/// Reads a computation. For example, `sum u6.0 = sub a b` is the difference of two operands.
 ///
 /// # Errors
 /// Fails if a line is not understood. The error is the line.

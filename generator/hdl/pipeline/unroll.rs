@@ -26,7 +26,7 @@ use glint_base::codes;
 use glint_base::diagnostic::{Diagnostic, Diagnostics};
 use glint_base::fixed::Format;
 
-/// More clocks than any microprogram takes that is worth a pipeline.
+/// The number of clocks that a microprogram may take. A longer one is not worth a pipeline.
 const MOST_CLOCKS: usize = 4096;
 
 /// One computation of a design.

@@ -15,8 +15,8 @@ use crate::sim::wire::{Direction, ProbeView, Wire};
 /// `LANES` independent instances of a design as a rust_hdl [`Block`]: rust_hdl clocks and settles
 /// it, checks it and, for lane 0, traces it.
 ///
-/// Inputs are to be changed together with the falling edge of [`Circuit::clock`]. Inputs that
-/// change together with the rising edge are seen only after it.
+/// The caller must change inputs together with the falling edge of [`Circuit::clock`]. Inputs that change together with the
+/// rising edge are seen only after it.
 #[derive(Debug)]
 pub struct Circuit<const LANES: usize = 1> {
     /// Everything happens on its rising edge.

@@ -50,7 +50,7 @@ impl<const LANES: usize> Machine<LANES> {
     /// Performs a rising edge, if there is one; then changes the inputs, if there are new ones; then brings all nets
     /// up to date. Returns whether anything that starts a change has changed.
     ///
-    /// At the edge, registers and synchronous ROMs take the values of their operands. `inputs` has the bit pattern of
+    /// At the edge, registers and synchronous ROMs take the values of their operands. `inputs` must have the bit pattern of
     /// each input port, in order of declaration; bits beyond the width of a port are ignored.
     pub fn update(&mut self, edge: bool, inputs: Option<&[[u64; LANES]]>) -> bool {
         #[cfg(target_arch = "x86_64")]
@@ -143,7 +143,7 @@ impl<const LANES: usize> Machine<LANES> {
     /// `known` are compared, or all bits if it is `None`.
     ///
     /// # Panics
-    /// Panics if a net is unnamed and was optimised away.
+    /// Panics if the compiler has optimised a net away, which it may do only if the net has no name.
     pub fn differences(
         &self,
         nets: &[NetId],
@@ -202,7 +202,7 @@ impl<const LANES: usize> Machine<LANES> {
     /// Returns the bit pattern of a net in each lane.
     ///
     /// # Panics
-    /// Panics if the net is unnamed and was optimised away.
+    /// Panics if the compiler has optimised the net away, which it may do only if the net has no name.
     pub fn lanes(&self, net: NetId) -> [u64; LANES] {
         match self.program.place(net) {
             ValueSlot::Narrow(slot) => self.narrow[slot as usize].map(u64::from),
@@ -213,7 +213,8 @@ impl<const LANES: usize> Machine<LANES> {
     /// Returns the bit pattern of a net in one lane.
     ///
     /// # Panics
-    /// Panics if the net is unnamed and was optimised away, or there is no such lane.
+    /// Panics if there is no such lane, or if the compiler has optimised the net away, which it may do only if the net has no
+    /// name.
     pub fn lane(&self, net: NetId, lane: usize) -> u64 {
         match self.program.place(net) {
             ValueSlot::Narrow(slot) => self.narrow[slot as usize][lane].into(),

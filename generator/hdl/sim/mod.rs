@@ -93,7 +93,7 @@ impl<const LANES: usize> Simulator<LANES> {
         &self.inputs
     }
 
-    /// Sets an input port in every lane for the next clock; bits beyond its width are ignored.
+    /// Sets an input port in every lane for the next clock; the simulator ignores bits beyond its width.
     ///
     /// # Panics
     /// Panics if there is no port of this position.
@@ -110,7 +110,7 @@ impl<const LANES: usize> Simulator<LANES> {
     /// Returns the bit pattern of a net in each lane, after the latest clock.
     ///
     /// # Panics
-    /// Panics if the net is unnamed and was optimised away.
+    /// Panics if the compiler has optimised the net away, which it may do only if the net has no name.
     pub fn lanes(&self, net: NetId) -> [u64; LANES] {
         self.circuit.machine.lanes(net)
     }
@@ -118,7 +118,8 @@ impl<const LANES: usize> Simulator<LANES> {
     /// Returns the bit pattern of a net in one lane, after the latest clock.
     ///
     /// # Panics
-    /// Panics if the net is unnamed and was optimised away, or there is no such lane.
+    /// Panics if there is no such lane, or if the compiler has optimised the net away, which it may do only if the net has no
+    /// name.
     pub fn lane(&self, net: NetId, lane: usize) -> u64 {
         self.circuit.machine.lane(net, lane)
     }
@@ -127,7 +128,7 @@ impl<const LANES: usize> Simulator<LANES> {
     /// `known` are compared, or all bits if it is `None`.
     ///
     /// # Panics
-    /// Panics if a net is unnamed and was optimised away.
+    /// Panics if the compiler has optimised a net away, which it may do only if the net has no name.
     pub fn differences(
         &self,
         nets: &[NetId],
@@ -154,7 +155,7 @@ impl<const LANES: usize> Simulator<LANES> {
     /// Fails as [`Simulator::clock`] does.
     ///
     /// # Panics
-    /// Panics if `inputs` has more or fewer entries than there are ports.
+    /// Panics if `inputs` has more or fewer entries than there are ports. It must have one for each.
     #[inline]
     pub fn clock_with(&mut self, inputs: &mut Vec<[u64; LANES]>) -> Result<()> {
         assert_eq!(inputs.len(), self.inputs.len(), "one for each input port");
@@ -210,7 +211,7 @@ impl<const LANES: usize> Simulator<LANES> {
 }
 
 impl Simulator {
-    /// Sets an input port for the next clock; bits beyond its width are ignored.
+    /// Sets an input port for the next clock; the simulator ignores bits beyond its width.
     ///
     /// # Panics
     /// Panics if there is no port of this position.
@@ -222,7 +223,7 @@ impl Simulator {
     /// Returns the bit pattern of a net after the latest clock.
     ///
     /// # Panics
-    /// Panics if the net is unnamed and was optimised away.
+    /// Panics if the compiler has optimised the net away, which it may do only if the net has no name.
     #[inline]
     pub fn value(&self, net: NetId) -> u64 {
         self.lane(net, 0)

@@ -25,8 +25,8 @@ pub(super) type Sources = u64;
 
 /// A computation within one bank: `to` from `a`, `b`, …, which have smaller numbers.
 ///
-/// Widths are given as `drop`, 64 less the width: `u64::MAX >> drop` is the mask, and shifting up by
-/// `drop` brings the sign bit to the top.
+/// Widths are given as `drop`, 64 less the width: `u64::MAX >> drop` is the mask, and shifting up by `drop` brings the sign bit
+/// to the top. For example, a width of 21 has the `drop` 43.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(super) enum Instruction {
     /// `a`, as it was before the coming edge.

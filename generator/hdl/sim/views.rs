@@ -25,7 +25,8 @@ fn shown(design: &Design) -> Vec<(String, Vec<&Net>)> {
     std::iter::once((design.name.clone(), ports)).chain(inner).collect()
 }
 
-/// Returns the save file of GTKWave for a waveform of the design: `gtkwave FILE.vcd FILE.gtkw`.
+/// Returns the save file of GTKWave for a waveform of the design: `gtkwave FILE.vcd FILE.gtkw`. For example, it shows
+/// `[fpshift_count] 20` for a net of `u1.20`.
 pub fn gtkwave(design: &Design) -> String {
     // Twenty pixels a clock or so.
     let mut text = format!("*-17.000000 0\n@{BINARY:x}\n{}.clk\n", design.name);

@@ -38,7 +38,7 @@ pub(super) struct Wire<'a> {
     pub seen: ProbeView<'a>,
 }
 
-/// Returns a string as VCD can hold it: a space would end it.
+/// Returns a string as VCD can hold it: a space would end it. For example, `12 <- sin` becomes `12_<-_sin`.
 fn vcd_text(text: &str) -> String {
     let graphic = |c: char| if c.is_ascii_graphic() { c } else { '_' };
     text.chars().map(graphic).collect()

@@ -11,7 +11,7 @@ use super::text::{Names, constant_name, literal, together};
 use crate::netlist::{Driver, NetId, NetlistRom, Op};
 use glint_base::fixed::mask;
 
-/// A number that is baked in: a localparam.
+/// A number that is baked in: a localparam. For example, `COS_GAMMA_MOST` is `21'h100000`, with the note `1.0 in u1.20`.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Constant {
     /// The localparam.

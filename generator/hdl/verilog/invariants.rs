@@ -1,10 +1,11 @@
-//! Writes the assertions of a partition, for formal tools alone: the proof of the handshake rests on them.
+//! Writes the assertions of a partition, for formal tools alone: the proof of the handshake rests on them. For example, the
+//! control unit of `rough` asserts that `word_address` is 0 while `run` is 0.
 
 use super::naming::Naming;
 use super::text::literal;
 use crate::netlist::{Design, Partition, RegisterKind};
 
-/// Returns the assertions of a partition as lines of Verilog; the caller puts them under `FORMAL`.
+/// Returns the assertions of a partition as lines of Verilog; the caller must put them under `FORMAL`.
 pub fn invariants(design: &Design, naming: &Naming, partition: Partition) -> Vec<String> {
     let mut names = naming.names.clone();
     let lines = match partition {

@@ -262,7 +262,7 @@ impl<'a> Builder<'a> {
             .collect()
     }
 
-    /// Returns a memory and its read port. The memory is left out if another read port has already declared it.
+    /// Returns a memory and its read port. It leaves out the memory if another read port has already declared it.
     fn rom(&mut self, id: RomId) -> Vec<String> {
         let rom = self.plan.design.rom(id);
         let case = self.naming.style.case;

@@ -12,9 +12,9 @@ pub struct Naming {
     pub control_instance: String,
     /// The instance of the datapath in the top module.
     pub datapath_instance: String,
-    /// The memory of each ROM.
+    /// The memory of each ROM. For example, `control_rom`.
     pub memories: Vec<String>,
-    /// The parameter with the file name of each ROM.
+    /// The parameter with the file name of each ROM. For example, `SINE_FILE`.
     pub parameters: Vec<String>,
     /// The file of each ROM.
     pub files: Vec<String>,
@@ -22,7 +22,7 @@ pub struct Naming {
     pub style: Style,
     /// The ROMs that are the second read port of another, and have its memory.
     pub second: Vec<RomId>,
-    /// The localparams of each field's choices, by value.
+    /// The localparams of each field's choices, by value. For example, `OPERAND_SELECT_COSINES` is 0.
     pub choices: Vec<Vec<String>>,
     /// The net that takes unread bits. Linters leave a net alone whose name contains `unused`.
     pub unused: String,
@@ -88,7 +88,7 @@ impl Naming {
         Self { style, ..self }
     }
 
-    /// Returns the module of a partition.
+    /// Returns the module of a partition. For example, `rough` has `rough_control` and `rough_datapath`.
     pub fn module(&self, partition: Partition) -> String {
         match partition {
             Partition::Control => format!("{}_control", self.design),
@@ -96,12 +96,12 @@ impl Naming {
         }
     }
 
-    /// Returns the module of a product with a register at its output.
+    /// Returns the module of a product with a register at its output. For example, `blinn_pipelined_multiplier`.
     pub fn multiplier(&self) -> String {
         format!("{}_multiplier", self.design)
     }
 
-    /// Returns the module of delay lines.
+    /// Returns the module of delay lines. For example, `rough_pipelined_delay`.
     pub fn delay(&self) -> String {
         format!("{}_delay", self.design)
     }

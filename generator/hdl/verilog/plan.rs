@@ -243,7 +243,7 @@ impl<'a> Plan<'a> {
         }
     }
 
-    /// Finds the cells that are written. Cells that nobody named and nothing needs are left out.
+    /// Finds the cells that are written. It leaves out cells that nobody named and nothing needs.
     fn find_live(&mut self, order: &[NetId]) {
         let mut live = vec![false; self.design.nets.len()];
         // Registers and ROMs: no cell is known to be written yet.
@@ -437,7 +437,7 @@ impl<'a> Plan<'a> {
     }
 }
 
-/// Returns the bits that number `depth` words; a memory of one word has one address bit.
+/// Returns the bits that number `depth` words; a memory of one word has one address bit. For example, 584 words need 10.
 pub fn address_width(depth: usize) -> u32 {
     depth.max(2).next_power_of_two().trailing_zeros()
 }

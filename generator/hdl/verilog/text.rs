@@ -4,10 +4,11 @@ use std::collections::HashSet;
 
 use crate::netlist::Design;
 
-/// The longest line that Glint writes into Verilog.
+/// The number of columns that a line of the Verilog may have.
 pub const COLUMNS: usize = 100;
 
-/// Returns `text` in ASCII: the signs of the formulas spelled out, anything else unknown as `?`.
+/// Returns `text` in ASCII: the signs of the formulas spelled out, anything else unknown as `?`. For example, `cos²γ ≤ ½`
+/// becomes `cos^2gamma <= 1/2`.
 pub fn ascii(text: &str) -> String {
     let mut plain = String::with_capacity(text.len());
     for sign in text.chars() {
@@ -69,7 +70,8 @@ pub fn ascii(text: &str) -> String {
     plain
 }
 
-/// Returns `text` as the upper-case part of an identifier: runs of anything else become one underscore.
+/// Returns `text` as the upper-case part of an identifier: runs of anything else become one underscore. For example, `cos γ`
+/// becomes `COS_GAMMA`.
 pub fn constant_name(text: &str) -> String {
     let mut name = String::new();
     for sign in ascii(text).chars() {
@@ -82,7 +84,8 @@ pub fn constant_name(text: &str) -> String {
     name.trim_end_matches('_').to_owned()
 }
 
-/// Returns a sized literal: decimal while that is short, else hexadecimal.
+/// Returns a sized literal: decimal while that is short, else hexadecimal. For example, 9 in 4 bits is `4'd9`, and 1048576 in
+/// 21 bits is `21'h100000`.
 pub fn literal(value: u64, width: u32) -> String {
     match (width, value) {
         (1, _) => format!("1'b{value}"),
@@ -91,7 +94,7 @@ pub fn literal(value: u64, width: u32) -> String {
     }
 }
 
-/// Returns one word, or several side by side.
+/// Returns one word, or several side by side. For example, `a` and `b` give `{a, b}`.
 pub fn together(words: Vec<String>) -> String {
     match &words[..] {
         [only] => only.clone(),
@@ -175,7 +178,8 @@ impl Names {
         Self::new(ports.chain(["clk"]))
     }
 
-    /// Returns `wish`, or `wish_2`, `wish_3` … when that is taken.
+    /// Returns `wish`, or `wish_2`, `wish_3` … when that is taken. For example, if `control` is taken, the next names are
+    /// `control_2` and `control_3`.
     pub fn fresh(&mut self, wish: &str) -> String {
         let mut name = wish.to_owned();
         let mut number = 1;

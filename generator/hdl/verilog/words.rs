@@ -16,7 +16,7 @@ pub fn word_note(design: &Design, id: RomId, address: usize) -> Option<String> {
     given.or_else(name).map(|text| ascii(text))
 }
 
-/// Returns a word of the control ROM in binary, its fields apart.
+/// Returns a word of the control ROM in binary, its fields apart. For example, word 3 of `rough` is `01_1_0_0_1_0_0_1`.
 pub fn in_fields(design: &Design, word: u64) -> String {
     let positions = design.field_positions();
     let digits = design.control.fields.iter().zip(positions).map(|(field, low)| {
@@ -26,7 +26,7 @@ pub fn in_fields(design: &Design, word: u64) -> String {
     digits.collect::<Vec<_>>().join("_")
 }
 
-/// Returns a word in hexadecimal, with as many digits as the width needs.
+/// Returns a word in hexadecimal, with as many digits as the width needs. For example, a word of 35 bits has 9 digits.
 pub fn in_hex(word: u64, width: u32) -> String {
     format!("{word:0digits$x}", digits = width.div_ceil(4) as usize)
 }

@@ -14,7 +14,7 @@ use crate::cosim::instances::Instances;
 use glint_golden::Contract;
 use glint_rtl::netlist::{Design, NetId, Role};
 
-/// More clocks than any computation takes.
+/// The number of clocks that a computation may take.
 const LIMIT: u64 = 1 << 16;
 
 /// rust_hdl: as many simulators as there are threads, each of many instances of the design.
@@ -26,7 +26,7 @@ impl RustHdl {
     /// Makes a simulator of a design for each thread, after power-up and reset.
     ///
     /// # Errors
-    /// As of [`glint_rtl::sim::Simulator::new`], and a contract that speaks of ports that the design does not have.
+    /// Fails as [`glint_rtl::sim::Simulator::new`] does, or if the contract names ports that the design does not have.
     pub fn new(design: &Design, contract: &dyn Contract) -> Result<Self> {
         let latency = design.pipeline.as_ref().map(|pipeline| pipeline.stages.len() as u64);
         let in_ready = design.port(|role| role == Role::InReady).map(|port| port.net);
@@ -65,7 +65,8 @@ struct LaneTask {
 }
 
 impl Team {
-    /// Returns every instance takes the next point as soon as it can: a core when it is free, a pipeline when it is ready.
+    /// Returns the results of the points in `range`. Every instance takes the next point as soon as it can: a core must be
+    /// free, and a pipeline must be ready.
     fn compute(&mut self, points: &Points, range: Range<usize>) -> Result<Vec<i64>> {
         let Self { instances, latency, in_ready } = self;
         let width = instances.ports.results.len();

@@ -68,7 +68,7 @@ impl ComputationCache {
     /// contract from others.
     ///
     /// # Errors
-    /// As of [`computations`].
+    /// Fails as [`computations`] does.
     pub fn computations(
         &self,
         design: &Design,

@@ -20,7 +20,7 @@ const MOST_VALUES: u64 = 4096;
 const FIRST_VALUES: [i64; 6] = [0, 1, 2, 3, 7, 15];
 const LINE_BITS: std::ops::RangeInclusive<u32> = 8..=12;
 
-/// The longest line among the drawn points, in intervals.
+/// The number of intervals that a line among the drawn points may have.
 const LONGEST: i64 = 1023;
 
 /// Where the formula is seen best.

@@ -12,7 +12,7 @@ use glint_rtl::sim::Machine;
 /// Computations that run together.
 pub const LANES: usize = 32;
 
-/// More clocks than any computation takes.
+/// The number of clocks that a computation may take.
 const LIMIT: u32 = 1 << 16;
 
 /// A set of lanes.
@@ -86,7 +86,7 @@ impl SideBySide {
     /// through all ROMs.
     ///
     /// # Errors
-    /// As of [`SideBySide::run`].
+    /// Fails as [`SideBySide::run`] does.
     pub fn run_with(
         &mut self,
         computations: &[&[i64]],

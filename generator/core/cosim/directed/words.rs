@@ -43,8 +43,8 @@ pub struct Chosen {
     pub word_stride: usize,
 }
 
-/// Finds computations that detect inverted bits in the upper halves of ROM words. A bit counts if a candidate detects it, or
-/// a computation near the candidates that the search finds. Words in `known` are left out.
+/// Finds computations that detect inverted bits in the upper halves of ROM words. A bit counts if a candidate detects it, or a
+/// computation near the candidates that the search finds. It leaves out the words in `known`.
 ///
 /// # Errors
 /// Fails if the design cannot be simulated.

@@ -7,7 +7,7 @@ use anyhow::{Result, ensure};
 use glint_base::text::grouped;
 use glint_golden::{Contract, Sweep, Values};
 
-/// More values than this are a slip of the pen.
+/// The number of values that an axis may have. More are a slip of the pen.
 const MOST_VALUES: usize = 1 << 20;
 
 /// An operand and its raw values, as `cos_dgamma=908094,950000..960000/1000`: single values, and ranges with both
@@ -47,7 +47,8 @@ impl FromStr for AxisValues {
     }
 }
 
-/// Parses first, last and step from `5`, `0..1000` or `0..1000/10`.
+/// Parses first, last and step from `5`, `0..1000` or `0..1000/10`. For example, `0..1000/10` gives (0, 1000, 10), and `5`
+/// gives (5, 5, 1).
 fn range(item: &str) -> Option<(i64, i64, usize)> {
     let Some((first, rest)) = item.split_once("..") else {
         let value = item.parse().ok()?;
@@ -58,7 +59,7 @@ fn range(item: &str) -> Option<(i64, i64, usize)> {
     Some((first.parse().ok()?, last.parse().ok()?, step))
 }
 
-/// Returns the sweep of a contract with other values of some operands.
+/// Returns the sweep of a contract with other values of some operands. Each operand may be named once.
 ///
 /// # Errors
 /// Fails if an operand is no axis of the sweep, or if a value is outside the operand's domain.

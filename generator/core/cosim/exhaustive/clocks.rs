@@ -22,7 +22,7 @@ use glint_base::program::Program;
 use glint_golden::{Contract, Model};
 use glint_rtl::netlist::Design;
 
-/// The most bits of all operands together for which all combinations are visited.
+/// The number of bits that all operands together may have. With more, the combinations cannot all be visited.
 pub const MOST_BITS: u32 = 26;
 
 /// Combinations of a lane.
@@ -99,7 +99,8 @@ impl<'a> Clocks<'a> {
         self.binding.space.bits()
     }
 
-    /// Returns how many combinations there are; 0 if they are too many to go through.
+    /// Returns how many combinations there are; 0 if they are too many to go through. For example, operands of 20 bits in all
+    /// have 1048576 combinations, and operands of 27 bits give 0.
     pub fn count(&self) -> u64 {
         match self.bits() {
             bits @ ..=MOST_BITS => 1 << bits,
@@ -193,7 +194,7 @@ impl<'a> Clocks<'a> {
     /// Writes the waveform of the clocks that end with a difference, from clock `from` of its lane on.
     ///
     /// # Errors
-    /// As of [`Clocks::difference`]; the file cannot be written.
+    /// Fails as [`Clocks::difference`] does, or if the file cannot be written.
     pub fn trace(&self, place: u64, from: u64, file: impl Write + Send + 'static) -> Result<()> {
         self.alone(place)?.trace(from, file)
     }
@@ -209,7 +210,7 @@ impl<'a> Clocks<'a> {
     /// Returns how long one combination takes on one thread.
     ///
     /// # Errors
-    /// As of [`Clocks::check`].
+    /// Fails as [`Clocks::check`] does.
     pub(super) fn pace(&self) -> Result<Duration> {
         let places = 0..self.count().min(BLOCK / 8);
         let count = places.end as u32;

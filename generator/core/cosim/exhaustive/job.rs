@@ -18,7 +18,7 @@ use super::places::{Peak, Places};
 use glint_base::text::grouped;
 use glint_golden::{Contract, Sweep};
 
-/// A division into more parts than machines would ever take is a slip of the pen.
+/// The number of shards that a job may have. More than any number of machines is a slip of the pen.
 pub const MOST_SHARDS: u64 = 1_000_000;
 
 /// Missing shards that are named.
@@ -27,7 +27,7 @@ const NAMED: usize = 10;
 /// Blocks for each thread between two looks at the state: some tenths of a second.
 const CHUNK: u64 = 4;
 
-/// One part of a divided job.
+/// One part of a divided job. For example, `2/4` is the second of four parts, and has the blocks 1, 5, 9 and so on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Shard {
     /// From 1.
@@ -45,7 +45,7 @@ impl Shard {
         (1..=MOST_SHARDS).contains(&self.of) && (1..=self.of).contains(&self.number)
     }
 
-    /// Returns the blocks of the shard, of `blocks` in all.
+    /// Returns the blocks of the shard, of `blocks` in all. For example, shard 1 of 4 has 3 of 10 blocks, and shard 4 has 2.
     fn count(self, blocks: u64) -> u64 {
         (blocks + self.of - self.number) / self.of
     }

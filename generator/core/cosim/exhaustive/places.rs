@@ -105,7 +105,8 @@ impl<'a> Places<'a> {
         self.count().div_ceil(BLOCK)
     }
 
-    /// Returns the value on each axis of place `number`.
+    /// Returns the value on each axis of place `number`. For example, on axes of 2 and of 3 values, place 4 has the second
+    /// value of each.
     pub fn place(&self, mut number: u64) -> Vec<i64> {
         let mut values: Vec<i64> = self
             .sweep
@@ -123,7 +124,7 @@ impl<'a> Places<'a> {
         values
     }
 
-    /// Returns the names and values of place `number`, in words.
+    /// Returns the names and values of place `number`, in words. For example, `cos_gamma = 1044480, exponent = 20`.
     pub fn words(&self, number: u64) -> String {
         let pairs = self.sweep.axes.iter().zip(self.place(number));
         let words: Vec<String> =

@@ -81,8 +81,8 @@ struct Report {
 }
 
 impl Record {
-    /// Returns the record of a configuration, among all in a directory. Returns `None` if the directory or the record does
-    /// not exist. Files that are no records are ignored.
+    /// Returns the record of a configuration, among all in a directory. Returns `None` if the directory or the record does not
+    /// exist. It ignores files that are no records.
     ///
     /// # Errors
     /// Fails if the directory or a file in it cannot be read, if a record is damaged, or if the record's sweep is not the

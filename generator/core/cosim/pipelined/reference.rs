@@ -7,7 +7,7 @@ use crate::cosim::ports::Ports;
 use glint_golden::Model;
 use glint_rtl::netlist::{Design, NetId, Pipeline};
 
-/// The most clocks of a computation.
+/// The number of clocks that a computation may take.
 const MOST_CLOCKS: usize = 8192;
 
 /// The golden model of the sequential core, run a point at a time.

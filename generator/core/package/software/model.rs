@@ -21,7 +21,7 @@ use glint_rtl::verilog::text::{Names, ascii, constant_name, statement};
 pub struct CField {
     /// As a structure has it.
     pub name: String,
-    /// The upper-case name with the module's before it.
+    /// The upper-case name with the module's before it. For example, `ROUGH_COS_GAMMA`.
     constant: String,
     /// The type of the raw integer.
     pub kind: &'static str,
@@ -78,7 +78,8 @@ impl CField {
         }
     }
 
-    /// Returns the inverse of the lowest bit's weight as a C double: exactly 2^F, with F fraction bits.
+    /// Returns the inverse of the lowest bit's weight as a C double: exactly 2^F, with F fraction bits. For example, `u1.20`
+    /// has `1048576.0`.
     pub fn scale(&self) -> String {
         format!("{:?}", glint_base::fixed::exp2(self.format.frac))
     }
@@ -94,7 +95,7 @@ impl CField {
         (format!("{:?}", low as f64), format!("{:?}", high as f64))
     }
 
-    /// Returns the field of a structure in ctypes.
+    /// Returns the field of a structure in ctypes. For example, `c_uint32`.
     fn ctype(&self) -> String {
         format!("c_{}", self.kind.trim_end_matches("_t"))
     }
@@ -288,7 +289,8 @@ fn of_line(design: &Design, tables: &[String]) -> Result<(Vec<String>, Vec<RomId
     Ok((body, read))
 }
 
-/// Returns all registers take their new values at once.
+/// Returns the statements of a rising edge, at which all registers take their new values at once. A value that depends on the
+/// state must be computed before the state changes.
 fn clocked(
     graph: &Graph,
     printer: &Printer,

@@ -30,12 +30,12 @@ pub fn field(port: &str) -> String {
     taken().fresh(port)
 }
 
-/// Returns the type of a bit pattern.
+/// Returns the type of a bit pattern. For example, a value of 21 bits has `uint32_t`.
 pub fn pattern_type(width: u32) -> &'static str {
     if width <= 32 { "uint32_t" } else { "uint64_t" }
 }
 
-/// Returns a literal of the type of a bit pattern.
+/// Returns a literal of the type of a bit pattern. For example, 9 in 8 bits is `9u`, and 4096 in 40 bits is `UINT64_C(0x1000)`.
 pub fn literal(bits: u64, width: u32) -> String {
     match (width <= 32, bits < 1024) {
         (true, true) => format!("{bits}u"),

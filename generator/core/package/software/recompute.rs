@@ -14,7 +14,7 @@ use glint_rtl::netlist::RomId;
 use glint_rtl::verilog::naming::Naming;
 use glint_rtl::verilog::text::{ascii, statement};
 
-/// The most values that the program makes for a part of a formula.
+/// The most values that the program may make for a part of a formula.
 const VALUES: usize = 8;
 
 /// The parts of a contract that the program needs: one operand with its domain, one result, and its formula.

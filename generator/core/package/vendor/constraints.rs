@@ -30,7 +30,8 @@ pub fn files(job: &EmitJob, tops: &[Top], clock_mhz: f64, files: &mut Artifacts)
     Ok(())
 }
 
-/// Returns the period in nanoseconds, with picoseconds. Rounding makes the clock faster, never slower.
+/// Returns the period in nanoseconds, with picoseconds. Rounding makes the clock faster, never slower. For example, 130 MHz
+/// gives 7.692.
 fn period(clock_mhz: f64) -> String {
     let picoseconds = libm::floor(1e6 / clock_mhz);
     format!("{:.3}", picoseconds / 1e3)

@@ -68,7 +68,7 @@ impl RegisterBits {
         }
     }
 
-    /// Returns the hardware changes them.
+    /// Returns whether the hardware may change the bits.
     fn is_volatile(&self) -> bool {
         match self.access {
             Access::Read => self.reset == 0,

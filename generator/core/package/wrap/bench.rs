@@ -153,7 +153,7 @@ fn access(part: &PortBits, field: &StreamField, net: &str) -> BenchRegister {
     BenchRegister { at: address(part.place), word, mask: format!("32'h{:08x}", mask(part.width)) }
 }
 
-/// Returns all results in one register are side by side as in a stream.
+/// Returns the registers of the results. Results that share one register are side by side, as in a stream.
 fn of_results(map: &Map, fields: &[StreamField]) -> Vec<BenchRegister> {
     if map.last() > map.last_operand() + 1 || fields.len() == 1 {
         return accesses(&map.results, fields, "result");

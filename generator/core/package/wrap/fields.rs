@@ -21,7 +21,7 @@ pub struct StreamField {
 }
 
 impl StreamField {
-    /// Returns the number of its bits, including the padding of its last byte.
+    /// Returns the number of its bits, including the padding of its last byte. For example, a cosine of 21 bits has 24.
     pub fn padded(&self) -> u32 {
         self.width.next_multiple_of(8)
     }
@@ -58,7 +58,7 @@ pub fn operands(design: &Design) -> Vec<StreamField> {
     side_by_side(design, ports)
 }
 
-/// Returns the results, in the order of the ports.
+/// Returns the results, in the order of the ports. For example, three colours of 8 bits begin at bits 0, 8 and 16.
 pub fn results(design: &Design) -> Vec<StreamField> {
     let ports = design.outputs().filter(|port| port.role == Role::Result);
     side_by_side(design, ports.map(|port| (port, String::new())))

@@ -41,7 +41,8 @@ pub fn within(wire: &str, at: &str, (first, last): (u32, u32), word_bits: u32) -
     statement(4, &format!("wire {wire} = {};", terms.join(" | ")))
 }
 
-/// Returns the part-select of bits `low` to `high` of a net of that width; nothing where that is all of it.
+/// Returns the part-select of bits `low` to `high` of a net of that width; nothing where that is all of it. For example, bits 4
+/// to 7 of 32 give `[7:4]`.
 pub fn select(width: u32, low: u32, high: u32) -> String {
     match (low, high) {
         (0, high) if high + 1 == width => String::new(),

@@ -18,7 +18,7 @@ pub(in crate::dsl) fn warnings(design: &Design, partly_used: &HashSet<FieldId>) 
     found
 }
 
-/// Finds registers, memories and named cells that no output depends on. Cells that only such logic reads are left out.
+/// Finds registers, memories and named cells that no output depends on. It leaves out cells that only such logic reads.
 fn dead(design: &Design) -> Vec<Diagnostic> {
     let used = used(design);
     let is_logic =

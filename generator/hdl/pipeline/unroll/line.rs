@@ -18,7 +18,7 @@ use glint_base::codes;
 use glint_base::cone::reached;
 use glint_base::diagnostic::{Diagnostic, Diagnostics};
 
-/// The most clocks from a point to its results.
+/// The number of clocks that may lie between a point and its results.
 const MOST_DELAY: usize = 12;
 
 /// A computation of several results.
