@@ -139,7 +139,7 @@ def old_results_are_dimmed(page):
     expect(page.locator("#problems li")).to_have_count(1, timeout=LIMIT)
     assert page.evaluate(stale, parts) == [True] * len(parts)
     # The message is at the field, too.
-    expect(page.locator(".key:has([id='key-power']) .wrong")).to_contain_text("`power`")
+    expect(page.locator(".key:has([id='key-power']) .wrong")).to_contain_text("power cannot be 3")
 
 
 def a_download_can_be_cancelled(page):
