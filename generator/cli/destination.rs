@@ -1,5 +1,5 @@
-//! Writes a single file whole or not at all, and makes sure before the work for it that it can be written. Missing directories
-//! above the file are made, as they are for commands that write many files.
+//! Writes a single file whole or not at all, and makes sure before the work for it that it can be written. It makes
+//! the directories above the file that are missing, and removes them again if the file is not written.
 
 use std::fs::{self, File, OpenOptions};
 use std::io::Write;

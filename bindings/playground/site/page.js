@@ -58,7 +58,7 @@ function next() {
 let core = null;
 let exponent = null;
 
-// Returns a text as nodes: what stands between backquotes is code.
+// Returns a text as nodes. A name between backquotes becomes a code element.
 function prose(text) {
   return text.split("`").map((part, at) => (at % 2 === 1 ? element("code", { textContent: part }) : part));
 }

@@ -14,7 +14,7 @@ use glint_rtl::verilog::rows::{Row, separated};
 pub struct InstanceExample {
     /// The module.
     pub module: String,
-    /// What the module is, in a few words: `the core between two AXI4-Streams`.
+    /// A description of the module in a few words. For example, `the core between two AXI4-Streams`.
     pub what: String,
     /// Declarations of the wires that its ports are connected to, and an instance. The clock must be declared already.
     pub verilog: String,

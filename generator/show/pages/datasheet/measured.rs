@@ -18,7 +18,7 @@ pub struct RecordView {
 }
 
 impl RecordView {
-    /// Makes the tables of a record. The first row is that of `target`, if there is one.
+    /// Makes the tables of a record. The first row has the figures of `target`, if it was measured.
     pub fn new(record: &SynthesisRecord, target: Option<&str>) -> Self {
         let mut measured: Vec<&Figures> = record.targets.iter().collect();
         measured.sort_by_key(|figures| Some(figures.target.name()) != target);
