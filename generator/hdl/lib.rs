@@ -5,7 +5,7 @@
 //! use glint_base::fixed::{Format, Overflow, Rounding};
 //! use glint_base::target::Timing;
 //! use glint_rtl::dsl::{Designer, end, step, valid};
-//! use glint_rtl::pipeline::{Delays, Goal, Interval, Options, pipeline};
+//! use glint_rtl::pipeline::{Delays, Goal, IntervalGoal, Options, pipeline};
 //! use glint_rtl::sim::Simulator;
 //!
 //! let byte = Format::unsigned(0, 8);
@@ -32,7 +32,7 @@
 //! assert_eq!(glint_rtl::verilog::files(&design)?.len(), 4);
 //! let target = Timing::named("ecp5").expect("a target");
 //! let (goal, delays) = (Goal::ClockMhz(100.0), Delays::Memory);
-//! let options = Options { target, goal, registered: false, stall: true, side: 0, delays, interval: Interval::Clocks(1) };
+//! let options = Options { target, goal, registered: false, stall: true, side: 0, delays, interval: IntervalGoal::Clocks(1) };
 //! assert_eq!(glint_rtl::verilog::files(&pipeline(&design, &options)?)?.len(), 1);
 //! # Ok::<(), anyhow::Error>(())
 //! ```
