@@ -309,6 +309,30 @@ static inline limits *remainder_of(const limits *a, const limits *b)
     return between(minimum(none, b)->low, maximum(none, b)->high);
 }
 
+/* The direction of the point (x, y), from -pi to pi: by the half plane in which the point is. */
+static inline limits *direction(const limits *y, const limits *x)
+{
+    const limits *half_turn = constant(mpfr_const_pi);
+    if (mpfr_sgn(x->low) > 0) {
+        return rising(mpfr_atan, divide(y, x));
+    }
+    if (mpfr_sgn(y->low) > 0 || mpfr_sgn(y->high) < 0) {
+        limits *quarter_turn = divide(half_turn, number("2"));
+        const limits *axis = mpfr_sgn(y->low) > 0 ? quarter_turn : negate(quarter_turn);
+        return subtract(axis, rising(mpfr_atan, divide(x, y)));
+    }
+    if (mpfr_sgn(x->high) >= 0) {
+        return without_value();
+    }
+    limits *from_left = rising(mpfr_atan, divide(y, x));
+    limits *above = add(from_left, half_turn);
+    if (mpfr_sgn(y->low) >= 0) {
+        return above;
+    }
+    limits *below = subtract(from_left, half_turn);
+    return between(minimum(above, below)->low, maximum(above, below)->high);
+}
+
 static inline limits *power(const limits *a, const limits *b)
 {
     const int whole = mpfr_equal_p(b->low, b->high) && mpfr_integer_p(b->low);

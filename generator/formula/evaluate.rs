@@ -141,6 +141,18 @@ impl Expression {
 }
 
 impl Comparison {
+    /// Returns whether the comparison holds for operands within intervals; `None` where it holds for some of them. For
+    /// example, for x from 0 to 1 `x < 2` holds, and `x < 0.5` is undecided.
+    ///
+    /// # Errors
+    /// Fails as [`Expression::enclose`] does.
+    pub fn holds(&self, operands: &[(&str, Enclosure)]) -> Result<Option<bool>, Fault> {
+        let left = self.left.enclose(operands)?;
+        let right = self.right.enclose(operands)?;
+        let fault = |message: String| Fault::new(self.left.span.clone(), message);
+        self.decided(&Double, &left, &right).map_err(fault)
+    }
+
     /// Returns whether the comparison holds; `None` where the intervals of both sides do not tell.
     pub(super) fn decided<A: Arithmetic>(
         &self,
@@ -211,6 +223,7 @@ pub(super) fn binary<A: Arithmetic>(
         Operator::Max => Ok(arithmetic.maximum(a, b)),
         Operator::Mod => remainder(arithmetic, a, b),
         Operator::Power => power(arithmetic, a, b),
+        Operator::Atan2 => direction(arithmetic, a, b),
     }
 }
 
@@ -251,6 +264,43 @@ fn power<A: Arithmetic>(arithmetic: &A, a: &A::Value, b: &A::Value) -> Result<A:
         return Err(format!("a power of a negative number, {value}"));
     }
     arithmetic.power(a, b)
+}
+
+/// Computes the direction of the point (x, y), an angle from −π to π. For example, the direction of (0, 1) is π/2.
+///
+/// The formula of each half plane divides by a number that is not 0 there: `atan(y / x)` right of the y axis and, with a
+/// half turn added or subtracted, left of it; a quarter turn less `atan(x / y)` above the x axis and below it.
+fn direction<A: Arithmetic>(
+    arithmetic: &A,
+    y: &A::Value,
+    x: &A::Value,
+) -> Result<A::Value, String> {
+    let half_turn = arithmetic.constant("pi", std::f64::consts::PI);
+    let (y_low, y_high) = arithmetic.signs(y);
+    let (x_low, x_high) = arithmetic.signs(x);
+    if x_low == Ordering::Greater {
+        return arithmetic.function(Function::Atan, &arithmetic.divide(y, x)?);
+    }
+    if y_low == Ordering::Greater || y_high == Ordering::Less {
+        let from_axis = arithmetic.function(Function::Atan, &arithmetic.divide(x, y)?)?;
+        let quarter_turn = arithmetic.divide(&half_turn, &arithmetic.integer(2))?;
+        let axis = match y_low {
+            Ordering::Greater => quarter_turn,
+            _ => arithmetic.function(Function::Negate, &quarter_turn)?,
+        };
+        return arithmetic.subtract(&axis, &from_axis);
+    }
+    if x_high != Ordering::Less {
+        return Err("the direction of a point that may be the origin, 0 and 0".to_owned());
+    }
+    let from_left = arithmetic.function(Function::Atan, &arithmetic.divide(y, x)?)?;
+    let above = arithmetic.add(&from_left, &half_turn)?;
+    if y_low != Ordering::Less {
+        return Ok(above);
+    }
+    let below = arithmetic.subtract(&from_left, &half_turn)?;
+    let doubt = "1024 bits do not tell on which side of the negative x axis a point is";
+    arithmetic.either(above, below, doubt)
 }
 
 fn holds_zero<A: Arithmetic>(arithmetic: &A, a: &A::Value) -> bool {

@@ -96,8 +96,8 @@ impl Exact {
             Operator::Mul => a.multiply(b),
             Operator::Div => a.divide(b),
             Operator::Power => a.power(b),
-            // Remainders, minima and maxima are made of comparisons, which the evaluation does.
-            Operator::Mod | Operator::Min | Operator::Max => None,
+            // Remainders, minima, maxima and directions are made of comparisons, which the evaluation does.
+            Operator::Mod | Operator::Min | Operator::Max | Operator::Atan2 => None,
         }
     }
 

@@ -96,6 +96,8 @@ pub enum Operator {
     Power,
     Min,
     Max,
+    /// The direction of a point, an angle from −π to π. The first number is the point's y, the second its x.
+    Atan2,
 }
 
 /// A mistake in a formula, with its place.
@@ -202,6 +204,20 @@ impl Expression {
             }
         });
         fault.map_or(Ok(self), Err)
+    }
+
+    /// Returns the names of the operands that the formula reads, each once, in the order in which they first occur. For
+    /// example, `y / (x + y)` gives y and x.
+    pub fn operands(&self) -> Vec<&str> {
+        let mut names: Vec<&str> = Vec::new();
+        self.walk(&mut |part| {
+            if let Kind::Operand(name) = &part.kind
+                && !names.contains(&name.as_str())
+            {
+                names.push(name);
+            }
+        });
+        names
     }
 
     /// Returns whether a part satisfies the predicate.

@@ -42,13 +42,22 @@ const DEFINED: [(&str, &str); 14] = [
     ("int", "if(u < 0, u + -u % 1, u - u % 1)"),
 ];
 
+/// Functions of two numbers, by the names that a formula may use.
+const FUNCTIONS_OF_TWO: [(&str, Operator); 4] = [
+    ("min", Operator::Min),
+    ("max", Operator::Max),
+    ("atan2", Operator::Atan2),
+    ("pow", Operator::Power),
+];
+
+/// Functions of two numbers u and v that are combinations of others.
+const DEFINED_OF_TWO: [(&str, &str); 1] = [("hypot", "sqrt(u^2 + v^2)")];
+
 /// Some functions that this language lacks, each with a formula to write instead.
-const INSTEAD: [(&str, &str); 7] = [
+const INSTEAD: [(&str, &str); 5] = [
     ("ceil", "-floor(-x)"),
     ("round", "floor(x + 0.5)"),
     ("trunc", "int(x)"),
-    ("pow", "x ^ y"),
-    ("hypot", "sqrt(x^2 + y^2)"),
     ("expm1", "exp(x) - 1"),
     ("log1p", "ln(1 + x)"),
 ];
@@ -332,43 +341,84 @@ impl Parser<'_> {
             self.expect(")")?;
             return Ok(self.made(from, Kind::If(comparison, yes, no)));
         }
-        let two = [("min", Operator::Min), ("max", Operator::Max)];
-        let two = two.iter().find(|(own, _)| *own == name).map(|(_, operator)| *operator);
-        let one = FUNCTIONS.iter().find(|(own, _)| *own == name).map(|(_, function)| *function);
-        let defined = DEFINED.iter().find(|(own, _)| *own == name).map(|(_, text)| *text);
-        if two.is_none() && one.is_none() && defined.is_none() {
-            let all = FUNCTIONS.iter().map(|it| it.0).chain(DEFINED.iter().map(|it| it.0));
-            let all: Vec<&str> = all.chain(["min", "max", "if"]).collect();
-            let instead = INSTEAD.iter().find(|(own, _)| *own == name);
-            let message = match instead {
-                Some((_, text)) => format!("there is no function `{name}`: write {text}"),
-                None => format!("there is no function `{name}`; there are {}", all.join(", ")),
-            };
-            return Err(Fault::new(self.tokens[from].clone(), message));
+        let operator = named(&FUNCTIONS_OF_TWO, name);
+        let function = named(&FUNCTIONS, name);
+        let defined = named(&DEFINED, name);
+        let defined_of_two = named(&DEFINED_OF_TWO, name);
+        let takes_two = operator.is_some() || defined_of_two.is_some();
+        if !takes_two && function.is_none() && defined.is_none() {
+            return Err(Fault::new(self.tokens[from].clone(), unknown_function(name)));
         }
-        let first = self.choice()?;
-        let kind = match (two, one) {
-            (Some(operator), _) => {
-                self.expect(",")?;
-                Kind::Binary(operator, Box::new(first), Box::new(self.choice()?))
-            }
-            (_, Some(function)) => Kind::Unary(function, Box::new(first)),
-            _ => {
-                self.expect(")")?;
-                let span = self.tokens[from].start..self.tokens[self.at - 1].end;
-                let body = parse(defined.unwrap_or("u"))?;
-                let operand = Expression::operand("u");
-                let uses = body.count(&|part| *part == operand);
-                if body.count(&|_| true) + uses * first.count(&|_| true) > MOST_PARTS {
-                    let message = format!(
-                        "`{name}` here makes more than {MOST_PARTS} parts of the formula: it names its operand {uses} times"
-                    );
-                    return Err(Fault::new(span, message));
-                }
-                return Ok(body.substitute(&operand, &first, &span));
-            }
-        };
+        let mut arguments = vec![self.choice()?];
+        if takes_two {
+            self.expect(",")?;
+            arguments.push(self.choice()?);
+        }
         self.expect(")")?;
-        Ok(self.made(from, kind))
+        let span = self.tokens[from].start..self.tokens[self.at - 1].end;
+        if let Some(body) = defined.or(defined_of_two) {
+            return written_out(name, body, &arguments, span);
+        }
+        let mut boxed = arguments.into_iter().map(Box::new);
+        let first = boxed.next().expect("a call has an argument");
+        let kind = match (operator, boxed.next(), function) {
+            (Some(operator), Some(second), _) => Kind::Binary(operator, first, second),
+            (_, _, Some(function)) => Kind::Unary(function, first),
+            _ => unreachable!("`{name}` is a function of one number or of two"),
+        };
+        Ok(Expression::new(kind, span))
     }
+}
+
+/// Returns the entry of a table that has this name.
+fn named<T: Copy>(table: &[(&str, T)], name: &str) -> Option<T> {
+    table.iter().find(|(own, _)| *own == name).map(|(_, entry)| *entry)
+}
+
+/// Returns the message about a function that the language lacks: what to write in its place, or all functions.
+fn unknown_function(name: &str) -> String {
+    if let Some(text) = named(&INSTEAD, name) {
+        return format!("there is no function `{name}`: write {text}");
+    }
+    let mut all: Vec<&str> = Vec::new();
+    all.extend(FUNCTIONS.map(|(own, _)| own));
+    all.extend(DEFINED.map(|(own, _)| own));
+    all.extend(FUNCTIONS_OF_TWO.map(|(own, _)| own));
+    all.extend(DEFINED_OF_TWO.map(|(own, _)| own));
+    all.push("if");
+    format!("there is no function `{name}`; there are {}", all.join(", "))
+}
+
+/// Returns the formula `body` of the function `name`, with the arguments of a call in the place of u and v. For example,
+/// `hypot(a, 2)` becomes `sqrt(a^2 + 2^2)`. `span` is the place of the call.
+fn written_out(
+    name: &str,
+    body: &str,
+    arguments: &[Expression],
+    span: Range<usize>,
+) -> Result<Expression, Fault> {
+    let mut formula = parse(body)?;
+    let mut parts = formula.count(&|_| true);
+    let parameters = [Expression::operand("u"), Expression::operand("v")];
+    let mut most_uses = 0;
+    for (parameter, argument) in parameters.iter().zip(arguments) {
+        let uses = formula.count(&|part| part == parameter);
+        parts += uses * argument.count(&|_| true);
+        most_uses = most_uses.max(uses);
+    }
+    if parts > MOST_PARTS {
+        let message = format!(
+            "`{name}` here makes more than {MOST_PARTS} parts of the formula: it names its operand {most_uses} times"
+        );
+        return Err(Fault::new(span, message));
+    }
+    // An argument may itself contain an operand u or v. Marks that no text can contain keep the two apart.
+    let marks = [Expression::operand("(u)"), Expression::operand("(v)")];
+    for (parameter, mark) in parameters.iter().zip(&marks) {
+        formula = formula.substitute(parameter, mark, &span);
+    }
+    for (mark, argument) in marks.iter().zip(arguments) {
+        formula = formula.substitute(mark, argument, &span);
+    }
+    Ok(formula)
 }

@@ -46,6 +46,7 @@ impl Expression {
                     Operator::Power => "power",
                     Operator::Min => "minimum",
                     Operator::Max => "maximum",
+                    Operator::Atan2 => "direction",
                 };
                 call(name, &[a, b])
             }
@@ -88,6 +89,7 @@ fn python(formula: &Expression) -> (String, u8) {
                 Operator::Power => infix("**", ATOM, SIGN, POWER),
                 Operator::Min => call("min", &[a, b]),
                 Operator::Max => call("max", &[a, b]),
+                Operator::Atan2 => call("atan2", &[a, b]),
             }
         }
         Kind::If(Comparison { left, right, or_equal }, yes, no) => {

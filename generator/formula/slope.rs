@@ -110,6 +110,15 @@ fn of_binary(
         Operator::Max if a.value.high < b.value.low => b.slope,
         Operator::Max if b.value.high < a.value.low => a.slope,
         Operator::Min | Operator::Max => a.slope.hull(b.slope),
+        Operator::Atan2 => {
+            let is_left = b.value.low <= 0.0;
+            let is_beside_axis = a.value.low > 0.0 || a.value.high < 0.0;
+            if is_left && !is_beside_axis {
+                return None;
+            }
+            let squares = a.value.repeated_product(2) + b.value.repeated_product(2);
+            (b.value * a.slope - a.value * b.slope) / squares
+        }
         Operator::Mod => {
             let times = a.value / b.value;
             if times.low.floor() != times.high.floor() {

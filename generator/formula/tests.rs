@@ -50,10 +50,40 @@ fn enclosures_hold_known_values() {
         ("cosh(x)", 1.0, 1.543_080_634_815_243_778_5),
         ("log10(x)", 1000.0, 3.0),
         ("cbrt(x) + cbrt(-x) + cbrt(8)", 27.0, 2.0),
+        ("hypot(3, x) + pow(x, 2)", 4.0, 21.0),
+        ("atan2(x, 1) * 4", 1.0, 3.141_592_653_589_793_238_5),
+        ("atan2(x, -1) * 4 / 3", 1.0, 3.141_592_653_589_793_238_5),
+        ("atan2(-x, -1) * -4 / 3", 1.0, 3.141_592_653_589_793_238_5),
+        ("atan2(-x, 0) * -2", 1.0, 3.141_592_653_589_793_238_5),
+        ("atan2(0, -x) + atan2(0, x)", 1.0, 3.141_592_653_589_793_238_5),
     ] {
         let limits = value(text, x);
         assert!(limits.holds(known) && limits.high - limits.low < 1e-13, "{text}: {limits:?}");
     }
+}
+
+/// An argument of a function of two numbers may have the name of the function's own operands.
+#[test]
+fn arguments_keep_their_names() {
+    let formula = parse("hypot(v, u) - 2 * u").unwrap();
+    let operands = [("u", Enclosure::exactly(4.0)), ("v", Enclosure::exactly(3.0))];
+    assert_eq!(formula.enclose(&operands).unwrap(), Enclosure::exactly(-3.0));
+    assert_eq!(formula.operands(), ["v", "u"]);
+}
+
+/// Beyond the negative x axis the direction jumps from π to −π, and at the origin there is none.
+#[test]
+fn directions_near_their_jump_and_at_the_origin() {
+    let formula = parse("atan2(y, x)").unwrap();
+    let across = [("y", Enclosure::between(-1.0, 1.0)), ("x", Enclosure::between(-2.0, -1.0))];
+    let both = formula.enclose(&across).unwrap();
+    assert!(both.low < -3.0 && both.high > 3.0);
+    let around = [("y", Enclosure::between(-1.0, 1.0)), ("x", Enclosure::between(-1.0, 1.0))];
+    let message = formula.enclose(&around).unwrap_err().message;
+    assert_eq!(message, "the direction of a point that may be the origin, 0 and 0");
+    let ahead = parse("atan2(x, 2)").unwrap();
+    let (_, slope) = ahead.slope("x", Enclosure::exactly(2.0)).unwrap();
+    assert!(slope.holds(0.25) && slope.high - slope.low < 1e-12);
 }
 
 /// Values that f64 has exactly stay exact, so that a root at the end of its domain is one.
@@ -105,7 +135,7 @@ fn mistakes_are_shown_under_their_places() {
         ("if(x, 1, 2)", "    ^ `<`, `>`, `<=` or `>=` is missing"),
         ("2x", " ^ this does not belong here: a product has a sign, `2*x`"),
         ("if(x == 2, 1, 2)", "     ^ `=` is no part of a formula: `<`, `>`, `<=` and `>=` compare"),
-        ("1 + hypot(3, x)", "    ^^^^^ there is no function `hypot`: write sqrt(x^2 + y^2)"),
+        ("1 + ceil(x)", "    ^^^^ there is no function `ceil`: write -floor(-x)"),
         ("2 * y", "    ^ there is no `y`: the operand is `x`"),
         ("3 + 1 / x", "    ^^^^^ a pole: the divisor is from -1 to 2"),
         ("2 · sqrt(x)", "    ^^^^^^^ the root of a negative number, from -1 to 2"),

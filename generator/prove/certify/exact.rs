@@ -194,6 +194,9 @@ pub fn branches(
             Ok(found)
         }
         Kind::Binary(Operator::Mod, ..) => Err("the operator `%` has no translation".to_owned()),
+        Kind::Binary(Operator::Atan2, ..) => {
+            Err("the function `atan2` has no translation".to_owned())
+        }
         Kind::Binary(operator @ (Operator::Max | Operator::Min), a, b) => {
             let mut found = Vec::new();
             for (branch, left, right) in pairs(terms, a, b)? {

@@ -1,0 +1,105 @@
+//! Shares the allowed error out among the places where a plan rounds.
+//!
+//! Each place begins with few fraction bits. The place with the largest share of the error gets a bit more, until every
+//! result keeps its error. Bits that turn out not to be needed are taken away again.
+
+use super::boxes::{BoxError, ResultProof};
+use super::lower::{Guards, lowered};
+use super::plan::Plan;
+use super::refusal::PlanRefusal;
+use super::statement::Statement;
+
+/// The guard with which each place begins.
+const FIRST_GUARD: i32 = -3;
+
+/// The most bits that a place gets beside what is natural for it.
+const MOST_GUARD: i32 = 24;
+
+/// The divisions of the domain for an estimate of the error.
+const DIVISIONS: usize = 400;
+
+/// Returns guards with which every result keeps its error, as far as the estimates of the polynomials' errors tell, and the
+/// plan with them.
+///
+/// # Errors
+/// Fails if a formula has no plan, or if no number of bits is enough.
+pub(super) fn allocated(statement: &Statement) -> Result<(Guards, Plan), PlanRefusal> {
+    let (_, sources) = lowered(statement, &Guards(Vec::new()), &[])?;
+    let mut guards = Guards(vec![FIRST_GUARD; sources]);
+    let mut plan = lowered(statement, &guards, &[])?.0;
+    while let Some(excess) = largest_excess(statement, &plan) {
+        let source = excess.source(statement, &plan, &guards)?;
+        guards.0[source] += 1;
+        plan = lowered(statement, &guards, &[])?.0;
+    }
+    for source in 0..sources {
+        while guards.0[source] > FIRST_GUARD {
+            let mut fewer = guards.clone();
+            fewer.0[source] -= 1;
+            let candidate = lowered(statement, &fewer, &[])?.0;
+            if largest_excess(statement, &candidate).is_some() {
+                break;
+            }
+            guards = fewer;
+            plan = candidate;
+        }
+    }
+    Ok((guards, plan))
+}
+
+/// A result that does not keep its error yet.
+struct Excess {
+    result: usize,
+    /// The operands at which the error is largest.
+    worst: BoxError,
+}
+
+/// Returns the result that exceeds its error by the largest factor; `None` if every result keeps its error.
+fn largest_excess(statement: &Statement, plan: &Plan) -> Option<Excess> {
+    let mut largest: Option<(f64, Excess)> = None;
+    for (result, stated) in statement.results.iter().enumerate() {
+        let proof = ResultProof::new(statement, plan, result);
+        let Some(worst) = proof.worst(stated.error, DIVISIONS) else { continue };
+        let factor = worst.units / stated.error;
+        if factor < 1.0 || largest.as_ref().is_some_and(|(most, _)| *most >= factor) {
+            continue;
+        }
+        largest = Some((factor, Excess { result, worst }));
+    }
+    largest.map(|(_, excess)| excess)
+}
+
+impl Excess {
+    /// Returns the place that has the largest share of the error, among those that can have more bits.
+    fn source(
+        &self,
+        statement: &Statement,
+        plan: &Plan,
+        guards: &Guards,
+    ) -> Result<usize, PlanRefusal> {
+        let proof = ResultProof::new(statement, plan, self.result);
+        let mut largest = (0.0, None);
+        for (node, needed) in plan.nodes.iter().zip(&proof.needed) {
+            let Some(source) = node.source.filter(|_| *needed) else { continue };
+            if guards.0[source] >= MOST_GUARD {
+                continue;
+            }
+            let share = proof.share(&self.worst.limits, source);
+            if share > largest.0 {
+                largest = (share, Some(source));
+            }
+        }
+        largest.1.ok_or_else(|| self.refusal(statement, plan))
+    }
+
+    fn refusal(&self, statement: &Statement, plan: &Plan) -> PlanRefusal {
+        let message = format!(
+            "the error of `{}` {} for {}, whatever the widths are",
+            statement.results[self.result].name,
+            self.worst.words(plan),
+            self.worst.place(statement)
+        );
+        let remedy = "allow a larger error, or leave these operands out by `where`";
+        PlanRefusal::new(message, remedy).of_result(self.result)
+    }
+}

@@ -1,0 +1,495 @@
+//! Encloses the error of a plan's nodes for all operands within a box.
+//!
+//! Each node gets two intervals. Its *ideal* contains the value that real-number arithmetic gives, if every choice and every
+//! shift is as the hardware makes it. Its *error* contains the hardware's value minus the ideal. An operation adds its own
+//! rounding to the errors of its inputs, enlarged as the operation enlarges them. For example, a product a · b has the error
+//! a · εb + b · εa + εa · εb.
+//!
+//! A shift that normalises a word depends on the word, so the analysis follows each possible shift by itself, with the word
+//! limited to the values that have this shift.
+
+use glint_base::fixed::{Format, Rounding, exp2};
+use glint_formula::Enclosure;
+
+use super::node::{Approximation, NodeId, Operation, PlanNode, normalising_shifts};
+use super::plan::Plan;
+
+/// What is known of a node for all operands within a box.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct NodeValue {
+    /// Contains the value in real-number arithmetic.
+    pub(super) ideal: Enclosure,
+    /// Contains the hardware's value minus the ideal one.
+    pub(super) error: Enclosure,
+    /// Contains the hardware's value.
+    pub(super) actual: Enclosure,
+}
+
+const NOTHING: Enclosure = Enclosure::exactly(0.0);
+const ANYTHING: Enclosure = Enclosure::between(f64::NEG_INFINITY, f64::INFINITY);
+
+/// Why a box has no error that can be stated: the box must be divided.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Undecided {
+    /// The node that it is about.
+    pub(super) node: NodeId,
+    /// What is not known there.
+    pub(super) what: &'static str,
+}
+
+impl NodeValue {
+    fn new(ideal: Enclosure, error: Enclosure) -> Self {
+        Self { ideal, error, actual: ideal + error }
+    }
+
+    fn exactly(ideal: Enclosure) -> Self {
+        Self { ideal, error: NOTHING, actual: ideal }
+    }
+
+    /// Makes the value of a node of which nothing is known. It does no harm where a choice takes the other case.
+    const UNKNOWN: Self = Self { ideal: ANYTHING, error: ANYTHING, actual: ANYTHING };
+
+    /// Returns whether the value and its error have limits.
+    pub(super) fn is_limited(self) -> bool {
+        self.ideal.is_finite() && self.error.is_finite()
+    }
+
+    /// Returns the value with the ideal one limited to an interval that contains it, too.
+    fn within(self, limits: Enclosure) -> Self {
+        let low = self.ideal.low.max(limits.low);
+        let high = self.ideal.high.min(limits.high);
+        if low > high {
+            return self;
+        }
+        let ideal = Enclosure::between(low, high);
+        Self { ideal, ..self }.limited(ideal + self.error)
+    }
+
+    /// Returns the value with the hardware's value limited to an interval that contains it, too.
+    fn limited(self, limits: Enclosure) -> Self {
+        let low = self.actual.low.max(limits.low);
+        let high = self.actual.high.min(limits.high);
+        // Of limits that rounding has made empty, those that were known before stay.
+        if low > high { self } else { Self { actual: Enclosure::between(low, high), ..self } }
+    }
+
+    /// Returns the value if it is the same for the whole box, and exact.
+    fn known(self) -> Option<f64> {
+        let is_known = self.error == NOTHING && self.ideal.low == self.ideal.high;
+        is_known.then_some(self.ideal.low)
+    }
+}
+
+/// Takes the values of all nodes, and the first node of which nothing could be said.
+type Visit<'v> = dyn FnMut(&[NodeValue], Option<&Undecided>) + 'v;
+
+/// What is known of the nodes so far.
+#[derive(Clone)]
+struct Known {
+    values: Vec<NodeValue>,
+    undecided: Option<Undecided>,
+}
+
+/// The analysis of a plan: which of its errors count.
+#[derive(Clone, Copy)]
+pub(super) struct Analysis<'p> {
+    pub(super) plan: &'p Plan,
+    /// The nodes whose values are wanted; the others get 0.
+    pub(super) needed: &'p [bool],
+    /// The only source whose error counts; `None` for all of them.
+    pub(super) only: Option<usize>,
+}
+
+impl Analysis<'_> {
+    /// Calls `visit` with the values of all nodes, once for each way in which words can be normalised. `operands` are the
+    /// limits of the operands' values.
+    pub(super) fn run(&self, operands: &[(&str, Enclosure)], visit: &mut Visit<'_>) {
+        let values = Vec::with_capacity(self.plan.nodes.len());
+        self.run_from(Known { values, undecided: None }, operands, visit);
+    }
+
+    fn run_from(&self, mut known: Known, operands: &[(&str, Enclosure)], visit: &mut Visit<'_>) {
+        while known.values.len() < self.plan.nodes.len() {
+            let id = NodeId(known.values.len());
+            let node = self.plan.node(id);
+            let inputs = node.operation.inputs();
+            let is_choice = matches!(node.operation, Operation::Choose { .. });
+            let is_unknown = |input: &NodeId| !known.values[input.0].is_limited();
+            if !self.needed[id.0] {
+                known.values.push(NodeValue::exactly(NOTHING));
+            } else if !is_choice && inputs.iter().any(is_unknown) {
+                known.values.push(NodeValue::UNKNOWN);
+            } else if let Operation::Normalise { word, by_pairs } = node.operation {
+                return self.each_shift(word, by_pairs, &known, operands, visit);
+            } else {
+                match self.value(id, &known.values, operands) {
+                    Ok(value) => known.values.push(value),
+                    Err(undecided) => {
+                        known.undecided.get_or_insert(undecided);
+                        known.values.push(NodeValue::UNKNOWN);
+                    }
+                }
+            }
+        }
+        visit(&known.values, known.undecided.as_ref());
+    }
+
+    /// Continues behind a normalised word, once for each shift that the word can need.
+    fn each_shift(
+        &self,
+        word: NodeId,
+        by_pairs: bool,
+        known: &Known,
+        operands: &[(&str, Enclosure)],
+        visit: &mut Visit<'_>,
+    ) {
+        let format = self.plan.node(word).format;
+        let shifts = normalising_shifts(format.width(), by_pairs);
+        let all_places: u32 = shifts.iter().sum();
+        let actual = known.values[word.0].actual;
+        let (low, high) = raw_limits(actual, format);
+        let step = if by_pairs { 2 } else { 1 };
+        if low <= 0 {
+            // A word of zeros stays so, and counts as shifted as far as possible.
+            let mut branch = known.clone();
+            self.limit(&mut branch.values, word, NOTHING);
+            branch.values.push(NodeValue::exactly(NOTHING));
+            let places = Enclosure::exactly(f64::from(all_places / step));
+            self.with_places(branch, places, operands, visit);
+        }
+        let mut places = 0;
+        while places < format.width() {
+            // The words whose top bits are `places` zeros, and not `step` more.
+            let above = 1i128 << (format.width() - places);
+            let least = (above >> step).max(1);
+            places += step;
+            if high < least || low >= above {
+                continue;
+            }
+            let shift = places - step;
+            let octave = Enclosure::between(
+                format.to_f64(least.max(low)),
+                format.to_f64((above - 1).min(high)),
+            );
+            let mut branch = known.clone();
+            self.limit(&mut branch.values, word, octave);
+            // The bits of the word are a fraction of as many bits.
+            let factor = exp2(shift as i32 + format.frac - format.width() as i32);
+            let NodeValue { ideal, error, .. } = branch.values[word.0];
+            branch.values.push(NodeValue::new(scaled(ideal, factor), scaled(error, factor)));
+            let count = Enclosure::exactly(f64::from(shift / step));
+            self.with_places(branch, count, operands, visit);
+        }
+    }
+
+    /// Continues behind a normalised word, the last of `branch`, whose node of places follows it.
+    fn with_places(
+        &self,
+        mut branch: Known,
+        places: Enclosure,
+        operands: &[(&str, Enclosure)],
+        visit: &mut Visit<'_>,
+    ) {
+        branch.values.push(NodeValue::exactly(places));
+        self.run_from(branch, operands, visit);
+    }
+
+    /// Limits a node to hardware values within `limits`, and the nodes that it comes from as far as that follows.
+    fn limit(&self, values: &mut [NodeValue], id: NodeId, limits: Enclosure) {
+        let NodeValue { ideal, error, .. } = values[id.0];
+        let within = limits - error;
+        let low = ideal.low.max(within.low);
+        let high = ideal.high.min(within.high);
+        if low > high {
+            return;
+        }
+        let ideal = Enclosure::between(low, high);
+        let before = values[id.0];
+        values[id.0] = NodeValue { ideal, error, actual: before.actual }.limited(limits);
+        match self.plan.node(id).operation {
+            Operation::Maximum(a, b) => {
+                for input in [a, b] {
+                    self.limit(values, input, Enclosure::between(f64::NEG_INFINITY, limits.high));
+                }
+            }
+            Operation::Absolute(a) => {
+                self.limit(values, a, Enclosure::between(-limits.high, limits.high));
+            }
+            _ => {}
+        }
+    }
+
+    /// Returns what is known of a node, from what is known of its inputs.
+    fn value(
+        &self,
+        id: NodeId,
+        values: &[NodeValue],
+        operands: &[(&str, Enclosure)],
+    ) -> Result<NodeValue, Undecided> {
+        let node = self.plan.node(id);
+        let input = |id: NodeId| values[id.0];
+        let own_errors = node.source.is_none() || self.only.is_none() || self.only == node.source;
+        let value = match &node.operation {
+            Operation::Operand(number) => NodeValue::exactly(operands[*number].1),
+            Operation::Constant { raw, value } => {
+                let own = Enclosure::exactly(node.format.to_f64(*raw)) - *value;
+                NodeValue::new(*value, if own_errors { own } else { NOTHING })
+            }
+            Operation::Add(a, b) => {
+                let (a, b) = (input(*a), input(*b));
+                NodeValue::new(a.ideal + b.ideal, a.error + b.error)
+            }
+            Operation::Subtract(a, b) => {
+                let (a, b) = (input(*a), input(*b));
+                NodeValue::new(a.ideal - b.ideal, a.error - b.error)
+            }
+            Operation::Multiply(a, b) => product(input(*a), input(*b), a == b),
+            Operation::Absolute(a) => absolute(input(*a)),
+            Operation::Minimum(a, b) => minimum(input(*a), input(*b)),
+            Operation::Maximum(a, b) => negated(minimum(negated(input(*a)), negated(input(*b)))),
+            Operation::Less(a, b) => {
+                // A bit: both where the comparison is not the same for the whole box.
+                let (a, b) = (input(*a).actual, input(*b).actual);
+                bit(a.high < b.low, a.low >= b.high)
+            }
+            Operation::NonZero(a) => {
+                let a = input(*a).actual;
+                bit(a.low > 0.0 || a.high < 0.0, a == NOTHING)
+            }
+            Operation::Choose { condition, cases, is_continuous } => {
+                self.chosen(*condition, *cases, *is_continuous, values)
+            }
+            Operation::Scale(a) => {
+                let factor = exp2(self.plan.node(*a).format.frac - node.format.frac);
+                let NodeValue { ideal, error, .. } = input(*a);
+                NodeValue::new(scaled(ideal, factor), scaled(error, factor))
+            }
+            Operation::Narrow(a, rounding) => {
+                let places = self.plan.node(*a).format.frac - node.format.frac;
+                let NodeValue { ideal, error, .. } = input(*a);
+                let own = if own_errors {
+                    rounding_error(places, node.format, *rounding)
+                } else {
+                    NOTHING
+                };
+                NodeValue::new(ideal, error + own)
+            }
+            Operation::Normalise { .. } | Operation::Places(_) => {
+                unreachable!("each_shift gives the values of these nodes")
+            }
+            Operation::ShiftLeft(a, places) => {
+                let factor = exp2(known_places(id, input(*places))?);
+                let NodeValue { ideal, error, .. } = input(*a);
+                NodeValue::new(scaled(ideal, factor), scaled(error, factor))
+            }
+            Operation::ShiftRight(a, places) => {
+                let places = known_places(id, input(*places))?;
+                let factor = exp2(-places);
+                let NodeValue { ideal, error, .. } = input(*a);
+                let own = rounding_error(places, node.format, Rounding::Truncate);
+                let own = if own_errors { own } else { NOTHING };
+                NodeValue::new(scaled(ideal, factor), scaled(error, factor) + own)
+            }
+            Operation::Polynomial(a, approximation) => {
+                approximated(id, approximation, input(*a), own_errors)?
+            }
+        };
+        if !value.is_limited() {
+            return Err(Undecided { node: id, what: "its value has no limit" });
+        }
+        let value = value.within(node.limits).limited(self.actual(node, values));
+        if matches!(node.operation, Operation::Narrow(..) | Operation::ShiftLeft(..)) {
+            check_fit(id, value, node.format)?;
+        }
+        Ok(value)
+    }
+
+    /// Returns limits of the hardware's value that follow from the hardware's values of its inputs alone.
+    fn actual(&self, node: &PlanNode, values: &[NodeValue]) -> Enclosure {
+        let input = |id: NodeId| values[id.0].actual;
+        match node.operation {
+            Operation::Add(a, b) => input(a) + input(b),
+            Operation::Subtract(a, b) => input(a) - input(b),
+            Operation::Multiply(a, b) => input(a) * input(b),
+            Operation::Narrow(a, rounding) => {
+                let before = self.plan.node(a).format;
+                let places = before.frac - node.format.frac;
+                if places <= 0 {
+                    return input(a);
+                }
+                let (low, high) = raw_limits(input(a), before);
+                Enclosure::between(
+                    node.format.to_f64(rounding.shift(low, places)),
+                    node.format.to_f64(rounding.shift(high, places)),
+                )
+            }
+            _ => ANYTHING,
+        }
+    }
+
+    /// Returns what is known of a choice.
+    ///
+    /// If rounding can make the condition wrong, the hardware may give the other case than the formula has. Both cases then
+    /// count, and how far they are apart, except where both have the same value.
+    fn chosen(
+        &self,
+        condition: NodeId,
+        cases: [NodeId; 2],
+        is_continuous: bool,
+        values: &[NodeValue],
+    ) -> NodeValue {
+        let [zero, one] = cases.map(|case| values[case.0]);
+        match values[condition.0].known() {
+            Some(0.0) => return zero,
+            Some(_) => return one,
+            None => {}
+        }
+        let mut error = zero.error.hull(one.error);
+        if !is_continuous && !self.is_exact(condition, values) {
+            let apart = zero.ideal - one.ideal;
+            error = error + apart.hull(-apart).hull(NOTHING);
+        }
+        NodeValue::new(zero.ideal.hull(one.ideal), error)
+    }
+
+    /// Returns whether a condition is computed from values without errors.
+    fn is_exact(&self, condition: NodeId, values: &[NodeValue]) -> bool {
+        let inputs = self.plan.node(condition).operation.inputs();
+        inputs.iter().all(|input| values[input.0].error == NOTHING)
+    }
+}
+
+/// Returns a bit, which is 1 for the whole box, or 0 for the whole box, or neither.
+fn bit(is_one: bool, is_zero: bool) -> NodeValue {
+    let low = if is_one { 1.0 } else { 0.0 };
+    let high = if is_zero { 0.0 } else { 1.0 };
+    NodeValue::exactly(Enclosure::between(low, high))
+}
+
+fn product(a: NodeValue, b: NodeValue, is_square: bool) -> NodeValue {
+    let mut ideal = a.ideal * b.ideal;
+    if is_square {
+        ideal = Enclosure::between(ideal.low.max(0.0), ideal.high);
+        if a.ideal.low <= 0.0 && a.ideal.high >= 0.0 {
+            ideal.low = 0.0;
+        }
+    }
+    let error = a.ideal * b.error + b.ideal * a.error + a.error * b.error;
+    NodeValue::new(ideal, error)
+}
+
+fn negated(a: NodeValue) -> NodeValue {
+    NodeValue::new(-a.ideal, -a.error)
+}
+
+fn absolute(a: NodeValue) -> NodeValue {
+    let actual = a.actual;
+    if actual.low >= 0.0 && a.ideal.low >= 0.0 {
+        return a;
+    }
+    let other = negated(a);
+    if actual.high <= 0.0 && a.ideal.high <= 0.0 {
+        return other;
+    }
+    let largest = a.ideal.high.max(-a.ideal.low);
+    NodeValue::new(Enclosure::between(0.0, largest), a.error.hull(other.error))
+}
+
+/// Returns the smaller of two. An error of the result is never beyond the errors of both.
+fn minimum(a: NodeValue, b: NodeValue) -> NodeValue {
+    let ideal = Enclosure::between(a.ideal.low.min(b.ideal.low), a.ideal.high.min(b.ideal.high));
+    NodeValue::new(ideal, a.error.hull(b.error))
+}
+
+/// Returns the enclosure times a power of two, which loses nothing.
+fn scaled(a: Enclosure, factor: f64) -> Enclosure {
+    Enclosure::between(a.low * factor, a.high * factor)
+}
+
+/// Returns the error of dropping the lowest `places` bits of a value, which then has the format.
+fn rounding_error(places: i32, format: Format, rounding: Rounding) -> Enclosure {
+    if places <= 0 {
+        return NOTHING;
+    }
+    let unit = exp2(-format.frac);
+    match rounding {
+        Rounding::Truncate => Enclosure::between(unit * (exp2(-places) - 1.0), 0.0),
+        Rounding::Nearest => Enclosure::between(unit * (exp2(-places) - 0.5), unit / 2.0),
+    }
+}
+
+/// Returns the smallest and the largest raw value of a format that a value within limits can have.
+fn raw_limits(value: Enclosure, format: Format) -> (i128, i128) {
+    let unit = exp2(format.frac);
+    let (low, high) = format.range();
+    let floor = (value.low * unit).floor().max(low as f64);
+    let ceiling = (value.high * unit).ceil().min(high as f64);
+    (floor as i128, ceiling as i128)
+}
+
+/// Checks that the bits that a node drops at the top are copies of the sign.
+fn check_fit(node: NodeId, value: NodeValue, format: Format) -> Result<(), Undecided> {
+    let unit = exp2(format.frac);
+    let actual = value.actual;
+    let (low, high) = format.range();
+    // A raw value is an integer, so that up to one unit beyond the limits is none.
+    let is_below = actual.low * unit <= low as f64 - 1.0;
+    let is_above = actual.high * unit >= high as f64 + 1.0;
+    if is_below || is_above {
+        return Err(Undecided { node, what: "its value may not fit its format" });
+    }
+    Ok(())
+}
+
+fn known_places(node: NodeId, places: NodeValue) -> Result<i32, Undecided> {
+    match places.known() {
+        Some(places) => Ok(places as i32),
+        None => Err(Undecided { node, what: "the places of its shift are not known" }),
+    }
+}
+
+/// Returns what is known of a function of one number: the error of its polynomials, and the error of its operand times the
+/// slope of the function.
+fn approximated(
+    id: NodeId,
+    approximation: &Approximation,
+    operand: NodeValue,
+    own_errors: bool,
+) -> Result<NodeValue, Undecided> {
+    let function = &approximation.function;
+    let actual = operand.actual;
+    let (first, last) = function.domain;
+    let domain = Enclosure::between(
+        function.operand.to_f64(first.into()),
+        function.operand.to_f64(last.into()),
+    );
+    // Between the last raw operand of the domain and the next there is none.
+    let unit = exp2(-function.operand.frac);
+    if actual.low <= domain.low - unit || actual.high >= domain.high + unit {
+        return Err(Undecided { node: id, what: "its operand may leave the domain" });
+    }
+    let undecided = Undecided { node: id, what: "the function has no value, or no slope" };
+    let glint_approximate::Curve::Formula(formula) = &function.curve else {
+        return Err(undecided);
+    };
+    let inside = |value: Enclosure| {
+        Enclosure::between(
+            value.low.clamp(domain.low, domain.high),
+            value.high.clamp(domain.low, domain.high),
+        )
+    };
+    let is_exact = operand.error == NOTHING;
+    let ideal_operand = if is_exact { inside(operand.ideal) } else { operand.ideal };
+    let ideal = formula.enclose(&[("x", ideal_operand)]).map_err(|_| undecided.clone())?;
+    let mut error = NOTHING;
+    if !is_exact {
+        let whole = operand.ideal.hull(inside(actual));
+        let (_, slope) = formula.slope("x", whole).map_err(|_| undecided)?;
+        error = slope * operand.error;
+    }
+    if own_errors {
+        let own = approximation.error();
+        error = error + Enclosure::between(-own, own);
+    }
+    Ok(NodeValue::new(ideal, error))
+}

@@ -1,0 +1,179 @@
+//! Proves a bound of the error of a result over all of its operands, box by box.
+//!
+//! The box with the largest error is divided first. A box in which nothing can be said, because a part may leave its format
+//! or a function may have no value there, counts as the largest.
+
+use std::cmp::Ordering;
+use std::collections::BinaryHeap;
+
+use glint_base::fixed::exp2;
+
+use super::analyse::{Analysis, NodeValue, Undecided};
+use super::plan::Plan;
+use super::statement::Statement;
+
+/// Raw limits of each operand, both included.
+pub(super) type OperandBox = Vec<(i64, i64)>;
+
+/// The error of a result within a box, in units of its last place.
+#[derive(Clone, Debug)]
+pub(super) struct BoxError {
+    pub(super) limits: OperandBox,
+    pub(super) units: f64,
+    /// Why there is no error, if `units` is infinite.
+    pub(super) undecided: Option<Undecided>,
+}
+
+impl PartialEq for BoxError {
+    fn eq(&self, other: &Self) -> bool {
+        self.cmp(other) == Ordering::Equal
+    }
+}
+
+impl Eq for BoxError {}
+
+impl PartialOrd for BoxError {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl Ord for BoxError {
+    fn cmp(&self, other: &Self) -> Ordering {
+        // Among boxes of which nothing is known, the largest is divided first.
+        let size = |it: &Self| size_of(&it.limits);
+        self.units.total_cmp(&other.units).then_with(|| size(self).cmp(&size(other)))
+    }
+}
+
+impl BoxError {
+    /// Returns the error in words, with the part of the plan that has no limit. For example, `is 1.250 units`.
+    pub(super) fn words(&self, plan: &Plan) -> String {
+        match &self.undecided {
+            None => format!("is {:.3} units", self.units),
+            Some(Undecided { node, what }) => {
+                format!("has no limit, because of the part `{}`: {what},", plan.node(*node).name)
+            }
+        }
+    }
+
+    /// Returns the operands in words. For example, `x from 0 to 0.5 and y = 1`.
+    pub(super) fn place(&self, statement: &Statement) -> String {
+        let mut place = Vec::new();
+        for (name, value) in statement.enclosed_operands(&self.limits) {
+            place.push(if value.low == value.high {
+                format!("{name} = {}", value.low)
+            } else {
+                format!("{name} from {} to {}", value.low, value.high)
+            });
+        }
+        place.join(" and ")
+    }
+}
+
+/// Returns the number of combinations of operands in a box, or the largest number there is.
+fn size_of(limits: &OperandBox) -> u128 {
+    let mut size: u128 = 1;
+    for (low, high) in limits {
+        size = size.saturating_mul(u128::from(high.abs_diff(*low)) + 1);
+    }
+    size
+}
+
+/// The proof of one result of a plan.
+pub(super) struct ResultProof<'p> {
+    pub(super) statement: &'p Statement,
+    pub(super) plan: &'p Plan,
+    pub(super) result: usize,
+    /// For each node, whether the result reads it.
+    pub(super) needed: Vec<bool>,
+}
+
+impl<'p> ResultProof<'p> {
+    pub(super) fn new(statement: &'p Statement, plan: &'p Plan, result: usize) -> Self {
+        Self { statement, plan, result, needed: plan.needed_for(result) }
+    }
+
+    /// Returns the box with the largest error, after as many divisions as bring the error below `enough` units, at most
+    /// `divisions`.
+    ///
+    /// The largest error over all operands is at most that of the box.
+    pub(super) fn worst(&self, enough: f64, divisions: usize) -> Option<BoxError> {
+        let mut open = BinaryHeap::new();
+        open.extend(self.error_in(self.statement.domain()));
+        for _ in 0..divisions {
+            let worst = open.peek()?;
+            if worst.units <= enough {
+                break;
+            }
+            let Some([low, high]) = halves(&worst.limits) else { break };
+            open.pop();
+            open.extend(self.error_in(low));
+            open.extend(self.error_in(high));
+        }
+        open.pop()
+    }
+
+    /// Returns the error within a box; `None` if nothing is promised there.
+    fn error_in(&self, limits: OperandBox) -> Option<BoxError> {
+        let operands = self.statement.enclosed_operands(&limits);
+        if self.statement.results[self.result].is_promised(&operands) == Some(false) {
+            return None;
+        }
+        let mut units: f64 = 0.0;
+        let mut first_undecided = None;
+        self.run(&limits, None, &mut |value, undecided| {
+            units = units.max(self.units(value));
+            if !value.is_limited() && first_undecided.is_none() {
+                first_undecided = undecided.cloned();
+            }
+        });
+        Some(BoxError { limits, units, undecided: first_undecided })
+    }
+
+    /// Calls `visit` with each value that the result can have within a box.
+    fn run(
+        &self,
+        limits: &OperandBox,
+        only: Option<usize>,
+        visit: &mut dyn FnMut(&NodeValue, Option<&Undecided>),
+    ) {
+        let analysis = Analysis { plan: self.plan, needed: &self.needed, only };
+        let node = self.plan.results[self.result];
+        let operands = self.statement.enclosed_operands(limits);
+        analysis.run(&operands, &mut |values, undecided| visit(&values[node.0], undecided));
+    }
+
+    /// Returns the largest error of a value, in units of the last place of the result.
+    fn units(&self, value: &NodeValue) -> f64 {
+        if !value.is_limited() {
+            return f64::INFINITY;
+        }
+        let fraction = self.statement.results[self.result].fraction as i32;
+        value.error.low.abs().max(value.error.high.abs()) * exp2(fraction)
+    }
+
+    /// Returns how many units of the error within a box come from one source alone.
+    pub(super) fn share(&self, limits: &OperandBox, source: usize) -> f64 {
+        let mut units: f64 = 0.0;
+        self.run(limits, Some(source), &mut |value, _| units = units.max(self.units(value)));
+        units
+    }
+}
+
+/// Returns the two halves of a box, divided along the operand with the most values; `None` for a single combination.
+pub(super) fn halves(limits: &OperandBox) -> Option<[OperandBox; 2]> {
+    let width = |(low, high): &(i64, i64)| high.abs_diff(*low);
+    let (longest, _) =
+        limits.iter().enumerate().max_by_key(|(at, limits)| (width(limits), usize::MAX - at))?;
+    let (low, high) = limits[longest];
+    if low == high {
+        return None;
+    }
+    let middle = low + (high - low) / 2;
+    let mut first = limits.clone();
+    first[longest] = (low, middle);
+    let mut second = limits.clone();
+    second[longest] = (middle + 1, high);
+    Some([first, second])
+}

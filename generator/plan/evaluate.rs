@@ -1,0 +1,102 @@
+//! Computes the values of a plan in integers, from the definitions of its operations.
+
+use super::node::{NodeId, Operation, PlanNode, normalising_shifts};
+use super::plan::Plan;
+
+impl Plan {
+    /// Returns the raw value of each node for raw operands. For example, the plan of `x * y` gives 6 for 2 and 3.
+    ///
+    /// # Panics
+    /// Panics if there are fewer values than operands, or if the polynomials of the plan are not known yet.
+    pub fn values(&self, operands: &[i64]) -> Vec<i128> {
+        let mut values: Vec<i128> = Vec::with_capacity(self.nodes.len());
+        for at in 0..self.nodes.len() {
+            let value = self.value(NodeId(at), operands, &|id: NodeId| values[id.0]);
+            values.push(value);
+        }
+        values
+    }
+
+    /// Returns the raw value of a node. `known` gives the values of the nodes that it reads.
+    ///
+    /// # Panics
+    /// Panics as [`Plan::values`] does.
+    pub fn value(&self, id: NodeId, operands: &[i64], known: &dyn Fn(NodeId) -> i128) -> i128 {
+        let node = self.node(id);
+        // The value of an input with as many fraction bits as the other input, or as the result, has.
+        let aligned =
+            |input: NodeId, frac: i32| known(input) << (frac - self.node(input).format.frac).max(0);
+        let finest = |a: NodeId, b: NodeId| self.node(a).format.frac.max(self.node(b).format.frac);
+        match &node.operation {
+            Operation::Operand(number) => operands[*number].into(),
+            Operation::Constant { raw, .. } => *raw,
+            Operation::Add(a, b) => aligned(*a, node.format.frac) + aligned(*b, node.format.frac),
+            Operation::Subtract(a, b) => {
+                aligned(*a, node.format.frac) - aligned(*b, node.format.frac)
+            }
+            Operation::Multiply(a, b) => known(*a) * known(*b),
+            Operation::Absolute(a) => known(*a).abs(),
+            Operation::Minimum(a, b) => {
+                aligned(*a, node.format.frac).min(aligned(*b, node.format.frac))
+            }
+            Operation::Maximum(a, b) => {
+                aligned(*a, node.format.frac).max(aligned(*b, node.format.frac))
+            }
+            Operation::Less(a, b) => {
+                let frac = finest(*a, *b);
+                i128::from(aligned(*a, frac) < aligned(*b, frac))
+            }
+            Operation::NonZero(a) => i128::from(known(*a) != 0),
+            Operation::Choose { condition, cases, .. } => {
+                let chosen = cases[known(*condition) as usize];
+                aligned(chosen, node.format.frac)
+            }
+            Operation::Scale(a) => known(*a),
+            Operation::Narrow(a, rounding) => {
+                let places = self.node(*a).format.frac - node.format.frac;
+                let rounded = if places > 0 {
+                    rounding.shift(known(*a), places)
+                } else {
+                    known(*a) << -places
+                };
+                wrapped(node, rounded)
+            }
+            Operation::Normalise { word, by_pairs } => {
+                normalised(known(*word), self.node(*word).format.width(), *by_pairs).0
+            }
+            Operation::Places(normalised_word) => {
+                let Operation::Normalise { word, by_pairs } = self.node(*normalised_word).operation
+                else {
+                    unreachable!("places are those of a normalised word")
+                };
+                normalised(known(word), self.node(word).format.width(), by_pairs).1
+            }
+            Operation::ShiftLeft(a, places) => wrapped(node, known(*a) << known(*places)),
+            Operation::ShiftRight(a, places) => known(*a) >> known(*places),
+            Operation::Polynomial(a, approximation) => {
+                let polynomials = approximation.polynomials.as_ref();
+                let polynomials = polynomials.expect("a plan whose polynomials are known");
+                wrapped(node, polynomials.result(known(*a) as i64).into())
+            }
+        }
+    }
+}
+
+/// Returns the value that is left of `raw` when the bits beyond the format of the node are dropped.
+fn wrapped(node: &PlanNode, raw: i128) -> i128 {
+    node.format.raw(node.format.bits(raw))
+}
+
+/// Returns the bits of a word shifted left until the top one is 1, and the places, or pairs of places. For example, 22 in
+/// 8 bits gives 176 and 3 places, or 88 and one pair.
+fn normalised(word: i128, width: u32, by_pairs: bool) -> (i128, i128) {
+    let mut bits = word;
+    let mut places = 0;
+    for shift in normalising_shifts(width, by_pairs) {
+        if bits >> (width - shift) == 0 {
+            bits <<= shift;
+            places += i128::from(shift);
+        }
+    }
+    (bits, if by_pairs { places / 2 } else { places })
+}

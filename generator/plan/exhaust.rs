@@ -1,0 +1,108 @@
+//! Computes the results of a plan for every combination of operands, and compares them with the formulas.
+
+use glint_base::fixed::exp2;
+use glint_formula::Enclosure;
+use rayon::prelude::*;
+
+use super::plan::Plan;
+use super::refusal::PlanRefusal;
+use super::statement::Statement;
+
+/// Returns the largest error of each result, in units of its last place, over every combination of operands for which the
+/// result is promised.
+///
+/// # Errors
+/// Fails if a formula has no value for a combination.
+pub(super) fn largest_errors(statement: &Statement, plan: &Plan) -> Result<Vec<f64>, PlanRefusal> {
+    let domain = statement.domain();
+    let Some((first, rest)) = domain.split_first() else { return Ok(Vec::new()) };
+    let none = || vec![0.0; statement.results.len()];
+    let larger = |mut all: Vec<f64>, other: Vec<f64>| {
+        for (most, other) in all.iter_mut().zip(other) {
+            *most = f64::max(*most, other);
+        }
+        Ok(all)
+    };
+    (first.0..=first.1)
+        .into_par_iter()
+        .map(|raw| errors_at(statement, plan, raw, rest))
+        .try_reduce(none, larger)
+}
+
+/// Returns the largest errors over all combinations with one value of the first operand.
+fn errors_at(
+    statement: &Statement,
+    plan: &Plan,
+    first: i64,
+    rest: &[(i64, i64)],
+) -> Result<Vec<f64>, PlanRefusal> {
+    let mut largest = vec![0.0; statement.results.len()];
+    let mut raw = vec![first];
+    raw.extend(rest.iter().map(|(low, _)| *low));
+    loop {
+        add_errors(statement, plan, &raw, &mut largest)?;
+        // The next combination: the last operand changes fastest.
+        let mut at = raw.len();
+        loop {
+            at -= 1;
+            if at == 0 {
+                return Ok(largest);
+            }
+            let (low, high) = rest[at - 1];
+            if raw[at] < high {
+                raw[at] += 1;
+                break;
+            }
+            raw[at] = low;
+        }
+    }
+}
+
+/// Raises the largest errors to those of one combination.
+fn add_errors(
+    statement: &Statement,
+    plan: &Plan,
+    raw: &[i64],
+    largest: &mut [f64],
+) -> Result<(), PlanRefusal> {
+    let limits: Vec<(i64, i64)> = raw.iter().map(|raw| (*raw, *raw)).collect();
+    let operands = statement.enclosed_operands(&limits);
+    let mut values = None;
+    for (number, result) in statement.results.iter().enumerate() {
+        if result.is_promised(&operands) == Some(false) {
+            continue;
+        }
+        let exact = match result.formula.enclose(&operands) {
+            Ok(value) if value.is_finite() => value,
+            _ => evaluated_exactly(statement, number, raw)?,
+        };
+        let values = values.get_or_insert_with(|| plan.values(raw));
+        let hardware = values[plan.results[number].0] as f64;
+        let unit = exp2(result.fraction as i32);
+        let off = (hardware - exact.low * unit).abs().max((hardware - exact.high * unit).abs());
+        // A difference of 0 is exact. Any other may have been rounded down.
+        let error = if off == 0.0 { 0.0 } else { off.next_up() };
+        largest[number] = largest[number].max(error);
+    }
+    Ok(())
+}
+
+fn evaluated_exactly(
+    statement: &Statement,
+    result: usize,
+    raw: &[i64],
+) -> Result<Enclosure, PlanRefusal> {
+    let formula = &statement.results[result].formula;
+    let operands = statement.exact_operands(raw);
+    formula.evaluate_exactly(&operands).map_err(|fault| {
+        let mut place = Vec::new();
+        for (name, value) in
+            statement.enclosed_operands(&raw.iter().map(|raw| (*raw, *raw)).collect::<Vec<_>>())
+        {
+            place.push(format!("{name} = {}", value.low));
+        }
+        let message = format!("at {}: {}", place.join(", "), fault.message);
+        let remedy = "leave these operands out by `where`, for example where = \"y > 0\"";
+        PlanRefusal::new(message, remedy).at(&fault.span).of_result(result)
+    })
+}

@@ -1,0 +1,114 @@
+//! Finds the plan of a statement, and proves its error.
+
+use std::collections::HashMap;
+use std::sync::{Arc, LazyLock, Mutex};
+
+use glint_approximate::Wish;
+
+use super::allocate::allocated;
+use super::boxes::ResultProof;
+use super::exhaust::largest_errors;
+use super::lower::lowered;
+use super::plan::Plan;
+use super::refusal::PlanRefusal;
+use super::statement::Statement;
+
+/// The divisions of the domain for the last bound.
+const DIVISIONS: usize = 4000;
+
+/// The most combinations of operands of which every one is computed, as a power of two.
+const MOST_COMBINATIONS: u32 = 20;
+
+/// How a bound was proved.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Proof {
+    /// The result of every combination of operands was computed and compared with the formula.
+    EveryCombination,
+    /// The error was enclosed, from parts that are proved at every operand of theirs.
+    Enclosed,
+}
+
+impl Proof {
+    /// Returns the kind of proof in words.
+    pub fn words(self) -> &'static str {
+        match self {
+            Self::EveryCombination => "every combination of operands was computed",
+            Self::Enclosed => "enclosed from parts that are proved at every operand",
+        }
+    }
+}
+
+/// A plan with the proved error of each result.
+#[derive(Clone, Debug)]
+pub struct ProvedPlan {
+    /// What was asked for.
+    pub statement: Statement,
+    /// How it is computed.
+    pub plan: Plan,
+    /// For each result, the proved bound of its error in units of its last place.
+    pub bounds: Vec<f64>,
+    /// How the bounds were proved.
+    pub proof: Proof,
+}
+
+type FindResult = Result<Arc<ProvedPlan>, PlanRefusal>;
+
+/// Returns the plan of a statement, with proved errors. A plan that was already found is not searched again.
+///
+/// # Errors
+/// Fails if a formula has no plan, or if the plan does not keep the errors. The refusal says why.
+pub fn find(statement: &Statement) -> FindResult {
+    static FOUND: LazyLock<Mutex<HashMap<String, FindResult>>> = LazyLock::new(Mutex::default);
+    let key = format!("{statement:?}");
+    if let Some(known) = FOUND.lock().expect("no search panics").get(&key) {
+        return known.clone();
+    }
+    let found = searched(statement).map(Arc::new);
+    FOUND.lock().expect("no search panics").insert(key, found.clone());
+    found
+}
+
+fn searched(statement: &Statement) -> Result<ProvedPlan, PlanRefusal> {
+    let (guards, estimate) = allocated(statement)?;
+    let mut found = Vec::new();
+    for function in estimate.functions() {
+        let wish = Wish::default();
+        let polynomials = glint_approximate::find(function, wish)
+            .map_err(|refusal| PlanRefusal::new(refusal.message, refusal.remedy))?;
+        found.push(polynomials);
+    }
+    let (plan, _) = lowered(statement, &guards, &found)?;
+    let mut bounds = enclosed_errors(statement, &plan)?;
+    let mut proof = Proof::Enclosed;
+    if statement.combinations() <= 1 << MOST_COMBINATIONS {
+        proof = Proof::EveryCombination;
+        for (bound, largest) in bounds.iter_mut().zip(largest_errors(statement, &plan)?) {
+            *bound = bound.min(largest);
+        }
+    }
+    Ok(ProvedPlan { statement: statement.clone(), plan, bounds, proof })
+}
+
+/// Returns a proved bound of the error of each result.
+pub(super) fn enclosed_errors(statement: &Statement, plan: &Plan) -> Result<Vec<f64>, PlanRefusal> {
+    let mut bounds = Vec::new();
+    for (result, stated) in statement.results.iter().enumerate() {
+        let proof = ResultProof::new(statement, plan, result);
+        let Some(worst) = proof.worst(0.0, DIVISIONS) else {
+            // Nothing is promised for any operand.
+            bounds.push(0.0);
+            continue;
+        };
+        if worst.units >= stated.error {
+            let message = format!(
+                "the error of `{}` {} for {}",
+                stated.name,
+                worst.words(plan),
+                worst.place(statement)
+            );
+            return Err(PlanRefusal::new(message, "allow a larger error").of_result(result));
+        }
+        bounds.push(worst.units);
+    }
+    Ok(bounds)
+}

@@ -1,0 +1,495 @@
+//! Rewrites the formulas of a statement as a plan, for a given choice of fraction bits.
+//!
+//! A part of a formula that depends on one number alone, wherever that number comes from, is one table of polynomials. For
+//! example, `sqrt(x^2 + y^2)` is a root of the part `x^2 + y^2`. Sums and products of parts are computed as they are.
+
+mod direction;
+mod quotient;
+mod root;
+
+use std::sync::Arc;
+
+use glint_approximate::{Curve, Outside, Piecewise, TargetFunction};
+use glint_base::fixed::{Format, Rounding, exp2, nearest};
+use glint_formula::{Comparison, Enclosure, Expression, Function, Kind, Operator, RBig};
+
+use super::boxes::ResultProof;
+use super::node::{Approximation, NodeId};
+use super::plan::Plan;
+use super::range::range_of;
+use super::refusal::PlanRefusal;
+use super::statement::{StatedResult, Statement};
+
+/// The widest operand of a table of polynomials, in bits. A wider one is shortened first.
+const WIDEST_OPERAND: u32 = 20;
+
+/// The widest factor of a product. A wider one, which comes from a product itself, is shortened first.
+const WIDEST_FACTOR: u32 = 18;
+
+/// The most fraction bits that a constant may need to count as exact.
+const MOST_CONSTANT_BITS: u32 = 18;
+
+/// The divisions of the domain for the error of a single node.
+const DIVISIONS_FOR_AN_ERROR: usize = 64;
+
+/// The error that polynomials inside a plan may have, in units of the last place of their result.
+const UNITS: f64 = 1.0;
+
+/// The fraction bits of each place where a plan rounds, relative to the result with the most of them.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+pub(super) struct Guards(pub(super) Vec<i32>);
+
+/// The polynomials that were found for the functions of a plan, in the order of their nodes.
+pub(super) type Found = [Arc<Piecewise>];
+
+/// A plan in the making.
+pub(super) struct Lowering<'s> {
+    statement: &'s Statement,
+    guards: &'s Guards,
+    found: &'s Found,
+    plan: Plan,
+    /// The parts that have a node already.
+    known: Vec<(Expression, NodeId)>,
+    /// The number of places where the plan rounds, so far.
+    sources: usize,
+    /// The number of functions of one number, so far.
+    functions: usize,
+    /// The fraction bits of the result that has the most of them.
+    finest: i32,
+}
+
+/// Returns the plan of a statement, and the number of places where it rounds. A place beyond `guards` has the guard 0.
+///
+/// # Errors
+/// Fails if a formula has a part that no rule computes, or a part with too many bits.
+pub(super) fn lowered(
+    statement: &Statement,
+    guards: &Guards,
+    found: &Found,
+) -> Result<(Plan, usize), PlanRefusal> {
+    let finest = statement.results.iter().map(|result| result.fraction as i32).max();
+    let mut lowering = Lowering {
+        statement,
+        guards,
+        found,
+        plan: Plan::default(),
+        known: Vec::new(),
+        sources: 0,
+        functions: 0,
+        finest: finest.unwrap_or(0),
+    };
+    for (number, operand) in statement.operands.iter().enumerate() {
+        let node = lowering.plan.operand(number, &operand.name, operand.format, operand.domain)?;
+        lowering.known.push((Expression::operand(&operand.name), node));
+    }
+    for number in 0..statement.results.len() {
+        let node = lowering.result(number).map_err(|refusal| refusal.of_result(number))?;
+        lowering.plan.results.push(node);
+    }
+    Ok((lowering.plan, lowering.sources))
+}
+
+impl<'s> Lowering<'s> {
+    /// Returns the node of a result, rounded to its fraction bits.
+    fn result(&mut self, number: usize) -> Result<NodeId, PlanRefusal> {
+        let result = &self.statement.results[number];
+        let node = self.part(&result.formula)?;
+        let values = self.range(&result.formula)?;
+        let frac = result.fraction as i32;
+        let unit = exp2(frac);
+        let places = self.plan.node(node).format.frac - frac;
+        let range = self.plan.node(node).range;
+        let rounded = |raw: i128| match places {
+            1.. => Rounding::Nearest.shift(raw, places),
+            _ => raw << -places,
+        };
+        // Neither the formula with its error nor the node has values beyond these.
+        let low = ((values.low * unit - result.error).ceil() as i128).max(rounded(range.0));
+        let high = ((values.high * unit + result.error).floor() as i128).min(rounded(range.1));
+        let format = Format::holding(low.min(high), high.max(low), frac);
+        let name = format!("{}_rounded", result.name);
+        let node = self.plan.narrow(&name, node, format, Rounding::Nearest)?;
+        Ok(node)
+    }
+
+    /// Returns limits of the values of a part where something is promised.
+    fn range(&self, part: &Expression) -> Result<Enclosure, PlanRefusal> {
+        range_of(self.statement, part).ok_or_else(|| {
+            PlanRefusal::new(
+                "this is not finite, or has no value, for some of the operands",
+                "limit the operands by `where`, for example where = \"y > 0\", or by `from` and `to`",
+            )
+            .at(&part.span)
+        })
+    }
+
+    /// Takes the next choice of fraction bits, beside `frac`, and gives its number to the node that `make` adds.
+    fn rounding(
+        &mut self,
+        frac: i32,
+        make: impl FnOnce(&mut Self, i32) -> Result<NodeId, PlanRefusal>,
+    ) -> Result<NodeId, PlanRefusal> {
+        let source = self.sources;
+        self.sources += 1;
+        let guard = self.guards.0.get(source).copied().unwrap_or(0);
+        let before = self.plan.nodes.len();
+        let node = make(self, frac + guard)?;
+        if node.0 >= before {
+            self.plan.nodes[node.0].source = Some(source);
+        }
+        Ok(node)
+    }
+
+    /// Returns a node with fewer bits, at a choice of fraction bits.
+    fn shortened(&mut self, name: &str, node: NodeId, frac: i32) -> Result<NodeId, PlanRefusal> {
+        self.rounding(frac, |own, frac| own.plan.shorten(name, node, frac, Rounding::Nearest))
+    }
+
+    /// Returns the node of a part of a formula.
+    fn part(&mut self, part: &Expression) -> Result<NodeId, PlanRefusal> {
+        if let Some((_, node)) = self.known.iter().find(|(known, _)| known == part) {
+            return Ok(*node);
+        }
+        let node = self.new_part(part).map_err(|refusal| refusal.at(&part.span))?;
+        self.known.push((part.clone(), node));
+        Ok(node)
+    }
+
+    fn new_part(&mut self, part: &Expression) -> Result<NodeId, PlanRefusal> {
+        if part.operands().is_empty() {
+            return self.number(part);
+        }
+        let core = core_of(part);
+        if products_of(part, core).is_some_and(|products| products <= 1) || core == part {
+            return self.operation(part);
+        }
+        let core = core.clone();
+        let operand = Expression::operand("x");
+        let function = part.substitute(&core, &operand, &part.span);
+        if let Some(node) = self.scaled_direction(&core, &function)? {
+            return Ok(node);
+        }
+        if let Some(power) = root::power_of(&function)
+            && let Some(node) = self.power(part, &core, &function, power)?
+        {
+            return Ok(node);
+        }
+        let node = self.part(&core)?;
+        let range = self.range(&core)?;
+        let frac = self.plan.node(node).format.frac.min(self.finest);
+        let node = match self.plan.node(node).format.width() {
+            ..=WIDEST_OPERAND => node,
+            _ => self.shortened("operand", node, frac)?,
+        };
+        self.function("function", node, &function, range)
+    }
+
+    /// Returns a number as a constant: exactly if it has few bits, otherwise rounded at a choice of fraction bits.
+    fn number(&mut self, part: &Expression) -> Result<NodeId, PlanRefusal> {
+        if let Some((raw, frac)) = dyadic(part) {
+            return self.plan.constant("constant", raw, frac);
+        }
+        let fault = |message: String| {
+            PlanRefusal::new(message, "write a number that is finite").at(&part.span)
+        };
+        let finest = self.finest;
+        self.rounding(finest + 2, |own, frac| {
+            let value = part.enclose(&[]).map_err(|it| fault(it.message))?;
+            let raw = nearest(value.middle() * exp2(frac)) as i128;
+            own.plan.rounded_constant("constant", raw, frac, value)
+        })
+    }
+
+    /// Returns the node of an operation on parts.
+    fn operation(&mut self, part: &Expression) -> Result<NodeId, PlanRefusal> {
+        match &part.kind {
+            Kind::Operand(name) => Err(PlanRefusal::new(
+                format!("there is no operand `{name}`"),
+                "name an operand, or a part of [let]",
+            )),
+            Kind::Unary(Function::Negate, a) => {
+                let a = self.part(a)?;
+                self.plan.negate("negated", a)
+            }
+            Kind::Unary(Function::Abs, a) => {
+                let a = self.part(a)?;
+                self.plan.absolute("size", a)
+            }
+            Kind::Binary(operator, a, b) => self.binary(*operator, a, b, part),
+            Kind::If(comparison, yes, no) => self.choice(comparison, yes, no),
+            _ => Err(PlanRefusal::new(
+                "this function of several operands has no rule",
+                "write it as a function of one part: a sum, a product or a quotient",
+            )),
+        }
+    }
+
+    fn binary(
+        &mut self,
+        operator: Operator,
+        a: &Expression,
+        b: &Expression,
+        part: &Expression,
+    ) -> Result<NodeId, PlanRefusal> {
+        match operator {
+            Operator::Div if !b.operands().is_empty() => self.quotient(a, b, part),
+            Operator::Atan2 => self.direction(a, b, &direction::Scaling::none()),
+            Operator::Power if *b == number("2") => {
+                let a = self.part(a)?;
+                self.plan.multiply("square", a, a)
+            }
+            Operator::Power => Err(PlanRefusal::new(
+                "a power whose base and exponent both vary has no rule yet",
+                "write exp2(y * log2(x)) with a [let] part for the product, or make one of them a number",
+            )),
+            Operator::Mod => Err(PlanRefusal::new(
+                "a remainder by a number that varies has no rule",
+                "write the remainder by a number, x % 1 for example",
+            )),
+            Operator::Mul | Operator::Div => {
+                let factor = [a, b].into_iter().find(|it| it.operands().is_empty());
+                let exponent = factor.and_then(|factor| power_of_two(factor, operator));
+                if let (Some(exponent), Some(factor)) = (exponent, factor) {
+                    let other = if std::ptr::eq(factor, a) { b } else { a };
+                    let other = self.part(other)?;
+                    return self.plan.scale("scaled", other, exponent);
+                }
+                let a = self.factor(a)?;
+                let b = self.factor(b)?;
+                self.plan.multiply("product", a, b)
+            }
+            Operator::Add => {
+                let (a, b) = (self.part(a)?, self.part(b)?);
+                self.plan.add("sum", a, b)
+            }
+            Operator::Sub => {
+                let (a, b) = (self.part(a)?, self.part(b)?);
+                self.plan.subtract("difference", a, b)
+            }
+            Operator::Min => {
+                let (a, b) = (self.part(a)?, self.part(b)?);
+                self.plan.minimum("smaller", a, b)
+            }
+            Operator::Max => {
+                let (a, b) = (self.part(a)?, self.part(b)?);
+                self.plan.maximum("larger", a, b)
+            }
+        }
+    }
+
+    /// Returns the node of a factor, with fewer bits if it has more than a multiplier takes.
+    fn factor(&mut self, part: &Expression) -> Result<NodeId, PlanRefusal> {
+        let node = self.part(part)?;
+        let format = self.plan.node(node).format;
+        if format.width() <= WIDEST_FACTOR {
+            return Ok(node);
+        }
+        self.shortened("factor", node, self.finest)
+    }
+
+    fn choice(
+        &mut self,
+        comparison: &Comparison,
+        yes: &Expression,
+        no: &Expression,
+    ) -> Result<NodeId, PlanRefusal> {
+        let (left, right) = (self.part(&comparison.left)?, self.part(&comparison.right)?);
+        let (yes, no) = (self.part(yes)?, self.part(no)?);
+        if comparison.or_equal {
+            // left >= right, unless left < right.
+            let is_less = self.plan.less("is_less", left, right)?;
+            self.plan.choose("chosen", is_less, [yes, no], false)
+        } else {
+            let is_larger = self.plan.less("is_larger", right, left)?;
+            self.plan.choose("chosen", is_larger, [no, yes], false)
+        }
+    }
+
+    /// Returns a function of one node, by polynomials. `range` are limits of the values that the node has where something
+    /// is promised.
+    fn function(
+        &mut self,
+        name: &str,
+        node: NodeId,
+        function: &Expression,
+        range: Enclosure,
+    ) -> Result<NodeId, PlanRefusal> {
+        let operand = self.plan.node(node).format;
+        let unit = exp2(operand.frac);
+        let (low, high) = self.plan.node(node).range;
+        // The node may be off by the roundings before it.
+        let error = if self.is_exact(node) { 0.0 } else { self.largest_error(node) };
+        let slack = (error * unit).ceil();
+        let first = ((range.low * unit - slack).ceil() as i128).max(low);
+        let last = ((range.high * unit + slack).floor() as i128).min(high);
+        if last <= first {
+            return Err(PlanRefusal::new(
+                "this part has a single value",
+                "write the value as a number",
+            ));
+        }
+        let domain = (first as i64, last as i64);
+        let finest = self.finest;
+        self.rounding(finest + 2, |own, frac| own.approximation(name, node, function, domain, frac))
+    }
+
+    /// Adds a function of one node with `frac` fraction bits, on a raw domain.
+    fn approximation(
+        &mut self,
+        name: &str,
+        node: NodeId,
+        function: &Expression,
+        domain: (i64, i64),
+        frac: i32,
+    ) -> Result<NodeId, PlanRefusal> {
+        let operand = self.plan.node(node).format;
+        let fraction = u32::try_from(frac).unwrap_or(0);
+        let target = TargetFunction {
+            curve: Curve::Formula(function.clone()),
+            domain,
+            operand,
+            outside: Outside::Anything,
+            fraction,
+            error: UNITS,
+        };
+        let values = function_range(function, operand, domain).ok_or_else(|| {
+            PlanRefusal::new(
+                "this is not finite, or has no value, for some of the operands",
+                "limit the operands by `where`, for example where = \"y > 0\", or by `from` and `to`",
+            )
+        })?;
+        let unit = exp2(fraction as i32);
+        let values = (
+            (values.low * unit - UNITS).floor() as i128,
+            (values.high * unit + UNITS).ceil() as i128,
+        );
+        let polynomials = self.found.get(self.functions).cloned();
+        self.functions += 1;
+        let approximation = Approximation { function: target, polynomials };
+        self.plan.polynomial(name, node, approximation, values)
+    }
+
+    /// Returns a bound of the error of a node, over all operands for which something is promised.
+    fn largest_error(&self, node: NodeId) -> f64 {
+        let mut plan = self.plan.clone();
+        plan.results = vec![node];
+        let mut statement = self.statement.clone();
+        let first = statement.results.first().cloned().expect("a statement has a result");
+        let promise = match &self.statement.results[..] {
+            [only] => only.promise.clone(),
+            // Each result has a promise of its own: no operand is left out.
+            _ => None,
+        };
+        statement.results = vec![StatedResult { fraction: 0, promise, ..first }];
+        let proof = ResultProof::new(&statement, &plan, 0);
+        let worst = proof.worst(0.0, DIVISIONS_FOR_AN_ERROR);
+        worst.map_or(0.0, |worst| if worst.units.is_finite() { worst.units } else { 1.0 })
+    }
+
+    /// Returns whether the value of a node has no rounding error.
+    fn is_exact(&self, node: NodeId) -> bool {
+        let node = self.plan.node(node);
+        node.source.is_none() && node.operation.inputs().into_iter().all(|it| self.is_exact(it))
+    }
+}
+
+/// Returns the smallest part on which a formula depends: the formula is a function of this part alone. It is the formula
+/// itself if it combines different parts. For example, the core of `1 / sqrt(x + y)` is `x + y`.
+fn core_of(formula: &Expression) -> &Expression {
+    let parts = formula.parts();
+    let varying: Vec<&Expression> =
+        parts.into_iter().filter(|part| !part.operands().is_empty()).collect();
+    let Some((first, rest)) = varying.split_first() else { return formula };
+    let core = core_of(first);
+    for part in rest {
+        if core_of(part) != core {
+            return formula;
+        }
+    }
+    core
+}
+
+/// Returns the number of multiplications by which sums, products and squares compute a formula from its core;
+/// `None` if they do not. For example, `x * (1 - x)` takes one.
+fn products_of(formula: &Expression, core: &Expression) -> Option<u32> {
+    if formula == core {
+        return Some(0);
+    }
+    if formula.operands().is_empty() {
+        return Some(0);
+    }
+    match &formula.kind {
+        Kind::Unary(Function::Negate | Function::Abs, a) => products_of(a, core),
+        Kind::Binary(Operator::Add | Operator::Sub | Operator::Min | Operator::Max, a, b) => {
+            Some(products_of(a, core)? + products_of(b, core)?)
+        }
+        Kind::Binary(operator @ (Operator::Mul | Operator::Div), a, b) => {
+            let is_divisor_fixed = b.operands().is_empty();
+            if *operator == Operator::Div && !is_divisor_fixed {
+                return None;
+            }
+            let both = products_of(a, core)? + products_of(b, core)?;
+            let factor = if is_divisor_fixed { b } else { a };
+            let is_shift =
+                factor.operands().is_empty() && power_of_two(factor, *operator).is_some();
+            match (is_shift, operator) {
+                (true, _) => Some(both),
+                (false, Operator::Mul) => Some(both + 1),
+                (false, _) => None,
+            }
+        }
+        Kind::Binary(Operator::Power, a, b) if **b == number("2") => {
+            Some(products_of(a, core)? + 1)
+        }
+        _ => None,
+    }
+}
+
+/// Returns a formula without operands, from a text that is known to be one.
+fn number(text: &str) -> Expression {
+    glint_formula::parse(text).expect("a formula")
+}
+
+/// Returns a constant as a raw value and its fraction bits, if it is exact with few of them. For example, `3/4` gives
+/// (3, 2).
+fn dyadic(part: &Expression) -> Option<(i128, i32)> {
+    let value = part.rational()?;
+    for frac in 0..=MOST_CONSTANT_BITS {
+        let scaled = value.clone() * RBig::from(1u64 << frac);
+        if scaled.is_int() {
+            let raw = i64::try_from(scaled.numerator().clone()).ok()?;
+            return (raw.unsigned_abs() < 1 << 32).then_some((raw.into(), frac as i32));
+        }
+    }
+    None
+}
+
+/// Returns the exponent k if multiplying by the constant, or dividing by it, is multiplying by 2^k. For example, dividing by
+/// 8 gives −3.
+fn power_of_two(part: &Expression, operator: Operator) -> Option<i32> {
+    let (raw, frac) = dyadic(part)?;
+    let is_power = raw > 0 && raw.count_ones() == 1;
+    if !is_power {
+        return None;
+    }
+    let exponent = raw.trailing_zeros() as i32 - frac;
+    Some(if operator == Operator::Div { -exponent } else { exponent })
+}
+
+/// Returns limits of a function of x over a raw domain; `None` if they are not finite.
+fn function_range(function: &Expression, operand: Format, domain: (i64, i64)) -> Option<Enclosure> {
+    const PIECES: i64 = 64;
+    let (first, last) = domain;
+    let length = last - first;
+    let mut total: Option<Enclosure> = None;
+    for piece in 0..PIECES {
+        let end = |at: i64| {
+            let way = i128::from(length) * i128::from(at) / i128::from(PIECES);
+            operand.to_f64(i128::from(first) + way)
+        };
+        let x = Enclosure::between(end(piece), end(piece + 1));
+        let value = function.enclose(&[("x", x)]).ok().filter(|value| value.is_finite())?;
+        total = Some(total.map_or(value, |total| total.hull(value)));
+    }
+    total
+}

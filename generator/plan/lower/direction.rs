@@ -1,0 +1,128 @@
+//! Rewrites the direction of a point, `atan2(y, x)`, by the octant in which the point is.
+//!
+//! Within an octant the direction is the arc tangent of the smaller coordinate over the larger one, which is from 0 to 1.
+//! The other octants are mirror images: at the diagonal, at the y axis and at the x axis.
+
+use glint_base::fixed::exp2;
+use glint_formula::{Enclosure, Expression, Function, Kind, Operator};
+
+use super::root::holding;
+use super::{Lowering, number};
+use crate::node::NodeId;
+use crate::refusal::PlanRefusal;
+
+/// A constant by which a direction is multiplied or divided.
+pub(super) struct Scaling {
+    operator: Operator,
+    constant: Expression,
+}
+
+impl Scaling {
+    /// Makes the scaling that changes nothing.
+    pub(super) fn none() -> Self {
+        Self { operator: Operator::Mul, constant: number("1") }
+    }
+
+    /// Returns a formula, multiplied or divided by the constant.
+    fn of(&self, formula: Expression) -> Expression {
+        let (formula, constant) = (Box::new(formula), Box::new(self.constant.clone()));
+        Expression::new(Kind::Binary(self.operator, formula, constant), 0..0)
+    }
+}
+
+impl Lowering<'_> {
+    /// Returns the node of a constant times a direction, where `function` is that of x in the place of the direction `core`;
+    /// `None` for any other formula. The constant then is a part of the table.
+    pub(super) fn scaled_direction(
+        &mut self,
+        core: &Expression,
+        function: &Expression,
+    ) -> Result<Option<NodeId>, PlanRefusal> {
+        let Kind::Binary(Operator::Atan2, y, x) = &core.kind else { return Ok(None) };
+        let operand = Expression::operand("x");
+        let is_operand = |part: &Expression| *part == operand;
+        let Kind::Binary(operator @ (Operator::Mul | Operator::Div), a, b) = &function.kind else {
+            return Ok(None);
+        };
+        let constant = match (is_operand(a), is_operand(b), operator) {
+            (true, false, _) => b,
+            (false, true, Operator::Mul) => a,
+            _ => return Ok(None),
+        };
+        if !constant.operands().is_empty() {
+            return Ok(None);
+        }
+        let scaling = Scaling { operator: *operator, constant: (**constant).clone() };
+        self.direction(y, x, &scaling).map(Some)
+    }
+
+    /// Returns the node of the direction of the point (x, y), scaled.
+    pub(super) fn direction(
+        &mut self,
+        y: &Expression,
+        x: &Expression,
+        scaling: &Scaling,
+    ) -> Result<NodeId, PlanRefusal> {
+        let [y_node, x_node] = [self.part(y)?, self.part(x)?];
+        let [y_size, x_size] = [("y_size", y_node), ("x_size", x_node)]
+            .map(|(name, node)| self.plan.absolute(name, node));
+        let (y_size, x_size) = (y_size?, x_size?);
+        let larger = self.plan.maximum("larger", x_size, y_size)?;
+        let sizes = self.plan.node(larger);
+        let most = sizes.format.to_f64(sizes.range.1);
+        let octave = self.octave(larger, Enclosure::between(0.0, most), false)?;
+        // The smaller coordinate comes behind the octave of the larger, which limits both in the proof.
+        let smaller = self.plan.minimum("smaller", x_size, y_size)?;
+        let ratio = self.ratio_in_octave(smaller, &octave, 1.0)?;
+        let finest = self.finest;
+        let tangent = self.shortened("tangent", ratio, finest + 2)?;
+        let format = self.plan.node(tangent).format;
+        let limited = holding(Enclosure::between(0.0, 1.0 + exp2(-finest)), format.frac);
+        let tangent = self.plan.narrow(
+            "tangent_kept",
+            tangent,
+            limited,
+            glint_base::fixed::Rounding::Truncate,
+        )?;
+
+        let arc = scaling.of(Expression::new(
+            Kind::Unary(Function::Atan, Box::new(Expression::operand("x"))),
+            0..0,
+        ));
+        let tangents = Enclosure::between(0.0, 1.0 + exp2(-finest));
+        let in_octant = self.function("octant", tangent, &arc, tangents)?;
+        let is_steep = self.plan.less("is_steep", x_size, y_size)?;
+        let quarter = self.number(&scaling.of(number("pi / 2")))?;
+        let mirrored = self.plan.subtract("octant_mirrored", quarter, in_octant)?;
+        let in_quadrant = self.plan.choose("quadrant", is_steep, [in_octant, mirrored], true)?;
+        let in_half = self.mirrored_where_negative("half", in_quadrant, x_node, Some(scaling))?;
+        let whole = self.mirrored_where_negative("direction", in_half, y_node, None)?;
+        Ok(whole)
+    }
+
+    /// Returns an angle, mirrored where a coordinate is negative: half a turn less the angle if its `scaling` is given,
+    /// otherwise the angle with the other sign.
+    fn mirrored_where_negative(
+        &mut self,
+        name: &str,
+        angle: NodeId,
+        coordinate: NodeId,
+        scaling: Option<&Scaling>,
+    ) -> Result<NodeId, PlanRefusal> {
+        if self.plan.node(coordinate).range.0 >= 0 {
+            return Ok(angle);
+        }
+        let frac = self.plan.node(coordinate).format.frac;
+        let zero = self.plan.constant("zero", 0, frac)?;
+        let is_negative = self.plan.less(&format!("{name}_is_mirrored"), coordinate, zero)?;
+        let mirrored = match scaling {
+            Some(scaling) => {
+                let half_turn = self.number(&scaling.of(number("pi")))?;
+                self.plan.subtract(&format!("{name}_mirrored"), half_turn, angle)?
+            }
+            None => self.plan.negate(&format!("{name}_mirrored"), angle)?,
+        };
+        // At the negative x axis the direction jumps, so that a wrong sign would do harm.
+        self.plan.choose(name, is_negative, [angle, mirrored], scaling.is_some())
+    }
+}

@@ -1,0 +1,81 @@
+//! Rewrites a quotient of two parts as a product with a reciprocal.
+//!
+//! The divisor b is m · 2^−k with m from 1/2 to below 1. A table gives 1/m, and the dividend is shifted by the same k places,
+//! so that a / b = (a · 2^k) · (1/m).
+
+use glint_base::fixed::{Rounding, exp2};
+use glint_formula::{Enclosure, Expression};
+
+use super::root::{FEW_OCTAVES, Octave, holding};
+use super::{Lowering, WIDEST_FACTOR, WIDEST_OPERAND, number};
+use crate::node::NodeId;
+use crate::refusal::PlanRefusal;
+
+impl Lowering<'_> {
+    /// Returns the node of a / b, which is the formula `part`.
+    pub(super) fn quotient(
+        &mut self,
+        a: &Expression,
+        b: &Expression,
+        part: &Expression,
+    ) -> Result<NodeId, PlanRefusal> {
+        let dividend = self.part(a)?;
+        let divisor = self.part(b)?;
+        let values = self.range(part)?;
+        let divisors = self.range(b)?;
+        let largest = values.low.abs().max(values.high.abs());
+        let size = self.plan.absolute("divisor_size", divisor)?;
+        let sizes = Enclosure::between(0.0, divisors.low.abs().max(divisors.high.abs()));
+        let is_short = self.plan.node(size).format.width() <= WIDEST_OPERAND;
+        let quotient = if is_short && divisors.high < divisors.low * FEW_OCTAVES {
+            let inverse = self.function("inverse", size, &number("1 / x"), divisors)?;
+            let dividend = self.factor(a)?;
+            self.plan.multiply("ratio", dividend, inverse)?
+        } else {
+            let octave = self.octave(size, sizes, false)?;
+            self.ratio_in_octave(dividend, &octave, largest)?
+        };
+        if divisors.low >= 0.0 {
+            return Ok(quotient);
+        }
+        let frac = self.plan.node(divisor).format.frac;
+        let zero = self.plan.constant("zero", 0, frac)?;
+        let is_negative = self.plan.less("divisor_is_negative", divisor, zero)?;
+        let negated = self.plan.negate("quotient_negated", quotient)?;
+        self.plan.choose("quotient", is_negative, [quotient, negated], false)
+    }
+
+    /// Returns dividend / divisor, for a divisor that is known as a fraction within one octave.
+    pub(super) fn ratio_in_octave(
+        &mut self,
+        dividend: NodeId,
+        octave: &Octave,
+        largest: f64,
+    ) -> Result<NodeId, PlanRefusal> {
+        let reciprocal = number("1 / x");
+        let finest = self.finest;
+        let inverse = self.rounding(finest + 2, |own, frac| {
+            own.approximation("inverse", octave.mantissa, &reciprocal, octave.domain, frac)
+        })?;
+        let format = self.plan.node(dividend).format;
+        // The dividend is at most the largest quotient times the divisor, and the shifted divisor below 2^exponent.
+        let most = largest * exp2(octave.exponent);
+        let low = if self.plan.node(dividend).range.0 < 0 { -most } else { 0.0 };
+        let limits = Enclosure::between(low, most);
+        let shifted_format = holding(limits, format.frac);
+        let shifted =
+            self.plan.shift_left("dividend_shifted", dividend, octave.places, shifted_format)?;
+        self.plan.nodes[shifted.0].limits = limits;
+        let shifted = match self.plan.node(shifted).format.width() {
+            ..=WIDEST_FACTOR => shifted,
+            _ => self.rounding(finest + octave.exponent, |own, frac| {
+                own.plan.shorten("dividend_shortened", shifted, frac, Rounding::Nearest)
+            })?,
+        };
+        let product = self.plan.multiply("ratio", shifted, inverse)?;
+        let ratio = self.plan.scale("ratio_scaled", product, -octave.exponent)?;
+        self.plan.nodes[ratio.0].limits =
+            Enclosure::between(if low < 0.0 { -largest } else { 0.0 }, largest);
+        Ok(ratio)
+    }
+}

@@ -1,0 +1,139 @@
+//! Rewrites a power of a part, as a root or a reciprocal, so that one table for a single octave serves all octaves.
+//!
+//! A word v is m · 2^k with m from 1/2 to below 1, so that v^p is m^p · 2^(p·k): a table for m, and a shift. For p = 1/2 and
+//! its odd multiples, m is from 1/4 to below 1, and k is even.
+
+use glint_base::fixed::{Format, Rounding, exp2};
+use glint_formula::{Enclosure, Expression, Function, Kind, Operator, RBig};
+
+use super::Lowering;
+use crate::node::NodeId;
+use crate::refusal::PlanRefusal;
+
+/// Domains below this ratio of largest to smallest value are one table.
+pub(super) const FEW_OCTAVES: f64 = 4.0;
+
+/// The exponent of a power, doubled: −1 is the exponent −1/2.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct DoubledExponent(i32);
+
+/// Returns the exponent p if a formula is a constant times x^p and 2p is an integer. For example, `3 / sqrt(x)` gives −1/2.
+pub(super) fn power_of(formula: &Expression) -> Option<DoubledExponent> {
+    let doubled = doubled_exponent(formula)?;
+    let value = i32::try_from(doubled.numerator().clone()).ok()?;
+    let is_power = doubled.is_int() && !matches!(value, 0 | 2) && value.abs() <= 8;
+    is_power.then_some(DoubledExponent(value))
+}
+
+fn doubled_exponent(formula: &Expression) -> Option<RBig> {
+    if formula.operands().is_empty() {
+        return Some(RBig::ZERO);
+    }
+    match &formula.kind {
+        Kind::Operand(_) => Some(RBig::from(2)),
+        Kind::Unary(Function::Negate, a) => doubled_exponent(a),
+        Kind::Unary(Function::Sqrt, a) => Some(doubled_exponent(a)? / RBig::from(2)),
+        Kind::Binary(Operator::Mul, a, b) => Some(doubled_exponent(a)? + doubled_exponent(b)?),
+        Kind::Binary(Operator::Div, a, b) => Some(doubled_exponent(a)? - doubled_exponent(b)?),
+        Kind::Binary(Operator::Power, a, b) if b.operands().is_empty() => {
+            Some(doubled_exponent(a)? * b.rational()?)
+        }
+        _ => None,
+    }
+}
+
+/// A word as a fraction within one octave, and the places by which it was shifted.
+pub(super) struct Octave {
+    /// The fraction, shortened to the bits that the table takes.
+    pub(super) mantissa: NodeId,
+    /// The places, or pairs of places.
+    pub(super) places: NodeId,
+    /// The word is the fraction times 2 to this power, less the places.
+    pub(super) exponent: i32,
+    /// The smallest and the largest raw fraction.
+    pub(super) domain: (i64, i64),
+}
+
+impl Lowering<'_> {
+    /// Returns the node of a power, if its part has many octaves.
+    pub(super) fn power(
+        &mut self,
+        part: &Expression,
+        core: &Expression,
+        function: &Expression,
+        DoubledExponent(doubled): DoubledExponent,
+    ) -> Result<Option<NodeId>, PlanRefusal> {
+        let range = self.range(core)?;
+        let node = self.part(core)?;
+        let format = self.plan.node(node).format;
+        let is_narrow = format.width() <= super::WIDEST_OPERAND;
+        if range.low < 0.0 || is_narrow && range.high < range.low * FEW_OCTAVES {
+            return Ok(None);
+        }
+        let by_pairs = doubled % 2 != 0;
+        let octave = self.octave(node, range, by_pairs)?;
+        // The shift by which the word was enlarged is undone, times the exponent.
+        let scale = doubled * octave.exponent / 2;
+        let frac = self.finest + 2 + if doubled > 0 { scale } else { 0 };
+        let of_mantissa = self.rounding(frac, |own, frac| {
+            own.approximation("power", octave.mantissa, function, octave.domain, frac)
+        })?;
+        let source = self.plan.node(of_mantissa).source;
+        let scaled = self.plan.scale("power_scaled", of_mantissa, scale)?;
+        let places = self.multiple(octave.places, doubled.abs() / if by_pairs { 1 } else { 2 })?;
+        if doubled < 0 {
+            let values = self.range(part)?;
+            let format = self.plan.node(scaled).format;
+            let format = holding(values, format.frac);
+            return self.plan.shift_left("power_shifted", scaled, places, format).map(Some);
+        }
+        let shifted = self.plan.shift_right("power_shifted", scaled, places)?;
+        self.plan.nodes[shifted.0].source = source;
+        if range.low > 0.0 {
+            return Ok(Some(shifted));
+        }
+        let zero = self.plan.constant("zero", 0, self.plan.node(shifted).format.frac)?;
+        let is_some = self.plan.nonzero("is_nonzero", node)?;
+        self.plan.choose("power_or_zero", is_some, [zero, shifted], false).map(Some)
+    }
+
+    /// Returns a word that is not below 0 as a fraction within one octave.
+    pub(super) fn octave(
+        &mut self,
+        node: NodeId,
+        range: Enclosure,
+        by_pairs: bool,
+    ) -> Result<Octave, PlanRefusal> {
+        let format = self.plan.node(node).format;
+        // Without a sign, without integer bits that are never used, and by pairs with an even number of integer bits.
+        let word_format = holding(Enclosure::between(0.0, range.high), format.frac);
+        let is_odd = by_pairs && word_format.int % 2 != 0;
+        let word_format = Format { int: word_format.int + i32::from(is_odd), ..word_format };
+        let word = self.plan.narrow("word", node, word_format, Rounding::Truncate)?;
+        let [normalised, places] = self.plan.normalise("normalised", word, by_pairs)?;
+        let finest = self.finest;
+        let mantissa = self.rounding(finest + 1, |own, frac| {
+            own.plan.shorten("mantissa", normalised, frac.max(2), Rounding::Truncate)
+        })?;
+        let bits = self.plan.node(mantissa).format.frac;
+        let first = 1i64 << (bits - if by_pairs { 2 } else { 1 });
+        let domain = (first, (1i64 << bits) - 1);
+        Ok(Octave { mantissa, places, exponent: word_format.int, domain })
+    }
+
+    /// Returns a number of places times a small constant.
+    fn multiple(&mut self, places: NodeId, factor: i32) -> Result<NodeId, PlanRefusal> {
+        if factor == 1 {
+            return Ok(places);
+        }
+        let factor = self.plan.constant("shift_factor", factor.into(), 0)?;
+        self.plan.multiply("shift", places, factor)
+    }
+}
+
+/// Returns the format with `frac` fraction bits of values within limits, and of values a unit beyond them.
+pub(super) fn holding(values: Enclosure, frac: i32) -> Format {
+    let unit = exp2(frac);
+    let low = if values.low >= 0.0 { 0 } else { (values.low * unit - 1.0).floor() as i128 };
+    Format::holding(low, (values.high * unit + 1.0).floor() as i128, frac)
+}

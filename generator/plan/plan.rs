@@ -1,0 +1,373 @@
+//! Holds a plan, and builds one node after the other with the format that each result needs.
+
+use glint_approximate::TargetFunction;
+use glint_base::fixed::{Format, MAX_WIDTH, Rounding};
+use glint_base::interval::{self, Interval};
+use glint_formula::Enclosure;
+
+use super::node::{Approximation, NodeId, Operation, PlanNode};
+use super::refusal::PlanRefusal;
+
+/// The limits of a value of which the rewriting knows nothing.
+const ANYTHING: Enclosure = Enclosure::between(f64::NEG_INFINITY, f64::INFINITY);
+
+/// An expression as a list of integer operations.
+#[derive(Clone, Debug, Default)]
+pub struct Plan {
+    /// The operations, in an order in which they can be computed.
+    pub nodes: Vec<PlanNode>,
+    /// The node of each result, in the order in which the results are stated.
+    pub results: Vec<NodeId>,
+}
+
+impl Plan {
+    /// Returns a node.
+    pub fn node(&self, id: NodeId) -> &PlanNode {
+        &self.nodes[id.0]
+    }
+
+    /// Returns, for each node, whether a result of this number reads it, directly or through other nodes.
+    pub fn needed_for(&self, result: usize) -> Vec<bool> {
+        let mut needed = vec![false; self.nodes.len()];
+        needed[self.results[result].0] = true;
+        for at in (0..self.nodes.len()).rev() {
+            if needed[at] {
+                for input in self.nodes[at].operation.inputs() {
+                    needed[input.0] = true;
+                }
+            }
+        }
+        needed
+    }
+
+    /// Returns how many nodes read each node.
+    pub fn readers(&self) -> Vec<usize> {
+        let mut readers = vec![0; self.nodes.len()];
+        for node in &self.nodes {
+            for input in node.operation.inputs() {
+                readers[input.0] += 1;
+            }
+        }
+        readers
+    }
+}
+
+/// Adds nodes to a plan. Each method returns the node of its result, whose format holds every value that the ranges of
+/// the inputs allow.
+impl Plan {
+    fn insert(
+        &mut self,
+        name: &str,
+        operation: Operation,
+        format: Format,
+        range: Interval,
+    ) -> Result<NodeId, PlanRefusal> {
+        let width = format.int + format.frac + i32::from(format.signed);
+        if width > MAX_WIDTH as i32 {
+            return Err(PlanRefusal::too_wide(name, width));
+        }
+        let name = self.unused_name(name);
+        self.nodes.push(PlanNode {
+            name,
+            operation,
+            format,
+            range,
+            limits: ANYTHING,
+            source: None,
+        });
+        Ok(NodeId(self.nodes.len() - 1))
+    }
+
+    /// Returns the name, or with a number behind it if a node already has it. For example, a second `product` is
+    /// `product_2`.
+    fn unused_name(&self, name: &str) -> String {
+        let is_used = |name: &str| self.nodes.iter().any(|node| node.name == name);
+        let mut unused = name.to_owned();
+        let mut number = 2;
+        while is_used(&unused) {
+            unused = format!("{name}_{number}");
+            number += 1;
+        }
+        unused
+    }
+
+    /// Adds an exact result whose raw values lie in a range.
+    fn exact(
+        &mut self,
+        name: &str,
+        operation: Operation,
+        range: Interval,
+        frac: i32,
+    ) -> Result<NodeId, PlanRefusal> {
+        self.insert(name, operation, Format::holding(range.0, range.1, frac), range)
+    }
+
+    pub(super) fn operand(
+        &mut self,
+        number: usize,
+        name: &str,
+        format: Format,
+        domain: (i64, i64),
+    ) -> Result<NodeId, PlanRefusal> {
+        let range = (domain.0.into(), domain.1.into());
+        self.insert(name, Operation::Operand(number), format, range)
+    }
+
+    /// Adds a constant that is exact.
+    pub(super) fn constant(
+        &mut self,
+        name: &str,
+        raw: i128,
+        frac: i32,
+    ) -> Result<NodeId, PlanRefusal> {
+        let value = Enclosure::exactly(Format::holding(raw, raw, frac).to_f64(raw));
+        self.rounded_constant(name, raw, frac, value)
+    }
+
+    /// Adds a constant for a real number within limits.
+    pub(super) fn rounded_constant(
+        &mut self,
+        name: &str,
+        raw: i128,
+        frac: i32,
+        value: Enclosure,
+    ) -> Result<NodeId, PlanRefusal> {
+        let is_same = |node: &PlanNode| match &node.operation {
+            Operation::Constant { raw: other_raw, value: other } => {
+                node.format.frac == frac && *other_raw == raw && *other == value
+            }
+            _ => false,
+        };
+        if let Some(at) = self.nodes.iter().position(is_same) {
+            return Ok(NodeId(at));
+        }
+        self.exact(name, Operation::Constant { raw, value }, (raw, raw), frac)
+    }
+
+    /// Returns the ranges of two nodes in units of the finer one, and its fraction bits.
+    fn aligned(&self, a: NodeId, b: NodeId) -> (Interval, Interval, i32) {
+        let (a, b) = (self.node(a), self.node(b));
+        let frac = a.format.frac.max(b.format.frac);
+        let in_units = |node: &PlanNode| {
+            let places = frac - node.format.frac;
+            (node.range.0 << places, node.range.1 << places)
+        };
+        (in_units(a), in_units(b), frac)
+    }
+
+    pub(super) fn add(&mut self, name: &str, a: NodeId, b: NodeId) -> Result<NodeId, PlanRefusal> {
+        let (first, second, frac) = self.aligned(a, b);
+        let range = (first.0 + second.0, first.1 + second.1);
+        self.exact(name, Operation::Add(a, b), range, frac)
+    }
+
+    pub(super) fn subtract(
+        &mut self,
+        name: &str,
+        a: NodeId,
+        b: NodeId,
+    ) -> Result<NodeId, PlanRefusal> {
+        let (first, second, frac) = self.aligned(a, b);
+        let range = (first.0 - second.1, first.1 - second.0);
+        self.exact(name, Operation::Subtract(a, b), range, frac)
+    }
+
+    pub(super) fn negate(&mut self, name: &str, a: NodeId) -> Result<NodeId, PlanRefusal> {
+        let frac = self.node(a).format.frac;
+        let zero = self.constant("zero", 0, frac)?;
+        self.subtract(name, zero, a)
+    }
+
+    pub(super) fn multiply(
+        &mut self,
+        name: &str,
+        a: NodeId,
+        b: NodeId,
+    ) -> Result<NodeId, PlanRefusal> {
+        let (first, second) = (self.node(a), self.node(b));
+        let range = if a == b {
+            let least = if first.range.0 <= 0 && first.range.1 >= 0 {
+                0
+            } else {
+                first.range.0.pow(2).min(first.range.1.pow(2))
+            };
+            (least, first.range.0.pow(2).max(first.range.1.pow(2)))
+        } else {
+            interval::product(first.range, second.range)
+        };
+        let frac = first.format.frac + second.format.frac;
+        self.exact(name, Operation::Multiply(a, b), range, frac)
+    }
+
+    pub(super) fn absolute(&mut self, name: &str, a: NodeId) -> Result<NodeId, PlanRefusal> {
+        let node = self.node(a);
+        let (low, high) = node.range;
+        if low >= 0 {
+            return Ok(a);
+        }
+        let least = if high >= 0 { 0 } else { -high };
+        self.exact(name, Operation::Absolute(a), (least, high.max(-low)), node.format.frac)
+    }
+
+    pub(super) fn minimum(
+        &mut self,
+        name: &str,
+        a: NodeId,
+        b: NodeId,
+    ) -> Result<NodeId, PlanRefusal> {
+        let (first, second, frac) = self.aligned(a, b);
+        let range = (first.0.min(second.0), first.1.min(second.1));
+        self.exact(name, Operation::Minimum(a, b), range, frac)
+    }
+
+    pub(super) fn maximum(
+        &mut self,
+        name: &str,
+        a: NodeId,
+        b: NodeId,
+    ) -> Result<NodeId, PlanRefusal> {
+        let (first, second, frac) = self.aligned(a, b);
+        let range = (first.0.max(second.0), first.1.max(second.1));
+        self.exact(name, Operation::Maximum(a, b), range, frac)
+    }
+
+    pub(super) fn less(&mut self, name: &str, a: NodeId, b: NodeId) -> Result<NodeId, PlanRefusal> {
+        self.insert(name, Operation::Less(a, b), Format::BIT, (0, 1))
+    }
+
+    pub(super) fn nonzero(&mut self, name: &str, a: NodeId) -> Result<NodeId, PlanRefusal> {
+        self.insert(name, Operation::NonZero(a), Format::BIT, (0, 1))
+    }
+
+    pub(super) fn choose(
+        &mut self,
+        name: &str,
+        condition: NodeId,
+        cases: [NodeId; 2],
+        is_continuous: bool,
+    ) -> Result<NodeId, PlanRefusal> {
+        let (first, second, frac) = self.aligned(cases[0], cases[1]);
+        let range = (first.0.min(second.0), first.1.max(second.1));
+        self.exact(name, Operation::Choose { condition, cases, is_continuous }, range, frac)
+    }
+
+    /// Adds a · 2^`exponent`, which only reads the bits of a with another point.
+    pub(super) fn scale(
+        &mut self,
+        name: &str,
+        a: NodeId,
+        exponent: i32,
+    ) -> Result<NodeId, PlanRefusal> {
+        if exponent == 0 {
+            return Ok(a);
+        }
+        let node = self.node(a);
+        let Format { signed, int, frac } = node.format;
+        let format = Format { signed, int: int + exponent, frac: frac - exponent };
+        let range = node.range;
+        self.insert(name, Operation::Scale(a), format, range)
+    }
+
+    /// Adds a in a format. The caller must prove that no value leaves the format.
+    pub(super) fn narrow(
+        &mut self,
+        name: &str,
+        a: NodeId,
+        format: Format,
+        rounding: Rounding,
+    ) -> Result<NodeId, PlanRefusal> {
+        let node = self.node(a);
+        if node.format == format {
+            return Ok(a);
+        }
+        let places = node.format.frac - format.frac;
+        let rounded = |raw: i128| {
+            if places > 0 { rounding.shift(raw, places) } else { raw << -places }
+        };
+        let whole = (rounded(node.range.0), rounded(node.range.1));
+        let range = if interval::fits(whole, format) { whole } else { format.range() };
+        self.insert(name, Operation::Narrow(a, rounding), format, range)
+    }
+
+    /// Adds a with fewer fraction bits, and with as many integer bits as its values need.
+    pub(super) fn shorten(
+        &mut self,
+        name: &str,
+        a: NodeId,
+        frac: i32,
+        rounding: Rounding,
+    ) -> Result<NodeId, PlanRefusal> {
+        let node = self.node(a);
+        let places = node.format.frac - frac;
+        if places <= 0 {
+            return Ok(a);
+        }
+        let range = (rounding.shift(node.range.0, places), rounding.shift(node.range.1, places));
+        self.narrow(name, a, Format::holding(range.0, range.1, frac), rounding)
+    }
+
+    /// Adds the word that [`Operation::Normalise`] gives, and its places.
+    pub(super) fn normalise(
+        &mut self,
+        name: &str,
+        word: NodeId,
+        by_pairs: bool,
+    ) -> Result<[NodeId; 2], PlanRefusal> {
+        let width = self.node(word).format.width();
+        let format = Format::unsigned(0, width as i32);
+        let operation = Operation::Normalise { word, by_pairs };
+        let normalised = self.insert(name, operation, format, format.range())?;
+        let count = super::node::normalising_shifts(width, by_pairs).len().max(1);
+        let format = Format::unsigned(count as i32, 0);
+        let name = format!("{name}_places");
+        let places = self.insert(&name, Operation::Places(normalised), format, format.range())?;
+        Ok([normalised, places])
+    }
+
+    /// Adds a · 2^places in a format. The caller must prove that no value leaves the format.
+    pub(super) fn shift_left(
+        &mut self,
+        name: &str,
+        a: NodeId,
+        places: NodeId,
+        format: Format,
+    ) -> Result<NodeId, PlanRefusal> {
+        self.insert(name, Operation::ShiftLeft(a, places), format, format.range())
+    }
+
+    pub(super) fn shift_right(
+        &mut self,
+        name: &str,
+        a: NodeId,
+        places: NodeId,
+    ) -> Result<NodeId, PlanRefusal> {
+        let node = self.node(a);
+        let (format, range) = (node.format, (0, node.range.1));
+        self.insert(name, Operation::ShiftRight(a, places), format, range)
+    }
+
+    /// Adds a function of one number. `values` are limits of its raw values, within the allowed error.
+    pub(super) fn polynomial(
+        &mut self,
+        name: &str,
+        a: NodeId,
+        approximation: Approximation,
+        values: Interval,
+    ) -> Result<NodeId, PlanRefusal> {
+        let frac = approximation.function.fraction as i32;
+        let format = match &approximation.polynomials {
+            Some(found) => found.result,
+            None => Format::holding(values.0, values.1, frac),
+        };
+        let operation = Operation::Polynomial(a, Box::new(approximation));
+        self.insert(name, operation, format, format.range())
+    }
+
+    /// Returns the functions of one number that the plan approximates, in the order of their nodes.
+    pub fn functions(&self) -> impl Iterator<Item = &TargetFunction> {
+        self.nodes.iter().filter_map(|node| match &node.operation {
+            Operation::Polynomial(_, approximation) => Some(&approximation.function),
+            _ => None,
+        })
+    }
+}

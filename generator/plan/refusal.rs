@@ -1,0 +1,42 @@
+//! Says why an expression has no plan, in words that name the part of the expression and a remedy.
+
+use std::ops::Range;
+
+use glint_base::fixed::MAX_WIDTH;
+
+/// The reason why there is no plan for an expression.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PlanRefusal {
+    /// The number of the result that it concerns, if it concerns one.
+    pub result: Option<usize>,
+    /// The bytes of the result's formula that it concerns, if it concerns one place.
+    pub place: Option<Range<usize>>,
+    /// What is wrong, in words.
+    pub message: String,
+    /// What to change, in words.
+    pub remedy: String,
+}
+
+impl PlanRefusal {
+    /// Makes a refusal that concerns the whole expression.
+    pub fn new(message: impl Into<String>, remedy: impl Into<String>) -> Self {
+        let (message, remedy) = (message.into(), remedy.into());
+        Self { result: None, place: None, message, remedy }
+    }
+
+    /// Makes the refusal of a node with more bits than a net can have.
+    pub(super) fn too_wide(name: &str, width: i32) -> Self {
+        let message = format!("the part `{name}` would have {width} bits, more than {MAX_WIDTH}");
+        Self::new(message, "give the operands fewer bits, or the results fewer fraction bits")
+    }
+
+    /// Returns the refusal, said of a result.
+    pub(super) fn of_result(self, result: usize) -> Self {
+        Self { result: self.result.or(Some(result)), ..self }
+    }
+
+    /// Returns the refusal, said of a place in a formula.
+    pub(super) fn at(self, place: &Range<usize>) -> Self {
+        Self { place: self.place.or(Some(place.clone())), ..self }
+    }
+}

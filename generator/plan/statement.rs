@@ -1,0 +1,85 @@
+//! States an expression: its operands with their domains, and its results with their formulas and the errors that they
+//! may have.
+
+use glint_base::fixed::Format;
+use glint_formula::{Comparison, Enclosure, Expression, RBig};
+
+/// What a user asks for: results as formulas of operands, each with the error that it may have.
+#[derive(Clone, Debug)]
+pub struct Statement {
+    /// The operands, in the order of the ports.
+    pub operands: Vec<StatedOperand>,
+    /// The results, in the order of the ports.
+    pub results: Vec<StatedResult>,
+}
+
+/// An operand with the values that it can have.
+#[derive(Clone, Debug, PartialEq)]
+pub struct StatedOperand {
+    /// The name of the port.
+    pub name: String,
+    /// The format of the port.
+    pub format: Format,
+    /// The smallest and the largest raw operand for which results are promised.
+    pub domain: (i64, i64),
+}
+
+/// A result with its formula.
+#[derive(Clone, Debug)]
+pub struct StatedResult {
+    /// The name of the port, without `_out`.
+    pub name: String,
+    /// The formula, in terms of operands alone.
+    pub formula: Expression,
+    /// Fraction bits of the result.
+    pub fraction: u32,
+    /// The largest error, in units of the last place.
+    pub error: f64,
+    /// The operands for which the error is promised; `None` for all of the domain.
+    pub promise: Option<Comparison>,
+}
+
+impl Statement {
+    /// Returns the exact values of raw operands, by their names.
+    pub fn exact_operands(&self, raw: &[i64]) -> Vec<(&str, RBig)> {
+        let mut values = Vec::with_capacity(raw.len());
+        for (operand, &raw) in self.operands.iter().zip(raw) {
+            let scale = RBig::from(2).pow(-operand.format.frac as isize);
+            values.push((operand.name.as_str(), RBig::from(raw) * scale));
+        }
+        values
+    }
+
+    /// Returns the values of operands within raw limits, by their names.
+    pub fn enclosed_operands(&self, limits: &[(i64, i64)]) -> Vec<(&str, Enclosure)> {
+        let mut values = Vec::with_capacity(limits.len());
+        for (operand, (low, high)) in self.operands.iter().zip(limits) {
+            let low = operand.format.to_f64((*low).into());
+            let high = operand.format.to_f64((*high).into());
+            values.push((operand.name.as_str(), Enclosure::between(low, high)));
+        }
+        values
+    }
+
+    /// Returns the domain: the smallest and the largest raw value of each operand.
+    pub fn domain(&self) -> Vec<(i64, i64)> {
+        self.operands.iter().map(|operand| operand.domain).collect()
+    }
+
+    /// Returns the number of combinations of operands in the domain.
+    pub fn combinations(&self) -> u128 {
+        let mut count: u128 = 1;
+        for (low, high) in self.domain() {
+            count = count.saturating_mul(u128::from(high.abs_diff(low)) + 1);
+        }
+        count
+    }
+}
+
+impl StatedResult {
+    /// Returns whether the error is promised for operands within limits; `None` where it is promised for some of them.
+    pub fn is_promised(&self, operands: &[(&str, Enclosure)]) -> Option<bool> {
+        let Some(promise) = &self.promise else { return Some(true) };
+        promise.holds(operands).unwrap_or(None)
+    }
+}

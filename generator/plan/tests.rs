@@ -1,0 +1,173 @@
+//! Tests that expressions get plans, and that the errors of the plans are as proved.
+
+use glint_base::fixed::{Format, Rounding};
+use glint_formula::{Comparison, Enclosure, Expression, Kind, parse};
+
+use super::exhaust::largest_errors;
+use super::find::enclosed_errors;
+use super::{Operation, Proof, StatedOperand, StatedResult, Statement, find};
+
+/// Returns an operand with a whole format as its domain.
+fn operand(name: &str, format: Format) -> StatedOperand {
+    let (low, high) = format.range();
+    StatedOperand { name: name.to_owned(), format, domain: (low as i64, high as i64) }
+}
+
+fn result(name: &str, formula: &str, fraction: u32) -> StatedResult {
+    StatedResult {
+        name: name.to_owned(),
+        formula: parse(formula).unwrap_or_else(|fault| panic!("{}", fault.under(formula))),
+        fraction,
+        error: 1.0,
+        promise: None,
+    }
+}
+
+/// Returns the comparison that a text states, for example `x < y`.
+fn comparison(text: &str) -> Comparison {
+    let choice: Expression = parse(&format!("if({text}, 1, 0)")).expect("a comparison");
+    match choice.kind {
+        Kind::If(comparison, ..) => comparison,
+        other => panic!("{other:?}"),
+    }
+}
+
+/// The statements of the tests: formulas of x and y, the format of both, and where the errors are promised.
+fn statements(bits: i32) -> Vec<Statement> {
+    let signed = Format::signed(0, bits - 1);
+    let unsigned = Format::unsigned(0, bits);
+    let not_origin = Some("x^2 + y^2 > 0");
+    let cases: [(&[&str], Format, Option<&str>); 9] = [
+        (&["x * y"], signed, None),
+        (&["sqrt(x^2 + y^2)"], signed, None),
+        (&["atan2(y, x) / pi"], signed, not_origin),
+        (&["atan2(y, x)"], signed, not_origin),
+        (&["x / y"], unsigned, Some("x < y")),
+        (&["(x - y) / (2 + x)", "max(x, -y)"], signed, None),
+        (&["if(x > y, x - y, 3 * y)", "abs(x - y) / 3"], signed, None),
+        (&["sin(x) * y + 0.3", "1 / sqrt(1 + x * y)"], unsigned, None),
+        (&["sqrt(x^2 + y^2)", "atan2(y, x) / pi"], signed, not_origin),
+    ];
+    let mut statements = Vec::new();
+    for (formulas, format, promise) in cases {
+        let mut results = Vec::new();
+        for (number, formula) in formulas.iter().enumerate() {
+            let promise = promise.map(comparison);
+            let result = result(&format!("r{number}"), formula, bits as u32 - 1);
+            results.push(StatedResult { promise, ..result });
+        }
+        let operands = vec![operand("x", format), operand("y", format)];
+        statements.push(Statement { operands, results });
+    }
+    statements
+}
+
+/// The enclosed error holds for every combination, and neither is beyond the error that is asked for.
+#[test]
+fn enclosed_errors_hold_for_every_combination() {
+    for bits in [5, 8] {
+        for statement in statements(bits) {
+            let found =
+                find(&statement).unwrap_or_else(|refusal| panic!("{refusal:?} {statement:#?}"));
+            let enclosed = enclosed_errors(&statement, &found.plan).expect("a proof");
+            let largest = largest_errors(&statement, &found.plan).expect("values");
+            for ((enclosed, largest), result) in
+                enclosed.iter().zip(&largest).zip(&statement.results)
+            {
+                // The largest error is rounded up.
+                assert!(*largest <= enclosed.next_up());
+                assert!(*enclosed < result.error, "{statement:?}");
+                // A bound of several times the error would be useless.
+                assert!(*enclosed < 4.0 * largest + 0.1, "{enclosed} for {largest}: {statement:?}");
+            }
+        }
+    }
+}
+
+#[test]
+fn sixteen_bits_are_enclosed() {
+    for statement in statements(16) {
+        let found = find(&statement).unwrap_or_else(|refusal| panic!("{refusal:?}"));
+        assert_eq!(found.proof, Proof::Enclosed);
+        for (bound, result) in found.bounds.iter().zip(&statement.results) {
+            assert!(*bound < result.error);
+        }
+    }
+}
+
+/// A wrong coefficient, a wrong shift, a wrong octant and a lost sign each exceed the proved bound.
+#[test]
+fn planted_faults_exceed_the_bound() {
+    let statement = &statements(8)[8];
+    let found = find(statement).expect("a plan");
+    let mut faults = 0;
+    for at in 0..found.plan.nodes.len() {
+        let mut plan = found.plan.clone();
+        let node = &mut plan.nodes[at];
+        match &mut node.operation {
+            Operation::Polynomial(_, approximation) => {
+                let mut wrong =
+                    (**approximation.polynomials.as_ref().expect("polynomials")).clone();
+                let middle = wrong.words.len() / 2;
+                wrong.words[middle][0] += 1 << (wrong.guard() + 3);
+                approximation.polynomials = Some(wrong.into());
+            }
+            Operation::Choose { cases, .. } => cases.swap(0, 1),
+            Operation::Absolute(a) => node.operation = Operation::Narrow(*a, Rounding::Truncate),
+            Operation::Places(_) => {
+                node.operation = Operation::Constant { raw: 1, value: Enclosure::exactly(1.0) }
+            }
+            _ => continue,
+        }
+        faults += 1;
+        let largest = largest_errors(statement, &plan).expect("values");
+        let is_noticed = largest.iter().zip(&found.bounds).any(|(largest, bound)| largest > bound);
+        assert!(is_noticed, "node {}", found.plan.nodes[at].name);
+    }
+    assert!(faults >= 10, "{faults} faults");
+}
+
+#[test]
+fn refusals_name_the_part_and_a_remedy() {
+    let byte = Format::signed(0, 7);
+    for (formula, promise, message, remedy) in [
+        ("1 + x / y", None, "this is not finite", "where"),
+        ("z + x", None, "there is no operand `z`", "name an operand"),
+        ("(2 + x) ^ y", None, "a power whose base and exponent both vary", "exp2"),
+        ("x % (y + 2)", None, "a remainder by a number that varies", "x % 1"),
+        ("sqrt(x + y)", None, "this is not finite, or has no value", "where"),
+        ("atan2(y, x)", None, "not finite, or has no value", "where"),
+    ] {
+        let promise: Option<&str> = promise;
+        let result = StatedResult { promise: promise.map(comparison), ..result("r", formula, 8) };
+        let operands = vec![operand("x", byte), operand("y", byte)];
+        let refusal = find(&Statement { operands, results: vec![result] }).expect_err(formula);
+        assert!(refusal.message.contains(message), "{formula}: {refusal:?}");
+        assert!(refusal.remedy.contains(remedy), "{formula}: {refusal:?}");
+        assert_eq!(refusal.result, Some(0));
+        let place = refusal.place.expect("a place");
+        assert!(place.end <= formula.len() && !place.is_empty(), "{formula}: {place:?}");
+    }
+}
+
+/// Formulas of x and y by their definitions in whole numbers: values that need no rounding.
+#[test]
+fn exact_plans_have_exact_values() {
+    let statement = Statement {
+        operands: vec![operand("x", Format::signed(7, 0)), operand("y", Format::signed(7, 0))],
+        results: vec![
+            result("p", "x * y - 3 * x", 0),
+            result("m", "max(abs(x), y / 4)", 2),
+            result("c", "if(x >= y, x + 1, -y)", 0),
+        ],
+    };
+    let found = find(&statement).expect("a plan");
+    for (x, y) in [(0i64, 0i64), (-128, 127), (5, 5), (100, -3), (-1, 2)] {
+        let values = found.plan.values(&[x, y]);
+        let results: Vec<i128> = found.plan.results.iter().map(|node| values[node.0]).collect();
+        let larger = (4 * x.abs()).max(y);
+        let chosen = if x >= y { x + 1 } else { -y };
+        assert_eq!(results, [x * y - 3 * x, larger, chosen].map(i128::from), "x = {x}, y = {y}");
+    }
+    assert!(found.bounds.iter().all(|bound| *bound == 0.0), "{:?}", found.bounds);
+}
