@@ -39,11 +39,12 @@ use super::failure::{self, Several};
 use crate::wrong_usage;
 use glint_base::diagnostic::Diagnostics;
 use glint_base::input;
+use glint_base::key_error::KeyError;
 use glint_base::program::Program;
 use glint_base::text;
 use glint_config::{self as config, Problems};
 use glint_core::core::Core;
-use glint_core::package::{OutputFile, Unfit, Vectors};
+use glint_core::package::{OutputFile, Vectors};
 use glint_core::registry::Registry;
 use glint_golden::Bound;
 use glint_show::evidence::advice;
@@ -156,8 +157,8 @@ fn load_one(registry: &Registry, schemas: &[config::Schema], path: &Path) -> Res
         // If the description cannot give something that the configuration asks for, the mistake is in the
         // configuration.
         let mut problems = locations.clone();
-        if let Some(unfit) = error.downcast_ref::<Unfit>() {
-            problems.push(unfit.key, &unfit.message, &unfit.remedy);
+        if let Some(key_error) = error.downcast_ref::<KeyError>() {
+            problems.push_error(key_error.clone());
         }
         let found = error.downcast_ref::<Diagnostics>().map_or(&[][..], |found| &found.0);
         for it in found {
@@ -214,13 +215,15 @@ impl Loaded {
     /// Returns every file of the configuration. If a key asks for something that the core cannot have, the error
     /// shows the place of the key in the file.
     fn files(&self, vectors: impl Into<Option<Vectors>>) -> Result<Vec<OutputFile>> {
-        self.core.files(&self.path, vectors).map_err(|error| match error.downcast_ref::<Unfit>() {
-            Some(unfit) => {
-                let mut problems = self.locations.clone();
-                problems.push(unfit.key, &unfit.message, &unfit.remedy);
-                problems.into()
+        self.core.files(&self.path, vectors).map_err(|error| {
+            match error.downcast_ref::<KeyError>() {
+                Some(key_error) => {
+                    let mut problems = self.locations.clone();
+                    problems.push_error(key_error.clone());
+                    problems.into()
+                }
+                None => error.context(format!("`{}`", self.path)),
             }
-            None => error.context(format!("`{}`", self.path)),
         })
     }
 
