@@ -37,7 +37,6 @@ use anyhow::{Context, Result, anyhow, bail};
 
 use super::failure::{self, Several};
 use crate::wrong_usage;
-use glint_base::diagnostic::Diagnostics;
 use glint_base::input;
 use glint_base::key_error::KeyError;
 use glint_base::program::Program;
@@ -45,7 +44,7 @@ use glint_base::text;
 use glint_config::{self as config, Problems};
 use glint_core::core::Core;
 use glint_core::package::{OutputFile, Vectors};
-use glint_core::registry::Registry;
+use glint_core::registry::{CLOCK_MHZ, Registry};
 use glint_golden::Bound;
 use glint_show::evidence::advice;
 use glint_tools::Tool;
@@ -142,38 +141,30 @@ fn load_one(registry: &Registry, schemas: &[config::Schema], path: &Path) -> Res
     let device = registry
         .device(&config.device)
         .with_context(|| format!("no device `{}`", config.device))?;
-    // A key that the file leaves out follows.
-    let follow = |error: anyhow::Error| {
-        let found = error.downcast_ref::<Diagnostics>().and_then(|found| found.0.first());
-        let nearest = found.and_then(|it| Some((it.key.as_ref()?.0, it.nearest?)));
-        let Some((key, value)) = nearest.filter(|(key, _)| !locations.gives(key)) else {
-            return Err(error);
-        };
-        let mut config = config.clone();
-        config.set(key, config::Value::Number(value));
+    let core = if locations.gives(CLOCK_MHZ) {
         Core::new(*device, config)
+    } else {
+        Core::with_free_clock(*device, config)
     };
-    let core = Core::new(*device, config.clone()).or_else(follow).map_err(|error| {
-        // If the description cannot give something that the configuration asks for, the mistake is in the
-        // configuration.
-        let mut problems = locations.clone();
-        if let Some(key_error) = error.downcast_ref::<KeyError>() {
-            problems.push_error(key_error.clone());
-        }
-        let found = error.downcast_ref::<Diagnostics>().map_or(&[][..], |found| &found.0);
-        for it in found {
-            if let Some((key, remedy)) = &it.key {
-                let message = format!("{} ({}, {})", it.message, it.code, it.location);
-                problems.push(key, message, remedy);
-            }
-        }
-        if problems.is_empty() { error.context(format!("`{name}`")) } else { problems.into() }
-    })?;
+    let core = core.map_err(|error| located(error, &name, &locations))?;
     for warning in &core.design.warnings {
         let (code, place) = (warning.code, warning.location);
         failure::warn(&format!("{name}: {} ({code}, {place})", warning.message));
     }
     Ok(Loaded { path: name, core, locations })
+}
+
+/// Returns an error with its location: the place of the key in the file for a key error, and else the name of the file.
+/// `locations` has the places of the keys.
+fn located(error: anyhow::Error, file: &str, locations: &Problems) -> anyhow::Error {
+    match error.downcast::<KeyError>() {
+        Ok(key_error) => {
+            let mut problems = locations.clone();
+            problems.push_error(key_error);
+            problems.into()
+        }
+        Err(error) => error.context(format!("`{file}`")),
+    }
 }
 
 /// Returns a text about a name that is none of `names`: the nearest name, and all of them. `what` is the word for such
@@ -215,16 +206,8 @@ impl Loaded {
     /// Returns every file of the configuration. If a key asks for something that the core cannot have, the error
     /// shows the place of the key in the file.
     fn files(&self, vectors: impl Into<Option<Vectors>>) -> Result<Vec<OutputFile>> {
-        self.core.files(&self.path, vectors).map_err(|error| {
-            match error.downcast_ref::<KeyError>() {
-                Some(key_error) => {
-                    let mut problems = self.locations.clone();
-                    problems.push_error(key_error.clone());
-                    problems.into()
-                }
-                None => error.context(format!("`{}`", self.path)),
-            }
-        })
+        let files = self.core.files(&self.path, vectors);
+        files.map_err(|error| located(error, &self.path, &self.locations))
     }
 
     /// Does what [`Loaded::bound`] does, and warns of a module name with `__`. It also warns with the contract's
