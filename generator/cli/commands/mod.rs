@@ -35,7 +35,7 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, anyhow, bail};
 
-use super::failure::{self, Several};
+use super::failure::{self, Failure};
 use crate::wrong_usage;
 use glint_base::input;
 use glint_base::key_error::KeyError;
@@ -112,7 +112,7 @@ fn load(registry: &Registry, named: &[PathBuf]) -> Result<Vec<Loaded>> {
             ));
         }
     }
-    if failed.is_empty() { Ok(loaded) } else { Err(Several(failed).into()) }
+    if failed.is_empty() { Ok(loaded) } else { Err(Failure::Several(failed).into()) }
 }
 
 /// Does the same as [`load`], for a command about microprograms. Without names, it leaves the pipelines of `configs/`
@@ -137,10 +137,11 @@ fn load_one(registry: &Registry, schemas: &[config::Schema], path: &Path) -> Res
             "{name:?} has control characters in its name, which is written into files; rename it"
         );
     }
-    let (config, locations) = config::read_located(path, schemas)?;
+    let (config, locations) = config::read_located(path, schemas).map_err(Failure::Problems)?;
     let device = registry
         .device(&config.device)
         .with_context(|| format!("no device `{}`", config.device))?;
+    // A clock that the file leaves out may be lowered.
     let core = if locations.gives(CLOCK_MHZ) {
         Core::new(*device, config)
     } else {
@@ -161,7 +162,7 @@ fn located(error: anyhow::Error, file: &str, locations: &Problems) -> anyhow::Er
         Ok(key_error) => {
             let mut problems = locations.clone();
             problems.push_error(key_error);
-            problems.into()
+            Failure::Problems(problems).into()
         }
         Err(error) => error.context(format!("`{file}`")),
     }

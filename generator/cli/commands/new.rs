@@ -7,7 +7,7 @@ use serde_json::json;
 
 use super::none_of;
 use super::settings::KeyAssignment;
-use crate::failure::WrongUsage;
+use crate::failure::Failure;
 use crate::{OutputOptions, number, tables, wrong_usage};
 use glint_base::program::Program;
 use glint_base::target::TIMING_NAMES;
@@ -139,6 +139,6 @@ fn configuration(schema: &Schema, name: &str, settings: &[KeyAssignment]) -> Res
         for Problem { error, .. } in problems.iter() {
             lines.push(format!("{}; {}", error.message, error.remedy));
         }
-        WrongUsage(lines.join("\n")).into()
+        Failure::WrongUsage(lines.join("\n")).into()
     })
 }
