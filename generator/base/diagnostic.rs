@@ -21,21 +21,11 @@ pub struct Diagnostic {
     pub location: SourceLocation,
     /// Other source locations that take part.
     pub notes: Vec<(String, SourceLocation)>,
-    /// The configuration key that asks for more than the description can give, and the remedy.
-    pub key: Option<(&'static str, String)>,
-    /// The nearest value of that key that the description can give.
-    pub nearest: Option<f64>,
 }
 
 impl Diagnostic {
     pub fn new(code: Code, message: String, location: SourceLocation) -> Self {
-        Self { code, message, location, notes: Vec::new(), key: None, nearest: None }
-    }
-
-    /// Attributes the mistake to a configuration key. The remedy becomes the line "help" of the printed message.
-    pub fn of_key(mut self, key: &'static str, remedy: String) -> Self {
-        self.key = Some((key, remedy));
-        self
+        Self { code, message, location, notes: Vec::new() }
     }
 
     pub fn note(mut self, note: String, location: SourceLocation) -> Self {
@@ -49,9 +39,6 @@ impl fmt::Display for Diagnostic {
         write!(f, "error[{}]: {}\n  --> {}", self.code, self.message, self.location)?;
         for (note, location) in &self.notes {
             write!(f, "\n  note: {note}: {location}")?;
-        }
-        if let Some((key, remedy)) = &self.key {
-            write!(f, "\n  help: `{key}`: {remedy}")?;
         }
         Ok(())
     }

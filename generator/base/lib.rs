@@ -1,4 +1,5 @@
-//! Provides the basis of all other crates: fixed-point formats, intervals, diagnostics, targets, names, text and input.
+//! Provides the basis of all other crates: fixed-point formats, intervals, diagnostics, key errors, targets, names, text and
+//! input.
 
 pub mod codes;
 pub mod cone;
@@ -7,6 +8,7 @@ pub mod fixed;
 pub mod identifier;
 pub mod input;
 pub mod interval;
+pub mod key_error;
 pub mod keywords;
 pub mod program;
 pub mod target;

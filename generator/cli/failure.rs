@@ -9,46 +9,52 @@ use serde_json::{Value, json};
 use super::interrupt::Interrupted;
 use glint_config::Problems;
 
-/// A mistake on the command line itself, which only a command can see: exit code 2.
+/// A failure that has an exit code or a form of its own. All other errors are told as text with their causes.
 #[derive(Debug)]
-pub struct WrongUsage(pub String);
+pub enum Failure {
+    /// A mistake on the command line itself, which only a command can see: exit code 2.
+    WrongUsage(String),
+    /// A signal came, and the command has saved its work.
+    Interrupted(Interrupted),
+    /// The problems of a configuration.
+    Problems(Problems),
+    /// Several errors, none the cause of another: for example, the errors of several configurations.
+    Several(Vec<anyhow::Error>),
+}
 
-impl fmt::Display for WrongUsage {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&self.0)
+impl Failure {
+    /// Finds the failure that an error is made of, also if the error has a context.
+    fn of_error(error: &anyhow::Error) -> Option<&Self> {
+        error.downcast_ref()
     }
 }
 
-impl std::error::Error for WrongUsage {}
+impl fmt::Display for Failure {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::WrongUsage(message) => f.write_str(message),
+            Self::Interrupted(interrupted) => interrupted.fmt(f),
+            Self::Problems(problems) => problems.fmt(f),
+            Self::Several(errors) => write!(f, "{} errors", errors.len()),
+        }
+    }
+}
 
-/// Returns from a function with [`WrongUsage`], whose words it formats.
+impl std::error::Error for Failure {}
+
+/// Returns from a function with [`Failure::WrongUsage`], whose words it formats.
 macro_rules! wrong_usage {
-    ($($text:tt)*) => { anyhow::bail!($crate::failure::WrongUsage(format!($($text)*))) };
+    ($($text:tt)*) => { anyhow::bail!($crate::failure::Failure::WrongUsage(format!($($text)*))) };
 }
 pub(crate) use wrong_usage;
-
-/// Several errors, none the cause of another: for example, the errors of several configurations.
-#[derive(Debug)]
-pub struct Several(pub Vec<anyhow::Error>);
-
-impl fmt::Display for Several {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{} errors", self.0.len())
-    }
-}
-
-impl std::error::Error for Several {}
 
 /// Returns the exit code for an error. For example, it is 2 for wrong usage, 130 after Ctrl-C, and 1 for a file that
 /// cannot be read.
 pub fn exit_code(error: &anyhow::Error) -> ExitCode {
-    // Also when a context was put around it.
-    if let Some(interrupted) = error.downcast_ref::<Interrupted>() {
-        return ExitCode::from(interrupted.exit_code());
-    }
-    match error.downcast_ref::<WrongUsage>() {
-        Some(_) => ExitCode::from(2),
-        None => ExitCode::FAILURE,
+    match Failure::of_error(error) {
+        Some(Failure::WrongUsage(_)) => ExitCode::from(2),
+        Some(Failure::Interrupted(interrupted)) => ExitCode::from(interrupted.exit_code()),
+        Some(Failure::Problems(_) | Failure::Several(_)) | None => ExitCode::FAILURE,
     }
 }
 
@@ -71,30 +77,33 @@ pub fn problem(message: &str) -> Value {
     json!({ "file": null, "line": null, "column": null, "key": null, "message": message, "remedy": null })
 }
 
+/// Returns the problems of an error for scripts.
 fn problems(error: &anyhow::Error) -> Vec<Value> {
-    if let Some(Several(errors)) = error.downcast_ref() {
-        return errors.iter().flat_map(problems).collect();
-    }
-    match error.downcast_ref::<Problems>().map(Problems::to_json) {
-        Some(Value::Array(problems)) => problems,
-        Some(other) => vec![other],
-        None => vec![problem(&format!("{error:#}"))],
+    match Failure::of_error(error) {
+        Some(Failure::Several(errors)) => errors.iter().flat_map(problems).collect(),
+        Some(Failure::Problems(problems)) => match problems.to_json() {
+            Value::Array(problems) => problems,
+            other => vec![other],
+        },
+        Some(Failure::WrongUsage(_) | Failure::Interrupted(_)) | None => {
+            vec![problem(&format!("{error:#}"))]
+        }
     }
 }
 
+/// Prints an error to standard error, with its causes or as the snippets of a file.
 fn print_text(error: &anyhow::Error) {
-    if let Some(Several(errors)) = error.downcast_ref() {
-        for (at, error) in errors.iter().enumerate() {
-            if at > 0 {
-                print_line("");
+    match Failure::of_error(error) {
+        Some(Failure::Several(errors)) => {
+            for (at, error) in errors.iter().enumerate() {
+                if at > 0 {
+                    print_line("");
+                }
+                print_text(error);
             }
-            print_text(error);
         }
-        return;
-    }
-    match error.downcast_ref::<Problems>() {
-        Some(problems) => print_line(&problems.to_string()),
-        None => {
+        Some(Failure::Problems(problems)) => print_line(&problems.to_string()),
+        Some(Failure::WrongUsage(_) | Failure::Interrupted(_)) | None => {
             print_line(&format!("error: {error}"));
             for cause in error.chain().skip(1) {
                 print_line(&format!("  caused by: {cause}"));

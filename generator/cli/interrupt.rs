@@ -9,7 +9,7 @@ static DEFERRED: AtomicBool = AtomicBool::new(false);
 /// The signal that was noted, or 0.
 static NOTED: AtomicI32 = AtomicI32::new(0);
 
-/// The command was interrupted, and has ended in order.
+/// An interruption after which a command has saved its work.
 #[derive(Debug)]
 pub struct Interrupted {
     /// The number of the signal.
@@ -30,8 +30,6 @@ impl fmt::Display for Interrupted {
         write!(f, "interrupted; {}", self.saved)
     }
 }
-
-impl std::error::Error for Interrupted {}
 
 /// While it lives, the first signal is only noted, so that the command can save its work. The second signal ends the
 /// process. For example, `cosim --exhaustive --resume FILE` saves the state of its proof in this way.

@@ -32,7 +32,7 @@ impl Schema {
                 mistakes.push(format!("`{name}` is both a key and a table"));
             }
             for violation in key.violations_of(&key.default) {
-                mistakes.push(format!("default of `{name}`: {}", violation.message));
+                mistakes.push(format!("default of `{name}`: {}", violation.error.message));
             }
             if let Some(Condition { key: other, value, .. }) = key.condition {
                 // Only an earlier key, so that chains of conditions end.
@@ -51,8 +51,9 @@ impl Schema {
         if mistakes.is_empty() {
             let mut problems = Problems::default();
             (self.check)(&Config::defaults(self, self.device), &mut problems);
-            mistakes
-                .extend(problems.iter().map(|problem| format!("defaults: {}", problem.message)));
+            mistakes.extend(
+                problems.iter().map(|problem| format!("defaults: {}", problem.error.message)),
+            );
         }
         mistakes
     }

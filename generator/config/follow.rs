@@ -59,7 +59,7 @@ fn best<'k>(
 fn complaints(schema: &Schema, config: &Config) -> Vec<String> {
     let mut problems = Problems::default();
     (schema.check)(config, &mut problems);
-    problems.iter().map(|problem| problem.key.clone()).collect()
+    problems.iter().map(|problem| problem.error.key.clone()).collect()
 }
 
 /// Returns the other values of a key, the value nearest to its default first. If two integers are equally near, the smaller comes

@@ -1,6 +1,7 @@
 //! Checks names of Verilog modules, and explains the fault of an illegal name. For example, `2fast` begins with a digit.
 
-use super::problems::{Violation, quoted};
+use super::problems::quoted;
+use glint_base::key_error::KeyError;
 use glint_base::keywords::is_keyword;
 
 /// The number of characters that a name may have. It leaves room for the endings of derived modules and files.
@@ -8,16 +9,13 @@ const LONGEST: usize = 60;
 
 /// Checks a module name; nothing is wrong if it is an identifier of Verilog and SystemVerilog
 /// that every tool takes, and a plain file name.
-pub(super) fn violation(name: &str) -> Option<Violation> {
+pub(super) fn error(name: &str) -> Option<KeyError> {
     let message = complaint(name)?;
-    Some(Violation {
-        entry: None,
-        message,
-        remedy: format!(
-            "give a Verilog identifier of at most {LONGEST} letters, digits and _, as \"{}\"",
-            legalised(name)
-        ),
-    })
+    let remedy = format!(
+        "give a Verilog identifier of at most {LONGEST} letters, digits and _, as \"{}\"",
+        legalised(name)
+    );
+    Some(KeyError::new("name", message, remedy))
 }
 
 fn complaint(name: &str) -> Option<String> {

@@ -15,6 +15,7 @@ use super::schema::{Key, KeyKind, Schema};
 use super::text_pattern::{TextPattern, is_path_of_points};
 use super::validate::{Draft, keys_of};
 use super::values::{Config, Value};
+use glint_base::key_error::KeyError;
 use glint_base::program::Program;
 
 /// Reads a configuration from its text.
@@ -96,7 +97,7 @@ impl TomlReader<'_> {
             let message = format!("not valid TOML: {message}");
             (message, "write `key = value` or `[table]`, one to a line")
         };
-        self.problems.push_at(span, "", message, remedy);
+        self.problems.push_error_at(span, KeyError::new("", message, remedy));
     }
 
     /// Returns the line of an offset, counted from 0.
@@ -182,18 +183,17 @@ impl TomlReader<'_> {
             None => {
                 let stem = Path::new(file_name).file_stem().unwrap_or_default();
                 let name = stem.to_string_lossy().replace('-', "_");
-                if let Some(violation) = module_name::violation(&name) {
-                    let message =
-                        format!("{}; it comes from the name of the file", violation.message);
-                    let remedy = format!("set `name`: {}", violation.remedy);
+                if let Some(error) = module_name::error(&name) {
+                    let message = format!("{}; it comes from the name of the file", error.message);
+                    let remedy = format!("set `name`: {}", error.remedy);
                     self.problems.push("name", message, remedy);
                 }
                 name
             }
             Some(value) => match value.get_ref() {
                 DeValue::String(name) => {
-                    if let Some(violation) = module_name::violation(name) {
-                        self.report("name", value.span(), violation.message, violation.remedy);
+                    if let Some(error) = module_name::error(name) {
+                        self.report_error(value.span(), error);
                     }
                     name.clone().into_owned()
                 }
@@ -274,7 +274,8 @@ impl TomlReader<'_> {
             {
                 let points = points::read(&self.directory.join(&**path));
                 points.map(Value::Text).map_err(|(message, remedy)| {
-                    vec![Violation { message, remedy, ..key.violation(String::new()) }]
+                    let error = KeyError::new(key.name, message, remedy);
+                    vec![Violation { entry: None, error }]
                 })
             }
             _ => converted(key, value),
@@ -287,7 +288,7 @@ impl TomlReader<'_> {
                     let entry = violation.entry.zip(value.get_ref().as_array());
                     let entry = entry.and_then(|(index, entries)| entries.get(index));
                     let span = entry.map_or_else(|| span.clone(), Spanned::span);
-                    self.report(key.name, span, violation.message, violation.remedy);
+                    self.report_error(span, violation.error);
                 }
             }
         }
@@ -337,8 +338,13 @@ impl TomlReader<'_> {
 
     /// Adds a problem, unless a syntax error spoilt the line of `span`.
     fn report(&mut self, key: &str, span: Range<usize>, message: String, remedy: String) {
+        self.report_error(span, KeyError::new(key, message, remedy));
+    }
+
+    /// Adds an error, unless a syntax error spoilt the line of `span`.
+    fn report_error(&mut self, span: Range<usize>, error: KeyError) {
         if !self.broken.contains(&self.line(span.start)) {
-            self.problems.push_at(span, key, message, remedy);
+            self.problems.push_error_at(span, error);
         }
     }
 }

@@ -7,6 +7,8 @@ use std::ops::Range;
 use annotate_snippets::{AnnotationKind, Level, Origin, Renderer, Snippet};
 use serde_json::{Value as Json, json};
 
+use glint_base::key_error::KeyError;
+
 /// All problems of one configuration file, in the order of their locations.
 ///
 /// Displays each as a snippet of the file in plain text; [`Problems::to_json`] is for scripts.
@@ -29,15 +31,11 @@ pub(super) const STANDARD_INPUT: &str = "standard input";
 /// The number of problems that a list may keep: a file that is no configuration at all has no end of them.
 const LIMIT: usize = 200;
 
-/// One problem. For example, its `key` is `cosine.fraction`, and its `remedy` lists the integers that the key accepts.
+/// A key error with its location in the file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Problem {
-    /// The dotted name of the key; empty if the problem is one of the whole file.
-    pub key: String,
-    /// The message.
-    pub message: String,
-    /// The remedy.
-    pub remedy: String,
+    /// The error.
+    pub error: KeyError,
     /// The bytes of the key's text that it is about, if it is about a part of a text.
     pub place: Option<Range<usize>>,
     /// The bytes of the file that it is about, if the file has any such.
@@ -53,14 +51,13 @@ impl Problems {
     /// Adds a problem of a key. It is shown where the file gives the key; if the file does not,
     /// then with the file's name alone.
     pub fn push(&mut self, key: &str, message: impl Into<String>, remedy: impl Into<String>) {
-        let span = self.locations.get(key).cloned();
-        self.insert(Problem {
-            key: key.to_owned(),
-            message: message.into(),
-            remedy: remedy.into(),
-            place: None,
-            span,
-        });
+        self.push_error(KeyError::new(key, message, remedy));
+    }
+
+    /// Adds an error of a key, as [`Problems::push`] does.
+    pub fn push_error(&mut self, error: KeyError) {
+        let span = self.locations.get(&error.key).cloned();
+        self.insert(Problem { error, place: None, span });
     }
 
     /// Adds a problem of some bytes of a key's text: it is shown under them where the file gives the text as it is.
@@ -82,33 +79,16 @@ impl Problems {
             let from = whole.start + 1 + bytes.start;
             plain.then_some(from..(whole.start + 1 + bytes.end).max(from + 1))
         });
-        self.insert(Problem {
-            key: key.to_owned(),
-            message: message.into(),
-            remedy: remedy.into(),
-            place: bytes,
-            span: within.or(whole),
-        });
+        let error = KeyError::new(key, message, remedy);
+        self.insert(Problem { error, place: bytes, span: within.or(whole) });
     }
 
-    /// Adds a problem at a location in the text.
-    pub(super) fn push_at(
-        &mut self,
-        span: Range<usize>,
-        key: &str,
-        message: impl Into<String>,
-        remedy: impl Into<String>,
-    ) {
+    /// Adds an error at a location in the text.
+    pub(super) fn push_error_at(&mut self, span: Range<usize>, error: KeyError) {
         // If something is missing at the end of the text, it is missing in the last line, not below it.
         let end = self.text.trim_end_matches(['\r', '\n']).len();
         let span = span.start.min(end)..span.end.min(end);
-        self.insert(Problem {
-            key: key.to_owned(),
-            message: message.into(),
-            remedy: remedy.into(),
-            place: None,
-            span: Some(span),
-        });
+        self.insert(Problem { error, place: None, span: Some(span) });
     }
 
     /// Notes where the file gives a key.
@@ -191,13 +171,14 @@ impl Problems {
     pub fn to_json(&self) -> Json {
         let each = |problem: &Problem| {
             let (line, column) = self.position(problem).unzip();
+            let error = &problem.error;
             json!({
                 "file": self.file,
                 "line": line,
                 "column": column,
-                "key": (!problem.key.is_empty()).then_some(&problem.key),
-                "message": problem.message,
-                "remedy": problem.remedy,
+                "key": (!error.key.is_empty()).then_some(&error.key),
+                "message": error.message,
+                "remedy": error.remedy,
             })
         };
         Json::Array(self.list.iter().map(each).collect())
@@ -206,8 +187,8 @@ impl Problems {
     /// Returns the human report; a styled renderer adds colours.
     pub fn render(&self, renderer: &Renderer) -> String {
         let each = |problem: &Problem| {
-            let title = Level::ERROR.primary_title(&problem.message);
-            let help = Level::HELP.message(&problem.remedy);
+            let title = Level::ERROR.primary_title(&problem.error.message);
+            let help = Level::HELP.message(&problem.error.remedy);
             let group = match problem.span.clone() {
                 Some(span) => {
                     let annotation = AnnotationKind::Primary.span(span);
@@ -230,7 +211,9 @@ impl Problems {
 impl Problem {
     /// Returns the problem with its message in other words.
     pub(super) fn told(self, words: impl FnOnce(&str) -> String) -> Self {
-        Self { message: words(&self.message), ..self }
+        let message = words(&self.error.message);
+        let error = KeyError { message, ..self.error };
+        Self { error, ..self }
     }
 
     fn start(&self) -> Option<usize> {
@@ -246,12 +229,12 @@ impl fmt::Display for Problems {
 
 impl std::error::Error for Problems {}
 
-/// A problem of a value, before its place is known.
+/// A key error of a value, before its location is known.
 pub(super) struct Violation {
     /// The entry of a list that it is about.
     pub entry: Option<usize>,
-    pub message: String,
-    pub remedy: String,
+    /// The error.
+    pub error: KeyError,
 }
 
 pub(super) fn out_of_range(name: &str, given: impl std::fmt::Display) -> String {

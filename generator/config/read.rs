@@ -9,6 +9,7 @@ use super::problems::{Problems, STANDARD_INPUT};
 use super::schema::Schema;
 use super::values::Config;
 use glint_base::input;
+use glint_base::key_error::KeyError;
 use glint_base::program::Program;
 
 /// The number of bytes that a configuration file may have. It is small enough not to exhaust the memory.
@@ -52,7 +53,7 @@ pub fn read_located(path: &Path, schemas: &[Schema]) -> Result<(Config, Problems
                 [0xff, 0xfe, ..] | [0xfe, 0xff, ..] => "it looks like UTF-16; save it as UTF-8",
                 _ => "save it as UTF-8 text",
             };
-            problems.push_at(start..end, "", message, remedy);
+            problems.push_error_at(start..end, KeyError::new("", message, remedy));
             Err(problems)
         }
     }

@@ -37,7 +37,7 @@ pub fn sample(schema: &Schema, seed: u64) -> Config {
                 return config;
             }
             for problem in problems.iter() {
-                match schema.key(&problem.key) {
+                match schema.key(&problem.error.key) {
                     Some(key) if config.applies(schema, key.name) => {
                         config.set(key.name, draw(key, &mut rng));
                     }

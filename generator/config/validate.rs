@@ -11,6 +11,7 @@ use super::schema::{Condition, Key, KeyKind, Schema};
 use super::shared::Shared;
 use super::values::{Config, Value, is_integer};
 use super::write::tables;
+use glint_base::key_error::KeyError;
 
 impl Key {
     /// Returns the problems of a value; none if the key accepts it.
@@ -73,11 +74,8 @@ impl Key {
 
     /// Returns a violation with the usual remedy, which lists the accepted values of the key.
     pub(super) fn violation(&self, message: String) -> Violation {
-        Violation {
-            entry: None,
-            message,
-            remedy: format!("give {} (default {})", self.accepts(), self.default.toml()),
-        }
+        let remedy = format!("give {} (default {})", self.accepts(), self.default.toml());
+        Violation { entry: None, error: KeyError::new(self.name, message, remedy) }
     }
 
     fn required(&self, good: bool, message: impl FnOnce() -> String) -> Vec<Violation> {
@@ -92,10 +90,11 @@ impl Key {
         let near = nearest(given, options.iter().copied()).filter(|_| !is_integer(given));
         match near {
             None => violation,
-            Some(near) => Violation {
-                remedy: format!("did you mean \"{near}\"? {}", violation.remedy),
-                ..violation
-            },
+            Some(near) => {
+                let remedy = format!("did you mean \"{near}\"? {}", violation.error.remedy);
+                let error = KeyError { remedy, ..violation.error };
+                Violation { error, ..violation }
+            }
         }
     }
 
@@ -254,7 +253,7 @@ fn check(schema: &Schema, draft: &Draft, problems: &mut Problems) {
         });
     }
     let found = certain.unwrap_or_default().into_iter().map(|problem| {
-        let governs = schema.key(&problem.key).filter(|key| !draft.given.contains(key.name));
+        let governs = schema.key(&problem.error.key).filter(|key| !draft.given.contains(key.name));
         match governs {
             None => problem,
             Some(key) => problem.told(|message| of_default(key, draft, message)),
@@ -325,8 +324,8 @@ impl Config {
     ) -> Result<Self, Problems> {
         let mut problems = Problems::default();
         let mut draft = Draft::new(schema, name);
-        if let Some(violation) = module_name::violation(name) {
-            problems.push("name", violation.message, violation.remedy);
+        if let Some(error) = module_name::error(name) {
+            problems.push_error(error);
         }
         for (name, value) in values {
             let Some(key) = schema.key(&name) else {
@@ -337,7 +336,7 @@ impl Config {
             let violations = key.violations_of(&value);
             draft.give(key, violations.is_empty().then_some(value));
             for violation in violations {
-                problems.push(key.name, violation.message, violation.remedy);
+                problems.push_error(violation.error);
             }
         }
         draft.finish(schema, problems)

@@ -3,7 +3,7 @@
 
 use std::path::Path;
 
-use anyhow::{Context, Result};
+use anyhow::Result;
 
 use crate::cosim::exhaustive::{Backing, Clocks, Job, Places};
 use crate::cosim::{Lockstep, directed, trial};
@@ -11,7 +11,7 @@ use crate::package::{
     self, ContractFacts, EmitInputs, HandshakeTiming, InstanceExample, LineClocks, OutputFile,
     Surroundings, Vectors, WorkedExample,
 };
-use crate::registry::Device;
+use crate::registry::{DesignError, Device};
 use glint_base::input;
 use glint_base::program::Program;
 use glint_config::{Config, Key};
@@ -55,15 +55,39 @@ impl Core {
     /// # Errors
     /// Fails in these cases:
     /// - The description has mistakes.
+    /// - The pipeline cannot be made.
     /// - Results depend on earlier results, or the contract's model never shows them.
     /// - The constraints ask for a faster clock than the pipeline is made for.
     /// - The configuration asks for a style of ROMs, and no ROM of the core can have it.
     /// - The configuration asks for a program that recomputes results, and the contract has no formula of one operand.
     /// - The golden model cannot model the output registers or the operand buffers.
     pub fn new(device: Device, config: Config) -> Result<Self> {
-        let design = device
-            .design(&config)
-            .with_context(|| format!("the description of `{}` is wrong", device.name))?;
+        let design = device.design(&config);
+        Self::of_design(device, config, design)
+    }
+
+    /// Builds and checks the design of a configuration whose clock nobody gave, as [`Device::design_with_free_clock`] does.
+    ///
+    /// # Errors
+    /// Fails if [`Core::new`] fails with that clock, too.
+    pub fn with_free_clock(device: Device, mut config: Config) -> Result<Self> {
+        let design = device.design_with_free_clock(&mut config);
+        Self::of_design(device, config, design)
+    }
+
+    fn of_design(
+        device: Device,
+        config: Config,
+        design: Result<Design, DesignError>,
+    ) -> Result<Self> {
+        let design = match design {
+            Ok(design) => design,
+            Err(DesignError::Key(error)) => return Err(error.into()),
+            Err(DesignError::Description(mistakes)) => {
+                let context = format!("the description of `{}` is wrong", device.name);
+                return Err(anyhow::Error::new(mistakes).context(context));
+            }
+        };
         if let Some(pipeline) = &design.pipeline {
             package::check_clock(&config, pipeline)?;
         }

@@ -1,16 +1,22 @@
 //! The registry of devices. It knows the keys, the description, the golden model and the accuracy contract of each device.
 
+mod design_error;
+mod pipeline_keys;
+
 use anyhow::{Result, ensure};
 
+use glint_base::codes;
 use glint_base::diagnostic::Diagnostics;
-use glint_base::target;
 use glint_catalogue as devices;
-use glint_config::{Config, Schema, Shared};
+use glint_config::{Config, Schema, Shared, Value};
 use glint_golden::{self as golden, Contract, Model};
 use glint_keys as keys;
 use glint_rtl::dsl::Designer;
 use glint_rtl::netlist::Design;
 use glint_rtl::pipeline;
+
+pub use design_error::DesignError;
+pub use pipeline_keys::CLOCK_MHZ;
 
 /// The key that asks for registers behind the results.
 const OUTPUT_REGISTERED: &str = "output.registered";
@@ -54,15 +60,28 @@ impl Device {
     ///
     /// # Errors
     /// Fails if the description has mistakes, or if the pipeline cannot be made.
-    pub fn design(&self, config: &Config) -> Result<Design, Diagnostics> {
+    pub fn design(&self, config: &Config) -> Result<Design, DesignError> {
         let sequential = self.sequential(config)?;
-        match pipelining(config) {
-            None => Ok(sequential),
-            Some(options) => {
-                let design = pipeline::pipeline(&sequential, &options)?;
-                Ok(Design { warnings: sequential.warnings, ..design })
-            }
+        let pipelined = pipeline_keys::pipelined(&sequential, config)?;
+        Ok(pipelined.unwrap_or(sequential))
+    }
+
+    /// Returns the design of a configuration whose clock nobody gave. If the pipeline cannot reach the default of
+    /// [`CLOCK_MHZ`], the configuration gets the fastest clock that it can reach.
+    ///
+    /// # Errors
+    /// Fails if the description has mistakes, or if the pipeline cannot be made with that clock either.
+    pub fn design_with_free_clock(&self, config: &mut Config) -> Result<Design, DesignError> {
+        let sequential = self.sequential(config)?;
+        let mut pipelined = pipeline_keys::pipelined(&sequential, config);
+        if let Err(error) = &pipelined
+            && error.key == CLOCK_MHZ
+            && let Some(nearest) = error.nearest
+        {
+            config.set(CLOCK_MHZ, Value::Number(nearest));
+            pipelined = pipeline_keys::pipelined(&sequential, config);
         }
+        Ok(pipelined?.unwrap_or(sequential))
     }
 
     /// Returns the sequential design, which executes a microprogram. [`Device::design`] also makes pipelines from it.
@@ -82,7 +101,7 @@ impl Device {
         if keys.operands_logic == "combinational" {
             designer.keep_operand_logic();
         }
-        designer.finish()
+        designer.finish().map_err(|mistakes| with_key_remedies(mistakes, &keys))
     }
 
     /// Returns the golden model of the design with the microprogram.
@@ -227,26 +246,15 @@ impl Registry {
     }
 }
 
-/// Returns the options of a configuration; none if its architecture is sequential.
-fn pipelining(config: &Config) -> Option<pipeline::Options> {
-    let keys = Shared::of(config);
-    (keys.architecture == "pipelined").then(|| pipeline::Options {
-        target: target::Timing::named(&keys.target).unwrap_or(&target::TIMINGS[0]),
-        goal: match keys.stages {
-            0 => pipeline::Goal::ClockMhz(keys.pipeline_clock_mhz),
-            stages => pipeline::Goal::Stages(stages as usize),
-        },
-        interval: match keys.interval.parse() {
-            Ok(clocks) => pipeline::IntervalGoal::Clocks(clocks),
-            Err(_) if keys.rate != 0.0 => pipeline::IntervalGoal::Rate(keys.rate),
-            Err(_) => pipeline::IntervalGoal::Multipliers(keys.max_multipliers as usize),
-        },
-        registered: keys.multipliers == "registered",
-        stall: keys.stall == "ready",
-        side: keys.side,
-        delays: match keys.delays.as_str() {
-            "registers" => pipeline::Delays::Registers,
-            _ => pipeline::Delays::Memory,
-        },
-    })
+/// Adds to each mistake that a key of the configuration leads to that the key can be left out.
+fn with_key_remedies(mut mistakes: Diagnostics, keys: &Shared) -> Diagnostics {
+    for mistake in &mut mistakes.0 {
+        if mistake.code == codes::OUTPUT_REGISTER && keys.output_registered {
+            mistake.message += &format!(", or leave {OUTPUT_REGISTERED} out");
+        }
+        if mistake.code == codes::BUFFER && keys.operands_buffered {
+            mistake.message += &format!(": leave {OPERANDS_BUFFERED} out");
+        }
+    }
+    mistakes
 }

@@ -73,16 +73,16 @@ fn check(config: &Config, problems: &mut Problems) {
     }
     let Err((part, why)) = keys.parts() else { return };
     let Some(problem) = why.iter().next() else { return };
+    let error = &problem.error;
     if part != function::schema().device {
-        let message =
-            format!("its part `{part}` cannot be made: {}: {}", problem.key, problem.message);
+        let message = format!("its part `{part}` cannot be made: {}: {}", error.key, error.message);
         return problems.push("highlight", message, "other widths");
     }
     // The keys of the part are not the keys of this file. The part shares only the formula with this file, and makes its
     // other keys itself.
-    let message = problem.message.clone();
-    if problem.key == FORMULA {
-        let remedy = problem
+    let message = error.message.clone();
+    if error.key == FORMULA {
+        let remedy = error
             .remedy
             .replace("change function.from or function.to", "the cosine x is from 0 to 1");
         problems.push_within(FORMULA, problem.place.clone(), message, remedy);

@@ -62,7 +62,8 @@ fn one_key_can_be_changed_alone() {
                     Ok(config) => assert_eq!(config.integer(key.name), value),
                     Err(_) if !applies => {}
                     Err(problems) => {
-                        let others = problems.iter().filter(|problem| problem.key != key.name);
+                        let others =
+                            problems.iter().filter(|problem| problem.error.key != key.name);
                         assert_eq!(
                             others.count(),
                             0,
@@ -91,7 +92,10 @@ fn what_is_given_stays_and_the_nearest_follows() {
     assert_eq!(config.integer("cosine.fraction"), 11);
     // Both given: nothing may follow.
     let problems = parsed("cosine.fraction = 8\nsine.address = 9\n").expect_err("a problem");
-    assert_eq!(problems.iter().map(|it| it.key.as_str()).collect::<Vec<_>>(), ["sine.address"]);
+    assert_eq!(
+        problems.iter().map(|it| it.error.key.as_str()).collect::<Vec<_>>(),
+        ["sine.address"]
+    );
 }
 
 /// A word does not follow; the message names it and says where its value comes from.

@@ -25,8 +25,8 @@ fn answer(text: &str, schemas: &[Schema]) -> Result<Option<Config>, TestCaseErro
     prop_assert!(!problems.is_empty());
     let report = problems.to_string();
     for problem in problems.iter() {
-        prop_assert!(!problem.message.is_empty() && !problem.remedy.is_empty());
-        prop_assert!(problem.message.chars().count() < 200, "{}", problem.message);
+        prop_assert!(!problem.error.message.is_empty() && !problem.error.remedy.is_empty());
+        prop_assert!(problem.error.message.chars().count() < 200, "{}", problem.error.message);
         // The place that scripts are told is the one that people read.
         if let Some((line, column)) = problems.position(problem) {
             prop_assert!(

@@ -10,8 +10,9 @@ use glint::config::{Config, Problems, Value, parse, read};
 /// `line:column key | message | remedy` for each problem.
 fn lines(problems: &Problems) -> Vec<String> {
     let each = |problem: &glint::config::Problem| {
+        let error = &problem.error;
         let (line, column) = problems.position(problem).unwrap_or((0, 0));
-        format!("{line}:{column} {} | {} | {}", problem.key, problem.message, problem.remedy)
+        format!("{line}:{column} {} | {} | {}", error.key, error.message, error.remedy)
     };
     problems.iter().map(each).collect()
 }

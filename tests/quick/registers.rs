@@ -1,11 +1,12 @@
 //! Registers around a device of one's own.
 
+use glint::base::key_error::KeyError;
 use glint::config::{self, Config};
 use glint::dsl::{Designer, end, step, valid};
 use glint::fixed::Format;
 use glint::golden::Model;
 use glint::hdl::netlist::Design;
-use glint::package::{EmitInputs, Surroundings, Unfit, emit};
+use glint::package::{EmitInputs, Surroundings, emit};
 use glint::registry::{Device, Registry};
 
 use crate::common::cores::{self, with_keys};
@@ -35,10 +36,10 @@ fn colliding_names_in_the_map_are_refused() {
     assert!(on_wishbone(&device("x", "y_out")).expect("registers") > 0);
     for name in ["status", "id", "interrupt_enable"] {
         let error = on_wishbone(&device(name, "y_out")).expect_err("two of that name");
-        let unfit = error.downcast_ref::<Unfit>().expect("a key");
-        assert_eq!(unfit.key, "interface.registers");
-        assert_eq!(unfit.message, format!("two registers of `device` are named `{name}`"));
-        assert!(unfit.remedy.contains("another one in the description"), "{unfit}");
+        let error: KeyError = error.downcast().expect("a key");
+        assert_eq!(error.key, "interface.registers");
+        assert_eq!(error.message, format!("two registers of `device` are named `{name}`"));
+        assert!(error.remedy.contains("another one in the description"), "{error}");
     }
 }
 

@@ -187,7 +187,7 @@ fn with_widths(device: &Device, widths: &[(&str, Option<i64>)], notes: &mut Vec<
             }
             Err(problems) => {
                 let why = problems.iter().next().map_or_else(String::new, |problem| {
-                    format!(": {}; {}", problem.message, problem.remedy)
+                    format!(": {}; {}", problem.error.message, problem.error.remedy)
                 });
                 notes.push(format!(
                     "{}: {key} = {value} is not accepted, {} is compared{why}",

@@ -15,7 +15,7 @@ use serde_json::{Value, json};
 use super::mismatch::{self, Reproducer};
 use super::{Loaded, load, verdict};
 use crate::destination::Destination;
-use crate::failure::WrongUsage;
+use crate::failure::Failure;
 use crate::{Configs, Force, OutputOptions, TimeLimit, count, progress, say, wrong_usage};
 use benches::benches;
 use glint_base::text;
@@ -84,7 +84,9 @@ impl SweepValues {
     /// Returns the sweep of a configuration's core.
     pub fn of(&self, one: &Loaded) -> Result<Sweep> {
         let sweep = axis::sweep(one.core.contract.as_ref(), &self.others);
-        sweep.map_err(|error| WrongUsage(format!("--values for `{}`: {error}", one.path)).into())
+        sweep.map_err(|error| {
+            Failure::WrongUsage(format!("--values for `{}`: {error}", one.path)).into()
+        })
     }
 }
 

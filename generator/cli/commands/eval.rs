@@ -11,7 +11,7 @@ use serde::Serialize;
 use serde_json::{Value, json};
 
 use super::{Loaded, load_one};
-use crate::failure::WrongUsage;
+use crate::failure::Failure;
 use crate::{OutputOptions, say, tables, wrong_usage};
 use glint_base::fixed::Format;
 use glint_core::cosim::Driven;
@@ -51,8 +51,8 @@ const LIMIT: u64 = 1 << 16;
 /// Runs `glint eval`: one point, or as many as a CSV file has.
 pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) -> Result<bool> {
     let one = load_one(registry, &registry.schemas(), &arguments.config)?;
-    let given =
-        operands::given(one.core.contract.operands(), &arguments.operands).map_err(WrongUsage)?;
+    let given = operands::given(one.core.contract.operands(), &arguments.operands)
+        .map_err(Failure::WrongUsage)?;
     match &arguments.batch {
         Some(path) if *path == arguments.config => {
             wrong_usage!("configuration and --batch are one file")

@@ -35,16 +35,16 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, anyhow, bail};
 
-use super::failure::{self, Several};
+use super::failure::{self, Failure};
 use crate::wrong_usage;
-use glint_base::diagnostic::Diagnostics;
 use glint_base::input;
+use glint_base::key_error::KeyError;
 use glint_base::program::Program;
 use glint_base::text;
 use glint_config::{self as config, Problems};
 use glint_core::core::Core;
-use glint_core::package::{OutputFile, Unfit, Vectors};
-use glint_core::registry::Registry;
+use glint_core::package::{OutputFile, Vectors};
+use glint_core::registry::{CLOCK_MHZ, Registry};
 use glint_golden::Bound;
 use glint_show::evidence::advice;
 use glint_tools::Tool;
@@ -112,7 +112,7 @@ fn load(registry: &Registry, named: &[PathBuf]) -> Result<Vec<Loaded>> {
             ));
         }
     }
-    if failed.is_empty() { Ok(loaded) } else { Err(Several(failed).into()) }
+    if failed.is_empty() { Ok(loaded) } else { Err(Failure::Several(failed).into()) }
 }
 
 /// Does the same as [`load`], for a command about microprograms. Without names, it leaves the pipelines of `configs/`
@@ -137,42 +137,35 @@ fn load_one(registry: &Registry, schemas: &[config::Schema], path: &Path) -> Res
             "{name:?} has control characters in its name, which is written into files; rename it"
         );
     }
-    let (config, locations) = config::read_located(path, schemas)?;
+    let (config, locations) = config::read_located(path, schemas).map_err(Failure::Problems)?;
     let device = registry
         .device(&config.device)
         .with_context(|| format!("no device `{}`", config.device))?;
-    // A key that the file leaves out follows.
-    let follow = |error: anyhow::Error| {
-        let found = error.downcast_ref::<Diagnostics>().and_then(|found| found.0.first());
-        let nearest = found.and_then(|it| Some((it.key.as_ref()?.0, it.nearest?)));
-        let Some((key, value)) = nearest.filter(|(key, _)| !locations.gives(key)) else {
-            return Err(error);
-        };
-        let mut config = config.clone();
-        config.set(key, config::Value::Number(value));
+    // A clock that the file leaves out may be lowered.
+    let core = if locations.gives(CLOCK_MHZ) {
         Core::new(*device, config)
+    } else {
+        Core::with_free_clock(*device, config)
     };
-    let core = Core::new(*device, config.clone()).or_else(follow).map_err(|error| {
-        // If the description cannot give something that the configuration asks for, the mistake is in the
-        // configuration.
-        let mut problems = locations.clone();
-        if let Some(unfit) = error.downcast_ref::<Unfit>() {
-            problems.push(unfit.key, &unfit.message, &unfit.remedy);
-        }
-        let found = error.downcast_ref::<Diagnostics>().map_or(&[][..], |found| &found.0);
-        for it in found {
-            if let Some((key, remedy)) = &it.key {
-                let message = format!("{} ({}, {})", it.message, it.code, it.location);
-                problems.push(key, message, remedy);
-            }
-        }
-        if problems.is_empty() { error.context(format!("`{name}`")) } else { problems.into() }
-    })?;
+    let core = core.map_err(|error| located(error, &name, &locations))?;
     for warning in &core.design.warnings {
         let (code, place) = (warning.code, warning.location);
         failure::warn(&format!("{name}: {} ({code}, {place})", warning.message));
     }
     Ok(Loaded { path: name, core, locations })
+}
+
+/// Returns an error with its location: the place of the key in the file for a key error, and else the name of the file.
+/// `locations` has the places of the keys.
+fn located(error: anyhow::Error, file: &str, locations: &Problems) -> anyhow::Error {
+    match error.downcast::<KeyError>() {
+        Ok(key_error) => {
+            let mut problems = locations.clone();
+            problems.push_error(key_error);
+            Failure::Problems(problems).into()
+        }
+        Err(error) => error.context(format!("`{file}`")),
+    }
 }
 
 /// Returns a text about a name that is none of `names`: the nearest name, and all of them. `what` is the word for such
@@ -214,14 +207,8 @@ impl Loaded {
     /// Returns every file of the configuration. If a key asks for something that the core cannot have, the error
     /// shows the place of the key in the file.
     fn files(&self, vectors: impl Into<Option<Vectors>>) -> Result<Vec<OutputFile>> {
-        self.core.files(&self.path, vectors).map_err(|error| match error.downcast_ref::<Unfit>() {
-            Some(unfit) => {
-                let mut problems = self.locations.clone();
-                problems.push(unfit.key, &unfit.message, &unfit.remedy);
-                problems.into()
-            }
-            None => error.context(format!("`{}`", self.path)),
-        })
+        let files = self.core.files(&self.path, vectors);
+        files.map_err(|error| located(error, &self.path, &self.locations))
     }
 
     /// Does what [`Loaded::bound`] does, and warns of a module name with `__`. It also warns with the contract's

@@ -7,11 +7,11 @@ use serde_json::json;
 
 use super::none_of;
 use super::settings::KeyAssignment;
-use crate::failure::WrongUsage;
+use crate::failure::Failure;
 use crate::{OutputOptions, number, tables, wrong_usage};
 use glint_base::program::Program;
 use glint_base::target::TIMING_NAMES;
-use glint_config::{self as config, Config, Schema};
+use glint_config::{self as config, Config, Problem, Schema};
 use glint_core::registry::Registry;
 use glint_keys::presets;
 
@@ -135,8 +135,10 @@ fn configuration(schema: &Schema, name: &str, settings: &[KeyAssignment]) -> Res
     let head = [KeyAssignment::word("device", schema.device), KeyAssignment::word("name", name)];
     let text: String = head.iter().chain(settings).map(KeyAssignment::line).collect();
     config::parse("<new>", &text, std::slice::from_ref(schema)).map_err(|problems| {
-        let lines =
-            problems.iter().map(|problem| format!("{}; {}", problem.message, problem.remedy));
-        WrongUsage(lines.collect::<Vec<String>>().join("\n")).into()
+        let mut lines: Vec<String> = Vec::new();
+        for Problem { error, .. } in problems.iter() {
+            lines.push(format!("{}; {}", error.message, error.remedy));
+        }
+        Failure::WrongUsage(lines.join("\n")).into()
     })
 }

@@ -9,7 +9,7 @@ use serde_json::json;
 
 use super::load_one;
 use crate::destination::Destination;
-use crate::failure::{self, WrongUsage};
+use crate::failure::{self, Failure};
 use crate::{Force, OutputOptions, TimeLimit, number, progress, say, tables, wrong_usage};
 use glint_base::{input, text};
 use glint_core::core::Core;
@@ -145,7 +145,7 @@ pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) ->
         );
     }
     let scene = scene(arguments, render::walks_lines(core.contract.as_ref()))?;
-    render::check(&settings, &scene).map_err(|error| WrongUsage(error.to_string()))?;
+    render::check(&settings, &scene).map_err(|error| Failure::WrongUsage(error.to_string()))?;
     let destination = Destination::fresh(&arguments.out, arguments.force.force)?;
     let bar = progress::bar(output, u64::from(settings.size.1), "rows rendered");
     bar.tick();

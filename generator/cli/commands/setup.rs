@@ -8,7 +8,7 @@ use csv::StringRecord;
 use serde_json::{Map, Value, json};
 
 use super::{Loaded, load_one, none_of, rows};
-use crate::failure::WrongUsage;
+use crate::failure::Failure;
 use crate::{OutputOptions, say, tables, wrong_usage};
 use glint_base::program::Program;
 use glint_core::registry::Registry;
@@ -121,10 +121,12 @@ pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) ->
         let Some((name, text)) = setting.split_once('=') else {
             wrong_usage!("`{setting}` is not input=value, as in exponent=20")
         };
-        host.place(name).and_then(|place| host.put(&mut given, place, text)).map_err(WrongUsage)?;
+        host.place(name)
+            .and_then(|place| host.put(&mut given, place, text))
+            .map_err(Failure::WrongUsage)?;
     }
     let Some(path) = &arguments.batch else {
-        let set_up = host.set_up(&given).map_err(WrongUsage)?;
+        let set_up = host.set_up(&given).map_err(Failure::WrongUsage)?;
         match (arguments.csv, output.json) {
             (true, _) => host.print_csv(&[set_up])?,
             (_, true) => tables::print_json(&host.json(&set_up)),

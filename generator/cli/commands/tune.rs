@@ -11,8 +11,9 @@ use serde_json::{Value as Json, json};
 
 use super::settings::KeyAssignment;
 use crate::destination::Destination;
+use crate::failure::{self, Failure};
 use crate::tables;
-use crate::{Force, OutputOptions, failure, number, progress, say, wrong_usage};
+use crate::{Force, OutputOptions, number, progress, say, wrong_usage};
 use glint_base::program::Program;
 use glint_base::text;
 use glint_config::{self as config, Config, Value};
@@ -163,7 +164,8 @@ fn base(registry: &Registry, arguments: &Arguments) -> Result<(Device, Config, V
         given_text += &setting.line();
         fixed.push(setting.key);
     }
-    let config = config::parse("--set", &given_text, &registry.schemas())?;
+    let config =
+        config::parse("--set", &given_text, &registry.schemas()).map_err(Failure::Problems)?;
     Ok((*device, config, fixed))
 }
 

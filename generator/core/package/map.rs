@@ -7,8 +7,8 @@ use anyhow::{Result, bail};
 use serde::Deserialize;
 
 use super::inputs::EmitInputs;
-use super::unfit::Unfit;
 use glint_base::fixed::Format;
+use glint_base::key_error::KeyError;
 use glint_rtl::netlist::{Design, Port, Role};
 use glint_rtl::verilog::text::ascii;
 
@@ -130,14 +130,14 @@ impl Map {
     pub fn new(design: &Design, inputs: &EmitInputs) -> Result<Self> {
         let name = design.name.as_str();
         if design.pipeline.is_some() {
-            bail!(unfit(
+            bail!(registers_error(
                 format!("`{name}` is a pipeline, for which a bus is too slow"),
                 "remove it, or set architecture = \"sequential\"; interface.stream = true is for pipelines",
             ));
         }
         let length = inputs.accuracy.as_ref().and_then(|accuracy| accuracy.length.as_ref());
         if let Some(length) = length {
-            bail!(unfit(
+            bail!(registers_error(
                 format!(
                     "`{name}` shows as many results as `{length}` says, which no register can hold"
                 ),
@@ -157,7 +157,10 @@ impl Map {
         let results = results(design, &mut place);
         if operands.is_empty() || results.is_empty() {
             let what = if operands.is_empty() { "operand" } else { "result" };
-            bail!(unfit(format!("`{name}` has no {what} to put into a register"), "remove it"));
+            bail!(registers_error(
+                format!("`{name}` has no {what} to put into a register"),
+                "remove it"
+            ));
         }
         let mut registers =
             fixed(inputs, (operands.len(), results.len()), (last_operand, place - 1))?;
@@ -190,7 +193,7 @@ impl Map {
         let mut names = BTreeSet::new();
         for register in &self.registers {
             if !names.insert(&register.name) {
-                bail!(unfit(
+                bail!(registers_error(
                     format!("two registers of `{core}` are named `{}`", register.name),
                     "remove it, or give the operand or the result of that name another one in the description",
                 ));
@@ -200,8 +203,9 @@ impl Map {
     }
 }
 
-fn unfit(message: String, remedy: &str) -> Unfit {
-    Unfit::new("interface.registers", message, remedy)
+/// Returns the error of the key that asks for registers on a bus.
+fn registers_error(message: String, remedy: &str) -> KeyError {
+    KeyError::new("interface.registers", message, remedy)
 }
 
 fn last_place(ports: &[PortPlacement]) -> u32 {

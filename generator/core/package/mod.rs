@@ -41,7 +41,6 @@ pub mod seal;
 mod software;
 mod surroundings;
 mod tops;
-mod unfit;
 mod vendor;
 mod wrap;
 
@@ -65,7 +64,6 @@ pub use points::{POINTS_FILE, PointsBench, RESULTS_FILE};
 pub use seal::{Seal, is_sealed, sealed, sealed_json};
 pub use software::check_recomputation;
 pub use surroundings::{Surroundings, check_clock, check_rom_style};
-pub use unfit::Unfit;
 
 /// Returns the bench that computes a list of points, for a pipeline or for a design with a microprogram. Each point must take
 /// less than `limit` clocks.

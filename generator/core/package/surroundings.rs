@@ -2,7 +2,7 @@
 //! the core allows them.
 
 use super::bus::{BUSES, Bus};
-use super::unfit::Unfit;
+use glint_base::key_error::KeyError;
 use glint_config::{Config, Schema, Shared};
 use glint_rtl::netlist::{Design, Pipeline};
 use glint_rtl::verilog::naming::Style;
@@ -20,7 +20,7 @@ const ROM_STYLE: &str = "package.rom_style";
 ///
 /// # Errors
 /// Fails if the clock of the constraints is faster than the clock of the stages.
-pub fn check_clock(config: &Config, pipeline: &Pipeline) -> Result<(), Unfit> {
+pub fn check_clock(config: &Config, pipeline: &Pipeline) -> Result<(), KeyError> {
     let (asked, made_for) = (config.number(CLOCK), pipeline.clock_mhz);
     if asked <= made_for {
         return Ok(());
@@ -34,7 +34,7 @@ pub fn check_clock(config: &Config, pipeline: &Pipeline) -> Result<(), Unfit> {
         }
     };
     let faster = if asked <= pipeline.most_mhz { format!("{faster}, or ") } else { String::new() };
-    Err(Unfit::new(
+    Err(KeyError::new(
         CLOCK,
         format!("`{CLOCK}` = {asked:?} is above the {made_for} MHz that {made}"),
         format!("{faster}set {CLOCK} to {made_for} or less"),
@@ -45,7 +45,7 @@ pub fn check_clock(config: &Config, pipeline: &Pipeline) -> Result<(), Unfit> {
 ///
 /// # Errors
 /// Fails if the core has no ROM that is read on the clock, or if `package.memories` writes ROMs as functions.
-pub fn check_rom_style(config: &Config, design: &Design) -> Result<(), Unfit> {
+pub fn check_rom_style(config: &Config, design: &Design) -> Result<(), KeyError> {
     let style = config.choice(ROM_STYLE);
     if style == "auto" {
         return Ok(());
@@ -56,12 +56,12 @@ pub fn check_rom_style(config: &Config, design: &Design) -> Result<(), Unfit> {
              no attribute"
         );
         let remedy = "remove it, or set package.memories = \"files\" or \"inline\"";
-        return Err(Unfit::new(ROM_STYLE, message, remedy));
+        return Err(KeyError::new(ROM_STYLE, message, remedy));
     }
     if design.roms.iter().any(|rom| rom.synchronous) {
         return Ok(());
     }
-    Err(Unfit::new(
+    Err(KeyError::new(
         ROM_STYLE,
         format!(
             "`{ROM_STYLE}` = \"{style}\": `{}` has no ROM that is read on the clock",

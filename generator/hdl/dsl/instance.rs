@@ -340,7 +340,7 @@ impl<'d> InstanceBuilder<'d, '_> {
                     ["idle", "operands"].map(|name| Step { location, ..step(name, []) }).into();
             }
         });
-        let load = set(load, 1, "operands.load");
+        let load = set(load, 1, "operands_load");
         d.with(|inner| {
             inner.parts.last_mut().into_iter().for_each(|it| it.settings.push(load.clone()));
             inner.parts.extend(steps);

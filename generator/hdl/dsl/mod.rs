@@ -373,20 +373,20 @@ impl Designer {
     }
 
     /// Puts registers behind results that are logic. The microinstruction that sets `valid` loads them, and one more after
-    /// it sets `valid`; other outputs stay as they are. The key `output.registered` asks for it.
+    /// it sets `valid`; other outputs stay as they are.
     pub fn register_outputs(&self) {
         self.inner.borrow_mut().registers_outputs = true;
     }
 
     /// Leaves logic that depends on operands alone as it is described. Otherwise [`Designer::finish`] puts registers
-    /// into it if there is a clock to spare. The key `operands.logic` asks for this.
+    /// into it if there is a clock to spare.
     pub fn keep_operand_logic(&self) {
         self.inner.borrow_mut().registers_operand_logic = false;
     }
 
     /// Puts a buffer in front of every operand register. Writes go into the buffers, at any time; `start` takes them into the
     /// registers, and is heard in the last clock of a computation too, so that no clock is lost between two. A description must
-    /// call this before it declares its first operand. The key `operands.buffered` asks for it.
+    /// call this before it declares its first operand.
     #[track_caller]
     pub fn buffer_operands(&self) {
         if self.with(|inner| inner.design.ports.iter().any(|it| it.role == Role::Strobe)) {

@@ -1,4 +1,4 @@
-//! Inserts registers behind results that are combinational logic, as the key `output.registered` asks for.
+//! Inserts registers behind results that are combinational logic, as [`Designer::register_outputs`] asks for.
 //!
 //! The microinstruction that set `valid` loads these registers, and a new microinstruction after it sets `valid`. A
 //! result therefore comes one clock later. If `valid` follows a signal, the registers are loaded in every clock.
@@ -78,7 +78,7 @@ fn loaded(d: &Designer, steps: &mut Vec<Step>, load: &StepSetting) {
             if steps[at].sets(|kind| matches!(kind, SettingKind::LoopWhile { .. })) {
                 let message = format!(
                     "microinstruction `{}` sets valid and goes on by a condition: its results cannot be taken into \
-                     registers before it goes on. Let another microinstruction decide, or leave output.registered out",
+                     registers before it goes on. Let another microinstruction decide",
                     steps[at].name
                 );
                 d.report(Diagnostic::new(codes::OUTPUT_REGISTER, message, steps[at].location));

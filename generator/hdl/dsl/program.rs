@@ -280,7 +280,7 @@ fn sequence(d: &Designer, steps: &[Step], step: &Step) -> Sequence {
                 if d.with(|inner| inner.taken.is_some()) {
                     let message = format!(
                         "microinstruction `{own}` waits for start, and the operands have buffers, which the start of a \
-                         computation alone empties: leave operands.buffered out"
+                         computation alone empties"
                     );
                     d.report(wrong(codes::BUFFER, message));
                 }

@@ -1,7 +1,9 @@
 //! Finds the clocks from a point to the next: as given, or as a wanted rate or number of multipliers asks for.
 
+use super::error::{PipelineError, PipelineErrorKind};
 use super::schedule::ScheduleProblem;
 use super::{Goal, Options};
+use crate::netlist::Design;
 
 /// The clocks from a point to the next.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -15,25 +17,19 @@ pub enum IntervalGoal {
     Multipliers(usize),
 }
 
-/// The key that is wrong, the problem with its value, and the remedy.
-pub struct Unreached {
-    pub key: &'static str,
-    pub message: String,
-    pub remedy: String,
-}
-
 /// Returns the clocks from a point to the next. A sequential core takes a point every `most`.
 ///
 /// # Errors
 /// Fails if the interval is longer than the sequential core's, or if no interval reaches the rate. Fails if a rate is wanted
-/// without a clock. Fails if every interval needs more multipliers than the configuration allows.
+/// without a clock. Fails if every interval needs more multipliers than the options allow.
 pub fn clocks<'a>(
-    name: &str,
+    sequential: &Design,
     options: &Options,
     most: usize,
     problems: impl Fn(usize) -> ScheduleProblem<'a>,
-) -> Result<usize, Unreached> {
-    let wrong = |key, message, remedy| Err(Unreached { key, message, remedy });
+) -> Result<usize, PipelineError> {
+    let name = &sequential.name;
+    let error = |kind, message| Err(PipelineError::of_design(sequential, kind, message));
     // Muxes before a multiplier take time of the clock.
     let reaches = |interval: &usize| match options.goal {
         Goal::ClockMhz(clock) => {
@@ -42,31 +38,26 @@ pub fn clocks<'a>(
         Goal::Stages(_) => true,
     };
     match options.interval {
-        IntervalGoal::Clocks(interval) if interval > most => wrong(
-            "pipeline.interval",
-            format!(
+        IntervalGoal::Clocks(interval) if interval > most => {
+            let message = format!(
                 "`{name}` has no use for a point every {interval} clocks: its sequential core takes one every {most}"
-            ),
-            format!("set pipeline.interval to {most} or less, or architecture = \"sequential\""),
-        ),
+            );
+            error(PipelineErrorKind::Interval { most }, message)
+        }
         IntervalGoal::Clocks(interval) => Ok(interval),
         IntervalGoal::Rate(rate) => {
             let Goal::ClockMhz(clock) = options.goal else {
                 let message = format!(
-                    "pipeline.stages leaves the clock of `{name}` open, and with it the rate"
+                    "a number of stages leaves the clock of `{name}` open, and with it the rate"
                 );
-                let remedy = "set pipeline.clock_mhz in place of pipeline.stages".to_owned();
-                return wrong("pipeline.rate", message, remedy);
+                return error(PipelineErrorKind::RateWithoutClock, message);
             };
             let longest = (clock / rate + 1e-9).floor() as usize;
             if longest == 0 {
                 let message = format!(
                     "`{name}` takes {clock} million points a second at most: one every clock at {clock} MHz"
                 );
-                let remedy = format!(
-                    "set pipeline.rate to {clock} or less, or pipeline.clock_mhz to {rate} or more"
-                );
-                return wrong("pipeline.rate", message, remedy);
+                return error(PipelineErrorKind::Rate { most: clock }, message);
             }
             Ok((1..=longest.min(most)).rev().find(reaches).unwrap_or(1))
         }
@@ -80,8 +71,7 @@ pub fn clocks<'a>(
                 let message = format!(
                     "`{name}` has {fewest} multipliers at the least: with a point every {interval} clocks"
                 );
-                let remedy = format!("set pipeline.max_multipliers to {fewest} or more");
-                return wrong("pipeline.max_multipliers", message, remedy);
+                return error(PipelineErrorKind::Multipliers { fewest }, message);
             }
             Ok(all().find(|&(_, multipliers)| multipliers <= allowed).map_or(interval, |it| it.0))
         }

@@ -6,6 +6,7 @@
 //! next. Nothing here knows a device.
 
 mod delay;
+mod error;
 mod gates;
 mod graph;
 mod interval;
@@ -26,10 +27,10 @@ mod text;
 mod unroll;
 
 use crate::netlist::Design;
-use glint_base::diagnostic::Diagnostics;
 use glint_base::target::Timing;
 
 pub use delay::delay_of;
+pub use error::{PipelineError, PipelineErrorKind};
 pub use graph::{Cell, Graph, Node, NodeId, NodeOp};
 pub use interval::IntervalGoal;
 pub use passes::{PASSES, Pass};
@@ -57,7 +58,7 @@ pub enum Delays {
     Registers,
 }
 
-/// The options of a configuration's pipeline.
+/// The options of a pipeline.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Options {
     /// The target whose delays and multipliers count.
@@ -81,8 +82,9 @@ pub struct Options {
 /// # Errors
 /// Fails if the microprogram cannot be unrolled; the error has its source line. Fails if a clock or a number of
 /// stages cannot be reached; the error has the nearest value that can.
-pub fn pipeline(sequential: &Design, options: &Options) -> Result<Design, Diagnostics> {
-    let unrolled = unroll::unroll_in_powers(sequential).map_err(request::sequentially)?;
+pub fn pipeline(sequential: &Design, options: &Options) -> Result<Design, PipelineError> {
+    let unrolled =
+        unroll::unroll_for_pipeline(sequential).map_err(PipelineError::of_microprogram)?;
     let unrolled = passes::applied(unrolled, options);
     let request = Request::new(sequential, &unrolled, options);
     let interval = request.interval()?;

@@ -1,15 +1,14 @@
-//! Finds the interval and the schedule of the pipeline that a configuration asks for.
+//! Finds the interval and the schedule of the pipeline that is asked for.
 //!
-//! An unreachable clock or number of stages is reported as a diagnostic on its key, with the nearest reachable value.
+//! If a clock or a number of stages cannot be reached, the error has the nearest value that can.
 
+use super::error::{PipelineError, PipelineErrorKind};
 use super::graph::NodeId;
 use super::interval;
 use super::schedule::{self, Schedule, ScheduleProblem, ScheduleRefusal, Unreachable};
 use super::unroll::Unrolled;
 use super::{Goal, Options};
 use crate::netlist::{Design, decided_by_data, latest_done};
-use glint_base::codes;
-use glint_base::diagnostic::{Diagnostic, Diagnostics};
 
 /// A computation, and the pipeline that is requested for it.
 pub struct Request<'a> {
@@ -17,12 +16,6 @@ pub struct Request<'a> {
     unrolled: &'a Unrolled,
     options: &'a Options,
     results: Vec<NodeId>,
-}
-
-/// Turns the reasons against unrolling into errors of the key that asks for it, `architecture`.
-pub fn sequentially(found: Diagnostics) -> Diagnostics {
-    let remedy = || "set architecture = \"sequential\"".to_owned();
-    Diagnostics(found.0.into_iter().map(|it| it.of_key("architecture", remedy())).collect())
 }
 
 impl<'a> Request<'a> {
@@ -43,7 +36,7 @@ impl<'a> Request<'a> {
     ///
     /// # Errors
     /// Fails if [`interval::clocks`] fails.
-    pub fn interval(&self) -> Result<usize, Diagnostics> {
+    pub fn interval(&self) -> Result<usize, PipelineError> {
         // With the clock of `start`, in which the operands are written. Iterations that operands decide on are counted at
         // their most.
         let steps = self.unrolled.steps.len();
@@ -51,8 +44,7 @@ impl<'a> Request<'a> {
         let most = latest_done(self.sequential).filter(|_| decided);
         let clocks = most.map_or(steps, |it| steps.max(it as usize)) + 1;
         let problems = |interval| self.problems(self.options.registered, interval);
-        interval::clocks(&self.sequential.name, self.options, clocks, problems)
-            .map_err(|it| self.wrong(it.key, it.message, it.remedy, None))
+        interval::clocks(self.sequential, self.options, clocks, problems)
     }
 
     /// Returns the schedule that reaches the goal.
@@ -63,7 +55,7 @@ impl<'a> Request<'a> {
         &self,
         problems: &ScheduleProblem<'_>,
         interval: usize,
-    ) -> Result<Schedule, Diagnostics> {
+    ) -> Result<Schedule, PipelineError> {
         match self.options.goal {
             Goal::ClockMhz(clock) => {
                 let schedule = problems.for_period(1000.0 / clock);
@@ -80,7 +72,7 @@ impl<'a> Request<'a> {
         &self,
         problems: &ScheduleProblem<'_>,
         stages: usize,
-    ) -> Result<Schedule, Diagnostics> {
+    ) -> Result<Schedule, PipelineError> {
         let (name, target) = (&self.sequential.name, self.options.target.name);
         let most = problems.most_stages();
         if stages > most {
@@ -88,7 +80,7 @@ impl<'a> Request<'a> {
                 "`{name}` has no use for {stages} stages: more than {most} make it no faster on {target}"
             );
             let limiting = problems.fastest().map(|it| it.limiting);
-            return Err(self.wrong_stages(message, format!("{most} or less"), limiting));
+            return Err(self.error(PipelineErrorKind::TooManyStages { most }, message, limiting));
         }
         let schedule = problems.for_stages(stages).map_err(|refusal| match refusal {
             ScheduleRefusal::Unsolved(why, at) => self.unsolved(&why, at),
@@ -102,17 +94,13 @@ impl<'a> Request<'a> {
             let message = format!(
                 "`{name}` cannot have {stages} stage{plural}: its registered memories and multipliers need {least} on {target}"
             );
-            return Err(self.wrong_stages(message, format!("{least} or more"), None));
+            return Err(self.error(PipelineErrorKind::TooFewStages { least }, message, None));
         }
         Ok(schedule)
     }
 
-    fn wrong_stages(&self, message: String, wanted: String, at: Option<NodeId>) -> Diagnostics {
-        self.wrong("pipeline.stages", message, format!("set pipeline.stages to {wanted}"), at)
-    }
-
-    /// Returns the diagnostic of a clock for which one operation alone is too slow.
-    fn too_fast(&self, clock: f64, interval: usize, limit: &Unreachable) -> Diagnostics {
+    /// Returns the error of a clock for which one operation alone is too slow.
+    fn too_fast(&self, clock: f64, interval: usize, limit: &Unreachable) -> PipelineError {
         let Unreachable { limiting, period } = *limit;
         let nearest = schedule::megahertz(period);
         let message = format!(
@@ -122,34 +110,40 @@ impl<'a> Request<'a> {
             self.unrolled.graph.node(limiting).label.name,
             self.options.target.name
         );
-        let registered = (!self.options.registered).then(|| self.problems(true, interval));
-        let faster = registered.and_then(|problems| problems.fastest());
-        let faster = faster.is_some_and(|it| it.period * clock <= 1000.0);
-        let faster = if faster { ", or pipeline.multipliers = \"registered\"" } else { "" };
-        let remedy = format!("set pipeline.clock_mhz to {nearest} or less{faster}");
-        let mut wrong = self.wrong("pipeline.clock_mhz", message, remedy, Some(limiting));
-        wrong.0.iter_mut().for_each(|it| it.nearest = Some(nearest));
-        wrong
+        let needs_registered = self.needs_registered(clock, interval);
+        let kind = PipelineErrorKind::Clock { nearest, needs_registered };
+        self.error(kind, message, Some(limiting))
     }
 
-    /// Returns the diagnostic of a problem without a solution, which there always is.
-    fn unsolved(&self, why: &str, at: Option<NodeId>) -> Diagnostics {
+    /// Returns whether a clock can be reached only with products in the registers of multipliers.
+    fn needs_registered(&self, clock: f64, interval: usize) -> bool {
+        if self.options.registered {
+            return false;
+        }
+        let fastest = self.problems(true, interval).fastest();
+        fastest.is_some_and(|limit| limit.period * clock <= 1000.0)
+    }
+
+    /// Returns the error of a problem for which the solver finds no solution, although there always is one.
+    fn unsolved(&self, why: &str, at: Option<NodeId>) -> PipelineError {
         let name = &self.sequential.name;
         let message = format!("`{name}` has no schedule: {why}; this is a mistake of Glint's");
-        let remedy = "ask for another pipeline.clock_mhz or pipeline.stages";
-        self.wrong("pipeline.clock_mhz", message, remedy.to_owned(), at)
+        self.error(PipelineErrorKind::Unsolved, message, at)
     }
 
-    fn wrong(
+    /// Returns an error that concerns a node, or else the design as a whole.
+    fn error(
         &self,
-        key: &'static str,
+        kind: PipelineErrorKind,
         message: String,
-        remedy: String,
-        at: Option<NodeId>,
-    ) -> Diagnostics {
-        let first = self.sequential.nets[0].location;
-        let place = at.map_or(first, |at| self.unrolled.graph.node(at).label.location);
-        let found = Diagnostic::new(codes::SCHEDULE, message, place);
-        Diagnostics(vec![found.of_key(key, remedy)])
+        node: Option<NodeId>,
+    ) -> PipelineError {
+        match node {
+            None => PipelineError::of_design(self.sequential, kind, message),
+            Some(node) => {
+                let location = self.unrolled.graph.node(node).label.location;
+                PipelineError::at(location, kind, message)
+            }
+        }
     }
 }

@@ -82,7 +82,12 @@ pub fn unroll(design: &Design) -> Result<Unrolled, Diagnostics> {
 /// # Errors
 /// Fails if [`unroll`] would fail.
 pub fn unroll_in_powers(design: &Design) -> Result<Unrolled, Diagnostics> {
-    run(design, Iterations::InPowers).map_err(|diagnostic| Diagnostics(vec![diagnostic]))
+    unroll_for_pipeline(design).map_err(|diagnostic| Diagnostics(vec![diagnostic]))
+}
+
+/// Unrolls as [`unroll_in_powers`] does. The error is the one mistake that it finds.
+pub(super) fn unroll_for_pipeline(design: &Design) -> Result<Unrolled, Diagnostic> {
+    run(design, Iterations::InPowers)
 }
 
 /// How to execute the iterations of a loop with a data-dependent trip count.

@@ -8,7 +8,7 @@
 use std::collections::{HashMap, HashSet};
 use std::time::Duration;
 
-use anyhow::{Context, Result, bail, ensure};
+use anyhow::{Context, Result, anyhow};
 use serde_json::Value;
 
 use super::Open;
@@ -87,32 +87,34 @@ pub fn compare_text(
         solver: Solver::new(solver, limit)?,
         proof: TextProof { delays: delays.concat(), ..TextProof::default() },
     };
-    Ok(match comparison.stays().and_then(|()| comparison.follows_a_point()) {
+    match comparison.stays().and_then(|()| comparison.follows_a_point()) {
         Ok(()) => {
             comparison.proof.questions = comparison.solver.asked;
-            TextVerdict::Equal(comparison.proof)
+            Ok(TextVerdict::Equal(comparison.proof))
         }
-        Err(error) => match error.downcast::<Ended>() {
-            Ok(Ended(verdict)) => verdict,
-            Err(error) => return Err(error),
-        },
-    })
-}
-
-/// Ends a comparison with its verdict.
-#[derive(Debug)]
-struct Ended(TextVerdict);
-
-impl std::fmt::Display for Ended {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        write!(f, "{:?}", self.0)
+        Err(EarlyEnd::Verdict(verdict)) => Ok(verdict),
+        Err(EarlyEnd::Error(error)) => Err(error),
     }
 }
 
-impl std::error::Error for Ended {}
+/// The reason why a comparison ends before every output is compared.
+enum EarlyEnd {
+    /// The verdict is known.
+    Verdict(TextVerdict),
+    /// The comparison cannot be made.
+    Error(anyhow::Error),
+}
 
-fn ended<T>(verdict: TextVerdict) -> Result<T> {
-    Err(Ended(verdict).into())
+impl From<anyhow::Error> for EarlyEnd {
+    fn from(error: anyhow::Error) -> Self {
+        Self::Error(error)
+    }
+}
+
+impl From<TextVerdict> for EarlyEnd {
+    fn from(verdict: TextVerdict) -> Self {
+        Self::Verdict(verdict)
+    }
 }
 
 type Roles = HashMap<String, Role>;
@@ -242,7 +244,7 @@ fn input(
 impl TextComparison<'_> {
     /// Shows that a clock in which `in_ready` is low changes nothing, and one in which it is high is one in which
     /// `out_ready` is.
-    fn stays(&mut self) -> Result<()> {
+    fn stays(&mut self) -> Result<(), EarlyEnd> {
         let has = |role| self.roles.values().any(|it| *it == role);
         if !has(Role::OutReady) {
             return Ok(());
@@ -275,7 +277,9 @@ impl TextComparison<'_> {
         let ready = self.roles.iter().find(|(_, role)| **role == Role::InReady);
         let ready = ready.context("the pipeline has no output `in_ready`")?.0;
         let shown = [&any, &taken].map(|it| module.shown(&mut self.terms, it).get(ready).copied());
-        let [Some(moves), Some(moved)] = shown else { bail!("the text has no output `{ready}`") };
+        let [Some(moves), Some(moved)] = shown else {
+            return Err(anyhow!("the text has no output `{ready}`").into());
+        };
         let one = self.terms.constant(1, 1);
         self.must_equal(None, moved, one, "a pipeline moves when its results are taken")?;
         let why = "a clock in which no point moves";
@@ -306,14 +310,14 @@ impl TextComparison<'_> {
             let reads = 1..=memory.reads.len();
             if one[reads.clone()] != other[reads] {
                 let why = "a memory of the text is read by what is no register";
-                return ended(TextVerdict::Unread(why.to_owned()));
+                return Err(TextVerdict::Unread(why.to_owned()).into());
             }
         }
         Ok(())
     }
 
     /// Shows that the outputs of netlist and text are the same when the results of a point are shown.
-    fn follows_a_point(&mut self) -> Result<()> {
+    fn follows_a_point(&mut self) -> Result<(), EarlyEnd> {
         let nets = self.netlist();
         let module = self.module;
         let mut held = module.power_up(&mut self.terms);
@@ -406,7 +410,7 @@ impl TextComparison<'_> {
         Ok(())
     }
 
-    fn results(&mut self, values: &WireValues, nets: &[VectorTermId]) -> Result<()> {
+    fn results(&mut self, values: &WireValues, nets: &[VectorTermId]) -> Result<(), EarlyEnd> {
         let shown = self.module.shown(&mut self.terms, values);
         for port in self.design.outputs().filter(|port| port.role != Role::InReady) {
             let name = &self.design.net(port.net).name;
@@ -426,8 +430,10 @@ impl TextComparison<'_> {
         one: VectorTermId,
         other: VectorTermId,
         what: &str,
-    ) -> Result<()> {
-        ensure!(self.terms.width(one) == self.terms.width(other), "{what} has another width");
+    ) -> Result<(), EarlyEnd> {
+        if self.terms.width(one) != self.terms.width(other) {
+            return Err(anyhow!("{what} has another width").into());
+        }
         let mut both = [one, other];
         if let Some((bit, value)) = condition {
             self.terms.assuming(bit, value, &mut both);
@@ -441,16 +447,16 @@ impl TextComparison<'_> {
             wanted.push(if value { bit } else { self.terms.not(bit) });
         }
         if let Some(difference) = self.difference(&wanted, both, what, &HashMap::new()) {
-            return ended(TextVerdict::Different(difference));
+            return Err(TextVerdict::Different(difference).into());
         }
         match self.ask(&wanted)? {
             SolverAnswer::Unsatisfiable => Ok(()),
-            SolverAnswer::Undecided(open) => ended(TextVerdict::Open(open)),
+            SolverAnswer::Undecided(open) => Err(TextVerdict::Open(open).into()),
             SolverAnswer::Satisfiable(found) => {
                 let found = found.into_iter().collect();
                 match self.difference(&wanted, both, what, &found) {
-                    Some(difference) => ended(TextVerdict::Different(difference)),
-                    None => ended(TextVerdict::Open(Open::Unknown)),
+                    Some(difference) => Err(TextVerdict::Different(difference).into()),
+                    None => Err(TextVerdict::Open(Open::Unknown).into()),
                 }
             }
         }

@@ -276,10 +276,14 @@ impl Check {
         let limit = subject.effort.time_limit;
         let finding = (tools.iter().try_for_each(|tool| tool.ensure_works(limit)))
             .and_then(|()| (self.run)(subject, &tools, progress))
-            .unwrap_or_else(|error| match error.downcast_ref::<LimitReached>() {
-                // A tool that was stopped has found no failure.
-                Some(_) => Finding::without(CheckVerdict::LimitReached, format!("{error:#}")),
-                None => Finding::default().failures(vec![format!("{error:#}")]),
+            .unwrap_or_else(|error| {
+                let message = format!("{error:#}");
+                if error.is::<LimitReached>() {
+                    // A tool that was stopped has found no failure.
+                    Finding::without(CheckVerdict::LimitReached, message)
+                } else {
+                    Finding::default().failures(vec![message])
+                }
             });
         (versions, finding)
     }

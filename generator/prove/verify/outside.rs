@@ -12,6 +12,7 @@ use super::{Check, CheckSubject, CheckVerdict, Finding};
 use crate::certify::{self, ProofOutcome, statements};
 use crate::equality;
 use glint_base::input;
+use glint_base::key_error::KeyError;
 use glint_base::program::Program;
 use glint_base::target::{FAMILIES, Family};
 use glint_base::text::{counted, grouped};
@@ -122,7 +123,7 @@ pub const RECOMPUTATION: Check = Check {
     run: |subject, tools, _| {
         let files = match subject.core.recomputation() {
             Ok(files) => files,
-            Err(error) if error.is::<package::Unfit>() => {
+            Err(error) if error.is::<KeyError>() => {
                 let why = "It is asked of contracts that are a formula of one operand.";
                 return Ok(Finding::without(CheckVerdict::NotApplicable, why));
             }

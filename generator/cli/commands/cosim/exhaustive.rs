@@ -11,6 +11,7 @@ use indicatif::HumanDuration;
 
 use super::Arguments;
 use crate::commands::load;
+use crate::failure::Failure;
 use crate::interrupt::Deferred;
 use crate::{OutputOptions, destination, progress, say, wrong_usage};
 use glint_base::{input, text};
@@ -122,7 +123,7 @@ fn prove(
         )
     };
     match deferred.and_then(|deferred| deferred.end(kept)) {
-        Some(interrupted) => Err(interrupted.into()),
+        Some(interrupted) => Err(Failure::Interrupted(interrupted).into()),
         None => Ok(()),
     }
 }

@@ -6,7 +6,7 @@ use glint_base::fill;
 use crate::package::artifact::{ArtifactKind, Artifacts, EmitJob};
 use crate::package::bus::Bus;
 use crate::package::tops::{Face, Top, TopPort};
-use crate::package::unfit::Unfit;
+use glint_base::key_error::KeyError;
 use glint_rtl::netlist::{Design, Role};
 use glint_rtl::verilog::text::ascii;
 
@@ -50,7 +50,7 @@ pub fn file(job: &EmitJob, tops: &[Top], files: &mut Artifacts) -> Result<()> {
     };
     if core.is_none() && stream.is_none() {
         let what = if is_line { "walks lines" } else { "is a pipeline" };
-        bail!(Unfit::new(
+        bail!(KeyError::new(
             "package.litex",
             format!(
                 "`{name}` {what}, which registers of LiteX cannot drive: its module needs a stream"

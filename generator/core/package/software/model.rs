@@ -8,8 +8,8 @@ use anyhow::{Context, Result};
 use super::print::{CStatement, Printer, comment, field, literal, pattern_type, taken};
 use crate::observation::WorkedExample;
 use crate::package::artifact::{ArtifactKind, Artifacts, EmitJob};
-use crate::package::unfit::Unfit;
 use glint_base::fixed::{Format, mask};
+use glint_base::key_error::KeyError;
 use glint_rtl::netlist::{Design, Port, Role, RomId};
 use glint_rtl::pipeline::{
     Cell, Cycle, Graph, NodeId, StateValues, Unrolled, any_cycle, unroll_in_powers,
@@ -132,7 +132,7 @@ pub fn files(job: &EmitJob, files: &mut Artifacts) -> Result<Vec<RomId>> {
     let (body, read) = if line { of_line(design, &names) } else { of_point(design, &names) }
         .map_err(|error| {
             let message = format!("`{name}` has no model in C: {error:#}");
-            Unfit::new("package.software", message, "remove it")
+            KeyError::new("package.software", message, "remove it")
         })?;
     let regenerate = job.regenerate();
     let outside_comments = |text: &str| ascii(text).replace("*/", "* /");

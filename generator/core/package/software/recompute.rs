@@ -7,8 +7,8 @@ use anyhow::Result;
 use super::model::{CField, table_names};
 use crate::observation::ContractFacts;
 use crate::package::artifact::{ArtifactKind, Artifacts, EmitJob};
-use crate::package::unfit::Unfit;
 use glint_base::fill;
+use glint_base::key_error::KeyError;
 use glint_formula::parse;
 use glint_rtl::netlist::RomId;
 use glint_rtl::verilog::naming::Naming;
@@ -26,26 +26,30 @@ struct RecomputedFormula<'f> {
 }
 
 impl<'f> RecomputedFormula<'f> {
-    fn new(name: &str, facts: &'f ContractFacts) -> Result<Self, Unfit> {
+    fn new(name: &str, facts: &'f ContractFacts) -> Result<Self, KeyError> {
         match (&facts.domain[..], &facts.outputs[..], &facts.f[..]) {
             ([(operand, domain)], [(result, None)], [formula]) => {
                 Ok(Self { operand, domain: *domain, result, formula })
             }
-            _ => Err(unfit(name, "its contract is no formula of one operand, with a bound")),
+            _ => Err(recomputation_error(
+                name,
+                "its contract is no formula of one operand, with a bound",
+            )),
         }
     }
 }
 
-fn unfit(name: &str, why: &str) -> Unfit {
+/// Returns the error of the key that asks for the program.
+fn recomputation_error(name: &str, why: &str) -> KeyError {
     let message = format!("nothing recomputes `{name}`: {why}");
-    Unfit::new("package.recomputation", message, "remove it")
+    KeyError::new("package.recomputation", message, "remove it")
 }
 
 /// Checks that a configuration asks for the program only where there is one.
 ///
 /// # Errors
 /// Fails if the core has several operands or results, or if its contract states no formula.
-pub fn check(name: &str, facts: &ContractFacts) -> Result<(), Unfit> {
+pub fn check(name: &str, facts: &ContractFacts) -> Result<(), KeyError> {
     RecomputedFormula::new(name, facts).map(drop)
 }
 
@@ -56,7 +60,8 @@ pub fn check(name: &str, facts: &ContractFacts) -> Result<(), Unfit> {
 pub fn file(job: &EmitJob, read: &[RomId], files: &mut Artifacts) -> Result<()> {
     let (name, inputs) = (job.name(), job.inputs);
     let design = inputs.sequential.as_ref().unwrap_or(job.design);
-    let facts = inputs.accuracy.as_ref().ok_or_else(|| unfit(name, "it has no contract"))?;
+    let facts =
+        inputs.accuracy.as_ref().ok_or_else(|| recomputation_error(name, "it has no contract"))?;
     let RecomputedFormula { operand, domain: (first, last), result, formula: text } =
         RecomputedFormula::new(name, facts)?;
     let formula = parse(text)?;
@@ -66,7 +71,7 @@ pub fn file(job: &EmitJob, read: &[RomId], files: &mut Artifacts) -> Result<()> 
         let mut ports = design.ports.iter();
         let port = ports.find(|port| design.net(port.net).name == name);
         port.map(|port| CField::new(design, port))
-            .ok_or_else(|| unfit(name, "its contract names no port"))
+            .ok_or_else(|| recomputation_error(name, "its contract names no port"))
     };
     let (operand, result) = (field(operand)?, field(result)?);
     let (naming, tables) = (Naming::new(design), table_names(design));

@@ -1,0 +1,49 @@
+//! Defines the error of a configuration key that asks for something that Glint cannot give.
+
+use std::fmt;
+
+/// A configuration key whose value cannot be accepted.
+///
+/// The error knows the key and not the file. A caller who knows the file can add the line of the key.
+///
+/// ```
+/// # use glint_base::key_error::KeyError;
+/// let error = KeyError::new("pipeline.clock_mhz", "`core` cannot run at 900 MHz", "set it to 130 or less");
+/// assert_eq!(error.to_string(), "`pipeline.clock_mhz`: `core` cannot run at 900 MHz; set it to 130 or less");
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct KeyError {
+    /// The dotted name of the key. For example, `cosine.fraction`. It is empty if the error concerns the whole file.
+    pub key: String,
+    /// The message.
+    pub message: String,
+    /// The remedy. For example, it lists the integers that the key accepts.
+    pub remedy: String,
+    /// The nearest value that the key can have, if it is a number and known.
+    pub nearest: Option<f64>,
+}
+
+impl KeyError {
+    /// Makes the error of a key without a nearest value.
+    pub fn new(
+        key: impl Into<String>,
+        message: impl Into<String>,
+        remedy: impl Into<String>,
+    ) -> Self {
+        Self { key: key.into(), message: message.into(), remedy: remedy.into(), nearest: None }
+    }
+
+    /// Adds the nearest value that the key can have.
+    #[must_use]
+    pub fn with_nearest(self, nearest: f64) -> Self {
+        Self { nearest: Some(nearest), ..self }
+    }
+}
+
+impl fmt::Display for KeyError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "`{}`: {}; {}", self.key, self.message, self.remedy)
+    }
+}
+
+impl std::error::Error for KeyError {}

@@ -1,0 +1,38 @@
+//! Defines the error of a configuration that makes no design.
+
+use std::fmt;
+
+use glint_base::diagnostic::Diagnostics;
+use glint_base::key_error::KeyError;
+
+/// The reason why a configuration makes no design.
+#[derive(Clone, Debug)]
+pub enum DesignError {
+    /// The description has mistakes, whatever its pipeline.
+    Description(Diagnostics),
+    /// A key asks for a pipeline that cannot be made.
+    Key(KeyError),
+}
+
+impl fmt::Display for DesignError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Description(mistakes) => mistakes.fmt(f),
+            Self::Key(error) => error.fmt(f),
+        }
+    }
+}
+
+impl std::error::Error for DesignError {}
+
+impl From<Diagnostics> for DesignError {
+    fn from(mistakes: Diagnostics) -> Self {
+        Self::Description(mistakes)
+    }
+}
+
+impl From<KeyError> for DesignError {
+    fn from(error: KeyError) -> Self {
+        Self::Key(error)
+    }
+}
