@@ -65,13 +65,11 @@ pub fn compare_text(
         let why = "the text is followed for pipelines with pipeline.interval = 1 alone".to_owned();
         return Ok(TextVerdict::Unread(why));
     }
-    let roles = design.ports.iter().map(|it| (design.net(it.net).name.clone(), it.role)).collect();
-    let read = || -> Result<(Module, Vec<Vec<usize>>)> {
-        let module = Module::new(text)?;
-        let delays = delays(&module, &roles)?;
-        Ok((module, delays))
-    };
-    let (module, delays) = match read() {
+    let mut roles = Roles::new();
+    for port in &design.ports {
+        roles.insert(design.net(port.net).name.clone(), port.role);
+    }
+    let (module, delays) = match read_text(text, &roles) {
         Ok(read) => read,
         Err(error) => return Ok(TextVerdict::Unread(format!("{error:#}"))),
     };
@@ -87,16 +85,23 @@ pub fn compare_text(
         solver: Solver::new(solver, limit)?,
         proof: TextProof { delays: delays.concat(), ..TextProof::default() },
     };
-    Ok(match comparison.stays().and_then(|()| comparison.follows_a_point()) {
+    match comparison.run() {
         Ok(()) => {
             comparison.proof.questions = comparison.solver.asked;
-            TextVerdict::Equal(comparison.proof)
+            Ok(TextVerdict::Equal(comparison.proof))
         }
-        Err(error) => match error.downcast::<Ended>() {
-            Ok(Ended(verdict)) => verdict,
-            Err(error) => return Err(error),
-        },
-    })
+        Err(error) => {
+            let Ended(verdict) = error.downcast()?;
+            Ok(verdict)
+        }
+    }
+}
+
+/// Reads the module of a text, and the clocks from write to read of each read port of its memories.
+fn read_text(text: &Value, roles: &Roles) -> Result<(Module, Vec<Vec<usize>>)> {
+    let module = Module::new(text)?;
+    let delays = delays(&module, roles)?;
+    Ok((module, delays))
 }
 
 /// Ends a comparison with its verdict.
@@ -141,15 +146,15 @@ fn delays(module: &Module, roles: &Roles) -> Result<Vec<Vec<usize>>> {
             continue;
         }
         for (memory, delay) in delays.iter_mut().enumerate() {
-            let course: Option<Vec<&[u64]>> =
+            let of_memory: Option<Vec<&[u64]>> =
                 course.iter().map(|control| control[memory].as_deref()).collect();
-            if let Some(course) = course {
-                *delay = lags(&course, module.memories[memory].reads.len());
+            if let Some(of_memory) = of_memory {
+                *delay = lags(&of_memory, module.memories[memory].reads.len());
             }
         }
     }
-    let all: Option<Vec<_>> = delays.into_iter().collect();
-    all.context("a memory of the text is no delay of a fixed number of clocks")
+    let known: Option<Vec<_>> = delays.into_iter().collect();
+    known.context("a memory of the text is no delay of a fixed number of clocks")
 }
 
 /// More values than a counter of slots has.
@@ -159,15 +164,24 @@ const MOST_SLOTS: usize = 1024;
 /// ports in each clock of a period, which repeats. Returns `None` if a read port has no fixed number of clocks. For
 /// example, write addresses 0, 1, 2, 3 and read addresses 2, 3, 0, 1 give 2 clocks.
 fn lags(course: &[&[u64]], reads: usize) -> Option<Vec<usize>> {
+    let mut lags = Vec::new();
+    for read in 0..reads {
+        let first = lag(course, read, 0)?;
+        for now in 1..course.len() {
+            if lag(course, read, now)? != first {
+                return None;
+            }
+        }
+        lags.push(first);
+    }
+    Some(lags)
+}
+
+/// Returns the least number of clocks before `now` at which the address that a port reads was written.
+fn lag(course: &[&[u64]], read: usize, now: usize) -> Option<usize> {
     let period = course.len();
-    let lag = |read: usize, now: usize| {
-        (1..=period).find(|lag| course[(now + period - lag) % period][0] == course[now][1 + read])
-    };
-    let of_read = |read| {
-        let first = lag(read, 0)?;
-        (1..period).all(|now| lag(read, now) == Some(first)).then_some(first)
-    };
-    (0..reads).map(of_read).collect()
+    let address = course[now][1 + read];
+    (1..=period).find(|lag| course[(now + period - lag) % period][0] == address)
 }
 
 /// Finds the registers that hold a constant after a clock, and the constants at the ports of each memory in that
@@ -184,29 +198,46 @@ fn constants(
     for (&at, &bits) in known {
         held[at] = vec![terms.constant(bits, terms.width(held[at][0]))];
     }
-    let input = |terms: &mut VectorTerms, name: &str, width: u32| match roles.get(name) {
-        Some(Role::Reset) => terms.constant(rst_n, width),
-        Some(Role::OutReady) if rst_n == 1 => terms.constant(1, width),
-        _ => terms.unknown(width),
-    };
-    let any = |terms: &mut VectorTerms, read: Read| module.memories[read.memory].any(terms);
-    let values = module.settle(&mut terms, &held, input, any)?;
-    let next = module.edge(&mut terms, &values);
-    let next = next.iter().enumerate().filter_map(|(at, columns)| match columns[..] {
-        [column] => Some((at, terms.constant_of(column)?)),
-        _ => None,
-    });
-    let next = next.collect();
-    let control = |memory: &Memory| {
-        let ports = memory.control(&mut terms, &values);
-        let addresses = 1 + memory.reads.len();
-        let ones = |&id: &VectorTermId| terms.constant_of(id) == Some(mask(terms.width(id)));
-        let written = ports[addresses..].iter().all(ones);
-        let constant = ports[..addresses].iter().map(|&id| terms.constant_of(id));
-        constant.collect::<Option<Vec<u64>>>().filter(|_| written)
-    };
-    let control = module.memories.iter().map(control).collect();
-    Ok((next, control))
+    let values = module.settle(
+        &mut terms,
+        &held,
+        |terms, name, width| match roles.get(name) {
+            Some(Role::Reset) => terms.constant(rst_n, width),
+            Some(Role::OutReady) if rst_n == 1 => terms.constant(1, width),
+            _ => terms.unknown(width),
+        },
+        |terms, read| module.memories[read.memory].any(terms),
+    )?;
+    let mut constants = HashMap::new();
+    for (at, columns) in module.edge(&mut terms, &values).iter().enumerate() {
+        if let [column] = columns[..]
+            && let Some(bits) = terms.constant_of(column)
+        {
+            constants.insert(at, bits);
+        }
+    }
+    let mut control = Vec::new();
+    for memory in &module.memories {
+        control.push(constant_addresses(&mut terms, memory, &values));
+    }
+    Ok((constants, control))
+}
+
+/// Returns the addresses of the write port and of each read port of a memory. Returns `None` if an address is no
+/// constant, or if not all bits of the word are written.
+fn constant_addresses(
+    terms: &mut VectorTerms,
+    memory: &Memory,
+    values: &WireValues,
+) -> Option<Vec<u64>> {
+    let control = memory.control(terms, values);
+    let (addresses, enables) = control.split_at(1 + memory.reads.len());
+    for &enable in enables {
+        if terms.constant_of(enable)? != mask(terms.width(enable)) {
+            return None;
+        }
+    }
+    addresses.iter().map(|&address| terms.constant_of(address)).collect()
 }
 
 struct TextComparison<'p> {
@@ -240,76 +271,121 @@ fn input(
 }
 
 impl TextComparison<'_> {
+    /// Shows that netlist and text are the same. Fails with [`Ended`] if they are not, or if it cannot be shown.
+    fn run(&mut self) -> Result<()> {
+        self.stays()?;
+        self.follows_a_point()
+    }
+
     /// Shows that a clock in which `in_ready` is low changes nothing, and one in which it is high is one in which
     /// `out_ready` is.
     fn stays(&mut self) -> Result<()> {
-        let has = |role| self.roles.values().any(|it| *it == role);
-        if !has(Role::OutReady) {
+        if !self.roles.values().any(|role| *role == Role::OutReady) {
             return Ok(());
         }
         let module = self.module;
         let held = module.power_up(&mut self.terms);
-        let mut reads: HashMap<Read, Vec<VectorTermId>> = HashMap::new();
-        let mut clock = |it: &mut Self,
-                         out_ready: Option<u64>|
-         -> Result<(WireValues, RegisterContents)> {
-            let (roles, inputs) = (it.roles, &mut it.inputs);
-            let input = |terms: &mut VectorTerms, name: &str, width: u32| match roles.get(name) {
+        let mut reads = HashMap::new();
+        let (any, after_any) = self.free_clock(&held, &mut reads, false)?;
+        let (taken, after_taken) = self.free_clock(&held, &mut reads, true)?;
+        let in_ready = self.roles.iter().find(|(_, role)| **role == Role::InReady);
+        let (ready, _) = in_ready.context("the pipeline has no output `in_ready`")?;
+        let ready_in_any = module.shown(&mut self.terms, &any).get(ready).copied();
+        let ready_in_taken = module.shown(&mut self.terms, &taken).get(ready).copied();
+        let (Some(moves), Some(moved)) = (ready_in_any, ready_in_taken) else {
+            bail!("the text has no output `{ready}`")
+        };
+        let one = self.terms.constant(1, 1);
+        self.must_equal(None, moved, one, "a pipeline moves when its results are taken")?;
+        self.must_keep_state(moves, &held, &any, &after_any)?;
+        self.must_move_alike(moves, [&any, &taken], [&after_any, &after_taken])
+    }
+
+    /// Executes a clock that belongs to no point. With `taken`, `out_ready` is 1, and otherwise it has any value.
+    /// Returns the values of the clock, and the registers after it. Clocks with the same `reads` read the same words.
+    fn free_clock(
+        &mut self,
+        held: &RegisterContents,
+        reads: &mut HashMap<Read, Vec<VectorTermId>>,
+        taken: bool,
+    ) -> Result<(WireValues, RegisterContents)> {
+        let (module, roles, inputs) = (self.module, self.roles, &mut self.inputs);
+        let values = module.settle(
+            &mut self.terms,
+            held,
+            |terms, name, width| match roles.get(name) {
                 Some(Role::Reset) => terms.constant(1, width),
-                Some(Role::OutReady) if out_ready.is_some() => terms.constant(1, width),
-                // Of no clock of the point.
+                Some(Role::OutReady) if taken => terms.constant(1, width),
                 _ => *inputs
                     .entry((name.to_owned(), usize::MAX))
                     .or_insert_with(|| terms.unknown(width)),
-            };
-            let read = |terms: &mut VectorTerms, read: Read| {
-                let any = || module.memories[read.memory].any(terms);
-                reads.entry(read).or_insert_with(any).clone()
-            };
-            let values = module.settle(&mut it.terms, &held, input, read)?;
-            let next = module.edge(&mut it.terms, &values);
-            Ok((values, next))
-        };
-        let (any, after_any) = clock(self, None)?;
-        let (taken, after_taken) = clock(self, Some(1))?;
-        let ready = self.roles.iter().find(|(_, role)| **role == Role::InReady);
-        let ready = ready.context("the pipeline has no output `in_ready`")?.0;
-        let shown = [&any, &taken].map(|it| module.shown(&mut self.terms, it).get(ready).copied());
-        let [Some(moves), Some(moved)] = shown else { bail!("the text has no output `{ready}`") };
-        let one = self.terms.constant(1, 1);
-        self.must_equal(None, moved, one, "a pipeline moves when its results are taken")?;
+            },
+            |terms, read| {
+                let word = reads.entry(read);
+                word.or_insert_with(|| module.memories[read.memory].any(terms)).clone()
+            },
+        )?;
+        let next = module.edge(&mut self.terms, &values);
+        Ok((values, next))
+    }
+
+    /// Shows that registers and memories keep their contents in a clock in which `moves` is 0.
+    fn must_keep_state(
+        &mut self,
+        moves: VectorTermId,
+        held: &RegisterContents,
+        values: &WireValues,
+        next: &RegisterContents,
+    ) -> Result<()> {
         let why = "a clock in which no point moves";
-        for (before, after) in held.iter().flatten().zip(after_any.iter().flatten()) {
+        for (before, after) in held.iter().flatten().zip(next.iter().flatten()) {
             self.must_equal(Some((moves, false)), *before, *after, why)?;
         }
-        for memory in &module.memories {
-            let ports = memory.control(&mut self.terms, &any);
-            for &enable in &ports[1 + memory.reads.len()..] {
+        for memory in &self.module.memories {
+            let control = memory.control(&mut self.terms, values);
+            for &enable in &control[1 + memory.reads.len()..] {
                 let none = self.terms.constant(0, self.terms.width(enable));
                 self.must_equal(Some((moves, false)), enable, none, why)?;
             }
         }
+        Ok(())
+    }
+
+    /// Shows that a clock with any `out_ready` in which `moves` is 1 does the same as the clock in which the results
+    /// are taken.
+    fn must_move_alike(
+        &mut self,
+        moves: VectorTermId,
+        [any, taken]: [&WireValues; 2],
+        [after_any, after_taken]: [&RegisterContents; 2],
+    ) -> Result<()> {
         let why = "a clock in which all points move";
         for (one, other) in after_any.iter().flatten().zip(after_taken.iter().flatten()) {
             self.must_equal(Some((moves, true)), *one, *other, why)?;
         }
-        for memory in &module.memories {
-            let [one, other] = [&any, &taken].map(|it| {
-                let control = memory.control(&mut self.terms, it);
-                [control, memory.written(&mut self.terms, it)].concat()
-            });
-            for (one, other) in one.into_iter().zip(other) {
+        for memory in &self.module.memories {
+            let ports_in_any = self.memory_ports(memory, any);
+            let ports_in_taken = self.memory_ports(memory, taken);
+            for (one, other) in ports_in_any.into_iter().zip(ports_in_taken) {
                 self.must_equal(Some((moves, true)), one, other, why)?;
             }
             // A read gives the same word in both only if the address is the same.
-            let [one, other] = [&any, &taken].map(|it| memory.control(&mut self.terms, it));
+            let control_in_any = memory.control(&mut self.terms, any);
+            let control_in_taken = memory.control(&mut self.terms, taken);
             let reads = 1..=memory.reads.len();
-            if one[reads.clone()] != other[reads] {
+            if control_in_any[reads.clone()] != control_in_taken[reads] {
                 let why = "a memory of the text is read by what is no register";
                 return ended(TextVerdict::Unread(why.to_owned()));
             }
         }
         Ok(())
+    }
+
+    /// Returns the addresses and the enable of a memory, and the values that are written.
+    fn memory_ports(&mut self, memory: &Memory, values: &WireValues) -> Vec<VectorTermId> {
+        let mut ports = memory.control(&mut self.terms, values);
+        ports.extend(memory.written(&mut self.terms, values));
+        ports
     }
 
     /// Shows that the outputs of netlist and text are the same when the results of a point are shown.
@@ -320,23 +396,26 @@ impl TextComparison<'_> {
         let mut written: Vec<Vec<Vec<VectorTermId>>> = Vec::new();
         for clock in 0..=self.latency {
             let (roles, inputs, delays) = (self.roles, &mut self.inputs, self.delays);
-            let input = |terms: &mut VectorTerms, name: &str, width: u32| {
-                input(terms, inputs, name, roles.get(name).copied(), width, clock)
-            };
-            let read = |terms: &mut VectorTerms, read: Read| {
-                let before = clock.checked_sub(delays[read.memory][read.port]);
-                match before {
+            let values = module.settle(
+                &mut self.terms,
+                &held,
+                |terms, name, width| {
+                    input(terms, inputs, name, roles.get(name).copied(), width, clock)
+                },
+                |terms, read| match clock.checked_sub(delays[read.memory][read.port]) {
                     Some(before) => written[before][read.memory].clone(),
                     None => module.memories[read.memory].any(terms),
-                }
-            };
-            let values = module.settle(&mut self.terms, &held, input, read)?;
+                },
+            )?;
             if clock == self.latency {
                 return self.results(&values, &nets[clock]);
             }
-            let terms = &mut self.terms;
-            written.push(module.memories.iter().map(|it| it.written(terms, &values)).collect());
-            held = module.edge(terms, &values);
+            let mut words = Vec::new();
+            for memory in &module.memories {
+                words.push(memory.written(&mut self.terms, &values));
+            }
+            written.push(words);
+            held = module.edge(&mut self.terms, &values);
             self.register(&mut held, &nets[clock + 1])?;
         }
         Ok(())
@@ -370,32 +449,40 @@ impl TextComparison<'_> {
         let known: HashSet<VectorTermId> = nets.iter().copied().collect();
         let cone = self.terms.cone(held.iter().flatten().chain(nets).copied());
         // A term that does not depend on the point is of no use.
-        let mut ours: HashSet<VectorTermId> =
-            self.inputs.iter().filter(|((_, clock), _)| *clock == 0).map(|(_, id)| *id).collect();
+        let mut ours: HashSet<VectorTermId> = HashSet::new();
+        for ((_, clock), id) in &self.inputs {
+            if *clock == 0 {
+                ours.insert(*id);
+            }
+        }
         for &id in &cone {
             if self.terms.term(id).operands().iter().any(|it| ours.contains(it)) {
                 ours.insert(id);
             }
         }
-        let is_open = |it: &VectorTermId| ours.contains(it) && !known.contains(it);
-        let all = held.iter().flatten().filter(|it| ours.contains(it));
-        self.proof.registers += all.filter(|it| known.contains(it)).count();
-        if !held.iter().flatten().any(is_open) {
+        let mut open: Vec<&mut VectorTermId> = Vec::new();
+        for column in held.iter_mut().flatten() {
+            if !ours.contains(column) {
+                continue;
+            }
+            if known.contains(column) {
+                self.proof.registers += 1;
+            } else {
+                open.push(column);
+            }
+        }
+        if open.is_empty() {
             return Ok(());
         }
-        let values: Vec<HashMap<VectorTermId, u64>> = samples(&self.terms, &cone).collect();
-        let key = |terms: &VectorTerms, id: VectorTermId| {
-            let values: Vec<u64> = values.iter().map(|values| values[&id]).collect();
-            (terms.width(id), values)
-        };
+        let sampled: Vec<HashMap<VectorTermId, u64>> = samples(&self.terms, &cone).collect();
         let mut alike = HashMap::new();
         for &net in nets {
             if ours.contains(&net) {
-                alike.entry(key(&self.terms, net)).or_insert(net);
+                alike.entry(self.signature(net, &sampled)).or_insert(net);
             }
         }
-        for column in held.iter_mut().flatten().filter(|it| is_open(it)) {
-            let Some(&net) = alike.get(&key(&self.terms, *column)) else { continue };
+        for column in open {
+            let Some(&net) = alike.get(&self.signature(*column, &sampled)) else { continue };
             let equal = self.terms.equal(*column, net);
             let differ = self.terms.not(equal);
             if let SolverAnswer::Unsatisfiable = self.ask(&[differ])? {
@@ -406,13 +493,22 @@ impl TextComparison<'_> {
         Ok(())
     }
 
+    /// Returns the width of a term, and its value in each sample. Terms that are equal have the same signature.
+    fn signature(
+        &self,
+        id: VectorTermId,
+        sampled: &[HashMap<VectorTermId, u64>],
+    ) -> (u32, Vec<u64>) {
+        let values = sampled.iter().map(|values| values[&id]).collect();
+        (self.terms.width(id), values)
+    }
+
     fn results(&mut self, values: &WireValues, nets: &[VectorTermId]) -> Result<()> {
         let shown = self.module.shown(&mut self.terms, values);
         for port in self.design.outputs().filter(|port| port.role != Role::InReady) {
             let name = &self.design.net(port.net).name;
-            let own =
-                shown.get(name).with_context(|| format!("the text has no output `{name}`"))?;
-            self.must_equal(None, *own, nets[port.net.index()], &format!("`{name}`"))?;
+            let Some(&output) = shown.get(name) else { bail!("the text has no output `{name}`") };
+            self.must_equal(None, output, nets[port.net.index()], &format!("`{name}`"))?;
             self.proof.outputs += 1;
         }
         Ok(())
@@ -447,8 +543,7 @@ impl TextComparison<'_> {
             SolverAnswer::Unsatisfiable => Ok(()),
             SolverAnswer::Undecided(open) => ended(TextVerdict::Open(open)),
             SolverAnswer::Satisfiable(found) => {
-                let found = found.into_iter().collect();
-                match self.difference(&wanted, both, what, &found) {
+                match self.difference(&wanted, both, what, &found.into_iter().collect()) {
                     Some(difference) => ended(TextVerdict::Different(difference)),
                     None => ended(TextVerdict::Open(Open::Unknown)),
                 }
@@ -473,21 +568,26 @@ impl TextComparison<'_> {
         found: &HashMap<VectorTermId, u64>,
     ) -> Option<String> {
         let cone = self.terms.cone(wanted.iter().copied().chain([one, other]));
-        let number = |&id: &VectorTermId| match *self.terms.term(id) {
-            VectorTerm::Unknown(number) => Some((number, found.get(&id).copied())),
-            _ => None,
-        };
-        let found: HashMap<u32, Option<u64>> = cone.iter().filter_map(number).collect();
-        let chosen = |number: u32| found.get(&number).copied().flatten();
-        let solved = self.terms.values(&cone, |number| chosen(number).unwrap_or(0));
-        let values = samples(&self.terms, &cone).chain([solved]);
-        let values = values.into_iter().find(|values| wanted.iter().all(|it| values[it] == 1))?;
-        let inputs = self
-            .inputs
-            .iter()
-            .filter(|((_, clock), id)| [0, usize::MAX].contains(clock) && values.contains_key(id));
-        let mut inputs: Vec<String> =
-            inputs.map(|((name, _), id)| format!(" {name}={:#x}", values[id])).collect();
+        let mut found_by_number: HashMap<u32, u64> = HashMap::new();
+        for id in &cone {
+            if let VectorTerm::Unknown(number) = *self.terms.term(*id)
+                && let Some(&value) = found.get(id)
+            {
+                found_by_number.insert(number, value);
+            }
+        }
+        let solved =
+            self.terms.values(&cone, |number| found_by_number.get(&number).copied().unwrap_or(0));
+        let mut candidates = samples(&self.terms, &cone).chain([solved]);
+        let values = candidates.find(|values| wanted.iter().all(|it| values[it] == 1))?;
+        let mut inputs: Vec<String> = Vec::new();
+        for ((name, clock), id) in &self.inputs {
+            if [0, usize::MAX].contains(clock)
+                && let Some(value) = values.get(id)
+            {
+                inputs.push(format!(" {name}={value:#x}"));
+            }
+        }
         inputs.sort();
         Some(format!(
             "{what}: {:#x} in the text and {:#x} in the netlist for{}",
