@@ -28,12 +28,16 @@ impl<'a> TerminalColumn<'a> {
     /// The cells below a heading with a colon are numbers. Other cells are words, which may be broken into lines. A
     /// digit behind a colon or a semicolon says when the table may leave a column out.
     fn all(headings: &'a str) -> Vec<Self> {
-        let column = |heading: &'a str| {
-            let number = heading.contains(':');
-            let (heading, order) = heading.split_once([':', ';']).unwrap_or((heading, ""));
-            Self { heading, number, dispensable: order.parse().unwrap_or(0) }
-        };
-        headings.split(" | ").map(column).collect()
+        let mut columns = Vec::new();
+        for marked in headings.split(" | ") {
+            let (heading, order) = marked.split_once([':', ';']).unwrap_or((marked, ""));
+            columns.push(Self {
+                heading,
+                number: marked.contains(':'),
+                dispensable: order.parse().unwrap_or(0),
+            });
+        }
+        columns
     }
 }
 
@@ -48,9 +52,14 @@ pub fn print(headings: &str, rows: impl IntoIterator<Item = Vec<String>>) {
 /// Returns the largest width of a line: the value of `COLUMNS`, or else the width of the terminal. Returns `None`
 /// without either, and a line may then have any width. For example, `COLUMNS=80` gives 80.
 fn width() -> Option<usize> {
-    let said = std::env::var("COLUMNS").ok().and_then(|text| text.parse().ok());
-    let terminal = || Some(usize::from(console::Term::stdout().size_checked()?.1));
-    said.or_else(terminal).filter(|width| *width > 0)
+    let width = match std::env::var("COLUMNS").unwrap_or_default().parse() {
+        Ok(width) => width,
+        Err(_) => {
+            let (_, columns) = console::Term::stdout().size_checked()?;
+            usize::from(columns)
+        }
+    };
+    if width > 0 { Some(width) } else { None }
 }
 
 fn text(columns: &[TerminalColumn<'_>], rows: &[Vec<String>], room: Option<usize>) -> String {
@@ -58,8 +67,12 @@ fn text(columns: &[TerminalColumn<'_>], rows: &[Vec<String>], room: Option<usize
     loop {
         if let Some(widths) = fit(columns, rows, &shown, room) {
             let mut text = drawn(columns, rows, &shown, &widths);
-            let gone = (0..columns.len()).filter(|at| !shown.contains(at));
-            let mut gone: Vec<&str> = gone.map(|at| columns[at].heading).collect();
+            let mut gone: Vec<&str> = Vec::new();
+            for (at, column) in columns.iter().enumerate() {
+                if !shown.contains(&at) {
+                    gone.push(column.heading);
+                }
+            }
             gone.dedup();
             if !gone.is_empty() {
                 let note = format!("(no room for {}; --json has all)", gone.join(", "));
@@ -67,10 +80,9 @@ fn text(columns: &[TerminalColumn<'_>], rows: &[Vec<String>], room: Option<usize
             }
             return text;
         }
-        let spared = (0..shown.len()).max_by_key(|&at| columns[shown[at]].dispensable);
-        match spared.filter(|&at| columns[shown[at]].dispensable > 0) {
-            Some(at) => drop(shown.remove(at)),
-            None => return stacked(columns, rows, room),
+        match (0..shown.len()).max_by_key(|&at| columns[shown[at]].dispensable) {
+            Some(at) if columns[shown[at]].dispensable > 0 => drop(shown.remove(at)),
+            _ => return stacked(columns, rows, room),
         }
     }
 }
@@ -82,20 +94,20 @@ fn fit(
     shown: &[usize],
     room: Option<usize>,
 ) -> Option<Vec<usize>> {
-    let cells = |at: usize| rows.iter().map(move |row| row[at].as_str());
-    let widest = |at: usize| cells(at).map(length).max().unwrap_or(0);
-    let longest_word = |text: &str| text.split(' ').map(length).max().unwrap_or(0);
-    let heading = |at: usize| longest_word(columns[at].heading);
-    let least = |&at: &usize| {
-        if columns[at].number {
-            widest(at).max(heading(at))
-        } else {
-            cells(at).map(longest_word).max().unwrap_or(0).max(heading(at))
+    let mut least: Vec<usize> = Vec::new();
+    let mut widths: Vec<usize> = Vec::new();
+    for &at in shown {
+        let column = &columns[at];
+        let mut widest = 0;
+        let mut unbroken = longest_word(column.heading);
+        for row in rows {
+            let cell = &row[at];
+            widest = widest.max(length(cell));
+            unbroken = unbroken.max(if column.number { length(cell) } else { longest_word(cell) });
         }
-    };
-    let most = |&at: &usize| widest(at).max(length(columns[at].heading));
-    let least: Vec<usize> = shown.iter().map(least).collect();
-    let mut widths: Vec<usize> = shown.iter().map(most).collect();
+        least.push(unbroken);
+        widths.push(widest.max(length(column.heading)));
+    }
     let Some(room) = room else {
         return Some(widths);
     };
@@ -113,6 +125,10 @@ fn fit(
 
 fn length(text: &str) -> usize {
     console::measure_text_width(text)
+}
+
+fn longest_word(text: &str) -> usize {
+    text.split(' ').map(length).max().unwrap_or(0)
 }
 
 fn drawn(
@@ -145,14 +161,14 @@ fn drawn(
 
 /// Returns each row as a paragraph: its first cell, and the others below it with their headings.
 fn stacked(columns: &[TerminalColumn<'_>], rows: &[Vec<String>], room: Option<usize>) -> String {
-    let row = |row: &Vec<String>| {
-        let mut lines = vec![format!("{}:", row[0])];
+    let mut lines = Vec::new();
+    for row in rows {
+        lines.push(format!("{}:", row[0]));
         for (column, cell) in columns.iter().zip(row).skip(1) {
             lines.push(folded(&format!("  {}: {cell}", column.heading), room));
         }
-        lines.join("\n")
-    };
-    rows.iter().map(row).collect::<Vec<_>>().join("\n")
+    }
+    lines.join("\n")
 }
 
 /// Returns a line, broken between words if it is wider than `room`. The parts after the first are indented.
@@ -190,7 +206,9 @@ pub fn print_json(value: &Value) {
 /// Fails if a row has not as many fields as the first.
 pub fn print_csv(rows: impl IntoIterator<Item = Vec<String>>) -> Result<()> {
     let mut csv = csv::Writer::from_writer(Vec::new());
-    rows.into_iter().try_for_each(|row| csv.write_record(row))?;
+    for row in rows {
+        csv.write_record(row)?;
+    }
     print_line(String::from_utf8_lossy(&csv.into_inner()?).trim_end());
     Ok(())
 }

@@ -115,14 +115,16 @@ pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) ->
         let most = domains.iter().fold(0.0, |most: f64, (_, high)| most.max(*high));
         wrong_usage!("--exponent {n} is in no device's domain; the largest is {most}");
     }
-    let records: Vec<Option<SynthesisRecord>> = cores
-        .iter()
-        .map(|(_, core)| SynthesisRecord::find(&arguments.figures, &core.core_digest()))
-        .collect::<Result<_>>()?;
+    let mut records: Vec<Option<SynthesisRecord>> = Vec::new();
+    for (_, core) in &cores {
+        records.push(SynthesisRecord::find(&arguments.figures, &core.core_digest())?);
+    }
     let mut usage: Vec<_> = records.iter().map(|it| recorded(it.as_ref())).collect();
     let missing = usage.iter().filter(|usage| usage.is_empty()).count();
-    let wanted = !arguments.no_synthesis && missing > 0;
-    let yosys = wanted.then(|| yosys("no LUTs, DSP blocks and block RAMs", &mut notes)).flatten();
+    let yosys = match !arguments.no_synthesis && missing > 0 {
+        true => yosys("no LUTs, DSP blocks and block RAMs", &mut notes),
+        false => None,
+    };
     let families = if yosys.is_some() { FAMILIES.len() } else { 0 };
     let steps = cores.len() + missing * families;
     let bar = progress::bar(output, steps as u64, "devices weighed");
@@ -135,34 +137,36 @@ pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) ->
         })
         .collect::<Result<_>>()?;
     if let Some(yosys) = &yosys {
-        let unknown = cores.iter().zip(&mut usage).filter(|(_, usage)| usage.is_empty());
-        let (unknown, places): (Vec<_>, Vec<_>) = unknown.unzip();
+        let mut unknown = Vec::new();
+        let mut places = Vec::new();
+        for (core, place) in cores.iter().zip(&mut usage) {
+            if place.is_empty() {
+                unknown.push(core);
+                places.push(place);
+            }
+        }
         let found = synthesise(&unknown, yosys, arguments.time_limit.get(), &|| bar.inc(1))?;
-        places.into_iter().zip(found).for_each(|(place, found)| *place = found);
+        for (place, found) in places.into_iter().zip(found) {
+            *place = found;
+        }
     }
     bar.finish_and_clear();
-    let entries: Vec<ComparisonEntry> = cores
-        .into_iter()
-        .zip(figures)
-        .zip(usage.into_iter().zip(records))
-        .map(|(((label, core), figures), (usage, record))| ComparisonEntry {
-            label,
-            core,
-            figures,
-            usage,
-            record,
-        })
-        .collect();
+    let mut entries: Vec<ComparisonEntry> = Vec::new();
+    let found = figures.into_iter().zip(usage).zip(records);
+    for ((label, core), ((figures, usage), record)) in cores.into_iter().zip(found) {
+        entries.push(ComparisonEntry { label, core, figures, usage, record });
+    }
+    let mut failures: Vec<String> = Vec::new();
     for entry in &entries {
         if entry.figures.accuracy.is_none() {
             notes.push(outside(entry, arguments.exponent));
         }
+        for usage in &entry.usage {
+            if let Err(error) = usage {
+                failures.push(error.clone());
+            }
+        }
     }
-    let failures: Vec<String> = entries
-        .iter()
-        .flat_map(|entry| &entry.usage)
-        .filter_map(|usage| usage.as_ref().err().cloned())
-        .collect();
     show::show(output, arguments, &entries, &notes, &failures)?;
     Ok(failures.is_empty())
 }
@@ -175,9 +179,7 @@ fn with_widths(device: &Device, widths: &[(&str, Option<i64>)], notes: &mut Vec<
     let mut accepted: Vec<(String, Value)> = Vec::new();
     let mut config = Config::defaults(&schema, &name);
     for &(key, value) in widths {
-        let Some(value) = value.filter(|_| schema.key(key).is_some()) else {
-            continue;
-        };
+        let (Some(value), Some(_)) = (value, schema.key(key)) else { continue };
         let mut wanted = accepted.clone();
         wanted.push((key.to_owned(), Value::Integer(value)));
         match Config::from_values(&schema, &name, wanted.clone()) {
@@ -186,9 +188,12 @@ fn with_widths(device: &Device, widths: &[(&str, Option<i64>)], notes: &mut Vec<
                 accepted = wanted;
             }
             Err(problems) => {
-                let why = problems.iter().next().map_or_else(String::new, |problem| {
-                    format!(": {}; {}", problem.error.message, problem.error.remedy)
-                });
+                let why = match problems.iter().next() {
+                    Some(problem) => {
+                        format!(": {}; {}", problem.error.message, problem.error.remedy)
+                    }
+                    None => String::new(),
+                };
                 notes.push(format!(
                     "{}: {key} = {value} is not accepted, {} is compared{why}",
                     device.name,
@@ -211,12 +216,20 @@ fn figures(core: &Core, n: f64) -> Result<ModelFigures> {
 
 /// Returns a record's usage of every family; empty if the record leaves one out.
 fn recorded(record: Option<&SynthesisRecord>) -> Vec<Result<Usage, String>> {
-    let usage = |family: &Family| {
-        let mut targets = record?.targets.iter();
-        targets.find(|figures| figures.target.name() == family.name())?.area.usage()
-    };
-    let all: Option<Vec<Usage>> = FAMILIES.iter().map(usage).collect();
-    all.into_iter().flatten().map(Ok).collect()
+    let Some(record) = record else { return Vec::new() };
+    let mut usage = Vec::new();
+    for family in &FAMILIES {
+        let Some(of_family) = usage_of_family(record, family) else { return Vec::new() };
+        usage.push(Ok(of_family));
+    }
+    usage
+}
+
+/// Returns a record's usage of one family, if the record has it.
+fn usage_of_family(record: &SynthesisRecord, family: &Family) -> Option<Usage> {
+    let mut targets = record.targets.iter();
+    let figures = targets.find(|figures| figures.target.name() == family.name())?;
+    figures.area.usage()
 }
 
 /// Synthesises every core for every family: a usage, or the error.
@@ -226,10 +239,10 @@ fn synthesise(
     limit: Duration,
     done: &(dyn Fn() + Sync),
 ) -> Result<Vec<Vec<Result<Usage, String>>>> {
-    let files: Vec<Vec<(String, String)>> = cores
-        .iter()
-        .map(|(label, core)| core.verilog().with_context(|| format!("`{label}`")))
-        .collect::<Result<_>>()?;
+    let mut files: Vec<Vec<(String, String)>> = Vec::new();
+    for (label, core) in cores {
+        files.push(core.verilog().with_context(|| format!("`{label}`"))?);
+    }
     let runs: Vec<Result<Usage, String>> = (0..cores.len() * FAMILIES.len())
         .into_par_iter()
         .map(|at| {
@@ -259,6 +272,7 @@ fn outside(entry: &ComparisonEntry, n: u32) -> String {
 fn domain(core: &Core) -> Option<(f64, f64)> {
     let operands = core.contract.operands();
     let exponent = operands.iter().find(|operand| operand.name == contract::EXPONENT)?;
-    let value = |raw: i64| exponent.format.to_f64(i128::from(raw));
-    Some((value(exponent.domain.0), value(exponent.domain.1)))
+    let (low, high) = exponent.domain;
+    let format = exponent.format;
+    Some((format.to_f64(i128::from(low)), format.to_f64(i128::from(high))))
 }

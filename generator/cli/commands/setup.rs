@@ -137,19 +137,13 @@ pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) ->
     if *path == arguments.config {
         wrong_usage!("configuration and --batch are one file");
     }
-    let columns = |headings: &StringRecord| -> Result<Vec<(usize, Option<usize>)>> {
-        let places = headings.iter().map(|heading| host.place(heading));
-        places.collect::<Result<_, _>>().map_err(anyhow::Error::msg)
-    };
-    let set_ups = rows::read(path, columns, |columns, record| {
-        let mut given = given.clone();
-        for (place, text) in columns.iter().zip(record).filter(|(_, text)| !text.is_empty()) {
-            host.put(&mut given, *place, text)?;
-        }
-        host.set_up(&given)
-    })?;
+    let set_ups = rows::read(
+        path,
+        |headings| host.places(headings).map_err(anyhow::Error::msg),
+        |places, record| host.set_up_row(&given, places, record),
+    )?;
     if output.json {
-        let rows: Vec<Value> = set_ups.iter().map(|it| host.json(it)).collect();
+        let rows: Vec<Value> = set_ups.iter().map(|set_up| host.json(set_up)).collect();
         tables::print_json(&json!({ "config": one.path, "rows": rows }));
     } else {
         host.print_csv(&set_ups)?;
@@ -168,9 +162,13 @@ impl<'a> HostInputs<'a> {
         );
         let line = render::walks_lines(contract);
         let [vectors, numbers] = if line { OF_LINE } else { OF_POINT };
-        let input = |vector| move |name| Input { name, vector };
-        let inputs = vectors.split(' ').map(input(true));
-        let inputs = inputs.chain(numbers.split(' ').map(input(false))).collect();
+        let mut inputs = Vec::new();
+        for name in vectors.split(' ') {
+            inputs.push(Input { name, vector: true });
+        }
+        for name in numbers.split(' ') {
+            inputs.push(Input { name, vector: false });
+        }
         Ok(Self { one, feed, line, inputs })
     }
 
@@ -185,21 +183,37 @@ impl<'a> HostInputs<'a> {
     /// Returns the index of an input. If `name` is the name of a vector's component, it returns the index of the
     /// component too. For example, `normal_1_y` gives the index of `normal_1`, and 1.
     fn place(&self, name: &str) -> Result<(usize, Option<usize>), String> {
-        let all = &self.inputs;
-        let at = |name: &str| all.iter().position(|it| it.name == name && self.concerns(name));
-        if let Some(at) = at(name) {
-            return Ok((at, None));
-        }
-        if let Some((vector, axis)) = name.rsplit_once('_')
-            && let Some(axis) = AXES.iter().position(|it| *it == axis)
-            && let Some(at) = at(vector).filter(|at| all[*at].vector)
+        if let Some(index) = self.index(name)
+            && self.concerns(name)
         {
-            return Ok((at, Some(axis)));
+            return Ok((index, None));
         }
-        let names = all.iter().map(|it| it.name).filter(|it| self.concerns(it));
-        let names: Vec<&str> = names.collect();
+        if let Some((vector, axis_name)) = name.rsplit_once('_')
+            && let Some(axis) = AXES.iter().position(|it| *it == axis_name)
+            && let Some(index) = self.index(vector)
+            && self.concerns(vector)
+            && self.inputs[index].vector
+        {
+            return Ok((index, Some(axis)));
+        }
+        let mut names = Vec::new();
+        for input in &self.inputs {
+            if self.concerns(input.name) {
+                names.push(input.name);
+            }
+        }
         let device = self.one.core.device.name;
         Err(format!("there is no input `{name}` of `{device}`{}", none_of(name, "inputs", &names)))
+    }
+
+    /// Returns the inputs that the columns of a CSV file give, in the form of [`Self::place`].
+    fn places(&self, headings: &StringRecord) -> Result<Vec<(usize, Option<usize>)>, String> {
+        headings.iter().map(|heading| self.place(heading)).collect()
+    }
+
+    /// Returns the index of an input, whether or not it concerns the device.
+    fn index(&self, name: &str) -> Option<usize> {
+        self.inputs.iter().position(|input| input.name == name)
     }
 
     /// Stores the numbers that a text gives to an input, which must not have any yet. For example, a vector may be
@@ -211,20 +225,18 @@ impl<'a> HostInputs<'a> {
         text: &str,
     ) -> Result<(), String> {
         let Input { name, vector } = self.inputs[at];
-        let number = |text: &str| match text.parse::<f64>() {
-            Ok(value) if value.is_finite() => Ok(value),
-            _ => Err(format!("input `{name}`: `{text}` is not a finite number")),
-        };
-        let split = |it: char| it == ',' || it == ';' || it.is_whitespace();
-        let values: Vec<&str> = match (vector, axis) {
-            (true, None) => text.split(split).filter(|part| !part.is_empty()).collect(),
-            _ => vec![text],
-        };
-        if vector && axis.is_none() && values.len() != 3 {
+        let whole_vector = vector && axis.is_none();
+        let numbers = if whole_vector { components(text) } else { vec![text] };
+        if whole_vector && numbers.len() != 3 {
             return Err(format!("input `{name}`: `{text}` is not three numbers, as 0,0,1"));
         }
-        for (part, text) in (axis.unwrap_or(0)..).zip(values) {
-            if given[at][part].replace(number(text)?).is_some() {
+        let first = axis.unwrap_or(0);
+        for (offset, number) in numbers.into_iter().enumerate() {
+            let value = match number.parse::<f64>() {
+                Ok(value) if value.is_finite() => value,
+                _ => return Err(format!("input `{name}`: `{number}` is not a finite number")),
+            };
+            if given[at][first + offset].replace(value).is_some() {
                 return Err(format!("input `{name}` is given twice"));
             }
         }
@@ -232,14 +244,15 @@ impl<'a> HostInputs<'a> {
     }
 
     fn number(&self, given: &Given, name: &str) -> Option<f64> {
-        let at = self.inputs.iter().position(|it| it.name == name)?;
-        given[at][0]
+        given[self.index(name)?][0]
     }
 
     /// Returns the number of an input, which the user must give. For example, without `points` a line fails.
     fn needed(&self, given: &Given, name: &str) -> Result<f64, String> {
-        let missing = || format!("input `{name}` is missing; give it as {name}=…, or as a column");
-        self.number(given, name).ok_or_else(missing)
+        match self.number(given, name) {
+            Some(number) => Ok(number),
+            None => Err(format!("input `{name}` is missing; give it as {name}=…, or as a column")),
+        }
     }
 
     /// Returns the whole number of an input, which the user must give and which cannot be below `least`.
@@ -254,24 +267,28 @@ impl<'a> HostInputs<'a> {
     /// Returns a share of the light, which must be from 0 to 1. An input that is not given is 1.
     fn share(&self, given: &Given, name: &str) -> Result<f64, String> {
         let value = self.number(given, name).unwrap_or(1.0);
-        let inside = (0.0..=1.0).contains(&value);
-        inside.then_some(value).ok_or_else(|| {
-            format!("input `{name}` is {value}; it is a share of the full light, 0 to 1")
-        })
+        if !(0.0..=1.0).contains(&value) {
+            return Err(format!(
+                "input `{name}` is {value}; it is a share of the full light, 0 to 1"
+            ));
+        }
+        Ok(value)
     }
 
     /// Returns the angle of an input in radians. The user must give it in degrees: for example, 180 is π.
     fn angle(&self, given: &Given, name: &str, (low, high): (f64, f64)) -> Result<f64, String> {
         let degrees = self.needed(given, name)?;
-        let inside = (low..=high).contains(&degrees);
-        inside.then(|| degrees.to_radians()).ok_or_else(|| {
-            format!("input `{name}` is {degrees} degrees; it lies between {low} and {high}")
-        })
+        if !(low..=high).contains(&degrees) {
+            return Err(format!(
+                "input `{name}` is {degrees} degrees; it lies between {low} and {high}"
+            ));
+        }
+        Ok(degrees.to_radians())
     }
 
     fn vector(&self, given: &Given, name: &str) -> Result<Option<Vector>, String> {
-        let at = self.inputs.iter().position(|it| it.name == name);
-        let parts = at.map_or([None; 3], |at| given[at]);
+        let Some(index) = self.index(name) else { return Ok(None) };
+        let parts = given[index];
         match parts {
             [Some(x), Some(y), Some(z)] => Ok(Some(Vector::new(x, y, z))),
             [None, None, None] => Ok(None),
@@ -289,21 +306,25 @@ impl<'a> HostInputs<'a> {
         given: &Given,
         [normal, of_half, light, view]: [&'static str; 4],
     ) -> Result<(Vector, Vector), String> {
-        let missing = |name: &str, or: &str| {
-            format!("input `{name}` is missing; give it{or}, or angles in place of vectors")
-        };
-        let toward = match (self.vector(given, of_half)?, self.vector(given, light)?) {
+        let half_vector = match (self.vector(given, of_half)?, self.vector(given, light)?) {
             (Some(half), None) => half,
             (Some(_), Some(_)) => return Err(format!("`{of_half}` and `{light}` are both given")),
-            (None, Some(toward)) => {
-                let view_vector = self.vector(given, view)?.ok_or_else(|| missing(view, ""))?;
-                half([light, view, "the sum of light and view"], toward, view_vector)
+            (None, Some(toward_light)) => {
+                let toward_viewer = self.needed_vector(given, view)?;
+                half([light, view, "the sum of light and view"], toward_light, toward_viewer)
                     .map_err(|error| error.to_string())?
             }
-            (None, None) => return Err(missing(of_half, &format!(", or `{light}` and `{view}`"))),
+            (None, None) => {
+                return Err(missing_vector(of_half, &format!(", or `{light}` and `{view}`")));
+            }
         };
-        let normal = self.vector(given, normal)?.ok_or_else(|| missing(normal, ""))?;
-        Ok((normal, toward))
+        Ok((self.needed_vector(given, normal)?, half_vector))
+    }
+
+    /// Returns the vector of an input, which the user must give.
+    fn needed_vector(&self, given: &Given, name: &str) -> Result<Vector, String> {
+        let vector = self.vector(given, name)?;
+        vector.ok_or_else(|| missing_vector(name, ""))
     }
 
     /// Returns whether angles are given. Fails if vectors are given too.
@@ -320,11 +341,26 @@ impl<'a> HostInputs<'a> {
         }
     }
 
+    /// Computes the operands of one row of a CSV file. Its cells are added to the inputs `given` on the command line.
+    fn set_up_row(
+        &self,
+        given: &Given,
+        places: &[(usize, Option<usize>)],
+        record: &StringRecord,
+    ) -> Result<SetUp, String> {
+        let mut of_row = given.clone();
+        for (place, text) in places.iter().zip(record) {
+            if !text.is_empty() {
+                self.put(&mut of_row, *place, text)?;
+            }
+        }
+        self.set_up(&of_row)
+    }
+
     fn set_up(&self, given: &Given) -> Result<SetUp, String> {
         let set_up = if self.line { self.of_line(given)? } else { self.of_point(given)? };
         if let Some(at) = self.feed.outside(&set_up.real) {
             let operand = &self.one.core.contract.operands()[at];
-            let value = |raw: i64| operand.format.to_f64(i128::from(raw));
             let (low, high) = operand.domain;
             return Err(format!(
                 "operand `{}` would be {}, and {} takes {} to {}; give other inputs, or a wider domain or format in the \
@@ -332,23 +368,25 @@ impl<'a> HostInputs<'a> {
                 operand.name,
                 set_up.real[at],
                 self.one.path,
-                value(low),
-                value(high)
+                operand.format.to_f64(i128::from(low)),
+                operand.format.to_f64(i128::from(high))
             ));
         }
         Ok(set_up)
     }
 
     fn of_line(&self, given: &Given) -> Result<SetUp, String> {
-        let arc = if self.by_angles(given, &["theta_1", "theta_2", "gamma"])? {
-            let angle = |name| self.angle(given, name, (0.0, 180.0));
-            Arc::of_angles(angle("theta_1")?, angle("theta_2")?, angle("gamma")?)
+        let arc_result = if self.by_angles(given, &["theta_1", "theta_2", "gamma"])? {
+            let half_turn = (0.0, 180.0);
+            let theta_1 = self.angle(given, "theta_1", half_turn)?;
+            let theta_2 = self.angle(given, "theta_2", half_turn)?;
+            Arc::of_angles(theta_1, theta_2, self.angle(given, "gamma", half_turn)?)
         } else {
             let (n1, h1) = self.pair(given, ["normal_1", "half_1", "light_1", "view_1"])?;
             let (n2, h2) = self.pair(given, ["normal_2", "half_2", "light_2", "view_2"])?;
             Arc::new(n1, h1, n2, h2)
         };
-        let arc = arc.map_err(|error| error.to_string())?;
+        let arc = arc_result.map_err(|error| error.to_string())?;
         let light = self.feed.full() * self.share(given, "intensity")?;
         let exponent = self.whole(given, "exponent", 0)?;
         let line = arc.line(light, exponent, self.whole(given, "points", 1)? - 1);
@@ -374,9 +412,9 @@ impl<'a> HostInputs<'a> {
     }
 
     fn of_point(&self, given: &Given) -> Result<SetUp, String> {
-        let colour = ["red", "green", "blue"].map(|name| self.share(given, name));
-        let [red, green, blue] = colour;
-        let colour = Vector::new(red?, green?, blue?);
+        let red = self.share(given, "red")?;
+        let green = self.share(given, "green")?;
+        let colour = Vector::new(red, green, self.share(given, "blue")?);
         let exponent = match self.feed.takes_exponent() {
             true => self.whole(given, "exponent", 0)?,
             false => 0,
@@ -387,12 +425,11 @@ impl<'a> HostInputs<'a> {
                 Some(_) => self.angle(given, "dgamma", (-90.0, 90.0))?,
                 None => 0.0,
             };
-            let along = |angle: f64| Vector::new(libm::sin(angle), 0.0, libm::cos(angle));
             Point {
                 cos_gamma: libm::cos(gamma),
                 cos_dgamma: libm::cos(dgamma),
                 dgamma_negative: dgamma < 0.0,
-                difference: along(-dgamma) - along(gamma),
+                difference: from_z(-dgamma) - from_z(gamma),
                 cos_shaded: libm::cos(gamma + dgamma),
                 colour,
                 ..Point::default()
@@ -400,22 +437,21 @@ impl<'a> HostInputs<'a> {
         } else {
             let (normal, half) = self.pair(given, ["normal", "half", "light", "view"])?;
             let perturbed = self.vector(given, "perturbed")?.unwrap_or(normal);
-            let unit = |name, vector| direction(name, vector).map_err(|error| error.to_string());
             render::point(
-                unit("normal", normal)?,
-                unit("perturbed", perturbed)?,
-                unit("half", half)?,
+                unit_vector("normal", normal)?,
+                unit_vector("perturbed", perturbed)?,
+                unit_vector("half", half)?,
                 colour,
             )
         };
-        let degrees = |cosine: f64| libm::acos(cosine).to_degrees();
+        let gamma = libm::acos(point.cos_gamma).to_degrees();
         let mut quantities = vec![
             ("cos_gamma", "N . H", point.cos_gamma, ""),
-            ("gamma", "angle from N to H", degrees(point.cos_gamma), "degrees"),
+            ("gamma", "angle from N to H", gamma, "degrees"),
         ];
         if self.feed.takes_deviation() {
-            let dgamma = degrees(point.cos_dgamma);
-            let dgamma = if point.dgamma_negative { -dgamma } else { dgamma };
+            let size = libm::acos(point.cos_dgamma).to_degrees();
+            let dgamma = if point.dgamma_negative { -size } else { size };
             quantities.push(("dgamma", "what roughness adds to it", dgamma, "degrees"));
         }
         let real = self.feed.values(&point, exponent).collect();
@@ -424,49 +460,86 @@ impl<'a> HostInputs<'a> {
     }
 
     fn print(&self, set_up: &SetUp) {
-        let rows = set_up.quantities.iter().map(|(name, formula, value, unit)| {
+        let mut quantities = Vec::new();
+        for (name, formula, value, unit) in &set_up.quantities {
             // Digits that a person reads.
-            let value = (value * 1e9).round() / 1e9;
-            vec![(*name).to_owned(), (*formula).to_owned(), format!("{value} {unit}")]
-        });
-        tables::print("quantity | of seed 000 | value", rows);
-        let operands = self.one.core.contract.operands().iter();
-        let rows = operands.zip(&set_up.raw).zip(&set_up.real).map(|((operand, raw), real)| {
-            vec![
+            let rounded = (value * 1e9).round() / 1e9;
+            quantities.push(vec![
+                (*name).to_owned(),
+                (*formula).to_owned(),
+                format!("{rounded} {unit}"),
+            ]);
+        }
+        tables::print("quantity | of seed 000 | value", quantities);
+        let mut operands = Vec::new();
+        let mut settings = Vec::new();
+        for (at, operand) in self.one.core.contract.operands().iter().enumerate() {
+            let raw = set_up.raw[at];
+            operands.push(vec![
                 operand.name.clone(),
                 operand.format.to_string(),
                 raw.to_string(),
-                operand.format.to_f64(i128::from(*raw)).to_string(),
-                real.to_string(),
-            ]
-        });
-        tables::print("operand | format | raw: | value: | before rounding:", rows);
-        let operands = self.one.core.contract.operands().iter().zip(&set_up.raw);
-        let operands: Vec<String> =
-            operands.map(|(operand, raw)| format!("{}=#{raw}", operand.name)).collect();
-        say!("{Program} eval {} {}", self.one.path, operands.join(" "));
+                operand.format.to_f64(i128::from(raw)).to_string(),
+                set_up.real[at].to_string(),
+            ]);
+            settings.push(format!("{}=#{raw}", operand.name));
+        }
+        tables::print("operand | format | raw: | value: | before rounding:", operands);
+        say!("{Program} eval {} {}", self.one.path, settings.join(" "));
     }
 
     fn json(&self, set_up: &SetUp) -> Value {
-        let operands = self.one.core.contract.operands().iter().zip(&set_up.raw).zip(&set_up.real);
-        let operands: Vec<Value> = operands
-            .map(|((operand, &raw), real)| {
-                let value = operand.format.to_f64(i128::from(raw));
-                json!({ "name": operand.name, "raw": raw, "value": value, "real": real, "format": operand.format.to_string() })
-            })
-            .collect();
-        let quantities: Map<String, Value> =
-            set_up.quantities.iter().map(|it| (it.0.to_owned(), json!(it.2))).collect();
+        let mut operands: Vec<Value> = Vec::new();
+        for (at, operand) in self.one.core.contract.operands().iter().enumerate() {
+            let raw = set_up.raw[at];
+            operands.push(json!({
+                "name": operand.name,
+                "raw": raw,
+                "value": operand.format.to_f64(i128::from(raw)),
+                "real": set_up.real[at],
+                "format": operand.format.to_string(),
+            }));
+        }
+        let mut quantities = Map::new();
+        for (name, _, value, _) in &set_up.quantities {
+            quantities.insert((*name).to_owned(), json!(value));
+        }
         json!({ "config": self.one.path, "quantities": quantities, "operands": operands })
     }
 
     fn print_csv(&self, set_ups: &[SetUp]) -> Result<()> {
-        let names = || self.one.core.contract.operands().iter().map(|operand| &operand.name);
-        let headings = names().cloned().chain(names().map(|name| format!("{REAL}{name}")));
-        let cells = |it: &SetUp| {
-            let raw = it.raw.iter().map(|raw| format!("#{raw}"));
-            raw.chain(it.real.iter().map(f64::to_string)).collect()
-        };
-        tables::print_csv(std::iter::once(headings.collect()).chain(set_ups.iter().map(cells)))
+        let operands = self.one.core.contract.operands();
+        let mut headings: Vec<String> = Vec::new();
+        headings.extend(operands.iter().map(|operand| operand.name.clone()));
+        headings.extend(operands.iter().map(|operand| format!("{REAL}{}", operand.name)));
+        let mut rows = vec![headings];
+        for set_up in set_ups {
+            let mut cells: Vec<String> = Vec::new();
+            cells.extend(set_up.raw.iter().map(|raw| format!("#{raw}")));
+            cells.extend(set_up.real.iter().map(f64::to_string));
+            rows.push(cells);
+        }
+        tables::print_csv(rows)
     }
+}
+
+/// Splits the text of a vector into its components. For example, `0,0,1` and `0 0 1` both give `0`, `0` and `1`.
+fn components(text: &str) -> Vec<&str> {
+    let separated = text.split(|c: char| c == ',' || c == ';' || c.is_whitespace());
+    separated.filter(|part| !part.is_empty()).collect()
+}
+
+/// Says that a vector is missing. `or` names other inputs that may take its place.
+fn missing_vector(name: &str, or: &str) -> String {
+    format!("input `{name}` is missing; give it{or}, or angles in place of vectors")
+}
+
+/// Returns the unit vector of an input's direction. Fails if the vector has no length.
+fn unit_vector(name: &'static str, vector: Vector) -> Result<Vector, String> {
+    direction(name, vector).map_err(|error| error.to_string())
+}
+
+/// Returns the unit vector at an angle from the z axis toward the x axis.
+fn from_z(angle: f64) -> Vector {
+    Vector::new(libm::sin(angle), 0.0, libm::cos(angle))
 }

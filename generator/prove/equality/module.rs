@@ -71,23 +71,48 @@ pub struct Module {
 pub type RegisterContents = Vec<Vec<VectorTermId>>;
 
 fn bits(value: &Value) -> Result<Connection> {
-    let bits = value.as_array().context("a connection of the netlist has no bits")?;
-    let bit = |bit: &Value| {
-        Ok(match (bit.as_u64(), bit.as_str()) {
+    let listed = value.as_array().context("a connection of the netlist has no bits")?;
+    let mut bits = Connection::new();
+    for bit in listed {
+        bits.push(match (bit.as_u64(), bit.as_str()) {
             (Some(wire), _) => Bit::Wire(wire as usize),
             (_, Some("0")) => Bit::Known(false),
             (_, Some("1")) => Bit::Known(true),
             (_, Some("x" | "z")) => Bit::Any,
             _ => bail!("a bit of the netlist is `{bit}`"),
-        })
-    };
-    bits.iter().map(bit).collect()
+        });
+    }
+    Ok(bits)
 }
 
-/// Returns a parameter, which Yosys writes in binary. For example, `00000101` is 5.
-fn number(value: &Value) -> Result<usize> {
-    let text = value.as_str().and_then(|text| usize::from_str_radix(text, 2).ok());
-    text.or(value.as_u64().map(|it| it as usize)).context("a parameter of the netlist is no number")
+/// Returns a parameter of a cell, which Yosys writes in binary. For example, `00000101` is 5.
+fn parameter(cell: &Value, name: &str) -> Result<usize> {
+    let value = &cell["parameters"][name];
+    if let Some(text) = value.as_str()
+        && let Ok(number) = usize::from_str_radix(text, 2)
+    {
+        return Ok(number);
+    }
+    let number = value.as_u64().context("a parameter of the netlist is no number")?;
+    Ok(number as usize)
+}
+
+/// Returns the bits at a port of a cell.
+fn connection(cell: &Value, port: &str) -> Result<Connection> {
+    bits(&cell["connections"][port])
+}
+
+/// Returns the bits at a port of a cell; no bits if the cell lacks the port.
+fn optional_connection(cell: &Value, port: &str) -> Result<Connection> {
+    match &cell["connections"][port] {
+        Value::Null => Ok(Connection::new()),
+        connected => bits(connected),
+    }
+}
+
+/// Returns the bits that belong to one of several ports, whose bits a memory has side by side.
+fn port_bits(side_by_side: &Connection, port: usize, width: usize) -> Connection {
+    side_by_side[port * width..(port + 1) * width].to_vec()
 }
 
 impl Module {
@@ -113,8 +138,8 @@ impl Module {
                 _ => bail!("the port `{name}` of the text has another direction than in or out"),
             }
         }
-        let clock = module.inputs.iter().position(|(name, _)| name == "clk");
-        let clock = clock.map(|at| module.inputs.remove(at).1).context("the text has no `clk`")?;
+        let clock_at = module.inputs.iter().position(|(name, _)| name == "clk");
+        let (_, clock) = module.inputs.remove(clock_at.context("the text has no `clk`")?);
         let cells = json["cells"].as_object().context("the netlist of the text has no cells")?;
         for (name, cell) in cells {
             module.add(cell, &clock).with_context(|| format!("the cell `{name}` of the text"))?;
@@ -125,103 +150,123 @@ impl Module {
 
     fn add(&mut self, cell: &Value, clock: &Connection) -> Result<()> {
         let kind = cell["type"].as_str().unwrap_or_default();
-        let parameter = |name: &str| &cell["parameters"][name];
-        let optional = |name: &str| match &cell["connections"][name] {
-            Value::Null => Ok(Connection::new()),
-            connection => bits(connection),
-        };
         match kind {
             "$dff" => {
+                let at_clock = optional_connection(cell, "CLK")? == *clock;
                 ensure!(
-                    optional("CLK")? == *clock && number(parameter("CLK_POLARITY"))? == 1,
+                    at_clock && parameter(cell, "CLK_POLARITY")? == 1,
                     "it does not change at the rising edge of `clk`"
                 );
-                self.registers
-                    .push(ModuleRegister { data: optional("D")?, output: optional("Q")? });
-            }
-            "$mem_v2" => self.add_memory(cell, clock)?,
-            _ => {
-                let signed = |name| number(parameter(name)).is_ok_and(|signed| signed == 1);
-                self.cells.push(ModuleCell {
-                    what: What::Cell {
-                        kind: kind.to_owned(),
-                        signed: [signed("A_SIGNED"), signed("B_SIGNED")],
-                    },
-                    inputs: [optional("A")?, optional("B")?, optional("S")?],
-                    output: optional("Y")?,
+                self.registers.push(ModuleRegister {
+                    data: optional_connection(cell, "D")?,
+                    output: optional_connection(cell, "Q")?,
                 });
             }
+            "$mem_v2" => self.add_memory(cell, clock)?,
+            _ => self.cells.push(ModuleCell {
+                what: What::Cell {
+                    kind: kind.to_owned(),
+                    signed: [
+                        matches!(parameter(cell, "A_SIGNED"), Ok(1)),
+                        matches!(parameter(cell, "B_SIGNED"), Ok(1)),
+                    ],
+                },
+                inputs: [
+                    optional_connection(cell, "A")?,
+                    optional_connection(cell, "B")?,
+                    optional_connection(cell, "S")?,
+                ],
+                output: optional_connection(cell, "Y")?,
+            }),
         }
         Ok(())
     }
 
     fn add_memory(&mut self, cell: &Value, clock: &Connection) -> Result<()> {
-        let parameter = |name: &str| number(&cell["parameters"][name]);
-        let connection = |name: &str| bits(&cell["connections"][name]);
-        let (width, places) = (parameter("WIDTH")?, parameter("ABITS")?);
-        let [reads, writes] = [parameter("RD_PORTS")?, parameter("WR_PORTS")?];
-        let [read, addresses] = [connection("RD_DATA")?, connection("RD_ADDR")?];
+        let width = parameter(cell, "WIDTH")?;
+        let places = parameter(cell, "ABITS")?;
+        let reads = parameter(cell, "RD_PORTS")?;
+        let writes = parameter(cell, "WR_PORTS")?;
+        let read_data = connection(cell, "RD_DATA")?;
+        let read_addresses = connection(cell, "RD_ADDR")?;
         let clocked = cell["parameters"]["RD_CLK_ENABLE"].as_str().unwrap_or("1");
         ensure!(!clocked.contains('1'), "it is read by a clocked port");
-        ensure!(parameter("OFFSET")? == 0, "it does not begin at address 0");
-        let part =
-            |all: &Connection, at: usize, width: usize| all[at * width..(at + 1) * width].to_vec();
+        ensure!(parameter(cell, "OFFSET")? == 0, "it does not begin at address 0");
         let contents = if writes == 0 { words(cell, width)? } else { Vec::new() };
         let memory = self.memories.len();
         let mut ports = Vec::new();
+        let mut addresses = Vec::new();
         for port in 0..reads {
             let what = match writes {
                 0 => What::Word(contents.clone()),
                 _ => What::Read(Read { memory, port }),
             };
+            let address = port_bits(&read_addresses, port, places);
             ports.push(Read { memory, port });
+            addresses.push(address.clone());
             self.cells.push(ModuleCell {
                 what,
-                inputs: [part(&addresses, port, places), Connection::new(), Connection::new()],
-                output: part(&read, port, width),
+                inputs: [address, Connection::new(), Connection::new()],
+                output: port_bits(&read_data, port, width),
             });
         }
         if writes > 0 {
             ensure!(writes == 1, "it is written by {writes} ports");
+            let at_clock = connection(cell, "WR_CLK")? == *clock;
             ensure!(
-                connection("WR_CLK")? == *clock && parameter("WR_CLK_POLARITY")? == 1,
+                at_clock && parameter(cell, "WR_CLK_POLARITY")? == 1,
                 "it is not written at the rising edge of `clk`"
             );
             self.memories.push(Memory {
-                addresses: (0..reads).map(|port| part(&addresses, port, places)).collect(),
+                addresses,
                 reads: ports,
                 width,
                 write: Write {
-                    address: connection("WR_ADDR")?,
-                    data: connection("WR_DATA")?,
-                    enable: connection("WR_EN")?,
+                    address: connection(cell, "WR_ADDR")?,
+                    data: connection(cell, "WR_DATA")?,
+                    enable: connection(cell, "WR_EN")?,
                 },
             });
         }
         Ok(())
     }
 
+    /// Returns all connections of ports, registers, cells and memories.
+    fn connections(&self) -> Vec<&Connection> {
+        let mut connections = Vec::new();
+        for register in &self.registers {
+            connections.extend([&register.output, &register.data]);
+        }
+        for (_, port) in self.inputs.iter().chain(&self.outputs) {
+            connections.push(port);
+        }
+        for cell in &self.cells {
+            connections.extend(&cell.inputs);
+            connections.push(&cell.output);
+        }
+        for memory in &self.memories {
+            let Write { address, data, enable } = &memory.write;
+            connections.extend([address, data, enable]);
+        }
+        connections
+    }
+
     /// Puts each cell after the cells whose output it reads.
     fn order(&mut self) -> Result<()> {
-        let all = |cell: &ModuleCell| cell.inputs.iter().flatten().copied().collect::<Connection>();
-        let registers = self.registers.iter().map(|it| (&it.output, &it.data));
-        let ports = self.inputs.iter().chain(&self.outputs).map(|(_, bits)| (bits, bits));
-        let used = registers.chain(ports).flat_map(|(a, b)| a.iter().chain(b)).copied();
-        let of_cells =
-            self.cells.iter().flat_map(|cell| all(cell).into_iter().chain(cell.output.clone()));
-        let of_memories = self.memories.iter().map(|it| &it.write);
-        let of_memories =
-            of_memories.flat_map(|it| it.address.iter().chain(&it.data).chain(&it.enable)).copied();
-        let wire = |bit| if let Bit::Wire(wire) = bit { Some(wire) } else { None };
-        self.wires = used
-            .chain(of_cells)
-            .chain(of_memories)
-            .filter_map(wire)
-            .max()
-            .map_or(0, |most| most + 1);
-        let mut driver = vec![None; self.wires];
+        let mut wires = 0;
+        for bit in self.connections().into_iter().flatten() {
+            if let Bit::Wire(wire) = *bit {
+                wires = wires.max(wire + 1);
+            }
+        }
+        self.wires = wires;
+        let mut driver = vec![None; wires];
         for (at, cell) in self.cells.iter().enumerate() {
-            cell.output.iter().copied().filter_map(wire).for_each(|it| driver[it] = Some(at));
+            for bit in &cell.output {
+                if let Bit::Wire(wire) = *bit {
+                    driver[wire] = Some(at);
+                }
+            }
         }
         let mut place = vec![0; self.cells.len()];
         // A cell that is open waits for one that it reads.
@@ -233,9 +278,7 @@ impl Module {
                     pending.pop();
                     continue;
                 }
-                let before = all(&self.cells[at]).into_iter().filter_map(wire);
-                let before = before.filter_map(|it| driver[it]).find(|&it| place[it] == 0);
-                match before {
+                match unplaced_driver(&self.cells[at], &driver, &place) {
                     Some(before) => {
                         ensure!(!open[at] || !open[before], "the text has a combinational loop");
                         open[at] = true;
@@ -250,9 +293,9 @@ impl Module {
                 }
             }
         }
-        let mut cells: Vec<_> = place.into_iter().zip(self.cells.drain(..)).collect();
-        cells.sort_by_key(|&(place, _)| place);
-        self.cells = cells.into_iter().map(|(_, cell)| cell).collect();
+        let mut placed: Vec<_> = place.into_iter().zip(self.cells.drain(..)).collect();
+        placed.sort_by_key(|&(place, _)| place);
+        self.cells = placed.into_iter().map(|(_, cell)| cell).collect();
         Ok(())
     }
 
@@ -308,9 +351,26 @@ impl Module {
         terms: &mut VectorTerms,
         values: &WireValues,
     ) -> HashMap<String, VectorTermId> {
-        let outputs = self.outputs.iter();
-        outputs.map(|(name, bits)| (name.clone(), values.word(terms, bits))).collect()
+        let mut shown = HashMap::new();
+        for (name, bits) in &self.outputs {
+            shown.insert(name.clone(), values.word(terms, bits));
+        }
+        shown
     }
+}
+
+/// Returns the first cell that drives an input of `cell` and has no place in the order yet. The place of such a cell
+/// is 0.
+fn unplaced_driver(cell: &ModuleCell, driver: &[Option<usize>], place: &[usize]) -> Option<usize> {
+    for bit in cell.inputs.iter().flatten() {
+        if let Bit::Wire(wire) = *bit
+            && let Some(before) = driver[wire]
+            && place[before] == 0
+        {
+            return Some(before);
+        }
+    }
+    None
 }
 
 impl Memory {
@@ -326,16 +386,24 @@ impl Memory {
 
     /// Returns the addresses of the write port and of each read port, and the enable of the write port.
     pub fn control(&self, terms: &mut VectorTerms, values: &WireValues) -> Vec<VectorTermId> {
-        let write = values.columns(terms, &self.write.enable);
-        let addresses = [&self.write.address].into_iter().chain(&self.addresses);
-        let addresses: Vec<VectorTermId> = addresses.map(|bits| values.word(terms, bits)).collect();
-        addresses.into_iter().chain(write).collect()
+        let enable = values.columns(terms, &self.write.enable);
+        let mut control = vec![values.word(terms, &self.write.address)];
+        for address in &self.addresses {
+            control.push(values.word(terms, address));
+        }
+        control.extend(enable);
+        control
     }
 }
 
+/// Returns new unknowns of `width` bits together, the lowest first, each of at most 64 bits.
 fn unknown(terms: &mut VectorTerms, width: usize) -> Vec<VectorTermId> {
-    let columns = (0..width).step_by(MAX_WIDTH as usize);
-    columns.map(|at| terms.unknown((width - at).min(MAX_WIDTH as usize) as u32)).collect()
+    let mut columns = Vec::new();
+    for lowest in (0..width).step_by(MAX_WIDTH as usize) {
+        let column_width = (width - lowest).min(MAX_WIDTH as usize);
+        columns.push(terms.unknown(column_width as u32));
+    }
+    columns
 }
 
 /// Returns the contents of a memory that is never written. The last digits of `INIT` are word 0. For example, `1101`
@@ -343,11 +411,13 @@ fn unknown(terms: &mut VectorTerms, width: usize) -> Vec<VectorTermId> {
 fn words(cell: &Value, width: usize) -> Result<Vec<u64>> {
     let contents = cell["parameters"]["INIT"].as_str().unwrap_or_default();
     ensure!(width <= MAX_WIDTH as usize, "its words have more than 64 bits");
-    let words = contents.as_bytes().rchunks(width).map(|word| {
-        let word = std::str::from_utf8(word).ok().and_then(|it| u64::from_str_radix(it, 2).ok());
-        word.context("it is never written, and has words without contents")
-    });
-    let words = words.collect::<Result<Vec<u64>>>()?;
-    ensure!(words.len() == number(&cell["parameters"]["SIZE"])?, "its contents have another size");
+    let mut words = Vec::new();
+    for digits in contents.as_bytes().rchunks(width) {
+        let Ok(word) = u64::from_str_radix(&String::from_utf8_lossy(digits), 2) else {
+            bail!("it is never written, and has words without contents")
+        };
+        words.push(word);
+    }
+    ensure!(words.len() == parameter(cell, "SIZE")?, "its contents have another size");
     Ok(words)
 }

@@ -3,7 +3,7 @@
 
 use std::cmp::Ordering;
 use std::collections::BTreeMap;
-use std::sync::Mutex;
+use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use anyhow::{Context, Result, bail};
 use rayon::prelude::*;
@@ -80,10 +80,19 @@ impl<'a> Search<'a> {
         while let Some(better) = self.descend(&best, 1).or_else(|| self.descend(&best, 2)) {
             best = better;
         }
-        let seen = self.seen.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
-        let all = seen.values().flatten().filter(|it| self.is_possible(it)).cloned().collect();
+        let seen = self.lock_seen();
+        let mut possible = Vec::new();
+        for candidate in seen.values().flatten() {
+            if self.is_possible(candidate) {
+                possible.push(candidate.clone());
+            }
+        }
         let (looked_at, free) = (seen.len(), self.space.free().to_vec());
-        Ok(Answer { front: self.goal.front(all), best, free, looked_at })
+        Ok(Answer { front: self.goal.front(possible), best, free, looked_at })
+    }
+
+    fn lock_seen(&self) -> MutexGuard<'_, BTreeMap<String, Option<Candidate>>> {
+        self.seen.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     /// Goes through all combinations of values; the smallest that keeps the goal.
@@ -93,15 +102,16 @@ impl<'a> Search<'a> {
         values: &[(&str, Vec<Value>)],
     ) -> Result<Option<Candidate>> {
         let mut all: Vec<Vec<(&'static str, Value)>> = vec![Vec::new()];
-        for (key, values) in values {
-            let key = self.space.schema().key(key).with_context(|| format!("no key `{key}`"))?.name;
-            let longer = |start: &Vec<(&'static str, Value)>| -> Vec<_> {
-                values
-                    .iter()
-                    .map(|value| [start.as_slice(), &[(key, value.clone())]].concat())
-                    .collect()
-            };
-            all = all.iter().flat_map(longer).collect();
+        for (name, values) in values {
+            let known = self.space.schema().key(name);
+            let key = known.with_context(|| format!("no key `{name}`"))?.name;
+            let mut longer = Vec::new();
+            for start in &all {
+                for value in values {
+                    longer.push([start.as_slice(), &[(key, value.clone())]].concat());
+                }
+            }
+            all = longer;
         }
         let found: Vec<Candidate> = all
             .par_iter()
@@ -114,25 +124,30 @@ impl<'a> Search<'a> {
     /// candidate once.
     fn look(&self, config: &Config) -> Option<Candidate> {
         let text = config.to_toml(self.space.schema());
-        let known = |seen: &BTreeMap<String, Option<Candidate>>| seen.get(&text).cloned();
-        let lock = || self.seen.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
-        if let Some(known) = known(&lock()) {
-            return known;
+        if let Some(known) = self.lock_seen().get(&text) {
+            return known.clone();
         }
+        let found = self.compute(config);
+        let mut seen = self.lock_seen();
+        seen.insert(text, found.clone());
+        (self.progress)(seen.len());
+        found
+    }
+
+    /// Computes the candidate of a configuration, or `None` as [`Self::look`] does.
+    fn compute(&self, config: &Config) -> Option<Candidate> {
         let contract = (self.device.contract)(config);
-        let design = self.device.design(config).ok();
+        let design = self.device.design(config).ok()?;
         // A free key alone changes nothing in the interface, but two together may.
-        let design = design.filter(|design| self.space.holds(design, contract.as_ref()));
-        let found = design.map(|design| Candidate {
+        if !self.space.holds(&design, contract.as_ref()) {
+            return None;
+        }
+        Some(Candidate {
             config: config.clone(),
             bound: contract.bound(),
             cost: Cost::new(&design, self.goal.target),
             clocks: clocks_per_point(&design, contract.as_ref(), EXPONENT).ok(),
-        });
-        let mut seen = lock();
-        seen.insert(text, found.clone());
-        (self.progress)(seen.len());
-        found
+        })
     }
 
     fn error(&self, candidate: &Candidate) -> f64 {
@@ -155,11 +170,12 @@ impl<'a> Search<'a> {
     /// Returns the clock that a candidate needs for the goal, in MHz. It is infinite if a rate is wanted and the
     /// candidate shows no point. For example, 2 million points a second at 10 clocks a point need 20 MHz.
     fn wanted_mhz(&self, candidate: &Candidate) -> f64 {
-        let of_rate = self.goal.rate.map(|rate| match candidate.clocks {
-            Some(clocks) => rate * clocks,
-            None => f64::INFINITY,
-        });
-        self.goal.clock.unwrap_or_default().max(of_rate.unwrap_or_default())
+        let of_rate = match (self.goal.rate, candidate.clocks) {
+            (Some(rate), Some(clocks)) => rate * clocks,
+            (Some(_), None) => f64::INFINITY,
+            (None, _) => 0.0,
+        };
+        self.goal.clock.unwrap_or_default().max(of_rate)
     }
 
     /// Returns the costs, the most important first. Candidates of equal costs differ in their text.
@@ -168,27 +184,35 @@ impl<'a> Search<'a> {
     }
 
     fn smallest(&self, candidates: Vec<Candidate>) -> Option<Candidate> {
-        let kept = candidates.into_iter().filter(|candidate| self.keeps(candidate));
-        kept.map(|one| (self.order(&one), one))
-            .min_by(|(one, _), (other, _)| {
-                one.0.partial_cmp(&other.0).unwrap_or(Ordering::Equal).then(one.1.cmp(&other.1))
-            })
-            .map(|(_, one)| one)
+        let mut kept = Vec::new();
+        for candidate in candidates {
+            if self.keeps(&candidate) {
+                kept.push((self.order(&candidate), candidate));
+            }
+        }
+        let smallest =
+            kept.into_iter().min_by(|((costs, text), _), ((other_costs, other_text), _)| {
+                let by_costs = costs.partial_cmp(other_costs).unwrap_or(Ordering::Equal);
+                by_costs.then(text.cmp(other_text))
+            });
+        smallest.map(|(_, candidate)| candidate)
     }
 
     /// Returns the neighbours that differ by this number of changes.
     fn around(&self, candidate: &Candidate, changes: usize) -> Vec<Candidate> {
         let moves = self.space.moves(&candidate.config);
-        let single = moves.iter().map(|one| vec![one.clone()]);
-        let changed: Vec<Vec<(&'static str, Value)>> = if changes == 1 {
-            single.collect()
-        } else {
-            let pairs = moves.iter().enumerate().flat_map(|(at, one)| {
-                let others = moves[at + 1..].iter().filter(move |other| other.0 != one.0);
-                others.map(move |other| vec![one.clone(), other.clone()])
-            });
-            pairs.collect()
-        };
+        let mut changed: Vec<Vec<(&'static str, Value)>> = Vec::new();
+        for (at, first) in moves.iter().enumerate() {
+            if changes == 1 {
+                changed.push(vec![first.clone()]);
+                continue;
+            }
+            for second in &moves[at + 1..] {
+                if second.0 != first.0 {
+                    changed.push(vec![first.clone(), second.clone()]);
+                }
+            }
+        }
         let all = changed.par_iter();
         all.filter_map(|values| self.look(&self.space.with(&candidate.config, values)?)).collect()
     }
@@ -197,24 +221,38 @@ impl<'a> Search<'a> {
     fn reach(&self, base: Candidate) -> Result<Candidate> {
         let mut here = base;
         while !self.keeps(&here) {
-            let wanted = self.error(&here) > self.goal.error;
-            let measure = |candidate: &Candidate| match wanted {
-                true => self.error(candidate),
-                // The error is kept, and the clock or the number of DSP blocks is not.
-                false if self.error(candidate) > self.goal.error => f64::INFINITY,
-                false if !self.has_dsps(candidate) => candidate.cost.dsps as f64,
-                false => -candidate.cost.mhz / self.wanted_mhz(candidate),
-            };
-            let next = self.around(&here, 1).into_iter();
-            let next = next.min_by(|one, other| measure(one).total_cmp(&measure(other)));
-            match next.filter(|next| measure(next) < measure(&here) - 1e-9) {
+            let wants_error = self.error(&here) > self.goal.error;
+            let mut least = self.distance(&here, wants_error) - 1e-9;
+            let mut next = None;
+            for candidate in self.around(&here, 1) {
+                let distance = self.distance(&candidate, wants_error);
+                if distance < least {
+                    least = distance;
+                    next = Some(candidate);
+                }
+            }
+            match next {
                 Some(next) => here = next,
-                None if wanted => return self.out_of_reach(&here),
+                None if wants_error => return self.out_of_reach(&here),
                 None if !self.has_dsps(&here) => return self.too_many_dsps(&here),
                 None => return self.too_slow(&here),
             }
         }
         Ok(here)
+    }
+
+    /// Returns a number that is smaller for a candidate nearer to the goal. It is the error if `wants_error`. Otherwise
+    /// the error must be kept, and it is the number of DSP blocks if they are too many, and then the clock.
+    fn distance(&self, candidate: &Candidate, wants_error: bool) -> f64 {
+        if wants_error {
+            self.error(candidate)
+        } else if self.error(candidate) > self.goal.error {
+            f64::INFINITY
+        } else if !self.has_dsps(candidate) {
+            candidate.cost.dsps as f64
+        } else {
+            -candidate.cost.mhz / self.wanted_mhz(candidate)
+        }
     }
 
     /// Returns the clock that cannot be kept.
@@ -245,13 +283,20 @@ impl<'a> Search<'a> {
     /// Returns the error that says that the goal cannot be kept, and which term is in the way.
     fn out_of_reach(&self, nearest: &Candidate) -> Result<Candidate> {
         let unit = self.goal.unit;
-        // The rounding of the outputs is no part of the error of f.
-        let counts = |term: &&Term| unit == ErrorUnit::Output || term.key != "output.rounding";
-        let largest = nearest.bound.terms.iter().filter(counts);
-        let largest = largest.max_by(|one, other| one.units.total_cmp(&other.units));
-        let way = largest.map_or_else(String::new, |term| {
-            format!("; in the way: {} (`{}`), {:.6} output units", term.what, term.key, term.units)
-        });
+        let mut largest: Option<&Term> = None;
+        for term in &nearest.bound.terms {
+            // The rounding of the outputs is no part of the error of f.
+            let counts = unit == ErrorUnit::Output || term.key != "output.rounding";
+            if counts && largest.is_none_or(|before| term.units.total_cmp(&before.units).is_ge()) {
+                largest = Some(term);
+            }
+        }
+        let way = match largest {
+            Some(Term { what, key, units, .. }) => {
+                format!("; in the way: {what} (`{key}`), {units:.6} output units")
+            }
+            None => String::new(),
+        };
         bail!(
             "no configuration keeps {} {unit}; the smallest bound that was found is {} {unit}{way}",
             self.goal.error,
@@ -262,7 +307,8 @@ impl<'a> Search<'a> {
     /// Returns a smaller neighbour that keeps the goal.
     fn descend(&self, here: &Candidate, changes: usize) -> Option<Candidate> {
         let smallest = self.smallest(self.around(here, changes))?;
-        (self.order(&smallest).0 < self.order(here).0).then_some(smallest)
+        let is_smaller = self.goal.order(&smallest) < self.goal.order(here);
+        if is_smaller { Some(smallest) } else { None }
     }
 }
 
@@ -297,10 +343,9 @@ impl TuningGoal {
         });
         let mut front: Vec<Candidate> = Vec::new();
         for candidate in all {
-            let smaller =
-                front.last().is_none_or(|last| self.objective(&candidate) < self.objective(last));
-            if smaller {
-                front.push(candidate);
+            match front.last() {
+                Some(last) if self.objective(&candidate) >= self.objective(last) => {}
+                _ => front.push(candidate),
             }
         }
         front
@@ -310,7 +355,13 @@ impl TuningGoal {
 /// Returns a value with as many digits as show that it is above a limit, and six at least. For example, 0.5000001 and
 /// the limit 0.5 give `0.5000001`, and 0.75 gives `0.750000`.
 fn above(value: f64, limit: f64) -> String {
-    let shown = (6..17).map(|digits| format!("{value:.digits$}"));
-    let is_above = |text: &String| text.parse::<f64>().is_ok_and(|shown| shown > limit);
-    shown.into_iter().find(is_above).unwrap_or_else(|| value.to_string())
+    for digits in 6..17 {
+        let text = format!("{value:.digits$}");
+        if let Ok(shown) = text.parse::<f64>()
+            && shown > limit
+        {
+            return text;
+        }
+    }
+    value.to_string()
 }

@@ -39,21 +39,36 @@ impl SearchSpace {
         let design = device.design(base).context("this configuration makes no design")?;
         let outside = CoreInterface::new(&design, (device.contract)(base).as_ref());
         let mut space = Self { schema, free: Vec::new(), outside, slower };
-        let is_free = |key: &&Key| {
-            let values = alternatives(key, base.value(key.name));
-            let states = STATEMENT.contains(&key.table_and_leaf().0);
-            !(values.is_empty() || states || fixed.contains(&key.name))
-                && values.into_iter().all(|value| {
-                    // A value that does not go with the others says nothing.
-                    let changed = space.with(base, &[(key.name, value)]);
-                    changed.is_none_or(|config| {
-                        let contract = (device.contract)(&config);
-                        device.design(&config).is_ok_and(|it| space.holds(&it, contract.as_ref()))
-                    })
-                })
-        };
-        space.free = space.schema.keys.iter().filter(is_free).map(|key| key.name).collect();
+        let mut free = Vec::new();
+        for key in &space.schema.keys {
+            if !fixed.contains(&key.name) && space.is_free(device, base, key) {
+                free.push(key.name);
+            }
+        }
+        space.free = free;
         Ok(space)
+    }
+
+    /// Returns whether a key has other values, and none of these values changes the interface of the core.
+    fn is_free(&self, device: &Device, base: &Config, key: &Key) -> bool {
+        let (table, _) = key.table_and_leaf();
+        if STATEMENT.contains(&table) {
+            return false;
+        }
+        let values = alternatives(key, base.value(key.name));
+        if values.is_empty() {
+            return false;
+        }
+        for value in values {
+            // A value that does not go with the others says nothing.
+            let Some(config) = self.with(base, &[(key.name, value)]) else { continue };
+            let contract = (device.contract)(&config);
+            let Ok(design) = device.design(&config) else { return false };
+            if !self.holds(&design, contract.as_ref()) {
+                return false;
+            }
+        }
+        true
     }
 
     /// Returns whether the core looks the same from outside, except for its accuracy.
@@ -76,15 +91,15 @@ impl SearchSpace {
 
     /// Returns the changes of one free key that applies.
     pub fn moves(&self, config: &Config) -> Vec<(&'static str, Value)> {
-        let keys =
-            self.schema.keys.iter().filter(|key| {
-                self.free.contains(&key.name) && config.applies(&self.schema, key.name)
-            });
-        keys.flat_map(|key| {
-            let values = neighbours(&key.kind, config.value(key.name));
-            values.into_iter().map(|value| (key.name, value))
-        })
-        .collect()
+        let mut moves = Vec::new();
+        for key in &self.schema.keys {
+            if self.free.contains(&key.name) && config.applies(&self.schema, key.name) {
+                for value in neighbours(&key.kind, config.value(key.name)) {
+                    moves.push((key.name, value));
+                }
+            }
+        }
+        moves
     }
 
     /// Returns a configuration with values replaced, if the device accepts it.
@@ -95,25 +110,17 @@ impl SearchSpace {
 
 /// Returns a configuration with values replaced; `None` if the device does not accept it.
 fn with(schema: &Schema, config: &Config, values: &[(&'static str, Value)]) -> Option<Config> {
-    let changed = |name: &str| values.iter().find(|(key, _)| *key == name).map(|(_, value)| value);
+    let mut all: Vec<(String, Value)> = Vec::new();
+    for (name, before) in config.values() {
+        let value = match values.iter().find(|(key, _)| *key == name) {
+            Some((_, value)) => value,
+            None => before,
+        };
+        all.push((name.to_owned(), value.clone()));
+    }
     // A choice decides which other keys apply. The draft must not have keys that no longer apply.
-    let mut draft: Vec<(String, Value)> = config
-        .values()
-        .map(|(name, own)| (name.to_owned(), changed(name).unwrap_or(own).clone()))
-        .collect();
-    let applies = |draft: &[(String, Value)], name: &str| {
-        let mut condition = schema.key(name).and_then(|key| key.condition);
-        while let Some(needed) = condition {
-            let other = draft.iter().find(|(name, _)| name == needed.key);
-            if !other.is_some_and(|(_, value)| needed.holds(value)) {
-                return false;
-            }
-            condition = schema.key(needed.key).and_then(|key| key.condition);
-        }
-        true
-    };
-    let all = draft.clone();
-    draft.retain(|(name, _)| applies(&all, name));
+    let mut draft = all.clone();
+    draft.retain(|(name, _)| applies(schema, &all, name));
     // Two keys that say the same thing: only one may be there.
     draft.retain(|(name, value)| {
         schema.key(name).is_none_or(|key| !name.starts_with("pipeline.") || *value != key.default)
@@ -122,6 +129,19 @@ fn with(schema: &Schema, config: &Config, values: &[(&'static str, Value)]) -> O
     // `strict` is no key, although a file may set it.
     config.strict = false;
     values.iter().all(|(key, value)| config.value(key) == value).then_some(config)
+}
+
+/// Returns whether a key applies beside the other values: its condition holds, and the condition of the key that the
+/// condition names, and so on.
+fn applies(schema: &Schema, values: &[(String, Value)], name: &str) -> bool {
+    let mut key = schema.key(name);
+    while let Some(condition) = key.and_then(|key| key.condition) {
+        match values.iter().find(|(other, _)| other == condition.key) {
+            Some((_, value)) if condition.holds(value) => key = schema.key(condition.key),
+            _ => return false,
+        }
+    }
+    true
 }
 
 /// The interface of a core: its ports, its microinstructions, each at least a clock of a point, and its
@@ -148,20 +168,35 @@ impl CoreInterface {
     /// Returns whether `contract` has the same formula. At a jump of a formula, two values are right, and the widths
     /// decide which. One of these must be a value of the other formula.
     fn has_formula(&self, contract: &dyn Contract) -> bool {
-        let other = formula(contract, &self.points);
-        let same = |(a, b): (&[f64; 2], &[f64; 2])| a.iter().any(|value| b.contains(value));
-        other.len() == self.formula.len() && self.formula.iter().zip(&other).all(same)
+        let others = formula(contract, &self.points);
+        if others.len() != self.formula.len() {
+            return false;
+        }
+        for (values, others) in self.formula.iter().zip(&others) {
+            if !values.iter().any(|value| others.contains(value)) {
+                return false;
+            }
+        }
+        true
     }
 }
 
+/// Returns the ports of a design as text. For example, `cos_gamma u0.20`.
 fn ports(design: &Design) -> Vec<String> {
-    let ports = design.ports.iter().map(|port| design.net(port.net));
-    ports.map(|net| format!("{} {}", net.name, net.format)).collect()
+    let mut ports = Vec::new();
+    for port in &design.ports {
+        let net = design.net(port.net);
+        ports.push(format!("{} {}", net.name, net.format));
+    }
+    ports
 }
 
+/// Returns the exact results at some points, with both sides of a jump.
 fn formula(contract: &dyn Contract, points: &[Vec<i64>]) -> Vec<[f64; 2]> {
     let mut values = Vec::new();
-    points.iter().for_each(|point| contract.exact(point, 0, &mut values));
+    for point in points {
+        contract.exact(point, 0, &mut values);
+    }
     values
 }
 
@@ -186,8 +221,15 @@ fn alternatives(key: &Key, value: &Value) -> Vec<Value> {
 fn neighbours(kind: &KeyKind, value: &Value) -> Vec<Value> {
     match (kind, value) {
         (KeyKind::Integer { min, max }, Value::Integer(value)) => {
-            let values = STEPS.iter().flat_map(|step| [value - step, value + step]);
-            values.filter(|value| (min..=max).contains(&value)).map(Value::Integer).collect()
+            let mut values = Vec::new();
+            for step in STEPS {
+                for neighbour in [value - step, value + step] {
+                    if (*min..=*max).contains(&neighbour) {
+                        values.push(Value::Integer(neighbour));
+                    }
+                }
+            }
+            values
         }
         (KeyKind::Choice(options), Value::Text(text)) => {
             let others = options.iter().filter(|option| *option != text);
@@ -203,9 +245,9 @@ fn neighbours(kind: &KeyKind, value: &Value) -> Vec<Value> {
                     lists.push(changed);
                 }
             }
-            lists.push(
-                [list.as_slice(), list.last().map_or(&[] as &[i64], std::slice::from_ref)].concat(),
-            );
+            let mut longer = list.clone();
+            longer.extend(list.last());
+            lists.push(longer);
             lists.push(list[..list.len().saturating_sub(1)].to_vec());
             lists.retain(|list| {
                 (len_min..=len_max).contains(&&list.len())

@@ -2,7 +2,7 @@
 
 use anyhow::Result;
 use serde::Serialize;
-use serde_json::{Value, json};
+use serde_json::{Map, Value, json};
 
 use super::{Arguments, ComparisonEntry};
 use crate::{OutputOptions, failure, say, tables};
@@ -49,34 +49,38 @@ pub fn show(
 /// operands than the angle and n. Returns `None` for all other devices.
 fn at_rest(entry: &ComparisonEntry) -> Option<String> {
     let contract = entry.core.contract.as_ref();
-    let control = contract.operands().iter().filter(|operand| !operand.colour);
-    let is_other = |name: &str| ![contract::COSINE, contract::EXPONENT].contains(&name);
     if !contract.operands().iter().any(|operand| operand.name == contract::COSINE) {
         return None;
     }
     // Any angle and exponent: the others do not depend on them.
     let point = (1..=1000).find_map(|n| contract.highlight()?.at(0.1, f64::from(n)))?;
-    let others: Vec<String> = control
-        .zip(point)
-        .filter(|(operand, _)| is_other(&operand.name))
-        .map(|(operand, raw)| {
-            format!("{} = {}", operand.name, operand.format.to_f64(i128::from(raw)))
-        })
-        .collect();
-    (!others.is_empty()).then(|| {
-        format!(
-            "the errors of {} are those at {}; over all operands the fixed point of f is off by at most {:.1e}, its bound",
-            entry.label,
-            others.join(", "),
-            contract.bound().f
-        )
-    })
+    let control = contract.operands().iter().filter(|operand| !operand.colour);
+    let mut others: Vec<String> = Vec::new();
+    for (operand, raw) in control.zip(point) {
+        if operand.name != contract::COSINE && operand.name != contract::EXPONENT {
+            let value = operand.format.to_f64(i128::from(raw));
+            others.push(format!("{} = {value}", operand.name));
+        }
+    }
+    if others.is_empty() {
+        return None;
+    }
+    Some(format!(
+        "the errors of {} are those at {}; over all operands the fixed point of f is off by at most {:.1e}, its bound",
+        entry.label,
+        others.join(", "),
+        contract.bound().f
+    ))
 }
 
 /// Returns the largest and the mean error for the whole, the formula, the operands and the fixed point.
-fn errors(accuracy: &Accuracy) -> impl Iterator<Item = f64> {
+fn errors(accuracy: &Accuracy) -> Vec<f64> {
     let Accuracy { whole, formula, operands, fixed_point } = *accuracy;
-    [whole, formula, operands, fixed_point].into_iter().flat_map(|it| [it.largest, it.mean])
+    let mut errors = Vec::new();
+    for error in [whole, formula, operands, fixed_point] {
+        errors.extend([error.largest, error.mean]);
+    }
+    errors
 }
 
 fn print_errors(arguments: &Arguments, entries: &[ComparisonEntry]) {
@@ -85,15 +89,20 @@ fn print_errors(arguments: &Arguments, entries: &[ComparisonEntry]) {
         arguments.exponent,
         1.0 / f64::from(ANGLES_PER_DEGREE)
     );
-    let rows = entries.iter().map(|entry| {
+    let mut rows = Vec::new();
+    for entry in entries {
         let mut row = vec![entry.label.clone()];
         match &entry.figures.accuracy {
             None => row.resize(9, "-".to_owned()),
-            Some(accuracy) => row.extend(errors(accuracy).map(|error| format!("{error:.6}"))),
+            Some(accuracy) => {
+                for error in errors(accuracy) {
+                    row.push(format!("{error:.6}"));
+                }
+            }
         }
         row.push(entry.core.contract.bound().words());
-        row
-    });
+        rows.push(row);
+    }
     tables::print(
         "device | largest: | mean:3 | formula, largest: | mean:6 | operands, largest:1 | mean:5 | fixed point, largest: | mean:4 | bound, units:2",
         rows,
@@ -109,11 +118,15 @@ fn print_errors(arguments: &Arguments, entries: &[ComparisonEntry]) {
 fn print_hardware(entries: &[ComparisonEntry]) {
     let synthesised = entries.iter().any(|entry| !entry.usage.is_empty());
     let mut headings = "device | clocks a point: | ROM bits: | multipliers;1".to_owned();
-    for family in FAMILIES.iter().filter(|_| synthesised) {
-        let resources = ["LUT", "DSP", "RAM"].map(|it| format!(" | {} {it}:", family.title));
-        headings += &resources.concat();
+    if synthesised {
+        for family in &FAMILIES {
+            for resource in ["LUT", "DSP", "RAM"] {
+                headings += &format!(" | {} {resource}:", family.title);
+            }
+        }
     }
-    let rows = entries.iter().map(|entry| {
+    let mut rows = Vec::new();
+    for entry in entries {
         let mut row = vec![
             entry.label.clone(),
             clocks(entry.figures.clocks_per_point),
@@ -123,8 +136,8 @@ fn print_hardware(entries: &[ComparisonEntry]) {
         if synthesised {
             row.extend(taken(entry, "-"));
         }
-        row
-    });
+        rows.push(row);
+    }
     tables::print(&headings, rows);
     tables::print_line(
         "ROM bits count the control ROM. Clocks are from start to start, per point of the longest line where a \
@@ -139,49 +152,67 @@ fn print_hardware(entries: &[ComparisonEntry]) {
 
 /// Returns the usage of all families, with `unknown` for a usage that is not known.
 fn taken(entry: &ComparisonEntry, unknown: &str) -> Vec<String> {
-    let of = |at: usize| entry.usage.get(at).and_then(|usage| usage.as_ref().ok());
-    let families = (0..FAMILIES.len()).flat_map(|at| match of(at) {
-        Some(usage) => numbers(usage).map(|(_, number)| number.to_string()),
-        None => [unknown; 3].map(str::to_owned),
-    });
-    families.collect()
+    let mut cells = Vec::new();
+    for at in 0..FAMILIES.len() {
+        match entry.usage.get(at) {
+            Some(Ok(usage)) => {
+                for (_, number) in numbers(usage) {
+                    cells.push(number.to_string());
+                }
+            }
+            _ => cells.extend([unknown; 3].map(str::to_owned)),
+        }
+    }
+    cells
 }
 
 /// Returns the targets for which a frequency was measured, with the core's rate there.
-fn speeds(entry: &ComparisonEntry) -> impl Iterator<Item = (Target, Frequency, Rate)> {
-    let figures = entry.record.iter().flat_map(|record| &record.targets);
-    figures.filter_map(|it| {
-        Some((it.target, it.frequency?, Rate::new(it, entry.figures.clocks_per_point)?))
-    })
+fn speeds(entry: &ComparisonEntry) -> Vec<(Target, Frequency, Rate)> {
+    let mut speeds = Vec::new();
+    let Some(record) = &entry.record else { return speeds };
+    for figures in &record.targets {
+        if let Some(frequency) = figures.frequency
+            && let Some(rate) = Rate::new(figures, entry.figures.clocks_per_point)
+        {
+            speeds.push((figures.target, frequency, rate));
+        }
+    }
+    speeds
+}
+
+/// Writes a number times a scale with one digit behind the point, and `-` for none.
+fn scaled(number: Option<f64>, scale: f64) -> String {
+    match number {
+        Some(number) => format!("{:.1}", number * scale),
+        None => "-".to_owned(),
+    }
 }
 
 fn print_speed(entries: &[ComparisonEntry]) {
     if entries.iter().all(|entry| entry.record.is_none()) {
         return;
     }
-    let per = |number: Option<f64>, scale: f64| {
-        number.map_or_else(|| "-".to_owned(), |it| format!("{:.1}", it * scale))
-    };
-    let rows = entries.iter().flat_map(|entry| {
-        speeds(entry).map(|(target, frequency, rate)| {
-            vec![
+    let mut rows = Vec::new();
+    for entry in entries {
+        for (target, frequency, rate) in speeds(entry) {
+            rows.push(vec![
                 entry.label.clone(),
                 target.title().to_owned(),
                 format!("{:.1}", frequency.median),
                 format!("{:.1} to {:.1}", frequency.lowest, frequency.highest),
                 format!("{:.1}", rate.points),
-                per(rate.per_lut, 1000.0),
-                per(rate.per_dsp, 1.0),
-            ]
-        })
-    });
+                scaled(rate.per_lut, 1000.0),
+                scaled(rate.per_dsp, 1.0),
+            ]);
+        }
+    }
     tables::print_line("");
     tables::print(
         "device | target | MHz: | lowest to highest:1 | M points/s: | k/s per LUT: | M/s per DSP:",
         rows,
     );
-    let tools =
-        tools(entries.iter().filter_map(|it| it.record.as_ref()).flat_map(|it| &it.targets));
+    let records = entries.iter().filter_map(|entry| entry.record.as_ref());
+    let tools = tools(records.flat_map(|record| &record.targets));
     say!(
         "Measured by `{Program} synth` with registers around the core, the median of several runs of place and route: {}.",
         Vec::from_iter(tools).join(", ")
@@ -196,13 +227,13 @@ fn clocks(clocks: f64) -> String {
 /// Writes the sizes of multipliers, in the order of the list. For example, one of 21 by 10 bits and three of 10 by 8
 /// bits are `21x10, 3 of 10x8`.
 fn sizes(multipliers: &[MultiplierSize]) -> String {
-    let alike = multipliers.chunk_by(|a, b| a == b);
-    let texts: Vec<String> = alike
-        .map(|alike| match alike {
+    let mut texts = Vec::new();
+    for alike in multipliers.chunk_by(|a, b| a == b) {
+        texts.push(match alike {
             [one] => one.to_string(),
             several => format!("{} of {}", several.len(), several[0]),
-        })
-        .collect();
+        });
+    }
     texts.join(", ")
 }
 
@@ -211,10 +242,20 @@ fn numbers(usage: &Usage) -> [(&'static str, u64); 3] {
     [("luts", usage.luts), ("dsps", usage.dsps), ("block_rams", usage.block_rams)]
 }
 
-/// Returns the heading, then a row for each entry. A value that is not known is empty. For example, the columns of
-/// iCE40 are `ice40_luts`, `ice40_dsps` and `ice40_block_rams`.
+/// Returns the heading, then a row for each entry. A value that is not known is empty.
 fn as_csv(arguments: &Arguments, entries: &[ComparisonEntry]) -> Vec<Vec<String>> {
     let synthesised = entries.iter().any(|entry| !entry.usage.is_empty());
+    let measured = entries.iter().any(|entry| entry.record.is_some());
+    let mut rows = vec![csv_heading(synthesised, measured)];
+    for entry in entries {
+        rows.push(csv_row(entry, arguments.exponent, synthesised, measured));
+    }
+    rows
+}
+
+/// Returns the names of the columns. For example, the columns of iCE40 are `ice40_luts`, `ice40_dsps` and
+/// `ice40_block_rams`.
+fn csv_heading(synthesised: bool, measured: bool) -> Vec<String> {
     let mut heading: Vec<String> = ["name", "device", "exponent"].map(str::to_owned).to_vec();
     for name in ["error", "formula", "operands", "fixed_point"] {
         heading.extend([format!("{name}_largest"), format!("{name}_mean")]);
@@ -223,47 +264,53 @@ fn as_csv(arguments: &Arguments, entries: &[ComparisonEntry]) -> Vec<Vec<String>
         .extend(["bound_units", "clocks_per_point", "rom_bits", "multipliers"].map(str::to_owned));
     if synthesised {
         for family in &FAMILIES {
-            heading
-                .extend(["luts", "dsps", "block_rams"].map(|it| format!("{}_{it}", family.name())));
-        }
-    }
-    let measured = entries.iter().any(|entry| entry.record.is_some());
-    if measured {
-        for target in TARGETS {
-            heading.extend(["mhz", "million_points_per_second"].map(|it| format!("{target}_{it}")));
-        }
-    }
-    let row = |entry: &ComparisonEntry| {
-        let mut row = vec![
-            entry.label.clone(),
-            entry.core.device.name.to_owned(),
-            arguments.exponent.to_string(),
-        ];
-        match &entry.figures.accuracy {
-            None => row.extend(vec![String::new(); 8]),
-            Some(accuracy) => row.extend(errors(accuracy).map(|error| error.to_string())),
-        }
-        row.extend([
-            entry.core.contract.bound().units.to_string(),
-            entry.figures.clocks_per_point.to_string(),
-            entry.core.design.rom_bits().to_string(),
-            sizes(&entry.figures.multipliers),
-        ]);
-        if synthesised {
-            row.extend(taken(entry, ""));
-        }
-        if measured {
-            for target in TARGETS {
-                let (mhz, points) = speeds(entry).find(|(of, ..)| *of == target).map_or_else(
-                    || (String::new(), String::new()),
-                    |(_, frequency, rate)| (frequency.median.to_string(), rate.points.to_string()),
-                );
-                row.extend([mhz, points]);
+            for resource in ["luts", "dsps", "block_rams"] {
+                heading.push(format!("{}_{resource}", family.name()));
             }
         }
-        row
-    };
-    std::iter::once(heading).chain(entries.iter().map(row)).collect()
+    }
+    if measured {
+        for target in TARGETS {
+            heading.push(format!("{target}_mhz"));
+            heading.push(format!("{target}_million_points_per_second"));
+        }
+    }
+    heading
+}
+
+fn csv_row(
+    entry: &ComparisonEntry,
+    exponent: u32,
+    synthesised: bool,
+    measured: bool,
+) -> Vec<String> {
+    let mut row =
+        vec![entry.label.clone(), entry.core.device.name.to_owned(), exponent.to_string()];
+    match &entry.figures.accuracy {
+        None => row.extend(vec![String::new(); 8]),
+        Some(accuracy) => row.extend(errors(accuracy).iter().map(f64::to_string)),
+    }
+    row.extend([
+        entry.core.contract.bound().units.to_string(),
+        entry.figures.clocks_per_point.to_string(),
+        entry.core.design.rom_bits().to_string(),
+        sizes(&entry.figures.multipliers),
+    ]);
+    if synthesised {
+        row.extend(taken(entry, ""));
+    }
+    if measured {
+        let speeds = speeds(entry);
+        for target in TARGETS {
+            match speeds.iter().find(|(measured_target, ..)| *measured_target == target) {
+                Some((_, frequency, rate)) => {
+                    row.extend([frequency.median.to_string(), rate.points.to_string()]);
+                }
+                None => row.extend([String::new(), String::new()]),
+            }
+        }
+    }
+    row
 }
 
 /// For scripts.
@@ -296,7 +343,8 @@ fn as_json(
 fn entry_json(entry: &ComparisonEntry) -> Value {
     let core = &entry.core;
     let schema = (core.device.schema)();
-    let multipliers = entry.figures.multipliers.iter();
+    let multipliers: Vec<_> =
+        entry.figures.multipliers.iter().map(|size| [size.first, size.second]).collect();
     let mut value = json!({
         "name": entry.label,
         "device": core.device.name,
@@ -305,25 +353,30 @@ fn entry_json(entry: &ComparisonEntry) -> Value {
         "clocks_per_point": entry.figures.clocks_per_point,
         "rom_bits": core.design.rom_bits(),
         "errors": entry.figures.accuracy,
-        "multipliers": Vec::from_iter(multipliers.map(|it| [it.first, it.second])),
+        "multipliers": multipliers,
     });
     if !entry.usage.is_empty() {
-        let taken = |usage: &Result<Usage, String>| match usage {
-            Ok(usage) => {
-                let named = numbers(usage).map(|(name, number)| (name.to_owned(), json!(number)));
-                Value::Object(named.into_iter().collect())
-            }
-            Err(_) => Value::Null,
-        };
-        let families = FAMILIES.iter().map(|family| family.name().to_owned());
-        value["synthesis"] = Value::Object(families.zip(entry.usage.iter().map(taken)).collect());
+        let mut synthesis = Map::new();
+        for (family, usage) in FAMILIES.iter().zip(&entry.usage) {
+            let taken = usage.as_ref().map_or(Value::Null, usage_json);
+            synthesis.insert(family.name().to_owned(), taken);
+        }
+        value["synthesis"] = Value::Object(synthesis);
     }
     if entry.record.is_some() {
-        let speed = |(target, frequency, rate): (Target, Frequency, Rate)| {
-            let told = Speed { frequency, rate };
-            (target.name().to_owned(), json!(told))
-        };
-        value["speed"] = Value::Object(speeds(entry).map(speed).collect());
+        let mut speed = Map::new();
+        for (target, frequency, rate) in speeds(entry) {
+            speed.insert(target.name().to_owned(), json!(Speed { frequency, rate }));
+        }
+        value["speed"] = Value::Object(speed);
     }
     value
+}
+
+fn usage_json(usage: &Usage) -> Value {
+    let mut named = Map::new();
+    for (name, number) in numbers(usage) {
+        named.insert(name.to_owned(), json!(number));
+    }
+    Value::Object(named)
 }

@@ -20,7 +20,7 @@ use window::Windows;
 use super::fault::Site;
 use super::verdict::How;
 use glint_base::fixed::mask;
-use glint_rtl::netlist::{Design, Driver, NetId, RegId, RegisterKind};
+use glint_rtl::netlist::{Design, Driver, NetId, RegisterKind};
 
 /// Proves faults of one design equivalent.
 pub(super) struct Prover<'a> {
@@ -39,44 +39,14 @@ impl<'a> Prover<'a> {
     /// Prepares the proofs of a design. Returns `None` for a design with a combinational loop.
     pub(super) fn new(design: &'a Design) -> Option<Self> {
         let length = count(design);
-        let mut compared = vec![vec![0; design.nets.len()]; length];
-        let mut compare = |net: NetId, slot: Option<usize>| {
-            for (at, compared) in compared.iter_mut().enumerate() {
-                if slot.is_none_or(|slot| slot == at) {
-                    compared[net.index()] = mask(design.width(net));
-                }
-            }
-        };
-        let registers = design.registers.iter();
-        let registers = registers.filter(|register| register.kind != RegisterKind::Internal);
-        let outputs = design.outputs().map(|port| port.net);
-        outputs.chain(registers.map(|register| register.q)).for_each(|net| compare(net, None));
-        if let Some(pipeline) = &design.pipeline {
-            // There is a point in a stage in one slot alone.
-            let slot = |net: NetId| pipeline.clock_of(net) % pipeline.interval;
-            pipeline.checkpoints.iter().for_each(|it| compare(it.net, Some(slot(it.net))));
-        }
+        let compared = compared_bits(design, length);
         let order = Order::of(design)?;
         let following: Vec<_> = (0..length).map(|at| following(design, at)).collect();
-        // At power-up everything that is held is 0, in microinstruction 0.
-        let mut held: Vec<Option<PairState>> = vec![None; length];
-        held[0] = Some(order.held().map(|net| Pairs::constant(0, design.width(net))).collect());
-        let mut todo = vec![0];
-        while let Some(at) = todo.pop() {
-            let Some(state) = &held[at] else { continue };
-            let after = order.next(&order.settle(at, state, None), None);
-            for &to in &following[at] {
-                let there = held[to].as_ref();
-                let joined = there.map_or_else(|| after.clone(), |it| join(it, &after));
-                if there != Some(&joined) {
-                    held[to] = Some(joined);
-                    todo.push(to);
-                }
-            }
+        let anything: PairState = order.held().map(|net| Pairs::same(design.width(net))).collect();
+        let mut nets = Vec::new();
+        for (at, state) in reached_states(&order, &following).iter().enumerate() {
+            nets.push(order.settle(at, state.as_ref().unwrap_or(&anything), None));
         }
-        let anything = || order.held().map(|net| Pairs::same(design.width(net))).collect();
-        let state = |at: usize| held[at].clone().unwrap_or_else(anything);
-        let nets = (0..length).map(|at| order.settle(at, &state(at), None)).collect();
         Some(Self { nets, order, following, compared, windows: Windows::of(design)? })
     }
 
@@ -84,48 +54,41 @@ impl<'a> Prover<'a> {
     pub(super) fn proves(&self, site: &Site) -> Option<How> {
         if self.by_induction(site) {
             Some(How::Induction)
+        } else if self.windows.proves(site) {
+            Some(How::Exhaustion)
         } else {
-            self.windows.proves(site).then_some(How::Exhaustion)
+            None
         }
     }
 
     fn by_induction(&self, site: &Site) -> bool {
-        let design = self.order.design;
-        let resets = |id: &RegId| design.register(*id).reset;
-        match site {
-            // The effect of a reset is no part of the proof.
-            Site::Reset(_) => return false,
-            Site::Bit(net, bit, how) => {
-                if let Driver::Register(id) = &design.net(*net).driver
-                    && resets(id).is_some_and(|reset| how.applied(reset, *bit) != reset)
-                {
-                    return false;
-                }
-            }
-            _ => {}
+        if self.changes_reset(site) {
+            return false;
         }
-        let held = |nets: &Vec<Pairs>| -> PairState {
-            self.order.held().map(|net| nets[net.index()]).collect()
-        };
-        let mut states: Vec<PairState> = self.nets.iter().map(held).collect();
+        let registers = &self.order.design.registers;
+        let sound: Vec<PairState> = self.nets.iter().map(|nets| self.held_in(nets)).collect();
+        let mut states = sound.clone();
         let mut todo: Vec<usize> = (0..states.len()).collect();
         while let Some(at) = todo.pop() {
             let fault = Some((site, &self.nets[at][..]));
             let nets = self.order.settle(at, &states[at], fault);
-            let seen = |(net, bits): (&Pairs, &u64)| net.differ() & bits != 0;
-            if nets.iter().zip(&self.compared[at]).any(seen) {
-                return false;
+            for (net, bits) in nets.iter().zip(&self.compared[at]) {
+                if net.differ() & bits != 0 {
+                    return false;
+                }
             }
             let next = self.order.next(&nets, fault);
-            let differs = |net: &Pairs| net.differ() != 0;
-            let mut registers = design.registers.iter().zip(&next);
-            if registers.any(|(it, next)| it.kind != RegisterKind::Internal && differs(next)) {
-                return false;
+            for (register, value) in registers.iter().zip(&next) {
+                if register.kind != RegisterKind::Internal && value.differ() != 0 {
+                    return false;
+                }
             }
             for &to in &self.following[at] {
-                let sound = held(&self.nets[to]);
-                let possible = next.iter().zip(&sound).map(|(next, sound)| next.within(*sound));
-                let joined = join(&states[to], &possible.collect());
+                let mut possible = PairState::new();
+                for (value, sound) in next.iter().zip(&sound[to]) {
+                    possible.push(value.within(*sound));
+                }
+                let joined = join(&states[to], &possible);
                 if joined != states[to] {
                     states[to] = joined;
                     todo.push(to);
@@ -134,6 +97,76 @@ impl<'a> Prover<'a> {
         }
         true
     }
+
+    /// Returns whether a fault changes the effect of a reset, which is no part of the proof.
+    fn changes_reset(&self, site: &Site) -> bool {
+        let design = self.order.design;
+        match site {
+            Site::Reset(_) => true,
+            Site::Bit(net, bit, how) => match &design.net(*net).driver {
+                Driver::Register(id) => match design.register(*id).reset {
+                    Some(reset) => how.applied(reset, *bit) != reset,
+                    None => false,
+                },
+                _ => false,
+            },
+            _ => false,
+        }
+    }
+
+    /// Returns the state that is part of the values of all nets.
+    fn held_in(&self, nets: &[Pairs]) -> PairState {
+        self.order.held().map(|net| nets[net.index()]).collect()
+    }
+}
+
+/// Returns for each microinstruction the bits of each net that are compared in it.
+fn compared_bits(design: &Design, length: usize) -> Vec<Vec<u64>> {
+    let mut always: Vec<NetId> = design.outputs().map(|port| port.net).collect();
+    for register in &design.registers {
+        if register.kind != RegisterKind::Internal {
+            always.push(register.q);
+        }
+    }
+    let mut compared = vec![vec![0; design.nets.len()]; length];
+    for bits_of_nets in &mut compared {
+        for net in &always {
+            bits_of_nets[net.index()] = mask(design.width(*net));
+        }
+    }
+    if let Some(pipeline) = &design.pipeline {
+        for checkpoint in &pipeline.checkpoints {
+            // There is a point in a stage in one slot alone.
+            let slot = pipeline.clock_of(checkpoint.net) % pipeline.interval;
+            compared[slot][checkpoint.net.index()] = mask(design.width(checkpoint.net));
+        }
+    }
+    compared
+}
+
+/// Returns for each microinstruction the state before it, with all values that are possible from power-up on. The state
+/// is `None` if the design never gets there.
+fn reached_states(order: &Order, following: &[Vec<usize>]) -> Vec<Option<PairState>> {
+    let design = order.design;
+    let mut reached: Vec<Option<PairState>> = vec![None; following.len()];
+    // At power-up everything that is held is 0, in microinstruction 0.
+    reached[0] = Some(order.held().map(|net| Pairs::constant(0, design.width(net))).collect());
+    let mut todo = vec![0];
+    while let Some(at) = todo.pop() {
+        let Some(state) = &reached[at] else { continue };
+        let after = order.next(&order.settle(at, state, None), None);
+        for &to in &following[at] {
+            let joined = match &reached[to] {
+                Some(before) => join(before, &after),
+                None => after.clone(),
+            };
+            if reached[to].as_ref() != Some(&joined) {
+                reached[to] = Some(joined);
+                todo.push(to);
+            }
+        }
+    }
+    reached
 }
 
 /// Joins two states: each bit may be as in either. For example, a bit that is 0 in one state and 1 in the other may be

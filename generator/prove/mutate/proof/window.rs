@@ -73,14 +73,22 @@ impl<'a> Windows<'a> {
                 }
             }
         }
-        let registers = design.registers.iter();
-        let read = registers.flat_map(|register| [register.data, register.enable]);
-        let read = read.flatten().chain(design.roms.iter().map(|rom| rom.address));
-        // A net that is compared with a golden model's register is observed itself.
-        let checkpoints = design.pipeline.iter().flat_map(|pipeline| &pipeline.checkpoints);
-        let seen = design.outputs().map(|port| port.net).chain(checkpoints.map(|it| it.net));
-        for net in read.chain(seen) {
-            sinks[net.index()] = true;
+        for register in &design.registers {
+            for net in [register.data, register.enable].into_iter().flatten() {
+                sinks[net.index()] = true;
+            }
+        }
+        for rom in &design.roms {
+            sinks[rom.address.index()] = true;
+        }
+        for port in design.outputs() {
+            sinks[port.net.index()] = true;
+        }
+        if let Some(pipeline) = &design.pipeline {
+            // A net that is compared with a golden model's register is observed itself.
+            for checkpoint in &pipeline.checkpoints {
+                sinks[checkpoint.net.index()] = true;
+            }
         }
         Some(Self {
             read: design.roms.iter().map(|_| OnceLock::new()).collect(),
@@ -98,20 +106,7 @@ impl<'a> Windows<'a> {
     pub(super) fn proves(&self, site: &Site) -> bool {
         match site {
             Site::Words(rom, words) if *rom != self.design.control.rom => {
-                let known = &self.read[rom.index()];
-                // Not inside `get_or_init`, which would make others wait: work that is tried at the same time may ask
-                // for it too.
-                let read = match known.get() {
-                    Some(read) => read,
-                    None => {
-                        let read = self.words_read(*rom);
-                        known.get_or_init(|| read)
-                    }
-                };
-                let is_read = |(word, _): &(usize, u64)| {
-                    read.as_ref().is_none_or(|read| read.contains(&(*word as u64)))
-                };
-                !words.iter().any(is_read) || self.stays_inside(self.design.rom(*rom).data, site)
+                !self.reads_any(*rom, words) || self.stays_inside(self.design.rom(*rom).data, site)
             }
             // The fault is in each product.
             Site::Bit(net, ..) if self.copies.contains_key(net) => {
@@ -128,15 +123,32 @@ impl<'a> Windows<'a> {
         }
     }
 
-    /// Returns the words of a ROM that may be read.
+    /// Returns whether one of these words of a ROM, given with their addresses, may be read.
+    fn reads_any(&self, rom: RomId, words: &[(usize, u64)]) -> bool {
+        let known = &self.read[rom.index()];
+        // Not inside `get_or_init`, which would make others wait: work that is tried at the same time may ask
+        // for it too.
+        let addresses = match known.get() {
+            Some(addresses) => addresses,
+            None => {
+                let addresses = self.words_read(rom);
+                known.get_or_init(|| addresses)
+            }
+        };
+        match addresses {
+            Some(addresses) => words.iter().any(|(at, _)| addresses.contains(&(*at as u64))),
+            None => !words.is_empty(),
+        }
+    }
+
+    /// Returns the addresses of the words of a ROM that may be read.
     fn words_read(&self, rom: RomId) -> Option<BTreeSet<u64>> {
         let address = self.design.rom(rom).address;
         let read = Mutex::new(BTreeSet::new());
         self.try_all(&[address].into(), &BTreeSet::new(), None, |values, _, count| {
-            read.lock().is_ok_and(|mut read| {
-                read.extend(&of(values, None, address)[..count]);
-                true
-            })
+            let Ok(mut addresses) = read.lock() else { return false };
+            addresses.extend(&lanes_of(values, None, address)[..count]);
+            true
         })?;
         read.into_inner().ok()
     }
@@ -159,27 +171,22 @@ impl<'a> Windows<'a> {
     ) -> bool {
         let mut affected = BTreeSet::from([net]);
         loop {
-            let beyond: BTreeSet<NetId> = affected
-                .iter()
-                .flat_map(|net| self.cells_reading(*net, through))
-                .filter(|reader| !affected.contains(reader))
-                .collect();
-            let leaves = |net: &NetId| {
-                let stops = self.sinks[net.index()] || !through && self.multiplied[net.index()];
-                let mut readers = self.cells_reading(*net, through);
-                stops || readers.any(|reader| beyond.contains(&reader))
-            };
-            let leaving: Vec<NetId> = affected.iter().copied().filter(leaves).collect();
-            let fault = Some((net, site));
+            let mut beyond: BTreeSet<NetId> = BTreeSet::new();
+            for &inside in &affected {
+                beyond.extend(self.cells_reading(inside, through));
+            }
+            beyond.retain(|reader| !affected.contains(reader));
+            let mut leaving: Vec<NetId> = Vec::new();
+            for &inside in &affected {
+                let stops =
+                    self.sinks[inside.index()] || !through && self.multiplied[inside.index()];
+                let mut readers = self.cells_reading(inside, through);
+                if stops || readers.any(|reader| beyond.contains(&reader)) {
+                    leaving.push(inside);
+                }
+            }
             let is_new = !tried.contains(&affected);
-            let stays = || {
-                self.try_all(&affected, &affected, fault, |sound, mutant, count| {
-                    let lanes = |own, net| &of(sound, own, net)[..count];
-                    let is_same = |net: &NetId| lanes(None, *net) == lanes(Some(mutant), *net);
-                    leaving.iter().all(is_same)
-                })
-            };
-            if is_new && stays() == Some(true) {
+            if is_new && self.hides(&affected, &leaving, (net, site)) {
                 return true;
             }
             tried.push(affected.clone());
@@ -190,12 +197,25 @@ impl<'a> Windows<'a> {
         }
     }
 
+    /// Returns whether the nets of `leaving` are the same with the fault for every combination of values that
+    /// determines the `affected` nets. Returns false if there are too many combinations.
+    fn hides(&self, affected: &BTreeSet<NetId>, leaving: &[NetId], fault: (NetId, &Site)) -> bool {
+        let is_same = self.try_all(affected, affected, Some(fault), |sound, mutant, count| {
+            leaving.iter().all(|&net| {
+                lanes_of(sound, None, net)[..count] == lanes_of(sound, Some(mutant), net)[..count]
+            })
+        });
+        is_same == Some(true)
+    }
+
     /// Returns the cells that read a net, with multipliers or without.
     fn cells_reading(&self, net: NetId, through: bool) -> impl Iterator<Item = NetId> {
-        let multiplies =
-            |net: NetId| matches!(self.design.net(net).driver, Driver::Op(Op::Mul(..)));
         let readers = self.readers[net.index()].iter().copied();
-        readers.filter(move |reader| through || !multiplies(*reader))
+        readers.filter(move |reader| through || !self.is_product(*reader))
+    }
+
+    fn is_product(&self, net: NetId) -> bool {
+        matches!(self.design.net(net).driver, Driver::Op(Op::Mul(..)))
     }
 
     /// Evaluates `wanted`, without and with the fault, for every combination of the values that determine it. None of
@@ -208,79 +228,122 @@ impl<'a> Windows<'a> {
         fault: Option<(NetId, &Site)>,
         holds: impl Fn(&LanesByNet, &LanesByNet, usize) -> bool + Sync,
     ) -> Option<bool> {
-        // The words at fault are all that the net brings that matters.
         let words = match fault {
             Some((net, Site::Words(rom, words))) => {
-                Some((net, &self.design.rom(*rom).words, words))
+                Some(FaultyWords { net, sound: &self.design.rom(*rom).words, faulty: words })
             }
             _ => None,
         };
-        let at_fault = |net: NetId| words.filter(|(at, ..)| *at == net);
-        let size = |net: NetId| {
-            let (low, high) = self.intervals[net.index()];
-            at_fault(net).map_or(high - low + 1, |(.., words)| words.len() as i128)
-        };
-        let bits = |net: NetId| 128 - (size(net) - 1).leading_zeros();
+        let bits = |net: NetId| 128 - (self.count_values(net, words) - 1).leading_zeros();
         let mut uncut = affected.clone();
-        uncut.retain(|net| at_fault(*net).is_none());
+        if let Some(words) = words {
+            uncut.remove(&words.net);
+        }
         let cut = smallest_cut(&self.design, wanted, &uncut, &bits, BITS)?;
-        let total = cut
-            .iter()
-            .try_fold(1i128, |total, net| total.checked_mul(size(*net)))
-            .filter(|total| *total <= 1 << BITS)? as u64;
-        let mut inside = BTreeSet::new();
+        let mut combinations: i128 = 1;
+        for &net in &cut {
+            combinations = combinations.checked_mul(self.count_values(net, words))?;
+        }
+        if combinations > 1 << BITS {
+            return None;
+        }
+        let total = combinations as u64;
+        let steps = self.cells_behind(&cut, wanted);
+        let nets = self.design.nets.len();
+        let chunks = total.div_ceil(LANES as u64);
+        let all = (0..chunks).into_par_iter().map_init(
+            || [vec![None; nets], vec![None; nets]],
+            |[sound, mutant], chunk| {
+                let from = chunk * STRIDE % chunks * LANES as u64;
+                let count = (total - from).min(LANES as u64) as usize;
+                self.put_combinations(from, &cut, words, sound, mutant);
+                for &net in &steps {
+                    let lanes = self.evaluate(net, &self.design.net(net).driver, sound, None);
+                    put(sound, net, lanes);
+                    if let Some(fault) = fault
+                        && affected.contains(&net)
+                    {
+                        put(mutant, net, self.evaluate_at_fault(net, fault, sound, mutant));
+                    }
+                }
+                holds(sound, mutant, count)
+            },
+        );
+        Some(all.all(|holds| holds))
+    }
+
+    /// Returns the number of values that are tried of a net of the cut. The words at fault are all that their net
+    /// brings that matters.
+    fn count_values(&self, net: NetId, words: Option<FaultyWords>) -> i128 {
+        match words {
+            Some(words) if words.net == net => words.faulty.len() as i128,
+            _ => {
+                let (low, high) = self.intervals[net.index()];
+                high - low + 1
+            }
+        }
+    }
+
+    /// Returns the nets that determine `wanted` from a cut, in the order of evaluation.
+    fn cells_behind(&self, cut: &BTreeSet<NetId>, wanted: &BTreeSet<NetId>) -> Vec<NetId> {
+        let mut behind = BTreeSet::new();
         let mut todo: Vec<NetId> = wanted.iter().copied().collect();
         while let Some(net) = todo.pop() {
-            if !cut.contains(&net) && inside.insert(net) {
+            if !cut.contains(&net) && behind.insert(net) {
                 todo.extend(self.operands(net));
             }
         }
-        let steps: Vec<NetId> =
-            self.order.iter().copied().filter(|net| inside.contains(net)).collect();
-        let nothing = || [(); 2].map(|()| vec![None; self.design.nets.len()]);
-        let chunks = total.div_ceil(LANES as u64);
-        let all = (0..chunks).into_par_iter().map_init(nothing, |[sound, mutant], chunk| {
-            let from = chunk * STRIDE % chunks * LANES as u64;
-            let count = (total - from).min(LANES as u64) as usize;
-            let mut place = 1;
-            for &net in &cut {
-                let (low, _) = self.intervals[net.index()];
-                let format = self.design.net(net).format;
-                let size = size(net) as u64;
-                let number = |lane: usize| (from + lane as u64) / place % size;
-                let values = match at_fault(net) {
-                    None => std::array::from_fn(|lane| format.bits(low + i128::from(number(lane)))),
-                    Some((_, before, words)) => {
-                        let word = |lane: usize| words[number(lane) as usize];
-                        put(mutant, net, std::array::from_fn(|lane| word(lane).1));
-                        std::array::from_fn(|lane| before[word(lane).0])
-                    }
-                };
-                put(sound, net, values);
-                place *= size;
-            }
-            for &net in &steps {
-                let value = self.evaluate(net, &self.design.net(net).driver, sound, None);
-                put(sound, net, value);
-                if let Some((at, site)) = fault
-                    && affected.contains(&net)
-                {
-                    let driver = match site {
-                        Site::Driver(_, driver) if at == net => driver,
-                        _ => &self.design.net(net).driver,
-                    };
-                    let mut value = self.evaluate(net, driver, sound, Some(mutant));
-                    if let Site::Bit(_, bit, how) = site
-                        && at == net
-                    {
-                        value = value.map(|bits| how.applied(bits, *bit));
-                    }
-                    put(mutant, net, value);
+        self.order.iter().copied().filter(|net| behind.contains(net)).collect()
+    }
+
+    /// Puts the combinations from the number `from` on into the lanes of the cut. The first net of the cut changes
+    /// from lane to lane, like the last digit of a number.
+    fn put_combinations(
+        &self,
+        from: u64,
+        cut: &BTreeSet<NetId>,
+        words: Option<FaultyWords>,
+        sound: &mut LanesByNet,
+        mutant: &mut LanesByNet,
+    ) {
+        let mut place = 1;
+        for &net in cut {
+            let size = self.count_values(net, words) as u64;
+            let digit = |lane: usize| (from + lane as u64) / place % size;
+            let values = match words {
+                Some(words) if words.net == net => {
+                    let word = |lane: usize| words.faulty[digit(lane) as usize];
+                    put(mutant, net, std::array::from_fn(|lane| word(lane).1));
+                    std::array::from_fn(|lane| words.sound[word(lane).0])
                 }
-            }
-            holds(sound, mutant, count)
-        });
-        Some(all.all(|holds| holds))
+                _ => {
+                    let (low, _) = self.intervals[net.index()];
+                    let format = self.design.net(net).format;
+                    std::array::from_fn(|lane| format.bits(low + i128::from(digit(lane))))
+                }
+            };
+            put(sound, net, values);
+            place *= size;
+        }
+    }
+
+    /// Returns a net of the mutant in all lanes.
+    fn evaluate_at_fault(
+        &self,
+        net: NetId,
+        (at_fault, site): (NetId, &Site),
+        sound: &LanesByNet,
+        mutant: &LanesByNet,
+    ) -> NetLanes {
+        let driver = match site {
+            Site::Driver(_, driver) if at_fault == net => driver,
+            _ => &self.design.net(net).driver,
+        };
+        let lanes = self.evaluate(net, driver, sound, Some(mutant));
+        match site {
+            Site::Bit(_, bit, how) if at_fault == net => lanes.map(|bits| how.applied(bits, *bit)),
+            _ => lanes,
+        }
     }
 
     fn operands(&self, net: NetId) -> Vec<NetId> {
@@ -298,17 +361,29 @@ impl<'a> Windows<'a> {
         sound: &LanesByNet,
         mutant: Option<&LanesByNet>,
     ) -> NetLanes {
-        let of = |net: NetId| of(sound, mutant, net);
         match driver {
             Driver::Constant(bits) => [*bits; LANES],
-            Driver::Op(op) => {
-                let format = |net: NetId| self.design.net(net).format;
-                eval::cell(op, self.design.width(net), &format, &of)
-            }
+            Driver::Op(op) => eval::cell(
+                op,
+                self.design.width(net),
+                &|operand| self.design.net(operand).format,
+                &|operand| lanes_of(sound, mutant, operand),
+            ),
             // A source is in the cut, and has its values.
-            _ => *of(net),
+            _ => *lanes_of(sound, mutant, net),
         }
     }
+}
+
+/// The words at fault of a ROM.
+#[derive(Clone, Copy)]
+struct FaultyWords<'s> {
+    /// The net that brings the words.
+    net: NetId,
+    /// All words of the fault-free ROM.
+    sound: &'s [u64],
+    /// Each word at fault, with its address.
+    faulty: &'s [(usize, u64)],
 }
 
 /// Keeps the lanes of a net.
@@ -320,7 +395,11 @@ fn put(values: &mut LanesByNet, net: NetId, lanes: NetLanes) {
 }
 
 /// Returns the lanes of a net: the mutant's own lanes if it has them, else the lanes of the fault-free design.
-fn of<'v>(sound: &'v LanesByNet, mutant: Option<&'v LanesByNet>, net: NetId) -> &'v NetLanes {
-    let own = mutant.and_then(|mutant| mutant[net.index()].as_deref());
-    own.or(sound[net.index()].as_deref()).expect("a net stands behind its operands")
+fn lanes_of<'v>(sound: &'v LanesByNet, mutant: Option<&'v LanesByNet>, net: NetId) -> &'v NetLanes {
+    if let Some(mutant) = mutant
+        && let Some(lanes) = &mutant[net.index()]
+    {
+        return lanes;
+    }
+    sound[net.index()].as_deref().expect("a net stands behind its operands")
 }

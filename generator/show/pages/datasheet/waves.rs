@@ -9,7 +9,7 @@ use glint_base::fixed::Format;
 use glint_core::core::Core;
 use glint_core::cosim::trial;
 use glint_core::package::sealed_json;
-use glint_rtl::netlist::{Design, Driver, Handshake, NetId, RegisterKind, Role};
+use glint_rtl::netlist::{Design, Driver, Handshake, NetId, Port, RegisterKind, Role};
 
 /// The largest number of clocks that can be shown. The diagram leaves out the middle of a longer computation.
 const MOST: usize = 40;
@@ -93,35 +93,41 @@ impl Waves {
     /// Takes the waveform of a pipeline: the handshake, operands while they are offered, results while they are shown.
     fn points(core: &Core) -> Result<Self> {
         let design = &core.design;
-        let of = |wanted: &[Role]| {
-            let ports = design.ports.iter().filter(|port| wanted.contains(&port.role));
-            ports.map(|port| port.net).collect::<Vec<_>>()
-        };
-        let (offer, shown) = (of(&[Role::InValid]), of(&[Role::Valid]));
-        let input = [offer.clone(), of(&[Role::InReady]), of(&[Role::Point])].concat();
-        let output =
-            [shown.clone(), of(&[Role::OutReady]), of(&[Role::Result, Role::Status])].concat();
-        let nets = [input, output].concat();
+        let groups: [&[Role]; 6] = [
+            &[Role::InValid],
+            &[Role::InReady],
+            &[Role::Point],
+            &[Role::Valid],
+            &[Role::OutReady],
+            &[Role::Result, Role::Status],
+        ];
+        let mut ports: Vec<&Port> = Vec::new();
+        for roles in groups {
+            ports.extend(design.ports.iter().filter(|port| roles.contains(&port.role)));
+        }
+        let nets: Vec<NetId> = ports.iter().map(|port| port.net).collect();
         let clocks = trial::record_points(design, core.contract.as_ref(), &nets)?;
-        let column = |net: NetId| nets.iter().position(|&other| other == net);
+        let in_valid = ports.iter().position(|port| port.role == Role::InValid);
+        let out_valid = ports.iter().position(|port| port.role == Role::Valid);
         let mut lanes = vec![clock_lane(clocks.len())];
-        for (at, &net) in nets.iter().enumerate() {
-            let port = design.ports.iter().find(|port| port.net == net);
+        for (at, port) in ports.iter().enumerate() {
             // Data mean something with their valid bit alone.
-            let valid = match port.map(|port| port.role) {
-                Some(Role::Point) => column(offer[0]),
-                Some(Role::Result | Role::Status) => column(shown[0]),
+            let valid = match port.role {
+                Role::Point => in_valid,
+                Role::Result | Role::Status => out_valid,
                 _ => None,
             };
-            let format = design.net(net).format;
-            let value = |clock: &Vec<u64>| {
-                valid.is_none_or(|valid| clock[valid] == 1).then(|| text(format, clock[at]))
-            };
+            let net = design.net(port.net);
+            let mut values = Vec::new();
+            for clock in &clocks {
+                let is_known = valid.is_none_or(|valid| clock[valid] == 1);
+                values.push(if is_known { Some(text(net.format, clock[at])) } else { None });
+            }
             lanes.push(Lane {
-                name: design.net(net).name.clone(),
-                number: design.net(net).block,
-                shape: shape(format),
-                values: clocks.iter().map(value).collect(),
+                name: net.name.clone(),
+                number: net.block,
+                shape: shape(net.format),
+                values,
             });
         }
         Ok(Self::cut(design, "points through the pipeline", clocks.len(), lanes))
@@ -135,8 +141,7 @@ impl Waves {
         let mut nets: Vec<NetId> = probes.iter().map(|probe| probe.net).collect();
         nets.extend([address, busy, valid]);
         let clocks = trial::record(design, core.contract.as_ref(), &nets)?;
-        let column = |at: usize| -> Vec<u64> { clocks.iter().map(|values| values[at]).collect() };
-        let [addresses, busy, valid] = [0, 1, 2].map(|at| column(probes.len() + at));
+        let [addresses, busy, valid] = [0, 1, 2].map(|at| column(&clocks, probes.len() + at));
 
         let mut lanes = vec![clock_lane(clocks.len())];
         let known = valid.iter().position(|&valid| valid == 1).unwrap_or(0);
@@ -144,7 +149,7 @@ impl Waves {
             if at == 4 {
                 lanes.push(microprogram_lane(design, &addresses, &busy));
             }
-            if let Some(lane) = lane(design, probe, &column(at), known) {
+            if let Some(lane) = lane(design, probe, &column(&clocks, at), known) {
                 lanes.push(lane);
             }
         }
@@ -174,17 +179,27 @@ impl Waves {
             return format!(
                 "Points through the pipeline, simulated: the first is taken in clock 0, its results are on the outputs from clock {} \
                  on. One clock has no point; where the pipeline can be held back, the first results wait.",
-                self.first("out_valid").map_or("some".to_owned(), |clock| clock.to_string())
+                self.first_text("out_valid")
             );
         }
-        let at = |clock: Option<u32>| clock.map_or("some".to_owned(), |clock| clock.to_string());
+        let clocks = match self.clocks.last() {
+            Some(last) => last + 1,
+            None => 0,
+        };
         format!(
-            "One computation in {} clocks, simulated: start is high in clock 0, valid first in clock {}, done in clock {}. \
+            "One computation in {clocks} clocks, simulated: start is high in clock 0, valid first in clock {}, done in clock {}. \
              Below the handshake are the microinstruction, registers and results with their values.",
-            self.clocks.last().map_or(0, |last| last + 1),
-            at(self.first("valid")),
-            at(self.first("done")),
+            self.first_text("valid"),
+            self.first_text("done"),
         )
+    }
+
+    /// Returns the first clock in which a signal is 1 as text, and `some` if there is no such clock.
+    fn first_text(&self, name: &str) -> String {
+        match self.first(name) {
+            Some(clock) => clock.to_string(),
+            None => "some".to_owned(),
+        }
     }
 
     /// Returns the waveform as WaveDrom's JSON, ending with a newline. For example, a bit that is 0, 1, and after a gap
@@ -231,15 +246,26 @@ impl Waves {
 
 /// Lists the recorded nets: the handshake, the registers of the source's datapath, and the results.
 fn probes(design: &Design, handshake: [NetId; 4]) -> Vec<Probe> {
-    let control = handshake.into_iter().map(|net| (net, Meaning::Control));
-    let registers = design.registers.iter();
-    let registers = registers.filter(|register| register.kind == RegisterKind::Architectural);
-    let results = design.outputs().filter(|port| port.role == Role::Result);
-    control
-        .chain(registers.map(|register| (register.q, Meaning::Register)))
-        .chain(results.map(|port| (port.net, Meaning::Result)))
-        .map(|(net, kind)| Probe { net, kind })
-        .collect()
+    let mut probes = Vec::new();
+    for net in handshake {
+        probes.push(Probe { net, kind: Meaning::Control });
+    }
+    for register in &design.registers {
+        if register.kind == RegisterKind::Architectural {
+            probes.push(Probe { net: register.q, kind: Meaning::Register });
+        }
+    }
+    for port in design.outputs() {
+        if port.role == Role::Result {
+            probes.push(Probe { net: port.net, kind: Meaning::Result });
+        }
+    }
+    probes
+}
+
+/// Returns the value of one recorded net in every clock.
+fn column(clocks: &[Vec<u64>], at: usize) -> Vec<u64> {
+    clocks.iter().map(|values| values[at]).collect()
 }
 
 fn clock_lane(clocks: usize) -> Lane {
@@ -270,37 +296,25 @@ fn lane(design: &Design, probe: &Probe, bits: &[u64], valid: usize) -> Option<La
             if resets { 0 } else { change + 1 }
         }
     };
-    let format = net.format;
-    let value = |(clock, &bits): (usize, &u64)| (clock >= known).then(|| text(format, bits));
-    Some(Lane {
-        name: net.name.clone(),
-        number: net.block,
-        shape: shape(format),
-        values: bits.iter().enumerate().map(value).collect(),
-    })
+    let mut values = Vec::new();
+    for (clock, &bits) in bits.iter().enumerate() {
+        values.push(if clock >= known { Some(text(net.format, bits)) } else { None });
+    }
+    Some(Lane { name: net.name.clone(), number: net.block, shape: shape(net.format), values })
 }
 
 /// Returns the microinstruction that is executed, by its name. For example, `3 result`, or `idle`.
 fn microprogram_lane(design: &Design, addresses: &[u64], busy: &[u64]) -> Lane {
-    let name = |address: u64| match design.control.microprogram.get(address as usize) {
-        Some(found) => format!("{address} {}", found.name),
-        None => address.to_string(),
-    };
-    Lane {
-        name: MICROINSTRUCTION.to_owned(),
-        number: None,
-        shape: LaneStyle::Bus,
-        values: addresses
-            .iter()
-            .zip(busy)
-            .map(|(&address, &busy)| {
-                Some(match (address, busy) {
-                    (0, 0) => "idle".to_owned(),
-                    _ => name(address),
-                })
-            })
-            .collect(),
+    let mut values = Vec::new();
+    for (&address, &busy) in addresses.iter().zip(busy) {
+        let named = design.control.microprogram.get(address as usize);
+        values.push(Some(match (address, busy, named) {
+            (0, 0, _) => "idle".to_owned(),
+            (_, _, Some(instruction)) => format!("{address} {}", instruction.name),
+            (_, _, None) => address.to_string(),
+        }));
     }
+    Lane { name: MICROINSTRUCTION.to_owned(), number: None, shape: LaneStyle::Bus, values }
 }
 
 /// Returns a value in few digits.

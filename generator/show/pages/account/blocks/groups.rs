@@ -6,7 +6,7 @@
 use std::collections::BTreeSet;
 
 use super::kind::{MULTIPLIER, MUX, operator};
-use glint_rtl::netlist::{Design, Driver, NetId, Op, Partition, Role, RomId};
+use glint_rtl::netlist::{Design, Driver, Net, NetId, Op, Partition, Role, RomId};
 
 /// The groups of a design's nets, and the sources of each.
 pub struct Groups<'a> {
@@ -29,21 +29,10 @@ impl<'a> Groups<'a> {
     /// Groups the nets of a design. In a `figure`, gates and wiring are blocks only if the source numbers them, or if
     /// several signals meet in them.
     pub fn new(design: &'a Design, figure: bool) -> Self {
-        let ports: Vec<NetId> = design.ports.iter().map(|port| port.net).collect();
-        let cell = design.iter().map(|(id, net)| {
-            let own = net.block.is_some() || !figure && net.named && !net.doc.is_empty();
-            let own = own && design.pipeline.is_none() && !ports.contains(&id);
-            net.partition == Partition::Datapath
-                && match &net.driver {
-                    Driver::Register(_) => design.pipeline.is_none(),
-                    Driver::Rom(rom) => !is_control(design, *rom),
-                    driver @ Driver::Op(_) => operator(driver).is_some() || own,
-                    _ => own,
-                }
-        });
+        let cell = design.iter().map(|(id, net)| is_cell(design, id, net, figure)).collect();
         let mut groups = Self {
             design,
-            cell: cell.collect(),
+            cell,
             group: Vec::new(),
             sources: Vec::new(),
             head: Vec::new(),
@@ -63,20 +52,28 @@ impl<'a> Groups<'a> {
         let design = self.design;
         self.group = (0..design.nets.len()).collect();
         if statements {
-            design.iter().for_each(|(id, _)| self.join(id));
+            for (id, _) in design.iter() {
+                self.join(id);
+            }
         }
         for at in 0..self.group.len() {
             self.group[at] = self.root(at);
         }
         self.head = vec![None; self.group.len()];
-        for (id, net) in design.iter().filter(|(id, _)| self.cell[id.index()]) {
+        for (id, net) in design.iter() {
+            if !self.cell[id.index()] {
+                continue;
+            }
             let head = &mut self.head[self.group[id.index()]];
             // A net that the source numbers is the block. The nets that serve it are inside.
-            let better = head.is_none_or(|head| {
-                let head = design.net(head);
-                (net.block.is_some(), net.named) >= (head.block.is_some(), head.named)
-            });
-            if better {
+            let is_better = match head {
+                Some(before) => {
+                    let before = design.net(*before);
+                    (net.block.is_some(), net.named) >= (before.block.is_some(), before.named)
+                }
+                None => true,
+            };
+            if is_better {
                 *head = Some(id);
             }
         }
@@ -107,7 +104,7 @@ impl<'a> Groups<'a> {
         for from in made {
             let other = design.net(from);
             let logic = matches!(other.driver, Driver::Op(_) | Driver::Register(_));
-            if logic && std::ptr::eq(other.location, net.location) && self.belongs(from, id) {
+            if logic && self.is_one_statement(from, id) && self.belongs(from, id) {
                 let (from, to) = (self.root(from.index()), self.root(id.index()));
                 self.group[from.max(to)] = from.min(to);
             }
@@ -117,47 +114,67 @@ impl<'a> Groups<'a> {
     /// Returns whether an operator is part of another that takes it, if one statement made both.
     fn belongs(&self, from: NetId, to: NetId) -> bool {
         let design = self.design;
-        let kind = |id: NetId| operator(&design.net(id).driver).filter(|_| self.cell[id.index()]);
-        let (Some(a), Some(b)) = (kind(from), kind(to)) else { return !self.cell[to.index()] };
-        let shown = |id: NetId| {
-            let net = design.net(id);
-            design.pipeline.is_none() && (net.block.is_some() || !net.doc.is_empty())
+        let (Some(a), Some(b)) = (self.operator(from), self.operator(to)) else {
+            return !self.cell[to.index()];
         };
-        let named = |id: NetId| design.net(id).named;
+        let is_pipeline = design.pipeline.is_some();
+        let before = design.net(from);
+        let is_shown = !is_pipeline && (before.block.is_some() || !before.doc.is_empty());
+        let both_named = before.named && design.net(to).named;
         match (a, b) {
-            (MUX, MUX) => !shown(from),
+            (MUX, MUX) => !is_shown,
             // A multiplier begins a statement. Logic that adds to its product, or rounds it, is a block apart.
             (_, MULTIPLIER) => false,
-            (MULTIPLIER, _) if design.pipeline.is_none() => false,
-            (_, MUX) => !(shown(from) || named(from) && named(to) && design.pipeline.is_none()),
-            _ if design.pipeline.is_none() => !(named(from) && named(to) || shown(from)),
-            _ => {
-                let one =
-                    |it: &NetId| std::ptr::eq(design.net(*it).location, design.net(to).location);
-                // Rows of a product are gates of its statement.
-                let row = |it: &NetId| {
-                    let mut at = *it;
-                    while !self.cell[at.index()] {
-                        match (&design.net(at).driver, &self.operands(at)[..]) {
-                            (Driver::Op(Op::And(..)), _) => return one(&at),
-                            (_, [only]) => at = *only,
-                            _ => return false,
-                        }
-                    }
-                    false
-                };
-                let whole = self.operands(to).into_iter().filter(|it| !row(it));
-                let all = self.through(whole.collect());
-                !self.rounds(to) && all.iter().all(|it| kind(*it).is_some() && one(it))
+            (MULTIPLIER, _) if !is_pipeline => false,
+            (_, MUX) => !(is_shown || both_named && !is_pipeline),
+            _ if !is_pipeline => !(both_named || is_shown),
+            _ => !self.rounds(to) && self.takes_its_statement_alone(to),
+        }
+    }
+
+    /// Returns the index of an operator's kind, as [`operator`] does; `None` for a net that is no cell.
+    fn operator(&self, id: NetId) -> Option<usize> {
+        match self.cell[id.index()] {
+            true => operator(&self.design.net(id).driver),
+            false => None,
+        }
+    }
+
+    /// Returns whether everything that an operator of a pipeline takes is operators of its statement. Rows of a product
+    /// do not count: they are gates of the statement.
+    fn takes_its_statement_alone(&self, id: NetId) -> bool {
+        let mut whole = self.operands(id);
+        whole.retain(|operand| !self.is_product_row(*operand, id));
+        for source in self.through(whole) {
+            if self.operator(source).is_none() || !self.is_one_statement(source, id) {
+                return false;
             }
         }
+        true
+    }
+
+    /// Returns whether an operand is a row of a product: through wires, an AND of the statement that made `of`.
+    fn is_product_row(&self, operand: NetId, of: NetId) -> bool {
+        let mut at = operand;
+        while !self.cell[at.index()] {
+            match (&self.design.net(at).driver, &self.operands(at)[..]) {
+                (Driver::Op(Op::And(..)), _) => return self.is_one_statement(at, of),
+                (_, [only]) => at = *only,
+                _ => return false,
+            }
+        }
+        false
+    }
+
+    /// Returns whether one statement made both nets.
+    fn is_one_statement(&self, one: NetId, other: NetId) -> bool {
+        std::ptr::eq(self.design.net(one).location, self.design.net(other).location)
     }
 
     /// Returns whether an adder adds a bit to a number, as rounding does. For example, `upper + half` rounds if `half`
     /// is 0 or 1.
     pub fn rounds(&self, adder: NetId) -> bool {
-        let mut operands = self.operands(adder).into_iter();
-        operands.any(|it| self.design.net(it).range == (0, 1))
+        self.operands(adder).iter().any(|operand| self.design.net(*operand).range == (0, 1))
     }
 
     /// Returns the operators, registers and tables that a net takes, through wires and gates. In a pipeline, it also
@@ -209,26 +226,38 @@ impl<'a> Groups<'a> {
                     sources[at] = Some(if control { Vec::new() } else { vec![id] });
                 } else {
                     let operands = self.operands(id);
-                    let open = operands.iter().filter(|it| sources[it.index()].is_none());
-                    let open: Vec<NetId> = open.copied().collect();
+                    let mut open = operands.clone();
+                    open.retain(|operand| sources[operand.index()].is_none());
                     if !open.is_empty() {
                         pending.extend(open);
                         continue;
                     }
-                    let mut found: Vec<NetId> = Vec::new();
-                    for source in
-                        operands.iter().flat_map(|it| sources[it.index()].iter().flatten())
-                    {
-                        if !found.contains(source) {
-                            found.push(*source);
-                        }
-                    }
-                    // Bits that go around the operators of a statement belong to its result.
-                    let head = self.head[self.group[at]].filter(|head| found.contains(head));
-                    sources[at] = Some(head.map_or(found, |head| vec![head]));
+                    sources[at] = Some(self.joined_sources(id, &operands, sources));
                 }
             }
             pending.pop();
+        }
+    }
+
+    /// Returns the sources of a net that is no cell: all sources of its operands.
+    fn joined_sources(
+        &self,
+        id: NetId,
+        operands: &[NetId],
+        sources: &[Option<Vec<NetId>>],
+    ) -> Vec<NetId> {
+        let mut found: Vec<NetId> = Vec::new();
+        for operand in operands {
+            for source in sources[operand.index()].iter().flatten() {
+                if !found.contains(source) {
+                    found.push(*source);
+                }
+            }
+        }
+        // Bits that go around the operators of a statement belong to its result.
+        match self.head[self.group[id.index()]] {
+            Some(head) if found.contains(&head) => vec![head],
+            _ => found,
         }
     }
 
@@ -237,18 +266,17 @@ impl<'a> Groups<'a> {
         if self.design.pipeline.is_none() {
             return false;
         }
-        let heads: Vec<NetId> = self.head.iter().copied().flatten().collect();
-        let inputs = |head: NetId| -> BTreeSet<NetId> {
-            let operands = self.inside(head).into_iter().flat_map(|it| self.operands(it));
-            operands
-                .flat_map(|it| self.sources[it.index()].clone())
-                .filter(|it| *it != head)
-                .collect()
-        };
-        let mut waiting: Vec<(NetId, BTreeSet<NetId>)> =
-            heads.iter().map(|&head| (head, inputs(head))).collect();
+        let mut waiting: Vec<(NetId, BTreeSet<NetId>)> = Vec::new();
+        for head in self.heads() {
+            let mut inputs = BTreeSet::new();
+            for operand in self.operands_inside(head) {
+                inputs.extend(&self.sources[operand.index()]);
+            }
+            inputs.remove(&head);
+            waiting.push((head, inputs));
+        }
         loop {
-            let known: BTreeSet<NetId> = waiting.iter().map(|it| it.0).collect();
+            let known: BTreeSet<NetId> = waiting.iter().map(|(head, _)| *head).collect();
             let before = waiting.len();
             waiting.retain(|(_, inputs)| !inputs.is_disjoint(&known));
             if waiting.is_empty() || waiting.len() == before {
@@ -259,27 +287,51 @@ impl<'a> Groups<'a> {
 
     /// Finds the nets at which signals meet.
     fn meet(&mut self) {
-        let design = self.design;
-        let outputs = design.outputs().filter(|port| {
-            !port.role.is_status() && !matches!(port.role, Role::InReady | Role::SideOut)
-        });
-        let mut read: Vec<NetId> = outputs.map(|port| port.net).collect();
-        for head in self.head.iter().copied().flatten() {
-            let operands = self.inside(head).into_iter().flat_map(|it| self.operands(it));
-            read.extend(operands.filter(|it| !self.is_part(*it, head)));
+        let mut read: Vec<NetId> = Vec::new();
+        for port in self.design.outputs() {
+            if !port.role.is_status() && !matches!(port.role, Role::InReady | Role::SideOut) {
+                read.push(port.net);
+            }
         }
-        self.joints = read.into_iter().filter_map(|it| self.joint(it)).collect();
+        for head in self.heads() {
+            for operand in self.operands_inside(head) {
+                if !self.is_part(operand, head) {
+                    read.push(operand);
+                }
+            }
+        }
+        self.joints = read.into_iter().filter_map(|net| self.joint(net)).collect();
+    }
+
+    /// Returns the outputs of the groups that have a cell.
+    pub fn heads(&self) -> impl Iterator<Item = NetId> {
+        self.head.iter().copied().flatten()
+    }
+
+    /// Returns the operands of all nets inside a block.
+    fn operands_inside(&self, head: NetId) -> Vec<NetId> {
+        let mut operands = Vec::new();
+        for net in self.inside(head) {
+            operands.extend(self.operands(net));
+        }
+        operands
     }
 
     /// Returns whether the sources of an operand meet inside a block: they are bits beside its result, or gates of
     /// its statement.
     pub fn is_part(&self, operand: NetId, head: NetId) -> bool {
-        let location = |id: NetId| self.design.net(id).location;
-        let product = self.group.iter().filter(|it| **it == self.group[head.index()]).count() > 1;
-        self.sources[operand.index()].contains(&head)
-            || product
-                && self.design.pipeline.is_some()
-                && self.joint(operand).is_some_and(|it| std::ptr::eq(location(it), location(head)))
+        if self.sources[operand.index()].contains(&head) {
+            return true;
+        }
+        let group = self.group[head.index()];
+        let is_product = self.group.iter().filter(|other| **other == group).count() > 1;
+        if !is_product || self.design.pipeline.is_none() {
+            return false;
+        }
+        match self.joint(operand) {
+            Some(joint) => self.is_one_statement(joint, head),
+            None => false,
+        }
     }
 
     /// Returns the net at which the signals meet that a net is made from, if several do.
@@ -300,9 +352,13 @@ impl<'a> Groups<'a> {
     /// Returns the nets that are inside the block with this output: its cells, and wiring behind them.
     pub fn inside(&self, head: NetId) -> Vec<NetId> {
         let group = self.group[head.index()];
-        let nets = self.design.iter().map(|(id, _)| id);
-        let inside = nets.filter(|id| self.group[id.index()] == group);
-        inside.filter(|id| self.sources[id.index()] == [head]).collect()
+        let mut inside = Vec::new();
+        for (id, _) in self.design.iter() {
+            if self.group[id.index()] == group && self.sources[id.index()] == [head] {
+                inside.push(id);
+            }
+        }
+        inside
     }
 
     /// Returns the block or port that drives the value of a net.
@@ -316,11 +372,14 @@ impl<'a> Groups<'a> {
 
     /// Returns the registers of a pipeline that hold the value of a block or port.
     pub fn held(&self, source: NetId) -> Vec<NetId> {
-        let nets = self.design.iter().filter(|(id, net)| {
-            let register = matches!(net.driver, Driver::Register(_)) && !self.cell[id.index()];
-            register && self.holds(*id) == Some(source)
-        });
-        nets.map(|(id, _)| id).collect()
+        let mut held = Vec::new();
+        for (id, net) in self.design.iter() {
+            let is_register = matches!(net.driver, Driver::Register(_)) && !self.cell[id.index()];
+            if is_register && self.holds(id) == Some(source) {
+                held.push(id);
+            }
+        }
+        held
     }
 
     /// Returns the block or port whose value a register of a pipeline holds. If the register holds a part of a gate,
@@ -334,9 +393,10 @@ impl<'a> Groups<'a> {
         }
         let (mut at, mut taken) = (0, vec![register]);
         while let Some(&id) = taken.get(at) {
-            let readers =
-                self.design.iter().map(|it| it.0).filter(|it| self.operands(*it).contains(&id));
-            for reader in readers {
+            for (reader, _) in self.design.iter() {
+                if !self.operands(reader).contains(&id) {
+                    continue;
+                }
                 match self.sources[reader.index()][..] {
                     [head] => return Some(head),
                     _ if self.joints.contains(&reader) => return Some(reader),
@@ -347,6 +407,22 @@ impl<'a> Groups<'a> {
             at += 1;
         }
         None
+    }
+}
+
+/// Returns whether a net is a register, a table or an operator, or is shown because the source numbers or documents it.
+fn is_cell(design: &Design, id: NetId, net: &Net, figure: bool) -> bool {
+    if net.partition != Partition::Datapath {
+        return false;
+    }
+    let is_told = net.block.is_some() || !figure && net.named && !net.doc.is_empty();
+    let is_port = design.ports.iter().any(|port| port.net == id);
+    let is_shown = is_told && design.pipeline.is_none() && !is_port;
+    match &net.driver {
+        Driver::Register(_) => design.pipeline.is_none(),
+        Driver::Rom(rom) => !is_control(design, *rom),
+        driver @ Driver::Op(_) => operator(driver).is_some() || is_shown,
+        _ => is_shown,
     }
 }
 

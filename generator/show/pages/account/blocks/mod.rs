@@ -10,7 +10,7 @@ mod kind;
 use std::collections::BTreeSet;
 
 use super::{NUMBER, TextTable, code, format_text, short};
-use glint_rtl::netlist::{Design, Driver, FieldId, NetId, Op, RegisterKind, Role};
+use glint_rtl::netlist::{Design, Driver, FieldId, NetId, Op, Pipeline, RegisterKind, Role};
 use groups::Groups;
 pub use kind::BlockKind;
 use kind::{ADDER, MULTIPLIER, operator};
@@ -20,17 +20,16 @@ pub fn table(design: &Design) -> TextTable {
     let blocks = Blocks::new(design, false);
     let mut table = TextTable::of("no.: | block | kind | format | takes | what it is");
     for block in blocks.all() {
-        let list = |nets: &[NetId]| {
-            let names: Vec<String> = nets.iter().map(|&net| code(&blocks.name(net))).collect();
-            names.join(", ")
+        let mut takes = blocks.names(&block.inputs);
+        if !block.selected_by.is_empty() {
+            takes += &format!("; by {}", blocks.names(&block.selected_by));
+        }
+        let number = match block.number {
+            Some(number) => number.to_string(),
+            None => String::new(),
         };
-        let takes = match block.selected_by[..] {
-            [] => list(&block.inputs),
-            _ => format!("{}; by {}", list(&block.inputs), list(&block.selected_by)),
-        };
-        let number = block.number.map(|number| number.to_string());
         table.row([
-            number.unwrap_or_default(),
+            number,
             code(&block.name),
             block.kind.to_string(),
             block.format,
@@ -39,6 +38,16 @@ pub fn table(design: &Design) -> TextTable {
         ]);
     }
     table.without_empty(NUMBER)
+}
+
+/// Returns the stage of a pipeline in which a cell works.
+fn stage(design: &Design, pipeline: &Pipeline, cell: NetId) -> usize {
+    let clock = pipeline.clock_of(cell);
+    match design.net(cell).driver {
+        // The word of a block memory is there a stage after its address.
+        Driver::Rom(rom) => clock - usize::from(design.rom(rom).synchronous),
+        _ => clock,
+    }
 }
 
 /// A block of the datapath.
@@ -82,11 +91,13 @@ impl<'a> Blocks<'a> {
 
     /// Returns all blocks, in order of their number. Blocks without a number follow.
     pub fn all(&self) -> Vec<Block> {
-        let heads = self.groups.head.iter().copied().flatten();
-        let mut blocks: Vec<Block> = heads
-            .map(|head| self.block(head))
-            .chain(self.groups.joints.iter().map(|&joint| self.meeting(joint)))
-            .collect();
+        let mut blocks: Vec<Block> = Vec::new();
+        for head in self.groups.heads() {
+            blocks.push(self.block(head));
+        }
+        for &joint in &self.groups.joints {
+            blocks.push(self.meeting(joint));
+        }
         blocks.sort_by_key(|block| block.number.map_or(u32::MAX, u32::from));
         blocks
     }
@@ -94,38 +105,9 @@ impl<'a> Blocks<'a> {
     fn block(&self, head: NetId) -> Block {
         let design = self.design;
         let inside = self.groups.inside(head);
-        let cells: Vec<NetId> =
-            inside.iter().copied().filter(|it| self.groups.cell[it.index()]).collect();
-        let (mut inputs, mut selected_by) = (Vec::new(), Vec::new());
-        // Operators first: bits that go around them come from the same signals.
-        let (own, around): (Vec<NetId>, Vec<NetId>) =
+        let (cells, around): (Vec<NetId>, Vec<NetId>) =
             inside.iter().partition(|it| self.groups.cell[it.index()]);
-        // For a mux alone, the bits around it are its inputs, masked by the select if one input is 0.
-        let is_mux = |it: &NetId| matches!(design.net(*it).driver, Driver::Op(Op::Mux { .. }));
-        let around = if matches!(&own[..], [only] if is_mux(only)) { Vec::new() } else { around };
-        for id in own.into_iter().chain(around) {
-            let operands = self.groups.operands(id).into_iter().enumerate();
-            let select = matches!(design.net(id).driver, Driver::Op(Op::Mux { .. }));
-            for (at, operand) in
-                operands.filter(|(_, it)| self.groups.sources[it.index()] != [head])
-            {
-                let outside = self.groups.sources[operand.index()].iter().copied();
-                let mut found: Vec<NetId> = if self.groups.is_part(operand, head) {
-                    outside.filter(|it| *it != head).collect()
-                } else {
-                    self.source(operand).into_iter().collect()
-                };
-                let field = matches!(design.net(operand).driver, Driver::Field(_));
-                if select && at == 0 && field {
-                    found = vec![operand];
-                }
-                let list = if select && at == 0 { &mut selected_by } else { &mut inputs };
-                // An operator alone has an input for each operand.
-                let each = cells.len() == 1 && self.groups.cell[id.index()];
-                found.retain(|it| each || !(list.contains(it) || self.is_constant(*it)));
-                list.extend(found);
-            }
-        }
+        let (mut inputs, mut selected_by) = self.inputs(head, &cells, &around);
         let kind = self.kind(head, &cells, &inputs, &selected_by);
         match kind {
             // The select says nothing new.
@@ -144,16 +126,6 @@ impl<'a> Blocks<'a> {
             _ => {}
         }
         let net = design.net(head);
-        let of = |pick: &dyn Fn(&NetId) -> bool| inside.iter().rev().find(|it| pick(it)).copied();
-        let doc = of(&|it| *it == head && !net.doc.is_empty())
-            .or(of(&|it| !design.net(*it).doc.is_empty()))
-            .map_or(String::new(), |it| design.net(it).doc.clone());
-        // The result is the last net. The shortest name describes the whole block.
-        let result = match kind {
-            BlockKind::Several(_) if design.pipeline.is_some() => inside.last().copied(),
-            _ => None,
-        };
-        let result = result.unwrap_or(head);
         let (name, doc, format, number) = match &net.driver {
             Driver::Rom(rom) => {
                 let rom = design.rom(*rom);
@@ -161,7 +133,13 @@ impl<'a> Blocks<'a> {
                 (rom.name.clone(), doc, format!("{} bits", design.width(head)), rom.block)
             }
             _ => {
-                (self.called(&inside, head), doc, format_text(design.net(result).format), net.block)
+                // The result is the last net. The shortest name describes the whole block.
+                let result = match (&kind, inside.last()) {
+                    (BlockKind::Several(_), Some(last)) if design.pipeline.is_some() => *last,
+                    _ => head,
+                };
+                let format = format_text(design.net(result).format);
+                (self.called(&inside, head), self.doc(&inside, head), format, net.block)
             }
         };
         let aliases = self.aliases(head, &name);
@@ -179,10 +157,71 @@ impl<'a> Blocks<'a> {
         }
     }
 
+    /// Returns the inputs of a block, and the nets that select among them. `cells` and `around` are its nets: operators,
+    /// registers and tables, and the bits that go around them.
+    fn inputs(&self, head: NetId, cells: &[NetId], around: &[NetId]) -> (Vec<NetId>, Vec<NetId>) {
+        let (mut inputs, mut selected_by) = (Vec::new(), Vec::new());
+        // Operators first: bits that go around them come from the same signals.
+        let mut nets = cells.to_vec();
+        // For a mux alone, the bits around it are its inputs, masked by the select if one input is 0.
+        if !matches!(cells, [only] if self.is_mux(*only)) {
+            nets.extend(around);
+        }
+        for id in nets {
+            for (at, operand) in self.groups.operands(id).into_iter().enumerate() {
+                if self.groups.sources[operand.index()] == [head] {
+                    continue;
+                }
+                let is_select = at == 0 && self.is_mux(id);
+                let mut found = self.sources_outside(operand, head);
+                if is_select && matches!(self.design.net(operand).driver, Driver::Field(_)) {
+                    found = vec![operand];
+                }
+                let list = if is_select { &mut selected_by } else { &mut inputs };
+                // An operator alone has an input for each operand.
+                let each = cells.len() == 1 && self.groups.cell[id.index()];
+                found.retain(|it| each || !(list.contains(it) || self.is_constant(*it)));
+                list.extend(found);
+            }
+        }
+        (inputs, selected_by)
+    }
+
+    /// Returns what an operand of a block's net brings from outside of the block.
+    fn sources_outside(&self, operand: NetId, head: NetId) -> Vec<NetId> {
+        if !self.groups.is_part(operand, head) {
+            return self.source(operand).into_iter().collect();
+        }
+        let mut outside = self.groups.sources[operand.index()].clone();
+        outside.retain(|source| *source != head);
+        outside
+    }
+
+    fn is_mux(&self, id: NetId) -> bool {
+        matches!(self.design.net(id).driver, Driver::Op(Op::Mux { .. }))
+    }
+
+    /// Returns the documentation of a block: its output's, or else that of the last net inside which has any.
+    fn doc(&self, inside: &[NetId], head: NetId) -> String {
+        let of_head = &self.design.net(head).doc;
+        if inside.contains(&head) && !of_head.is_empty() {
+            return of_head.clone();
+        }
+        for id in inside.iter().rev() {
+            let doc = &self.design.net(*id).doc;
+            if !doc.is_empty() {
+                return doc.clone();
+            }
+        }
+        String::new()
+    }
+
     /// Returns the registers, tables and operators of the block with this output; in a pipeline with the registers that hold it.
     fn cells(&self, head: NetId) -> Vec<NetId> {
-        let nets = self.groups.inside(head).into_iter().filter(|it| self.groups.cell[it.index()]);
-        nets.chain(self.groups.held(head)).collect()
+        let mut cells = self.groups.inside(head);
+        cells.retain(|net| self.groups.cell[net.index()]);
+        cells.extend(self.groups.held(head));
+        cells
     }
 
     /// Returns the block, port or constant that an operand comes from. Returns `None` for a signal of the control
@@ -211,11 +250,17 @@ impl<'a> Blocks<'a> {
     fn called(&self, inside: &[NetId], head: NetId) -> String {
         let design = self.design;
         let Some(pipeline) = &design.pipeline else { return design.net(head).name.clone() };
-        let value = |it: NetId| &pipeline.value_of[it.index()];
-        let parts = inside.iter().filter(|it| design.ports.iter().all(|port| port.net != **it));
-        let names = parts.rev().map(|it| value(*it));
-        let name = names.min_by_key(|name| name.len());
-        name.unwrap_or(value(head)).clone()
+        let mut shortest: Option<&String> = None;
+        for part in inside.iter().rev() {
+            if design.ports.iter().any(|port| port.net == *part) {
+                continue;
+            }
+            let name = &pipeline.value_of[part.index()];
+            if shortest.is_none_or(|before| name.len() < before.len()) {
+                shortest = Some(name);
+            }
+        }
+        shortest.unwrap_or(&pipeline.value_of[head.index()]).clone()
     }
 
     /// Returns the other names of a block's output in a pipeline, on its way through wires and registers.
@@ -263,6 +308,12 @@ impl<'a> Blocks<'a> {
         matches!(self.design.net(id).driver, Driver::Constant(_)) && !self.groups.cell[id.index()]
     }
 
+    /// Returns the names of nets as [`Self::name`] gives them, separated by commas.
+    fn names(&self, nets: &[NetId]) -> String {
+        let names: Vec<String> = nets.iter().map(|net| code(&self.name(*net))).collect();
+        names.join(", ")
+    }
+
     /// Returns the name of the block, port or ROM that drives a net of [`Block::inputs`], or the value of a constant.
     /// For example, `cos_gamma_reg`, or `0.5`.
     pub fn name(&self, id: NetId) -> String {
@@ -284,38 +335,44 @@ impl<'a> Blocks<'a> {
         inputs: &[NetId],
         selected_by: &[NetId],
     ) -> BlockKind {
-        let design = self.design;
         let mut counts = [0; 5];
-        let operators = cells.iter().filter_map(|it| operator(&design.net(*it).driver));
-        operators.for_each(|at| counts[at] += 1);
-        let taken: BTreeSet<NetId> =
-            inputs.iter().chain(selected_by).copied().filter(|it| !self.is_constant(*it)).collect();
-        let one = taken.len() == 1;
-        let rounds = || {
-            let adder = cells.iter().find(|it| operator(&design.net(**it).driver) == Some(ADDER));
-            adder.is_some_and(|it| self.groups.rounds(*it))
-        };
-        let limits = || inputs.iter().any(|it| self.is_constant(*it)) || cells.len() > 1;
-        match counts {
-            [0, 0, 0, 0, 1] if one && limits() => BlockKind::Limiter,
-            [0, 0, 0, 0, 2] if one => BlockKind::Limiter,
-            [0, 1, 0, 0, 0] if one && rounds() => BlockKind::Rounding,
-            [0, 1, 0, 0, 1 | 2] if one && rounds() => BlockKind::RoundingLimiter,
-            counts if counts.iter().sum::<u16>() > 1 => BlockKind::Several(counts),
-            [0, 0, 0, 0, 0] => self.kind_of_net(head),
-            _ => {
-                let cell = cells.iter().find(|it| operator(&design.net(**it).driver).is_some());
-                self.kind_of_net(cell.copied().unwrap_or(head))
+        let mut first_operator = None;
+        let mut rounds = false;
+        for &cell in cells {
+            let Some(at) = operator(&self.design.net(cell).driver) else { continue };
+            if at == ADDER && counts[ADDER] == 0 {
+                rounds = self.groups.rounds(cell);
             }
+            first_operator = first_operator.or(Some(cell));
+            counts[at] += 1;
+        }
+        let mut taken = BTreeSet::new();
+        for &input in inputs.iter().chain(selected_by) {
+            if !self.is_constant(input) {
+                taken.insert(input);
+            }
+        }
+        let takes_one = taken.len() == 1;
+        let limits = inputs.iter().any(|it| self.is_constant(*it)) || cells.len() > 1;
+        match counts {
+            [0, 0, 0, 0, 1] if takes_one && limits => BlockKind::Limiter,
+            [0, 0, 0, 0, 2] if takes_one => BlockKind::Limiter,
+            [0, 1, 0, 0, 0] if takes_one && rounds => BlockKind::Rounding,
+            [0, 1, 0, 0, 1 | 2] if takes_one && rounds => BlockKind::RoundingLimiter,
+            counts if counts.iter().sum::<u16>() > 1 => BlockKind::Several(counts),
+            _ => self.kind_of_net(first_operator.unwrap_or(head)),
+        }
+    }
+
+    /// Returns the width of an operand before it is extended for a sign.
+    fn narrow_width(&self, operand: NetId) -> u32 {
+        match &self.design.net(operand).driver {
+            Driver::Op(Op::Extend(of)) => self.design.width(*of),
+            _ => self.design.width(operand),
         }
     }
 
     fn kind_of_net(&self, id: NetId) -> BlockKind {
-        // The width of an operand before it is extended for a sign.
-        let width = |net: &NetId| match &self.design.net(*net).driver {
-            Driver::Op(Op::Extend(of)) => self.design.width(*of),
-            _ => self.design.width(*net),
-        };
         match &self.design.net(id).driver {
             Driver::Register(register) => match self.design.register(*register).kind {
                 RegisterKind::Operand | RegisterKind::Buffer => BlockKind::Operand,
@@ -325,7 +382,9 @@ impl<'a> Blocks<'a> {
             Driver::Rom(_) => BlockKind::Rom,
             Driver::Op(op) => match op {
                 Op::Mux { inputs, .. } => BlockKind::Mux(inputs.len()),
-                Op::Mul(a, b) => BlockKind::Multiplier(width(a), width(b)),
+                Op::Mul(a, b) => {
+                    BlockKind::Multiplier(self.narrow_width(*a), self.narrow_width(*b))
+                }
                 Op::Add { .. } => BlockKind::Adder,
                 Op::Sub(..) => BlockKind::Subtractor,
                 Op::Equal(..) | Op::Less(..) => BlockKind::Comparator,
@@ -348,19 +407,18 @@ impl<'a> Blocks<'a> {
     pub fn stages(&self, block: &Block) -> (usize, usize) {
         let design = self.design;
         let Some(pipeline) = &design.pipeline else { return (0, 0) };
-        let stage = |id: &NetId| {
-            let at = pipeline.clock_of(*id);
-            match design.net(*id).driver {
-                // The word of a block memory is there a stage after its address.
-                Driver::Rom(rom) => at - usize::from(design.rom(rom).synchronous),
-                _ => at,
+        let mut stages: Vec<usize> = Vec::new();
+        for &cell in &block.cells {
+            if self.groups.cell[cell.index()] {
+                stages.push(stage(design, pipeline, cell));
             }
-        };
-        let own = block.cells.iter().filter(|it| self.groups.cell[it.index()]).map(stage);
-        let own: Vec<usize> = own.collect();
-        match (own.iter().min(), own.iter().max()) {
+        }
+        match (stages.iter().min(), stages.iter().max()) {
             (Some(first), Some(last)) => (*first, *last),
-            _ => (stage(&block.output), stage(&block.output)),
+            _ => {
+                let of_output = stage(design, pipeline, block.output);
+                (of_output, of_output)
+            }
         }
     }
 
@@ -395,8 +453,9 @@ impl<'a> Blocks<'a> {
                 Driver::Op(op) => pending.extend(op.operands().into_iter().rev()),
                 Driver::Field(field) => fields.push(*field),
                 Driver::Input => {
-                    let port = design.ports.iter().find(|port| port.net == id);
-                    if port.is_some_and(|port| port.role == Role::Strobe) {
+                    if let Some(port) = design.ports.iter().find(|port| port.net == id)
+                        && port.role == Role::Strobe
+                    {
                         strobes.push(id);
                     }
                 }
