@@ -161,6 +161,7 @@ fn plain(value: &config::Value) -> Value {
         config::Value::Text(value) => json!(value),
         config::Value::Flag(value) => json!(value),
         config::Value::Integers(values) => json!(values),
+        config::Value::Records(records) => json!(records),
     }
 }
 
@@ -173,6 +174,7 @@ fn key(core: &Core, key: &Key) -> Value {
         KeyKind::Flag => json!({ "is": "flag" }),
         KeyKind::Text(_) => json!({ "is": "text" }),
         KeyKind::Integers { .. } => json!({ "is": "integers" }),
+        KeyKind::Records { .. } => json!({ "is": "records" }),
     };
     json!({
         "name": key.name,

@@ -101,7 +101,7 @@ pub fn describe<'d>(
     let outputs = colours.results(reflectance.q(), keys.f.output_rounding);
 
     let names = ["polynomial_select", "factor_of_offset", "offset_of_step", "polynomial_product"];
-    let multiplier = StepMultiplier::new(d, names, &[&ratio, &exp2]);
+    let multiplier = StepMultiplier::new(d, names, &[&ratio, &exp2], &[]);
     let horner = |it: &PolynomialDatapath<'d, '_>, k: usize, name: &str| {
         let what =
             if k == 0 { "all coefficients".to_owned() } else { format!("those from {k} on") };

@@ -39,7 +39,7 @@ pub fn describe(d: &Designer, config: &Config) {
     let tables = Tables { split: is_split(config, &it), synchronous: true };
     let polynomial = PolynomialDatapath::new(d, "", &it.registers(), number, &it, tables);
     let names = ["factors_select", "factor", "offset_of_step", "product"];
-    let multiplier = StepMultiplier::new(d, names, &[&polynomial]);
+    let multiplier = StepMultiplier::new(d, names, &[&polynomial], &[]);
     let mut steps = vec![step("operand; table addressed", [])];
     for k in polynomial.steps() {
         let name = match k {

@@ -6,6 +6,7 @@ pub mod cosine_power;
 pub mod cosine_squared;
 mod decay;
 pub mod dot_product;
+pub mod expression;
 pub mod function;
 pub mod gauss;
 pub mod lyon;

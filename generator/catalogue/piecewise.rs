@@ -9,26 +9,32 @@ use glint_approximate::{HornerStep, Layout, Piecewise};
 use glint_base::fixed::{Format, MAX_WIDTH, Overflow, Rounding};
 use glint_rtl::dsl::{Designer, OperandMux, Register, SharedProduct, Signal, StepSetting};
 
-/// The multiplier of the steps of polynomials. Each step has a microinstruction of its own.
+/// The multiplier of the steps of polynomials, and of other products. Each has a microinstruction of its own.
 pub struct StepMultiplier<'d> {
     d: &'d Designer,
     name: &'d str,
-    /// The mux of the sums and the product, where there is more than one step.
+    /// The mux of the first factors and the product, where there is more than one step.
     shared: Option<(OperandMux<'d>, SharedProduct<'d>)>,
 }
 
 impl<'d> StepMultiplier<'d> {
-    /// Makes a multiplier with names for its select lines, its two operands and its product.
+    /// Makes a multiplier with names for its select lines, its two operands and its product. `others` are the factors of
+    /// products that no polynomial needs, each with a name. No two products may have the same first factor.
     pub fn new(
         d: &'d Designer,
         [select, sums, offsets, product]: [&'d str; 4],
         polynomials: &[&PolynomialDatapath<'d, '_>],
+        others: &[(String, [Signal<'d>; 2])],
     ) -> Self {
-        let factors = |it: &PolynomialDatapath<'d, '_>| {
-            let factors = |k| Some((format!("{}x{}", it.prefix, k + 1), it.factors(k)?));
-            it.steps().filter_map(factors).collect::<Vec<_>>()
-        };
-        let all: Vec<_> = polynomials.iter().flat_map(|it| factors(it)).collect();
+        let mut all: Vec<(String, [Signal<'d>; 2])> = Vec::new();
+        for polynomial in polynomials {
+            for step in polynomial.steps() {
+                if let Some(factors) = polynomial.factors(step) {
+                    all.push((format!("{}x{}", polynomial.prefix, step + 1), factors));
+                }
+            }
+        }
+        all.extend_from_slice(others);
         let shared = (all.len() > 1).then(|| {
             let choices: Vec<&str> = all.iter().map(|(name, _)| name.as_str()).collect();
             let select = d.select(select, &choices);
@@ -42,14 +48,28 @@ impl<'d> StepMultiplier<'d> {
 
     /// Returns the settings of a step of one of the polynomials, which is carried out once.
     pub fn step(&self, polynomial: &PolynomialDatapath<'d, '_>, step: usize) -> Vec<StepSetting> {
-        let factors = polynomial.factors(step);
-        let product = factors.map(|[sum, offset]| match &self.shared {
-            Some((_, product)) => product.of(sum, offset),
-            None => self.d.mul(self.name, sum, offset),
-        });
-        let load = polynomial.add(step, product);
-        let pick = self.shared.as_ref().zip(factors).map(|((sums, _), [sum, _])| sums.pick(sum));
-        pick.into_iter().chain([load]).collect()
+        let mut settings = Vec::new();
+        let mut product = None;
+        if let Some(factors) = polynomial.factors(step) {
+            product = Some(self.product(factors));
+            settings.extend(self.pick(factors));
+        }
+        settings.push(polynomial.add(step, product));
+        settings
+    }
+
+    /// Returns the product of a pair of factors.
+    pub fn product(&self, [first, second]: [Signal<'d>; 2]) -> Signal<'d> {
+        match &self.shared {
+            Some((_, product)) => product.of(first, second),
+            None => self.d.mul(self.name, first, second),
+        }
+    }
+
+    /// Returns the setting that selects a pair of factors, where there is more than one.
+    pub fn pick(&self, [first, _]: [Signal<'d>; 2]) -> Option<StepSetting> {
+        let (factors, _) = self.shared.as_ref()?;
+        Some(factors.pick(first))
     }
 }
 

@@ -69,7 +69,10 @@ impl Key {
                 bare.parse().is_ok_and(|value: i64| (*min..=*max).contains(&value))
             }
             // Conditions on fractions, lists and texts would hang on how they are written.
-            KeyKind::Number { .. } | KeyKind::Integers { .. } | KeyKind::Text(_) => false,
+            KeyKind::Number { .. }
+            | KeyKind::Integers { .. }
+            | KeyKind::Text(_)
+            | KeyKind::Records { .. } => false,
         }
     }
 }

@@ -91,6 +91,12 @@ fn of_key(key: &Key) -> Json {
             "minItems": len_min,
             "maxItems": len_max,
         }),
+        KeyKind::Records { fields, shorthand, least, most } => json!({
+            "type": "object",
+            "additionalProperties": record(fields, *shorthand),
+            "minProperties": least,
+            "maxProperties": most,
+        }),
     };
     entry["default"] = match &key.default {
         Value::Text(value) => choice(key, value),
@@ -102,6 +108,24 @@ fn of_key(key: &Key) -> Json {
     });
     entry["description"] = json!(format!("{}{}", key.doc, condition.unwrap_or_default()));
     entry
+}
+
+/// Returns the schema of an entry: a table of these fields, or the value of the field `shorthand` alone.
+fn record(fields: &[Key], shorthand: Option<&str>) -> Json {
+    let mut entry = table();
+    let of_fields = properties(&mut entry);
+    for field in fields {
+        let mut schema = of_key(field);
+        // A field that is not given has no value.
+        if let Some(schema) = schema.as_object_mut() {
+            schema.remove("default");
+        }
+        of_fields.insert(field.name.to_owned(), schema);
+    }
+    match fields.iter().find(|field| Some(field.name) == shorthand) {
+        Some(field) => json!({ "anyOf": [of_key(field), entry] }),
+        None => entry,
+    }
 }
 
 /// Returns a choice as a file writes it.

@@ -1,5 +1,6 @@
 //! Declares keys as the fields of a struct. The hardware description and the golden model of a device both read this struct.
 
+use super::records::Records;
 use super::schema::Key;
 use super::values::Config;
 use glint_base::fixed::Rounding;
@@ -128,6 +129,12 @@ impl Setting for Vec<u32> {
     fn read(config: &Config, keys: &[Key]) -> Self {
         let entries = config.integers(keys[0].name).iter();
         entries.map(|&entry| u32::try_from(entry).expect("no negative number")).collect()
+    }
+}
+
+impl Setting for Records {
+    fn read(config: &Config, keys: &[Key]) -> Self {
+        config.records(keys[0].name).clone()
     }
 }
 

@@ -11,6 +11,7 @@ use super::module_name;
 use super::nearest::{listed, nearest};
 use super::points;
 use super::problems::{Problems, STANDARD_INPUT, Violation, out_of_range, quoted, shown};
+use super::records::{Record, Records, field_name};
 use super::schema::{Key, KeyKind, Schema};
 use super::text_pattern::{TextPattern, is_path_of_points};
 use super::validate::{Draft, keys_of};
@@ -268,6 +269,9 @@ impl TomlReader<'_> {
         draft: &mut Draft<'s>,
     ) {
         self.problems.locate(key.name, span.clone());
+        if let (KeyKind::Records { .. }, DeValue::Table(entries)) = (&key.kind, value.get_ref()) {
+            return self.records(key, entries, span, draft);
+        }
         let found = match (&key.kind, value.get_ref()) {
             (KeyKind::Text(TextPattern::Samples), DeValue::String(path))
                 if is_path_of_points(path) =>
@@ -292,6 +296,120 @@ impl TomlReader<'_> {
                 }
             }
         }
+    }
+
+    /// Reads the entries of a table of records, in the order of the file.
+    fn records<'s>(
+        &mut self,
+        key: &'s Key,
+        entries: &DeTable,
+        span: Range<usize>,
+        draft: &mut Draft<'s>,
+    ) {
+        let mut in_order: Vec<_> = entries.iter().collect();
+        in_order.sort_by_key(|(name, _)| name.span().start);
+        let mut records = Vec::new();
+        let mut is_good = true;
+        for (name, entry) in in_order {
+            if self.broken.contains(&self.line(name.span().start)) {
+                is_good = false;
+                continue;
+            }
+            let name_text = shown(name.get_ref());
+            self.problems.locate(&format!("{}.{name_text}", key.name), name.span());
+            match self.record(key, &name_text, entry) {
+                Some(fields) => records.push(Record { name: name_text, fields }),
+                None => is_good = false,
+            }
+        }
+        let value = Value::Records(Records(records));
+        let violations = if is_good { key.violations_of(&value) } else { Vec::new() };
+        is_good &= violations.is_empty();
+        for Violation { error, .. } in violations {
+            self.report(key.name, span.clone(), error.message, error.remedy);
+        }
+        draft.give(key, is_good.then_some(value));
+    }
+
+    /// Returns the fields of an entry of a table of records; `None` if one of them is wrong, which is reported.
+    fn record(
+        &mut self,
+        key: &Key,
+        name: &str,
+        entry: &Spanned<DeValue>,
+    ) -> Option<Vec<(&'static str, Value)>> {
+        let KeyKind::Records { fields, shorthand, .. } = &key.kind else { return None };
+        let mut given = Vec::new();
+        let mut is_good = true;
+        if let DeValue::Table(table) = entry.get_ref() {
+            let mut in_order: Vec<_> = table.iter().collect();
+            in_order.sort_by_key(|(field, _)| field.span().start);
+            for (field, value) in in_order {
+                let known = fields.iter().find(|known| known.name == field.get_ref());
+                let Some(known) = known else {
+                    self.unknown_field(key, name, field, fields);
+                    is_good = false;
+                    continue;
+                };
+                let value = self.field(key, name, known, value);
+                is_good &= value.is_some();
+                given.extend(value.map(|value| (known.name, value)));
+            }
+        } else if let Some(known) = fields.iter().find(|field| Some(field.name) == *shorthand) {
+            let value = self.field(key, name, known, entry);
+            is_good &= value.is_some();
+            given.extend(value.map(|value| (known.name, value)));
+        } else {
+            let within = format!("{}.{name}", key.name);
+            let message = format!("`{within}` must be a table, not {}", described(entry));
+            let names: Vec<&str> = fields.iter().map(|field| field.name).collect();
+            let remedy = format!("give {{ {} = …, … }}; fields: {}", names[0], names.join(", "));
+            self.report(&within, entry.span(), message, remedy);
+            is_good = false;
+        }
+        is_good.then_some(given)
+    }
+
+    /// Returns the value of a field of a record; `None` if it is wrong, which is reported.
+    fn field(
+        &mut self,
+        key: &Key,
+        record: &str,
+        field: &Key,
+        value: &Spanned<DeValue>,
+    ) -> Option<Value> {
+        let within = field_name(key, record, field.name);
+        self.problems.locate(&within, value.span());
+        match converted(field, value) {
+            Ok(value) => Some(value),
+            Err(violations) => {
+                for violation in violations {
+                    let Violation { error, .. } = field.named_within(violation, &within);
+                    // The example in the place of a default.
+                    let remedy = error.remedy.replace("(default ", "(for example ");
+                    self.report(&within, value.span(), error.message, remedy);
+                }
+                None
+            }
+        }
+    }
+
+    fn unknown_field(
+        &mut self,
+        key: &Key,
+        record: &str,
+        field: &Spanned<std::borrow::Cow<'_, str>>,
+        fields: &[Key],
+    ) {
+        let names: Vec<&str> = fields.iter().map(|known| known.name).collect();
+        let given = shown(field.get_ref());
+        let within = format!("{}.{record}.{given}", key.name);
+        let message = format!("an entry of `{}` has no field `{given}`", key.name);
+        let remedy = match nearest(&given, names.iter().copied()) {
+            Some(meant) => format!("did you mean `{meant}`? fields: {}", names.join(", ")),
+            None => format!("fields: {}", names.join(", ")),
+        };
+        self.report(&within, field.span(), message, remedy);
     }
 
     fn unknown<'s>(

@@ -3,6 +3,7 @@
 use std::ops::RangeInclusive;
 
 use super::problems::Problems;
+use super::records::{Record, Records};
 use super::text_pattern::TextPattern;
 use super::values::{Config, Value, is_integer};
 use glint_base::keywords::is_keyword;
@@ -94,6 +95,17 @@ pub enum KeyKind {
     Text(TextPattern),
     /// A list of integers; its entries and its length have limits. For example, `visibility.levels = [50, 100, 200, 400, 800]`.
     Integers { min: i64, max: i64, len_min: usize, len_max: usize },
+    /// A table whose entries have names of the user's own.
+    Records {
+        /// The fields that an entry can have. Their defaults are examples: a field that is not given has no value.
+        fields: Vec<Key>,
+        /// The field whose value can be given in the place of a whole entry, as `s = "x^2"` for `s = { formula = "x^2" }`.
+        shorthand: Option<&'static str>,
+        /// The number of entries, from this.
+        least: usize,
+        /// The number of entries, to this.
+        most: usize,
+    },
 }
 
 impl Key {
@@ -173,6 +185,20 @@ impl Key {
         let (len_min, len_max) = len.into_inner();
         let kind = KeyKind::Integers { min, max, len_min, len_max };
         Self::new(name, kind, Value::Integers(default.to_vec()), doc)
+    }
+
+    /// Makes a key of a table of records.
+    pub fn records(
+        name: &'static str,
+        default: &[Record],
+        fields: Vec<Key>,
+        shorthand: Option<&'static str>,
+        entries: RangeInclusive<usize>,
+        doc: &'static str,
+    ) -> Self {
+        let (least, most) = entries.into_inner();
+        let kind = KeyKind::Records { fields, shorthand, least, most };
+        Self::new(name, kind, Value::Records(Records(default.to_vec())), doc)
     }
 
     /// Restricts the key to configurations in which the key `other` has a value. For example, `pipeline.stages` has

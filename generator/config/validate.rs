@@ -7,6 +7,7 @@ use super::follow::follow;
 use super::module_name;
 use super::nearest::nearest;
 use super::problems::{Problem, Problems, Violation, out_of_range, quoted, shown};
+use super::records::field_name;
 use super::schema::{Condition, Key, KeyKind, Schema};
 use super::shared::Shared;
 use super::values::{Config, Value, is_integer};
@@ -52,8 +53,41 @@ impl Key {
                 }
                 all
             }
+            (KeyKind::Records { fields, least, most, .. }, Value::Records(given)) => {
+                let count = given.0.len();
+                let mut all = self.required((*least..=*most).contains(&count), || {
+                    let plural = if count == 1 { "y" } else { "ies" };
+                    format!("`{name}` has {count} entr{plural}")
+                });
+                for record in &given.0 {
+                    for (field, value) in &record.fields {
+                        let Some(key) = fields.iter().find(|key| key.name == *field) else {
+                            all.push(self.violation(format!("`{name}` has no field `{field}`")));
+                            continue;
+                        };
+                        let within = field_name(self, &record.name, field);
+                        all.extend(key.violations_within(value, &within));
+                    }
+                }
+                all
+            }
             (_, other) => vec![self.wrong_type(&other.described())],
         }
+    }
+
+    /// Returns the problems of a value of this key as a field of a record, whose whole name is `within`.
+    pub(super) fn violations_within(&self, value: &Value, within: &str) -> Vec<Violation> {
+        let violations = self.violations_of(value).into_iter();
+        violations.map(|violation| self.named_within(violation, within)).collect()
+    }
+
+    /// Returns a violation with the whole name of a record's field in the place of the field's own name.
+    pub(super) fn named_within(&self, mut violation: Violation, within: &str) -> Violation {
+        let own = format!("`{}`", self.name);
+        let message = violation.error.message.replacen(&own, &format!("`{within}`"), 1);
+        violation.error.message = message;
+        violation.error.key = within.to_owned();
+        violation
     }
 
     /// Returns the violation of a value of another type, which `found` describes.
@@ -68,6 +102,7 @@ impl Key {
             KeyKind::Choice(_) | KeyKind::Text(_) => "a string",
             KeyKind::Flag => "true or false",
             KeyKind::Integers { .. } => "a list of integers",
+            KeyKind::Records { .. } => "a table",
         };
         self.violation(format!("`{}` must be {wanted}, not {found}", self.name))
     }
@@ -133,6 +168,13 @@ impl Key {
                     format!("{len_min} to {len_max} integers from {min} to {max}")
                 }
             }
+            KeyKind::Records { fields, least, most, .. } => {
+                let mut names = Vec::new();
+                for field in fields {
+                    names.push(field.name);
+                }
+                format!("{least} to {most} entries, each with {}", names.join(", "))
+            }
         }
     }
 
@@ -145,7 +187,7 @@ impl Key {
                 options.iter().map(|option| Value::Text((*option).to_owned())).collect()
             }
             KeyKind::Flag => vec![Value::Flag(false), Value::Flag(true)],
-            KeyKind::Text(_) => Vec::new(),
+            KeyKind::Text(_) | KeyKind::Records { .. } => Vec::new(),
             KeyKind::Integers { min, max, len_min, len_max } => {
                 vec![Value::Integers(vec![*min; *len_min]), Value::Integers(vec![*max; *len_max])]
             }
@@ -165,6 +207,7 @@ impl Value {
             Value::Text(text) => return format!("the string {}", quoted(text)),
             Value::Flag(_) => "flag",
             Value::Integers(_) => "list",
+            Value::Records(_) => "table",
         };
         format!("the {kind} {}", shown(&self.bare()))
     }

@@ -2,6 +2,8 @@
 
 use serde::Serialize;
 
+use super::records::Records;
+
 /// The value of a key. It is serialised as the value alone. For example, `Value::Integer(20)` is serialised as `20`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(untagged)]
@@ -16,6 +18,8 @@ pub enum Value {
     Flag(bool),
     /// A value of [`super::KeyKind::Integers`].
     Integers(Vec<i64>),
+    /// A value of [`super::KeyKind::Records`].
+    Records(Records),
 }
 
 impl Value {
@@ -31,6 +35,7 @@ impl Value {
                 let values: Vec<String> = values.iter().map(i64::to_string).collect();
                 format!("[{}]", values.join(", "))
             }
+            Value::Records(records) => records.toml(),
         }
     }
 
@@ -126,6 +131,17 @@ impl Config {
         match self.value(key) {
             Value::Integers(values) => values,
             _ => self.wrong_kind(key, "a list of integers"),
+        }
+    }
+
+    /// Returns the entries of a table of records.
+    ///
+    /// # Panics
+    /// Panics as [`Config::integer`] does.
+    pub fn records(&self, key: &str) -> &Records {
+        match self.value(key) {
+            Value::Records(records) => records,
+            _ => self.wrong_kind(key, "a table of records"),
         }
     }
 

@@ -2,7 +2,7 @@
 
 use super::schema::{Key, KeyKind, Schema};
 use super::shared::shared_keys;
-use super::values::Config;
+use super::values::{Config, Value};
 
 /// The number of columns that a line of a comment may have.
 const WIDTH: usize = 90;
@@ -38,8 +38,13 @@ pub fn brief(schema: &Schema, config: &Config, given: &[String]) -> String {
         let is_own = schema.keys.contains(key);
         if (is_own || is_given) && config.applies(schema, key.name) {
             let sign = if is_given { "" } else { "# " };
-            let line = format!("{sign}{}", assignment(config, key.name));
-            text += &remarked(&line, &remark(key));
+            for (number, line) in assignments(key, config, key.name).iter().enumerate() {
+                let line = format!("{sign}{line}");
+                text += &match number {
+                    0 => remarked(&line, &remark(key)),
+                    _ => format!("{line}\n"),
+                };
+            }
         }
     }
     text
@@ -48,6 +53,22 @@ pub fn brief(schema: &Schema, config: &Config, given: &[String]) -> String {
 /// Returns `key = value` with the dotted name of the key. For example, `cosine.fraction = 20`.
 fn assignment(config: &Config, key: &str) -> String {
     format!("{key} = {}", config.value(key).toml())
+}
+
+/// Returns the lines that give a key its value under `name`: for a table of records one line for each entry, for any other
+/// key one line. For example, `operands.x = { fraction = 15 }`.
+fn assignments(key: &Key, config: &Config, name: &str) -> Vec<String> {
+    let value = config.value(key.name);
+    if let (KeyKind::Records { shorthand, .. }, Value::Records(records)) = (&key.kind, value)
+        && !records.0.is_empty()
+    {
+        let mut lines = Vec::new();
+        for record in &records.0 {
+            lines.push(format!("{name}.{} = {}", record.name, record.toml(*shorthand)));
+        }
+        return lines;
+    }
+    vec![format!("{name} = {}", value.toml())]
 }
 
 /// Returns the meaning of a key in a few words: its first clause, and the values of a choice. If the values are too long for
@@ -91,7 +112,6 @@ pub fn commented(schema: &Schema, config: &Config, given: &[String]) -> String {
             if index > 0 || table.is_empty() {
                 text.push('\n');
             }
-            let value = config.value(key.name).toml();
             text += &comment(&sentence(key.doc));
             let mut rule = format!("{}, default {}", key.accepts(), key.default.toml());
             if let Some(condition) = key.condition {
@@ -100,7 +120,9 @@ pub fn commented(schema: &Schema, config: &Config, given: &[String]) -> String {
             text += &comment(&sentence(&rule));
             let is_given = given.iter().any(|name| name == key.name);
             let sign = if is_given { "" } else { "# " };
-            text += &format!("{sign}{} = {value}\n", key.table_and_leaf().1);
+            for line in assignments(key, config, key.table_and_leaf().1) {
+                text += &format!("{sign}{line}\n");
+            }
         }
     }
     text
@@ -128,8 +150,9 @@ fn plain(schema: &Schema, config: &Config) -> String {
             text += &format!("\n[{table}]\n");
         }
         for key in keys {
-            let value = config.value(key.name).toml();
-            text += &format!("{} = {value}\n", key.table_and_leaf().1);
+            for line in assignments(key, config, key.table_and_leaf().1) {
+                text += &format!("{line}\n");
+            }
         }
     }
     text

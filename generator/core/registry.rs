@@ -218,6 +218,7 @@ impl Registry {
         all.0.extend(of_catalogue![
             normaliser: "normaliser", "(x, y, z)/sqrt(x^2 + y^2 + z^2), by a table of inverse roots";
             dot_product: "dot-product", "max(0, N.H) of a normal of any length, the cosine that highlights start from";
+            expression: "expression", "formulas of up to eight operands, by integer operations with a proved error";
             shading: "shading", "ambient + diffuse*N.L + specular*highlight, from normals of any length";
         ]);
         all

@@ -225,6 +225,36 @@ impl Expression {
         is(&self.kind) || self.parts().into_iter().any(|part| part.has(is))
     }
 
+    /// Puts formulas in the place of operands. `replacement` gives the formula of a name, or nothing for an operand that
+    /// stays. Every part keeps its place in the text, and all of a replacement has the place of the operand.
+    pub fn with_operands(&self, replacement: &dyn Fn(&str) -> Option<Self>) -> Self {
+        let inner = |part: &Self| Box::new(part.with_operands(replacement));
+        let kind = match &self.kind {
+            Kind::Operand(name) => {
+                return match replacement(name) {
+                    Some(formula) => formula.at(&self.span),
+                    None => self.clone(),
+                };
+            }
+            Kind::Word(rom, at) => Kind::Word(rom.clone(), inner(at)),
+            Kind::Unary(function, a) => Kind::Unary(*function, inner(a)),
+            Kind::Binary(operator, a, b) => Kind::Binary(*operator, inner(a), inner(b)),
+            Kind::If(it, a, b) => {
+                let (left, right) = (inner(&it.left), inner(&it.right));
+                Kind::If(Comparison { left, right, or_equal: it.or_equal }, inner(a), inner(b))
+            }
+            leaf => leaf.clone(),
+        };
+        Self::new(kind, self.span.clone())
+    }
+
+    /// Returns the formula with one place in a text for all of its parts.
+    fn at(&self, place: &Range<usize>) -> Self {
+        let nothing = Self::new(Kind::Operand(String::new()), 0..0);
+        let moved = self.substitute(&nothing, &nothing, place);
+        Self { span: place.clone(), ..moved }
+    }
+
     /// Puts `new` in the place of every `old`; every other part has the span of `call`.
     pub fn substitute(&self, old: &Self, new: &Self, call: &Range<usize>) -> Self {
         if self == old {

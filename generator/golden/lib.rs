@@ -3,9 +3,10 @@
 //!
 //! A golden model uses only [`glint_base::fixed`] and [`glint_config`]. It never sees the description, the netlist or the
 //! microcode, and it computes its own tables. This independence makes the comparison with the simulated hardware meaningful.
-//! Three devices are exceptions: description and golden model of `function`, `blinn` and `gauss` read the same polynomials
+//! Four devices are exceptions. Description and golden model of `function`, `blinn` and `gauss` read the same polynomials
 //! ([`glint_keys::function`], [`glint_keys::decay`]). The comparison of every control operand with the formula checks these
-//! polynomials.
+//! polynomials. Description and golden model of `expression` read the same plan ([`glint_plan`]), whose error against the
+//! formulas is proved.
 
 pub mod blinn;
 pub mod contract;
@@ -15,6 +16,7 @@ pub mod curve;
 pub mod decay;
 pub mod device;
 pub mod dot_product;
+pub mod expression;
 pub mod formulas;
 pub mod frame;
 pub mod function;

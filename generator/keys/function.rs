@@ -131,19 +131,19 @@ fn function(keys: &Keys) -> Result<TargetFunction, Refusal> {
     })
 }
 
-/// An end of the domain, in units of the operand's last place. For example, `1.5` with no fraction bits has the `ceiling` 2,
+/// An end of a domain, in units of the operand's last place. For example, `1.5` with no fraction bits has the `ceiling` 2,
 /// and is no operand.
 #[derive(Clone, Copy)]
-struct End {
+pub(super) struct End {
     /// The smallest raw operand that is not below the end.
-    ceiling: i128,
+    pub(super) ceiling: i128,
     /// Whether that raw operand is the end.
-    is_operand: bool,
+    pub(super) is_operand: bool,
 }
 
 impl End {
     /// Evaluates the text of an end exactly: `0.1 * 10` is 1, and `log2(16)` is 4.
-    fn read(key: &'static str, text: &str, fraction: u32) -> Result<Self, Refusal> {
+    pub(super) fn read(key: &'static str, text: &str, fraction: u32) -> Result<Self, Refusal> {
         let formula = parse(text).map_err(|fault| misread(key, fault))?;
         let (ceiling, is_operand) = formula.ceiling(fraction).map_err(|fault| {
             let remedy = "write the end as a number, `2` or `1e-3`, or as a formula of numbers";

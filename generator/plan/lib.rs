@@ -38,12 +38,14 @@ mod node;
 mod plan;
 mod range;
 mod refusal;
+mod schedule;
 mod statement;
 
 pub use find::{Proof, ProvedPlan, find};
 pub use node::{Approximation, NodeId, Operation, PlanNode, normalising_shifts};
 pub use plan::Plan;
 pub use refusal::PlanRefusal;
+pub use schedule::{PlanStep, Schedule};
 pub use statement::{StatedOperand, StatedResult, Statement};
 
 #[cfg(test)]

@@ -1,0 +1,383 @@
+//! The hardware description of `expression`: formulas of several operands, by the plan that was found for them.
+//!
+//! Each operation of the plan is logic between registers. Products share one multiplier, a microinstruction each.
+
+use glint_approximate::Piecewise;
+use glint_base::fixed::{Format, Overflow, Rounding};
+use glint_base::text;
+use glint_config::{Config, Shared};
+use glint_keys::expression::{Keys, found};
+use glint_plan::{
+    NodeId, Operation, Plan, PlanNode, PlanStep, ProvedPlan, Schedule, normalising_shifts,
+};
+use glint_rtl::blocks::shift::right_by;
+use glint_rtl::dsl::{Designer, Register, Signal, Step, end, step, valid};
+use glint_rtl::netlist::About;
+
+use crate::piecewise::{PolynomialDatapath, StepMultiplier, Tables, flipped};
+
+/// The fewest bits of a table that a family of FPGAs has a block memory for.
+const BLOCK: u64 = 2048;
+
+/// Describes `expression`: formulas of several operands.
+///
+/// # Panics
+/// Panics if the check of the schema has not accepted the configuration. The caller must check it first.
+pub fn describe(d: &Designer, config: &Config) {
+    let found = found(config).expect("a configuration that is checked");
+    d.about(about(&Keys::of(config), &found));
+    let schedule = found.plan.schedule();
+    let is_pipelined = Shared::of(config).architecture == "pipelined";
+    let mut datapath = PlanDatapath::new(d, &found, &schedule, is_pipelined);
+    datapath.build();
+    let steps = datapath.microprogram();
+    for (result, node) in found.statement.results.iter().zip(&found.plan.results) {
+        d.output(&format!("{}_out", result.name), datapath.held(*node));
+    }
+    d.microprogram(steps);
+}
+
+/// A plan in the making as a datapath.
+struct PlanDatapath<'d, 'p> {
+    d: &'d Designer,
+    plan: &'p Plan,
+    found: &'p ProvedPlan,
+    schedule: &'p Schedule,
+    is_pipelined: bool,
+    /// The registers of nodes that are held, except for those of polynomials.
+    registers: Vec<Option<Register<'d>>>,
+    /// The value of each node as later nodes read it; `None` between a product and its register.
+    signals: Vec<Option<Signal<'d>>>,
+    polynomials: Vec<Option<PolynomialDatapath<'d, 'p>>>,
+    /// The factors of each product.
+    factors: Vec<Option<[Signal<'d>; 2]>>,
+}
+
+impl<'d, 'p> PlanDatapath<'d, 'p> {
+    fn new(
+        d: &'d Designer,
+        found: &'p ProvedPlan,
+        schedule: &'p Schedule,
+        is_pipelined: bool,
+    ) -> Self {
+        let plan = &found.plan;
+        let count = plan.nodes.len();
+        let mut registers = Vec::with_capacity(count);
+        for (node, is_held) in plan.nodes.iter().zip(&schedule.held) {
+            let has_own = matches!(node.operation, Operation::Polynomial(..));
+            let is_register = *is_held && !has_own;
+            registers.push(is_register.then(|| d.register(&node.name, node.format)));
+        }
+        Self {
+            d,
+            plan,
+            found,
+            schedule,
+            is_pipelined,
+            registers,
+            signals: vec![None; count],
+            polynomials: (0..count).map(|_| None).collect(),
+            factors: vec![None; count],
+        }
+    }
+
+    /// Builds the nodes in their order, except for what follows from products: these need the multiplier.
+    fn build(&mut self) {
+        for at in 0..self.plan.nodes.len() {
+            let node = &self.plan.nodes[at];
+            if let Operation::Multiply(a, b) = node.operation {
+                self.factors[at] = Some(self.distinct_factors(&node.name, [a, b]));
+            }
+            let is_behind_product =
+                node.operation.inputs().iter().any(|it| self.signals[it.0].is_none());
+            let value = if matches!(node.operation, Operation::Multiply(..)) || is_behind_product {
+                None
+            } else {
+                Some(self.logic(NodeId(at)))
+            };
+            self.signals[at] = match (self.registers[at], value) {
+                (Some(register), Some(value)) => {
+                    register.takes(value);
+                    Some(register.q())
+                }
+                (Some(register), None) => Some(register.q()),
+                (None, value) => value,
+            };
+        }
+    }
+
+    /// Returns the factors of a product. A first factor that another product has, too, gets a net of its own, by which the
+    /// microprogram selects this product.
+    fn distinct_factors(&self, name: &str, inputs: [NodeId; 2]) -> [Signal<'d>; 2] {
+        let [first, second] = inputs.map(|input| self.signal(input));
+        let mut others = self.factors.iter().flatten();
+        let is_first = others.any(|[other, _]| other.name() == first.name());
+        if !is_first {
+            return [first, second];
+        }
+        let own = format!("{name}_first");
+        let first = self.d.narrow(&own, first, first.format(), Rounding::Truncate, Overflow::Wrap);
+        [first, second]
+    }
+
+    /// Returns the value of a node as later nodes read it.
+    fn signal(&self, id: NodeId) -> Signal<'d> {
+        self.signals[id.0].unwrap_or_else(|| panic!("`{}` is built", self.plan.node(id).name))
+    }
+
+    /// Returns the register of a node.
+    fn held(&self, id: NodeId) -> Signal<'d> {
+        self.signal(id)
+    }
+
+    /// Returns a signal in the format of a node, with the bits above dropped.
+    fn in_format(&self, name: &str, signal: Signal<'d>, format: Format) -> Signal<'d> {
+        if signal.format() == format {
+            return signal;
+        }
+        self.d.narrow(name, signal, format, Rounding::Truncate, Overflow::Wrap)
+    }
+
+    /// Builds a node as logic.
+    fn logic(&mut self, id: NodeId) -> Signal<'d> {
+        let d = self.d;
+        let plan = self.plan;
+        let node = plan.node(id);
+        let PlanNode { name, format, .. } = node;
+        let input = |id: &NodeId| self.signals[id.0].expect("a node that is built");
+        let value = match &node.operation {
+            Operation::Operand(number) => {
+                let stated = &self.found.statement.operands[*number];
+                return d.operand(&stated.name, stated.format).doc("an operand").q();
+            }
+            Operation::Constant { raw, .. } => d.raw_constant(name, *raw, *format),
+            Operation::Add(a, b) => d.add(name, input(a), input(b)),
+            Operation::Subtract(a, b) => d.sub(name, input(a), input(b)),
+            Operation::Multiply(..) => unreachable!("a product needs the multiplier"),
+            Operation::Absolute(a) => {
+                let a = input(a);
+                let zero = d.raw_constant("zero", 0, a.format());
+                let negated = d.sub(&format!("{name}_negated"), zero, a);
+                let is_negative = a.bit(a.format().width() - 1);
+                d.choose(&format!("{name}_chosen"), is_negative, [a, negated])
+            }
+            Operation::Minimum(a, b) => {
+                let (a, b) = (input(a), input(b));
+                let is_first = d.less(&format!("{name}_is_first"), a, b);
+                d.choose(&format!("{name}_chosen"), is_first, [b, a])
+            }
+            Operation::Maximum(a, b) => {
+                let (a, b) = (input(a), input(b));
+                let is_second = d.less(&format!("{name}_is_second"), a, b);
+                d.choose(&format!("{name}_chosen"), is_second, [a, b])
+            }
+            Operation::Less(a, b) => return d.less(name, input(a), input(b)),
+            Operation::NonZero(a) => return d.any(name, input(a)),
+            Operation::Choose { condition, cases, .. } => {
+                d.choose(&format!("{name}_chosen"), input(condition), cases.map(|it| input(&it)))
+            }
+            Operation::Scale(a) => input(a).read_as(*format),
+            Operation::Narrow(a, rounding) => {
+                return d.narrow(name, input(a), *format, *rounding, Overflow::Wrap);
+            }
+            Operation::Normalise { word, by_pairs } => {
+                let [normalised, places] = normalised(d, name, input(word), *by_pairs);
+                // The node of the places follows the word.
+                self.signals[id.0 + 1] = Some(places);
+                normalised.read_as(*format)
+            }
+            Operation::Places(_) => {
+                return self.signals[id.0].expect("the places of a normalised word");
+            }
+            Operation::ShiftLeft(a, places) => left_by(d, name, input(a), input(places), *format),
+            Operation::ShiftRight(a, places) => right_by(d, name, input(a), input(places)),
+            Operation::Polynomial(a, approximation) => {
+                let polynomials = approximation.polynomials.as_deref();
+                let it = polynomials.expect("polynomials that are found");
+                return self.polynomial(id, input(a), it);
+            }
+        };
+        self.in_format(name, value, *format)
+    }
+
+    /// Builds a table of polynomials and its registers, and returns the last of them.
+    fn polynomial(&mut self, id: NodeId, operand: Signal<'d>, it: &'p Piecewise) -> Signal<'d> {
+        let name = &self.plan.node(id).name;
+        let number = number(self.d, name, operand, it);
+        let registers = [name.clone(), format!("{name}_sum1"), format!("{name}_sum2")];
+        let registers: Vec<&str> = registers.iter().map(String::as_str).collect();
+        let split = self.is_pipelined && it.rom_bits() < BLOCK;
+        let tables = Tables { split, synchronous: true };
+        let prefix = format!("{name}_");
+        let datapath = PolynomialDatapath::new(self.d, &prefix, &registers, number, it, tables);
+        let q = datapath.q();
+        self.polynomials[id.0] = Some(datapath);
+        q
+    }
+
+    /// Returns the microinstructions, and connects the registers of products to the multiplier.
+    fn microprogram(&mut self) -> Vec<Step> {
+        let polynomials: Vec<&PolynomialDatapath> = self.polynomials.iter().flatten().collect();
+        let mut others = Vec::new();
+        for (node, factors) in self.plan.nodes.iter().zip(&self.factors) {
+            others.extend(factors.map(|factors| (node.name.clone(), factors)));
+        }
+        let names = ["factors_select", "first_factor", "second_factor", "product_of_factors"];
+        let multiplier = StepMultiplier::new(self.d, names, &polynomials, &others);
+        let mut steps = vec![step("operands", [])];
+        for plan_step in &self.schedule.steps {
+            steps.push(self.microinstruction(plan_step, &multiplier));
+        }
+        steps.push(step("results", [valid(), end()]));
+        steps
+    }
+
+    fn microinstruction(&self, plan_step: &PlanStep, multiplier: &StepMultiplier<'d>) -> Step {
+        let name_of = |id: NodeId| self.plan.node(id).name.as_str();
+        let register =
+            |id: NodeId| self.registers[id.0].expect("a register of a node that is held");
+        match plan_step {
+            PlanStep::Product { product, held } => {
+                let factors = self.factors[product.0].expect("the factors of a product");
+                let register = register(*held);
+                register.takes(self.following(multiplier.product(factors), *product, *held));
+                let mut settings = vec![register.load()];
+                settings.extend(multiplier.pick(factors));
+                step(&format!("{} <- a product", name_of(*held)), settings)
+            }
+            PlanStep::Hold(nodes) => {
+                let names: Vec<&str> = nodes.iter().map(|node| name_of(*node)).collect();
+                let loads: Vec<_> = nodes.iter().map(|node| register(*node).load()).collect();
+                step(&format!("{} loaded", names.join(", ")), loads)
+            }
+            PlanStep::Address(polynomial) => {
+                step(&format!("{}: table addressed", name_of(*polynomial)), [])
+            }
+            PlanStep::Sum { polynomial, coefficient } => {
+                let datapath = self.polynomials[polynomial.0].as_ref().expect("a polynomial");
+                let settings = multiplier.step(datapath, *coefficient);
+                step(
+                    &format!("{} <- coefficient {coefficient} added", name_of(*polynomial)),
+                    settings,
+                )
+            }
+        }
+    }
+
+    /// Returns the value of `held` from that of a product: the nodes between the two only scale and shorten it.
+    fn following(&self, product: Signal<'d>, from: NodeId, held: NodeId) -> Signal<'d> {
+        let node = self.plan.node(held);
+        if held == from {
+            return self.in_format(&format!("{}_kept", node.name), product, node.format);
+        }
+        let inputs = node.operation.inputs();
+        let before = self.following(product, from, inputs[0]);
+        match node.operation {
+            Operation::Narrow(_, rounding) => {
+                let name = format!("{}_kept", node.name);
+                self.d.narrow(&name, before, node.format, rounding, Overflow::Wrap)
+            }
+            _ => before.read_as(node.format),
+        }
+    }
+}
+
+/// Returns the number of a raw operand within the domain of a table, as [`Piecewise::number`].
+fn number<'d>(d: &'d Designer, name: &str, x: Signal<'d>, it: &Piecewise) -> Signal<'d> {
+    let width = x.format().width() as i32;
+    let integer = |bits: i32| Format::unsigned(bits, 0);
+    let bits = it.segments.bits as i32;
+    let origin = i128::from(it.origin);
+    if origin == it.operand.min_raw() {
+        return match it.operand.signed {
+            true => flipped(d, &format!("{name}_number"), x, integer(width)),
+            false => x.read_as(integer(width)),
+        };
+    }
+    let Format { signed, .. } = x.format();
+    let whole = x.read_as(Format { signed, int: width - i32::from(signed), frac: 0 });
+    let first = d.raw_constant("first", origin, Format::holding(origin, origin, 0));
+    let number = d.sub(&format!("{name}_number"), whole, first);
+    if number.format() == integer(bits) { number } else { number.bits(0, integer(bits)) }
+}
+
+/// Returns a word shifted left until its top bit is 1, or one of its two top bits by pairs, and the places or pairs.
+fn normalised<'d>(
+    d: &'d Designer,
+    name: &str,
+    word: Signal<'d>,
+    by_pairs: bool,
+) -> [Signal<'d>; 2] {
+    let integer = |bits: u32| Format::unsigned(bits as i32, 0);
+    let width = word.format().width();
+    let mut word = word.read_as(integer(width));
+    let mut places = Vec::new();
+    for shift in normalising_shifts(width, by_pairs) {
+        let top = word.bits(width - shift, integer(shift));
+        let is_used = d.any(&format!("{name}_top{shift}"), top);
+        let rest = word.bits(0, integer(width - shift));
+        let shifted = rest.with_fraction(shift as i32).shift_left(shift as i32);
+        word = d.choose(&format!("{name}_by{shift}"), is_used, [shifted, word]);
+        places.push(d.not(&format!("{name}_free{shift}"), is_used));
+    }
+    if places.is_empty() {
+        return [word, d.raw_constant("no_places", 0, Format::BIT)];
+    }
+    let count = integer(places.len() as u32);
+    [word, d.join(&format!("{name}_count"), &places, count)]
+}
+
+/// Returns x · 2^places in a format, with the bits above the format dropped.
+fn left_by<'d>(
+    d: &'d Designer,
+    name: &str,
+    x: Signal<'d>,
+    places: Signal<'d>,
+    format: Format,
+) -> Signal<'d> {
+    let mut row = d.narrow(&format!("{name}_wide"), x, format, Rounding::Truncate, Overflow::Wrap);
+    for bit in 0..places.format().width() {
+        let shift = 1i32 << bit;
+        let moved = if shift < format.width() as i32 {
+            let moved = row.shift_left(shift);
+            let name = format!("{name}_kept{shift}");
+            d.narrow(&name, moved, format, Rounding::Truncate, Overflow::Wrap)
+        } else {
+            d.raw_constant("zeros", 0, format)
+        };
+        row = d.choose(&format!("{name}_by{shift}"), places.bit(bit), [row, moved]);
+    }
+    row
+}
+
+fn about(keys: &Keys, found: &ProvedPlan) -> About {
+    let mut formulas = Vec::new();
+    for record in &keys.parts.0 {
+        formulas.push(format!("{} = {}", record.name, record.text("formula").unwrap_or_default()));
+    }
+    let mut notes = Vec::new();
+    for (record, bound) in keys.results.0.iter().zip(&found.bounds) {
+        let name = &record.name;
+        formulas.push(format!("{name} = {}", record.text("formula").unwrap_or_default()));
+        let promise = match record.text("where") {
+            Some(promise) => format!(" where {promise}"),
+            None => String::new(),
+        };
+        let bound = text::rounded_up(*bound, 4);
+        let proof = found.proof.words();
+        notes.push(
+            format!(
+                "{name} is no further off than {bound} units of its last place{promise}: {proof}."
+            )
+            .into(),
+        );
+    }
+    let names: Vec<&str> = keys.results.0.iter().map(|record| record.name.as_str()).collect();
+    About {
+        device: "expression".to_owned(),
+        title: format!("{}, by a plan with a proved error", names.join(" and ")),
+        formula: formulas.join("; "),
+        source: "The configuration".to_owned(),
+        notes,
+    }
+}

@@ -1,0 +1,212 @@
+//! The golden model and the accuracy contract of `expression`: formulas of several operands, computed by a plan.
+//!
+//! The model executes the operations of the plan in integers, from their definitions. The proof of the plan against the
+//! formulas vouches for the plan itself.
+
+use std::sync::Arc;
+
+use super::device::{self, Formula};
+use super::frame::{Frame, FrameStep, Slot, State, idle, step_by};
+use super::polynomial::Polynomial;
+use super::{Contract, Model, Term};
+use glint_base::fixed::exp2;
+use glint_config::Config;
+use glint_keys::expression::found;
+use glint_plan::{NodeId, Operation, Plan, PlanStep, ProvedPlan};
+
+/// A plan with the places of its values in the state of the model.
+struct PlanModel {
+    found: Arc<ProvedPlan>,
+    operands: Vec<Slot>,
+    /// The register of each node that is held.
+    registers: Vec<Option<Slot>>,
+}
+
+impl PlanModel {
+    fn plan(&self) -> &Plan {
+        &self.found.plan
+    }
+
+    /// Returns the raw value of a node, from the registers before it.
+    fn value(&self, id: NodeId, state: &State) -> i128 {
+        match self.registers[id.0] {
+            Some(slot) => state[slot].into(),
+            None => self.computed(id, state),
+        }
+    }
+
+    /// Returns the raw value that a node has now: its register takes this value at the next clock.
+    fn computed(&self, id: NodeId, state: &State) -> i128 {
+        let operands: Vec<i64> = self.operands.iter().map(|slot| state[*slot]).collect();
+        // Between a product and its register, nodes are computed anew.
+        self.plan().value(id, &operands, &|input| self.value(input, state))
+    }
+}
+
+/// Makes the device: a register for each value that the schedule of the plan holds.
+fn device(found: &Arc<ProvedPlan>) -> device::Device {
+    let plan = &found.plan;
+    let schedule = plan.schedule();
+    let mut frame = Frame::default();
+    let mut operands = Vec::new();
+    for operand in &found.statement.operands {
+        operands.push(frame.operand(&operand.name, operand.format));
+    }
+    let mut registers = Vec::with_capacity(plan.nodes.len());
+    let mut polynomials = Vec::with_capacity(plan.nodes.len());
+    for (node, is_held) in plan.nodes.iter().zip(&schedule.held) {
+        let mut polynomial = None;
+        registers.push(match &node.operation {
+            Operation::Polynomial(_, approximation) => {
+                let it = approximation.polynomials.as_ref().expect("polynomials that are found");
+                let name = &node.name;
+                let names = [name.clone(), format!("{name}_sum1"), format!("{name}_sum2")];
+                let names: Vec<&str> = names.iter().map(String::as_str).collect();
+                let sums = Polynomial::new(&mut frame, &names, it);
+                let q = sums.q();
+                polynomial = Some(sums);
+                Some(q)
+            }
+            _ if *is_held => Some(frame.register(&node.name, node.format)),
+            _ => None,
+        });
+        polynomials.push(polynomial);
+    }
+    for (result, node) in found.statement.results.iter().zip(&plan.results) {
+        let register = registers[node.0].expect("a result is held");
+        frame.shows(&format!("{}_out", result.name), register);
+    }
+    let model = Arc::new(PlanModel { found: found.clone(), operands, registers });
+    let mut program = vec![idle()];
+    for plan_step in &schedule.steps {
+        match plan_step {
+            PlanStep::Product { held, .. } => program.push(loads(&model, vec![*held])),
+            PlanStep::Hold(nodes) => program.push(loads(&model, nodes.clone())),
+            PlanStep::Address(polynomial) => {
+                program.push(idle());
+                let sums = polynomials[polynomial.0].as_ref().expect("a polynomial");
+                program.extend(sum_steps(&model, *polynomial, sums));
+            }
+            // All sums of a polynomial follow its address.
+            PlanStep::Sum { .. } => {}
+        }
+    }
+    program.push(idle().valid().end());
+    let mut device = frame.device(program);
+    for operand in &found.statement.operands {
+        device = device.domain(&operand.name, operand.domain.0, operand.domain.1);
+    }
+    device
+}
+
+/// Returns the microinstruction that loads the registers of some nodes.
+fn loads(model: &Arc<PlanModel>, nodes: Vec<NodeId>) -> FrameStep {
+    step_by(model, move |model, state| {
+        let mut loaded = Vec::with_capacity(nodes.len());
+        for node in &nodes {
+            let slot = model.registers[node.0].expect("a register of a node that is held");
+            loaded.push((slot, model.computed(*node, state) as i64));
+        }
+        for (slot, value) in loaded {
+            state[slot] = value;
+        }
+    })
+}
+
+/// Returns the microinstructions of a polynomial's sums.
+fn sum_steps(model: &Arc<PlanModel>, id: NodeId, sums: &Polynomial) -> Vec<FrameStep> {
+    let inputs = model.plan().node(id).operation.inputs();
+    let reader = model.clone();
+    let operand = move |state: &State| reader.value(inputs[0], state) as i64;
+    sums.steps(operand).map(super::frame::step).collect()
+}
+
+/// Returns the golden model.
+///
+/// # Panics
+/// Panics if the check of the schema has not accepted the configuration. The caller must check it first.
+pub fn model(config: &Config) -> Box<dyn Model> {
+    device(&found(config).expect("a configuration that is checked")).model()
+}
+
+/// Returns the accuracy contract.
+///
+/// # Panics
+/// Panics as [`model`] does.
+pub fn contract(config: &Config) -> Box<dyn Contract> {
+    let found = found(config).expect("a configuration that is checked");
+    device(&found).contract(Stated { found })
+}
+
+/// The formulas with the bounds that were proved.
+struct Stated {
+    found: Arc<ProvedPlan>,
+}
+
+impl Formula for Stated {
+    /// Returns the values of the formulas; no number where one has no value.
+    fn exact(&self, operands: &[f64]) -> Vec<f64> {
+        let statement = &self.found.statement;
+        let mut raw = Vec::with_capacity(operands.len());
+        for (operand, value) in statement.operands.iter().zip(operands) {
+            raw.push((value * exp2(operand.format.frac)) as i64);
+        }
+        let limits: Vec<(i64, i64)> = raw.iter().map(|raw| (*raw, *raw)).collect();
+        let enclosed = statement.enclosed_operands(&limits);
+        let mut values = Vec::with_capacity(statement.results.len());
+        for result in &statement.results {
+            let value = match result.formula.enclose(&enclosed) {
+                Ok(value) if result.is_promised(&enclosed) != Some(false) => value.middle(),
+                _ => f64::NAN,
+            };
+            values.push(value);
+        }
+        values
+    }
+
+    /// Appends the results within the domain. No value leaves its format there, which was proved.
+    fn results(&self, operands: &[i64], raw: &mut Vec<i64>) -> bool {
+        let domain = self.found.statement.domain();
+        let is_inside = |(raw, (low, high)): (&i64, &(i64, i64))| (low..=high).contains(&raw);
+        if !operands.iter().zip(&domain).all(is_inside) {
+            return false;
+        }
+        let values = self.found.plan.values(operands);
+        for result in &self.found.plan.results {
+            raw.push(values[result.0] as i64);
+        }
+        true
+    }
+
+    /// Returns the terms of the result whose bound is the largest part of the error that it may have.
+    fn terms(&self) -> Vec<Term> {
+        let bound = self.found.bounds.iter().copied().fold(0.0, f64::max);
+        let rounding = bound.min(0.5);
+        vec![
+            Term { key: "results", what: "rounding of the result", units: rounding },
+            Term {
+                key: "results",
+                what: "the polynomials and the roundings before the result",
+                units: bound - rounding,
+            },
+        ]
+    }
+
+    fn limit(&self) -> f64 {
+        self.found.statement.results.iter().map(|result| result.error).fold(0.0, f64::max)
+    }
+
+    fn expressions(&self) -> Vec<String> {
+        let results = self.found.statement.results.iter();
+        results.map(|result| result.formula.python()).collect()
+    }
+
+    fn remarks(&self) -> Vec<String> {
+        let mut remarks = Vec::new();
+        for (result, bound) in self.found.statement.results.iter().zip(&self.found.bounds) {
+            let proof = self.found.proof.words();
+            remarks.push(format!("`{}` is within {bound:.4} units: {proof}", result.name));
+        }
+        remarks
+    }
+}

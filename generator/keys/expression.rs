@@ -1,0 +1,340 @@
+//! Declares the configuration keys of `expression`, and finds the plan of the formulas that they state.
+
+use std::ops::Range;
+use std::sync::Arc;
+
+use glint_base::fixed::{Format, MAX_WIDTH};
+use glint_base::identifier;
+use glint_base::key_error::KeyError;
+use glint_config::{Config, Key, Problems, Record, Records, Schema, TextPattern, Value};
+use glint_formula::{Comparison, Expression, Fault, Kind, parse};
+use glint_plan::{ProvedPlan, StatedOperand, StatedResult, Statement, find};
+
+use super::function::End;
+
+glint_config::keys! {
+    /// The keys of a configuration.
+    pub struct Keys {
+        operands: Records = Key::records("operands", &example_operands(), operand_fields(), None, 1..=8,
+            "The operands, in the order of the ports. Each has a whole format, by bits, or a domain, by from and to."),
+        parts: Records = Key::records("let", &[], part_fields(), Some("formula"), 0..=32,
+            "Named parts of the formulas. Each may name operands, and parts before it."),
+        results: Records = Key::records("results", &example_results(), result_fields(), None, 1..=8,
+            "The results, in the order of the ports. Each is a formula of operands and named parts."),
+    }
+}
+
+fn operand_fields() -> Vec<Key> {
+    vec![
+        Key::integer("fraction", 12, -40..=40, "Fraction bits."),
+        Key::integer("bits", 12, 1..=32, "The width. The domain then is the whole format."),
+        Key::flag("signed", true, "With bits: whether the operand has a sign."),
+        Key::text("from", "-1", TextPattern::Formula, "The smallest operand."),
+        Key::text("to", "1", TextPattern::Formula, "The end of the domain."),
+        Key::flag("to_included", false, "Whether the end belongs to the domain."),
+    ]
+}
+
+fn part_fields() -> Vec<Key> {
+    vec![Key::text("formula", "x^2 + y^2", TextPattern::Formula, "The formula.")]
+}
+
+fn result_fields() -> Vec<Key> {
+    vec![
+        Key::text("formula", "sqrt(s)", TextPattern::Formula, "The formula."),
+        Key::integer("fraction", 12, 0..=40, "Fraction bits."),
+        Key::number(
+            "error",
+            1.0,
+            0.5..=1024.0,
+            "The result is nearer to the formula than this, in units of its last place.",
+        ),
+        Key::text(
+            "where",
+            "s > 0",
+            TextPattern::Formula,
+            "A comparison: the error is promised for operands for which it holds.",
+        ),
+    ]
+}
+
+/// Returns the operands of the example: the coordinates of a point.
+fn example_operands() -> Vec<Record> {
+    let fields = [
+        ("bits", Value::Integer(12)),
+        ("fraction", Value::Integer(11)),
+        ("signed", Value::Flag(true)),
+    ];
+    vec![Record::new("x", &fields), Record::new("y", &fields)]
+}
+
+/// Returns the result of the example: the distance of the point from the origin.
+fn example_results() -> Vec<Record> {
+    let fields = [
+        ("formula", Value::Text("sqrt(x^2 + y^2)".to_owned())),
+        ("fraction", Value::Integer(11)),
+        ("error", Value::Number(1.0)),
+    ];
+    vec![Record::new("r", &fields)]
+}
+
+/// Returns the keys of the device.
+pub fn schema() -> Schema {
+    Schema { device: "expression", keys: Keys::keys(), check }
+}
+
+fn check(config: &Config, problems: &mut Problems) {
+    if let Err(StatementError { error, place }) = found(config) {
+        problems.push_within(&error.key, place, error.message, error.remedy);
+    }
+}
+
+/// An error of a key, with the bytes of the key's text that it is about.
+#[derive(Clone, Debug, PartialEq)]
+pub struct StatementError {
+    /// The error. Its key has the entry and the field, as `results.r.formula`.
+    pub error: KeyError,
+    /// The bytes of the formula, if the error is about a place in it.
+    pub place: Option<Range<usize>>,
+}
+
+impl StatementError {
+    fn new(key: impl Into<String>, message: impl Into<String>, remedy: impl Into<String>) -> Self {
+        Self { error: KeyError::new(key, message, remedy), place: None }
+    }
+
+    fn of_fault(key: String, fault: Fault) -> Self {
+        let remedy = "a formula has numbers, pi, e, operands, + - * / ^, parentheses and functions: `sqrt(x^2 + y^2)`, say";
+        Self { place: Some(fault.span), ..Self::new(key, fault.message, remedy) }
+    }
+}
+
+/// Returns the plan of the formulas that a configuration states, with proved errors.
+///
+/// # Errors
+/// Fails if an operand or a formula is wrong, or if there is no plan. The error says why.
+pub fn found(config: &Config) -> Result<Arc<ProvedPlan>, StatementError> {
+    let statement = statement(&Keys::of(config))?;
+    find(&statement).map_err(|refusal| {
+        let key = match refusal.result {
+            Some(number) => format!("results.{}.formula", statement.results[number].name),
+            None => "results".to_owned(),
+        };
+        let error = StatementError::new(key, refusal.message, refusal.remedy);
+        StatementError { place: refusal.place, ..error }
+    })
+}
+
+/// Returns the statement of a configuration: its formulas in terms of operands alone.
+fn statement(keys: &Keys) -> Result<Statement, StatementError> {
+    check_names(keys)?;
+    let mut operands = Vec::new();
+    for record in &keys.operands.0 {
+        operands.push(operand(record)?);
+    }
+    let mut parts: Vec<(String, Expression)> = Vec::new();
+    for record in &keys.parts.0 {
+        let key = format!("let.{}", record.name);
+        let formula = formula(record.text("formula"), &key, keys, &parts)?;
+        parts.push((record.name.clone(), formula));
+    }
+    let mut results = Vec::new();
+    for record in &keys.results.0 {
+        results.push(result(record, keys, &parts)?);
+    }
+    Ok(Statement { operands, results })
+}
+
+/// Checks that every name is an identifier, and that no two entries have the same name.
+fn check_names(keys: &Keys) -> Result<(), StatementError> {
+    let mut known: Vec<(&str, &str)> = Vec::new();
+    let tables = [("operands", &keys.operands), ("let", &keys.parts), ("results", &keys.results)];
+    for (table, records) in tables {
+        for Record { name, .. } in &records.0 {
+            let key = format!("{table}.{name}");
+            if let Err(fault) = identifier::check(name) {
+                return Err(StatementError::new(
+                    key,
+                    fault,
+                    "a name has lower-case letters, digits and _",
+                ));
+            }
+            if let Some((other, _)) = known.iter().find(|(_, own)| own == name) {
+                let message = format!("`{name}` is an entry of [{other}] already");
+                return Err(StatementError::new(key, message, "give one of the two another name"));
+            }
+            if parse(name).ok().is_none_or(|it| !matches!(it.kind, Kind::Operand(_))) {
+                let message = format!("`{name}` is a constant of formulas");
+                return Err(StatementError::new(key, message, "give it another name"));
+            }
+            known.push((table, name));
+        }
+    }
+    Ok(())
+}
+
+fn operand(record: &Record) -> Result<StatedOperand, StatementError> {
+    let key = |field: &str| format!("operands.{}.{field}", record.name);
+    let name = record.name.clone();
+    let whole = format!("operands.{name}");
+    let Some(Value::Integer(fraction)) = record.field("fraction") else {
+        let remedy = "add fraction, the number of fraction bits: { bits = 12, fraction = 11 }, say";
+        return Err(StatementError::new(whole, format!("`{name}` has no `fraction`"), remedy));
+    };
+    let frac = *fraction as i32;
+    let (from, to) = (record.text("from"), record.text("to"));
+    if let Some(bits) = record.bits("bits") {
+        if from.is_some() || to.is_some() {
+            let message = format!("`{name}` has both `bits` and a domain");
+            let remedy = "keep bits and signed, or from and to";
+            return Err(StatementError::new(key("bits"), message, remedy));
+        }
+        let signed = record.flag("signed");
+        let format = Format { signed, int: bits as i32 - i32::from(signed) - frac, frac };
+        let (low, high) = format.range();
+        return Ok(StatedOperand { name, format, domain: (low as i64, high as i64) });
+    }
+    let (Some(from), Some(to)) = (from, to) else {
+        let message = format!("`{name}` has neither `bits` nor `from` and `to`");
+        let remedy = "add bits for a whole format, or from and to for a domain";
+        return Err(StatementError::new(whole, message, remedy));
+    };
+    if record.field("signed").is_some() {
+        let message = "a domain says itself whether there is a sign";
+        return Err(StatementError::new(key("signed"), message, "remove it"));
+    }
+    let Ok(fraction) = u32::try_from(frac) else {
+        let message = "the fraction bits of a domain are not below 0";
+        return Err(StatementError::new(
+            key("fraction"),
+            message,
+            "give 0 or more, or bits in place of from and to",
+        ));
+    };
+    let first = end(from, fraction, key("from"))?;
+    let last = end(to, fraction, key("to"))?;
+    let is_included = last.is_operand && record.flag("to_included");
+    let (low, high) = (first.ceiling, last.ceiling - i128::from(!is_included));
+    let widest = 1i128 << (MAX_WIDTH / 2 - 1);
+    if low.abs() > widest || high.abs() > widest {
+        let message = format!(
+            "the domain from {from} to {to} has operands of more than {} bits",
+            MAX_WIDTH / 2
+        );
+        return Err(StatementError::new(
+            key("fraction"),
+            message,
+            "fewer fraction bits, or a smaller domain",
+        ));
+    }
+    if high <= low {
+        let message = format!(
+            "the domain from {from} to {to} has no two operands with {fraction} fraction bits"
+        );
+        return Err(StatementError::new(key("to"), message, "a larger end, or more fraction bits"));
+    }
+    let format = Format::holding(low, high, frac);
+    Ok(StatedOperand { name, format, domain: (low as i64, high as i64) })
+}
+
+fn end(text: &str, fraction: u32, key: String) -> Result<End, StatementError> {
+    End::read("", text, fraction).map_err(|refusal| {
+        let error = StatementError::new(key, refusal.message, refusal.remedy);
+        StatementError { place: refusal.place, ..error }
+    })
+}
+
+fn result(
+    record: &Record,
+    keys: &Keys,
+    parts: &[(String, Expression)],
+) -> Result<StatedResult, StatementError> {
+    let name = record.name.clone();
+    let whole = format!("results.{name}");
+    let Some(fraction) = record.bits("fraction") else {
+        let remedy = "add fraction, the number of fraction bits: { formula = \"x * y\", fraction = 11 }, say";
+        return Err(StatementError::new(whole, format!("`{name}` has no `fraction`"), remedy));
+    };
+    let key = format!("{whole}.formula");
+    if record.text("formula").is_none() {
+        let message = format!("`{name}` has no `formula`");
+        return Err(StatementError::new(whole, message, "add formula = \"x * y\", say"));
+    }
+    let formula = formula(record.text("formula"), &key, keys, parts)?;
+    let promise = match record.text("where") {
+        Some(text) => Some(promise(text, &format!("{whole}.where"), keys, parts)?),
+        None => None,
+    };
+    let error = record.number("error").unwrap_or(1.0);
+    Ok(StatedResult { name, formula, fraction, error, promise })
+}
+
+/// Returns a formula in terms of operands alone.
+fn formula(
+    text: Option<&str>,
+    key: &str,
+    keys: &Keys,
+    parts: &[(String, Expression)],
+) -> Result<Expression, StatementError> {
+    let text = text.unwrap_or_default();
+    let formula = parse(text).map_err(|fault| StatementError::of_fault(key.to_owned(), fault))?;
+    resolved(&formula, key, keys, parts)
+}
+
+/// Returns a formula with the formulas of named parts in the place of their names.
+fn resolved(
+    formula: &Expression,
+    key: &str,
+    keys: &Keys,
+    parts: &[(String, Expression)],
+) -> Result<Expression, StatementError> {
+    let mut unknown = None;
+    formula.walk(&mut |part| {
+        let (Kind::Operand(name) | Kind::Word(name, _)) = &part.kind else { return };
+        let is_operand = keys.operands.0.iter().any(|operand| operand.name == *name);
+        let is_part = parts.iter().any(|(own, _)| own == name);
+        if !is_operand && !is_part || matches!(part.kind, Kind::Word(..)) {
+            unknown.get_or_insert((part.span.clone(), name.clone()));
+        }
+    });
+    if let Some((span, name)) = unknown {
+        let mut names: Vec<&str> = Vec::new();
+        names.extend(keys.operands.0.iter().map(|operand| operand.name.as_str()));
+        names.extend(parts.iter().map(|(part, _)| part.as_str()));
+        let message = format!("there is no operand and no part `{name}` here");
+        let remedy = format!("names: {}", names.join(", "));
+        let error = StatementError::new(key.to_owned(), message, remedy);
+        return Err(StatementError { place: Some(span), ..error });
+    }
+    let of_part =
+        |name: &str| parts.iter().find(|(own, _)| own == name).map(|(_, formula)| formula.clone());
+    Ok(formula.with_operands(&of_part))
+}
+
+/// Returns the comparison that a text states. For example, `x < y`.
+fn promise(
+    text: &str,
+    key: &str,
+    keys: &Keys,
+    parts: &[(String, Expression)],
+) -> Result<Comparison, StatementError> {
+    const BEFORE: &str = "if(";
+    let moved = |span: Range<usize>| {
+        let start = span.start.saturating_sub(BEFORE.len()).min(text.len());
+        start..span.end.saturating_sub(BEFORE.len()).clamp(start, text.len())
+    };
+    let choice = parse(&format!("{BEFORE}{text}, 1, 0)")).map_err(|fault| {
+        let remedy = "a comparison of two formulas, as `x < y` or `s > 0`";
+        let error = StatementError::new(key.to_owned(), fault.message, remedy);
+        StatementError { place: Some(moved(fault.span)), ..error }
+    })?;
+    let choice = resolved(&choice, key, keys, parts)
+        .map_err(|error| StatementError { place: error.place.map(moved), ..error })?;
+    match choice.kind {
+        Kind::If(comparison, ..) => Ok(comparison),
+        _ => {
+            let message = format!("`{text}` is no comparison");
+            Err(StatementError::new(key.to_owned(), message, "a comparison, as `x < y`"))
+        }
+    }
+}
