@@ -144,6 +144,11 @@ impl<'d, 'p> PlanDatapath<'d, 'p> {
         let plan = self.plan;
         let node = plan.node(id);
         let PlanNode { name, format, .. } = node;
+        // The register has the name of the node.
+        let name = &match self.registers[id.0] {
+            Some(_) => format!("{name}_next"),
+            None => name.clone(),
+        };
         let input = |id: &NodeId| self.signals[id.0].expect("a node that is built");
         let value = match &node.operation {
             Operation::Operand(number) => {
@@ -268,13 +273,13 @@ impl<'d, 'p> PlanDatapath<'d, 'p> {
     fn following(&self, product: Signal<'d>, from: NodeId, held: NodeId) -> Signal<'d> {
         let node = self.plan.node(held);
         if held == from {
-            return self.in_format(&format!("{}_kept", node.name), product, node.format);
+            return self.in_format(&format!("{}_next", node.name), product, node.format);
         }
         let inputs = node.operation.inputs();
         let before = self.following(product, from, inputs[0]);
         match node.operation {
             Operation::Narrow(_, rounding) => {
-                let name = format!("{}_kept", node.name);
+                let name = format!("{}_next", node.name);
                 self.d.narrow(&name, before, node.format, rounding, Overflow::Wrap)
             }
             _ => before.read_as(node.format),

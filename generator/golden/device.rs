@@ -37,7 +37,7 @@
 //! ```
 
 use super::frame::{ClockedModel, Frame, FrameStep, idle};
-use super::{Bound, Contract, Model, Operand, Output, Sweep, Term};
+use super::{ANY_VALUE, Bound, Contract, Model, Operand, Output, Sweep, Term};
 
 /// The number of clocks that a computation may take.
 const LONGEST: u32 = 1 << 20;
@@ -114,6 +114,12 @@ impl Device {
 pub trait Formula: Send + Sync {
     /// Returns the outputs in f64, unrounded, for the values (not raw) of the operands, in the order of the frame.
     fn exact(&self, operands: &[f64]) -> Vec<f64>;
+
+    /// Returns whether the contract promises something of an output, by its number, for the values of the operands.
+    fn is_promised(&self, operands: &[f64], output: usize) -> bool {
+        let _ = (operands, output);
+        true
+    }
 
     /// Appends the raw outputs at raw operands, where they are had without going through the microprogram: quickly, for pictures
     /// and tables. Returns whether it did. A run of the model has the same.
@@ -243,7 +249,10 @@ impl<F: Formula> Contract for OfModel<F> {
     fn exact(&self, operands: &[i64], _: u64, values: &mut Vec<[f64; 2]>) {
         let pairs = self.device.operands.iter().zip(operands);
         let operands: Vec<f64> = pairs.map(|(it, &raw)| it.format.to_f64(raw.into())).collect();
-        values.extend(self.formula.exact(&operands).into_iter().map(|value| [value; 2]));
+        for (output, value) in self.formula.exact(&operands).into_iter().enumerate() {
+            let is_promised = self.formula.is_promised(&operands, output);
+            values.push(if is_promised { [value; 2] } else { ANY_VALUE });
+        }
     }
 
     fn bound(&self) -> Bound {

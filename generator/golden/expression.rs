@@ -9,8 +9,8 @@ use super::device::{self, Formula};
 use super::frame::{Frame, FrameStep, Slot, State, idle, step_by};
 use super::polynomial::Polynomial;
 use super::{Contract, Model, Term};
-use glint_base::fixed::exp2;
 use glint_config::Config;
+use glint_formula::Enclosure;
 use glint_keys::expression::found;
 use glint_plan::{NodeId, Operation, Plan, PlanStep, ProvedPlan};
 
@@ -143,25 +143,31 @@ struct Stated {
     found: Arc<ProvedPlan>,
 }
 
+impl Stated {
+    /// Returns the operands by their names.
+    fn enclosed(&self, operands: &[f64]) -> Vec<(&str, Enclosure)> {
+        let mut named = Vec::with_capacity(operands.len());
+        for (operand, value) in self.found.statement.operands.iter().zip(operands) {
+            named.push((operand.name.as_str(), Enclosure::exactly(*value)));
+        }
+        named
+    }
+}
+
 impl Formula for Stated {
     /// Returns the values of the formulas; no number where one has no value.
     fn exact(&self, operands: &[f64]) -> Vec<f64> {
-        let statement = &self.found.statement;
-        let mut raw = Vec::with_capacity(operands.len());
-        for (operand, value) in statement.operands.iter().zip(operands) {
-            raw.push((value * exp2(operand.format.frac)) as i64);
-        }
-        let limits: Vec<(i64, i64)> = raw.iter().map(|raw| (*raw, *raw)).collect();
-        let enclosed = statement.enclosed_operands(&limits);
-        let mut values = Vec::with_capacity(statement.results.len());
-        for result in &statement.results {
-            let value = match result.formula.enclose(&enclosed) {
-                Ok(value) if result.is_promised(&enclosed) != Some(false) => value.middle(),
-                _ => f64::NAN,
-            };
-            values.push(value);
+        let enclosed = self.enclosed(operands);
+        let mut values = Vec::with_capacity(self.found.statement.results.len());
+        for result in &self.found.statement.results {
+            values.push(result.formula.enclose(&enclosed).map_or(f64::NAN, Enclosure::middle));
         }
         values
+    }
+
+    fn is_promised(&self, operands: &[f64], output: usize) -> bool {
+        let result = &self.found.statement.results[output];
+        result.promise.is_none() || result.is_promised(&self.enclosed(operands)) != Some(false)
     }
 
     /// Appends the results within the domain. No value leaves its format there, which was proved.
@@ -199,14 +205,5 @@ impl Formula for Stated {
     fn expressions(&self) -> Vec<String> {
         let results = self.found.statement.results.iter();
         results.map(|result| result.formula.python()).collect()
-    }
-
-    fn remarks(&self) -> Vec<String> {
-        let mut remarks = Vec::new();
-        for (result, bound) in self.found.statement.results.iter().zip(&self.found.bounds) {
-            let proof = self.found.proof.words();
-            remarks.push(format!("`{}` is within {bound:.4} units: {proof}", result.name));
-        }
-        remarks
     }
 }

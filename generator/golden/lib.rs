@@ -165,7 +165,7 @@ pub trait Contract: Send + Sync {
 
     /// Appends a pair of values for each output: the formula in f64, unrounded, at the raw (that is, quantised) operands.
     /// Both values are normally the same. If the formula jumps and fixed point may come out on its other side, they are the
-    /// values on both sides. An error is measured from the nearer value.
+    /// values on both sides. An error is measured from the nearer value. [`ANY_VALUE`] says that nothing is promised.
     fn exact(&self, operands: &[i64], index: u64, values: &mut Vec<[f64; 2]>);
 
     /// Returns a proven bound on the error, stated before anything is simulated. One without terms is not stated:
@@ -230,13 +230,23 @@ pub trait Contract: Send + Sync {
 }
 
 /// Returns the distance of `value` from the nearer of two right values. It is infinite if either is no finite number, since a
-/// formula without a value cannot confirm a result. For example, 2.5 is 0.5 away from the nearer of 2.0 and 4.0.
+/// formula without a value cannot confirm a result. Every value is right where the contract promises none, as [`ANY_VALUE`]
+/// says. For example, 2.5 is 0.5 away from the nearer of 2.0 and 4.0.
 #[inline]
 pub fn nearer(value: f64, right: [f64; 2]) -> f64 {
     let [a, b] = right.map(|right| (value - right).abs());
     // A difference from a number that is not finite is not finite either.
-    if a.is_finite() && b.is_finite() { a.min(b) } else { f64::INFINITY }
+    if a.is_finite() && b.is_finite() {
+        a.min(b)
+    } else if right == ANY_VALUE {
+        0.0
+    } else {
+        f64::INFINITY
+    }
 }
+
+/// In the place of the right values of an output for operands for which the contract promises nothing.
+pub const ANY_VALUE: [f64; 2] = [f64::NEG_INFINITY, f64::INFINITY];
 
 /// The places that an exhaustive check visits: the product of its axes.
 ///

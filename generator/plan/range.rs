@@ -1,4 +1,4 @@
-//! Encloses the values of a formula over all operands for which some result is promised.
+//! Encloses the values of a part of the formulas over all operands for which a result with this part is promised.
 
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
@@ -6,7 +6,7 @@ use std::collections::BinaryHeap;
 use glint_formula::{Enclosure, Expression};
 
 use super::boxes::{OperandBox, halves};
-use super::statement::Statement;
+use super::statement::{StatedResult, Statement};
 
 /// The divisions of the domain, at most, until the values have limits.
 const DIVISIONS_TO_LIMITS: usize = 1 << 14;
@@ -40,15 +40,20 @@ impl Ord for BoxValues {
     }
 }
 
-/// Returns limits of the values of a formula; `None` if they are not finite, as near a pole.
+/// Returns limits of the values of a part of the formulas, where a result that has the part is promised; `None` if they are not finite, as near a pole.
 ///
 /// The domain is divided where the formula has no finite limits, and then where its largest and its smallest values are.
 pub(super) fn range_of(statement: &Statement, formula: &Expression) -> Option<Enclosure> {
+    // A part that is made of others, as a size, is in no formula: it counts for every result.
+    let reads = |result: &&StatedResult| result.formula.count(&|part| part == formula) > 0;
+    let mut readers: Vec<&StatedResult> = statement.results.iter().filter(reads).collect();
+    if readers.is_empty() {
+        readers = statement.results.iter().collect();
+    }
     let values_in = |limits: &OperandBox| {
         let operands = statement.enclosed_operands(limits);
-        let is_promised =
-            statement.results.iter().any(|it| it.is_promised(&operands) != Some(false));
-        if !is_promised {
+        let may_be_promised = |it: &&StatedResult| it.is_promised(&operands) != Some(false);
+        if !readers.iter().any(may_be_promised) {
             return None;
         }
         Some(match formula.enclose(&operands) {

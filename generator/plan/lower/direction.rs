@@ -79,7 +79,7 @@ impl Lowering<'_> {
         let format = self.plan.node(tangent).format;
         let limited = holding(Enclosure::between(0.0, 1.0 + exp2(-finest)), format.frac);
         let tangent = self.plan.narrow(
-            "tangent_kept",
+            "tangent_limited",
             tangent,
             limited,
             glint_base::fixed::Rounding::Truncate,
