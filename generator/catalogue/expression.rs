@@ -135,7 +135,9 @@ impl<'d, 'p> PlanDatapath<'d, 'p> {
         if signal.format() == format {
             return signal;
         }
-        self.d.narrow(name, signal, format, Rounding::Truncate, Overflow::Wrap)
+        // The plan knows narrower limits of the value than the signal's.
+        let name = format!("{name}_kept");
+        self.d.narrow(&name, signal, format, Rounding::Truncate, Overflow::Wrap)
     }
 
     /// Builds a node as logic.

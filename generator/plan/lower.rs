@@ -181,7 +181,7 @@ impl<'s> Lowering<'s> {
             ..=WIDEST_OPERAND => node,
             _ => self.shortened("operand", node, frac)?,
         };
-        self.function("function", node, &function, range)
+        self.function("curve", node, &function, range)
     }
 
     /// Returns a number as a constant: exactly if it has few bits, otherwise rounded at a choice of fraction bits.

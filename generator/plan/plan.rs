@@ -79,13 +79,13 @@ impl Plan {
     }
 
     /// Returns the name, or with a number behind it if a node already has it. For example, a second `product` is
-    /// `product_2`.
+    /// `product2`.
     fn unused_name(&self, name: &str) -> String {
         let is_used = |name: &str| self.nodes.iter().any(|node| node.name == name);
         let mut unused = name.to_owned();
         let mut number = 2;
         while is_used(&unused) {
-            unused = format!("{name}_{number}");
+            unused = format!("{name}{number}");
             number += 1;
         }
         unused

@@ -3,7 +3,7 @@
 //! Within an octant the direction is the arc tangent of the smaller coordinate over the larger one, which is from 0 to 1.
 //! The other octants are mirror images: at the diagonal, at the y axis and at the x axis.
 
-use glint_base::fixed::exp2;
+use glint_base::fixed::{Rounding, exp2};
 use glint_formula::{Enclosure, Expression, Function, Kind, Operator};
 
 use super::root::holding;
@@ -75,16 +75,11 @@ impl Lowering<'_> {
         let smaller = self.plan.minimum("smaller", x_size, y_size)?;
         let ratio = self.ratio_in_octave(smaller, &octave, 1.0)?;
         let finest = self.finest;
-        let tangent = self.shortened("tangent", ratio, finest + 2)?;
-        let format = self.plan.node(tangent).format;
-        let limited = holding(Enclosure::between(0.0, 1.0 + exp2(-finest)), format.frac);
-        let tangent = self.plan.narrow(
-            "tangent_limited",
-            tangent,
-            limited,
-            glint_base::fixed::Rounding::Truncate,
-        )?;
-
+        // A tangent is at most 1, and rounded at most a unit above it.
+        let tangent = self.rounding(finest + 2, |own, frac| {
+            let format = holding(Enclosure::between(0.0, 1.0), frac);
+            own.plan.narrow("tangent", ratio, format, Rounding::Nearest)
+        })?;
         let arc = scaling.of(Expression::new(
             Kind::Unary(Function::Atan, Box::new(Expression::operand("x"))),
             0..0,
