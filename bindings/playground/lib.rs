@@ -101,13 +101,13 @@ fn answered(request: &[u8]) -> Result<Value> {
                 .iter()
                 .map(|it| json!({ "name": it.name, "summary": it.summary }))
                 .collect();
-            let presets: Vec<&str> = presets::names().collect();
+            let presets: Vec<&str> = presets::names_of_functions().collect();
             Ok(json!({ "ok": true, "devices": devices, "presets": presets }))
         }
         Question::Preset { name } => {
-            let values = presets::values(&name).context("no such preset")?;
+            let preset = presets::find(&name).context("no such preset")?;
             let values: Map<String, Value> =
-                values.into_iter().map(|(key, value)| (key, plain(&value))).collect();
+                preset.values.into_iter().map(|(key, value)| (key, plain(&value))).collect();
             Ok(json!({ "ok": true, "values": values }))
         }
         Question::Core { toml } => of(&toml, described),
@@ -161,7 +161,7 @@ fn plain(value: &config::Value) -> Value {
         config::Value::Text(value) => json!(value),
         config::Value::Flag(value) => json!(value),
         config::Value::Integers(values) => json!(values),
-        config::Value::Records(records) => json!(records),
+        config::Value::Table(records) => json!(records),
     }
 }
 
@@ -174,7 +174,7 @@ fn key(core: &Core, key: &Key) -> Value {
         KeyKind::Flag => json!({ "is": "flag" }),
         KeyKind::Text(_) => json!({ "is": "text" }),
         KeyKind::Integers { .. } => json!({ "is": "integers" }),
-        KeyKind::Records { .. } => json!({ "is": "records" }),
+        KeyKind::Table { .. } => json!({ "is": "records" }),
     };
     json!({
         "name": key.name,

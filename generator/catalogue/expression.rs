@@ -8,7 +8,8 @@ use glint_base::text;
 use glint_config::{Config, Shared};
 use glint_keys::expression::{Keys, found};
 use glint_plan::{
-    NodeId, Operation, Plan, PlanNode, PlanStep, ProvedPlan, Schedule, normalising_shifts,
+    ExpressionPlan, NodeId, Operation, PlanNode, PlanSchedule, PlanStep, ProvedPlan,
+    normalising_shifts,
 };
 use glint_rtl::blocks::shift::right_by;
 use glint_rtl::dsl::{Designer, Register, Signal, Step, end, step, valid};
@@ -40,9 +41,9 @@ pub fn describe(d: &Designer, config: &Config) {
 /// A plan in the making as a datapath.
 struct PlanDatapath<'d, 'p> {
     d: &'d Designer,
-    plan: &'p Plan,
+    plan: &'p ExpressionPlan,
     found: &'p ProvedPlan,
-    schedule: &'p Schedule,
+    schedule: &'p PlanSchedule,
     is_pipelined: bool,
     /// The registers of nodes that are held, except for those of polynomials.
     registers: Vec<Option<Register<'d>>>,
@@ -57,7 +58,7 @@ impl<'d, 'p> PlanDatapath<'d, 'p> {
     fn new(
         d: &'d Designer,
         found: &'p ProvedPlan,
-        schedule: &'p Schedule,
+        schedule: &'p PlanSchedule,
         is_pipelined: bool,
     ) -> Self {
         let plan = &found.plan;
@@ -178,7 +179,15 @@ impl<'d, 'p> PlanDatapath<'d, 'p> {
                 let is_second = d.less(&format!("{name}_is_second"), a, b);
                 d.choose(&format!("{name}_chosen"), is_second, [a, b])
             }
-            Operation::Less(a, b) => return d.less(name, input(a), input(b)),
+            Operation::Less(a, b) => {
+                let zero = matches!(plan.node(*b).operation, Operation::Constant { raw: 0, .. });
+                let format = input(a).format();
+                return match zero && format.signed {
+                    // A number below 0 shows its sign.
+                    true => input(a).bit(format.width() - 1),
+                    false => d.less(name, input(a), input(b)),
+                };
+            }
             Operation::NonZero(a) => return d.any(name, input(a)),
             Operation::Choose { condition, cases, .. } => {
                 d.choose(&format!("{name}_chosen"), input(condition), cases.map(|it| input(&it)))

@@ -72,7 +72,7 @@ impl Key {
             KeyKind::Number { .. }
             | KeyKind::Integers { .. }
             | KeyKind::Text(_)
-            | KeyKind::Records { .. } => false,
+            | KeyKind::Table { .. } => false,
         }
     }
 }

@@ -91,7 +91,7 @@ fn of_key(key: &Key) -> Json {
             "minItems": len_min,
             "maxItems": len_max,
         }),
-        KeyKind::Records { fields, shorthand, least, most } => json!({
+        KeyKind::Table { fields, shorthand, least, most } => json!({
             "type": "object",
             "additionalProperties": record(fields, *shorthand),
             "minProperties": least,

@@ -1,8 +1,7 @@
 //! Declares keys as the fields of a struct. The hardware description and the golden model of a device both read this struct.
 
-use super::records::Records;
 use super::schema::Key;
-use super::values::Config;
+use super::values::{Config, TableEntries};
 use glint_base::fixed::Rounding;
 
 /// A type of field in a table of [`keys!`](macro@crate::keys).
@@ -132,7 +131,7 @@ impl Setting for Vec<u32> {
     }
 }
 
-impl Setting for Records {
+impl Setting for TableEntries {
     fn read(config: &Config, keys: &[Key]) -> Self {
         config.records(keys[0].name).clone()
     }

@@ -15,7 +15,6 @@ mod parse;
 mod points;
 mod problems;
 mod read;
-mod records;
 mod sample;
 mod schema;
 mod shared;
@@ -30,12 +29,11 @@ pub use nearest::nearest;
 pub use parse::parse;
 pub use problems::{Problem, Problems};
 pub use read::{read, read_located};
-pub use records::{Record, Records, field_name};
 pub use sample::sample;
 pub use schema::{Key, KeyKind, Schema};
 pub use shared::{Shared, shared_keys};
 pub use text_pattern::TextPattern;
-pub use values::{Config, Value};
+pub use values::{Config, TableEntries, TableEntry, Value};
 pub use write::{brief, commented};
 
 /// The keys that every device has and that a [`Config`] stores in fields of its own, each with its meaning.

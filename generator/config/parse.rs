@@ -11,11 +11,10 @@ use super::module_name;
 use super::nearest::{listed, nearest};
 use super::points;
 use super::problems::{Problems, STANDARD_INPUT, Violation, out_of_range, quoted, shown};
-use super::records::{Record, Records, field_name};
 use super::schema::{Key, KeyKind, Schema};
 use super::text_pattern::{TextPattern, is_path_of_points};
 use super::validate::{Draft, keys_of};
-use super::values::{Config, Value};
+use super::values::{Config, TableEntries, TableEntry, Value};
 use glint_base::key_error::KeyError;
 use glint_base::program::Program;
 
@@ -249,7 +248,7 @@ impl TomlReader<'_> {
             if is_common(&name) {
                 self.problems.locate(&name, span);
             } else if let Some(key) = schema.key(&name) {
-                self.value(key, value, span, draft);
+                self.value(key, value, span, schema, draft);
             } else if !schema.all_keys().any(|key| key.name.starts_with(&as_table)) {
                 self.unknown(&name, key.span(), value, schema, draft);
             } else if let DeValue::Table(inner) = value.get_ref() {
@@ -266,11 +265,12 @@ impl TomlReader<'_> {
         key: &'s Key,
         value: &Spanned<DeValue>,
         span: Range<usize>,
+        schema: &'s Schema,
         draft: &mut Draft<'s>,
     ) {
         self.problems.locate(key.name, span.clone());
-        if let (KeyKind::Records { .. }, DeValue::Table(entries)) = (&key.kind, value.get_ref()) {
-            return self.records(key, entries, span, draft);
+        if let (KeyKind::Table { .. }, DeValue::Table(entries)) = (&key.kind, value.get_ref()) {
+            return self.records(key, entries, span, schema, draft);
         }
         let found = match (&key.kind, value.get_ref()) {
             (KeyKind::Text(TextPattern::Samples), DeValue::String(path))
@@ -304,10 +304,16 @@ impl TomlReader<'_> {
         key: &'s Key,
         entries: &DeTable,
         span: Range<usize>,
+        schema: &'s Schema,
         draft: &mut Draft<'s>,
     ) {
         let mut in_order: Vec<_> = entries.iter().collect();
         in_order.sort_by_key(|(name, _)| name.span().start);
+        let is_optional = matches!(key.kind, KeyKind::Table { least: 0, .. });
+        if in_order.is_empty() && !is_optional {
+            // A heading alone gives nothing.
+            return;
+        }
         let mut records = Vec::new();
         let mut is_good = true;
         for (name, entry) in in_order {
@@ -316,13 +322,21 @@ impl TomlReader<'_> {
                 continue;
             }
             let name_text = shown(name.get_ref());
+            if let Some(other) = schema.key(&format!("{}.{name_text}", key.name)) {
+                // A key that every device has is in the same table.
+                self.value(other, entry, entry.span(), schema, draft);
+                continue;
+            }
             self.problems.locate(&format!("{}.{name_text}", key.name), name.span());
             match self.record(key, &name_text, entry) {
-                Some(fields) => records.push(Record { name: name_text, fields }),
+                Some(fields) => records.push(TableEntry { name: name_text, fields }),
                 None => is_good = false,
             }
         }
-        let value = Value::Records(Records(records));
+        if records.is_empty() && is_good && !is_optional {
+            return;
+        }
+        let value = Value::Table(TableEntries(records));
         let violations = if is_good { key.violations_of(&value) } else { Vec::new() };
         is_good &= violations.is_empty();
         for Violation { error, .. } in violations {
@@ -338,7 +352,7 @@ impl TomlReader<'_> {
         name: &str,
         entry: &Spanned<DeValue>,
     ) -> Option<Vec<(&'static str, Value)>> {
-        let KeyKind::Records { fields, shorthand, .. } = &key.kind else { return None };
+        let KeyKind::Table { fields, shorthand, .. } = &key.kind else { return None };
         let mut given = Vec::new();
         let mut is_good = true;
         if let DeValue::Table(table) = entry.get_ref() {
@@ -378,7 +392,7 @@ impl TomlReader<'_> {
         field: &Key,
         value: &Spanned<DeValue>,
     ) -> Option<Value> {
-        let within = field_name(key, record, field.name);
+        let within = key.field_name(record, field.name);
         self.problems.locate(&within, value.span());
         match converted(field, value) {
             Ok(value) => Some(value),

@@ -75,7 +75,7 @@ fn draw(key: &Key, rng: &mut ChaCha8Rng) -> Value {
         }
         KeyKind::Flag => Value::Flag(rng.next_u32() & 1 == 1),
         // Any other says as little.
-        KeyKind::Text(_) | KeyKind::Records { .. } => key.default.clone(),
+        KeyKind::Text(_) | KeyKind::Table { .. } => key.default.clone(),
         KeyKind::Integers { min, max, len_min, len_max } => {
             let len = integer(*len_min as i64, *len_max as i64, rng);
             Value::Integers((0..len).map(|_| integer(*min, *max, rng)).collect())

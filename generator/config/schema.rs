@@ -3,9 +3,8 @@
 use std::ops::RangeInclusive;
 
 use super::problems::Problems;
-use super::records::{Record, Records};
 use super::text_pattern::TextPattern;
-use super::values::{Config, Value, is_integer};
+use super::values::{Config, TableEntries, TableEntry, Value, is_integer};
 use glint_base::keywords::is_keyword;
 
 /// The keys of one device, and the conditions between them.
@@ -96,7 +95,7 @@ pub enum KeyKind {
     /// A list of integers; its entries and its length have limits. For example, `visibility.levels = [50, 100, 200, 400, 800]`.
     Integers { min: i64, max: i64, len_min: usize, len_max: usize },
     /// A table whose entries have names of the user's own.
-    Records {
+    Table {
         /// The fields that an entry can have. Their defaults are examples: a field that is not given has no value.
         fields: Vec<Key>,
         /// The field whose value can be given in the place of a whole entry, as `s = "x^2"` for `s = { formula = "x^2" }`.
@@ -190,15 +189,15 @@ impl Key {
     /// Makes a key of a table of records.
     pub fn records(
         name: &'static str,
-        default: &[Record],
+        default: &[TableEntry],
         fields: Vec<Key>,
         shorthand: Option<&'static str>,
         entries: RangeInclusive<usize>,
         doc: &'static str,
     ) -> Self {
         let (least, most) = entries.into_inner();
-        let kind = KeyKind::Records { fields, shorthand, least, most };
-        Self::new(name, kind, Value::Records(Records(default.to_vec())), doc)
+        let kind = KeyKind::Table { fields, shorthand, least, most };
+        Self::new(name, kind, Value::Table(TableEntries(default.to_vec())), doc)
     }
 
     /// Restricts the key to configurations in which the key `other` has a value. For example, `pipeline.stages` has
@@ -226,9 +225,17 @@ impl Key {
         Self { drawn: Some((min, max)), ..self }
     }
 
+    /// Returns the whole name of a field of an entry of this table. For example, `operands.x.fraction`.
+    pub fn field_name(&self, entry: &str, field: &str) -> String {
+        format!("{}.{entry}.{field}", self.name)
+    }
+
     /// Returns the table and the last part of the name: `("cosine", "fraction")`. The table of a key at
-    /// the top is empty.
+    /// the top is empty. A key that is a table itself has no last part.
     pub fn table_and_leaf(&self) -> (&'static str, &'static str) {
+        if matches!(self.kind, KeyKind::Table { .. }) {
+            return (self.name, "");
+        }
         self.name.rsplit_once('.').unwrap_or(("", self.name))
     }
 }

@@ -7,7 +7,6 @@ use super::follow::follow;
 use super::module_name;
 use super::nearest::nearest;
 use super::problems::{Problem, Problems, Violation, out_of_range, quoted, shown};
-use super::records::field_name;
 use super::schema::{Condition, Key, KeyKind, Schema};
 use super::shared::Shared;
 use super::values::{Config, Value, is_integer};
@@ -53,7 +52,7 @@ impl Key {
                 }
                 all
             }
-            (KeyKind::Records { fields, least, most, .. }, Value::Records(given)) => {
+            (KeyKind::Table { fields, least, most, .. }, Value::Table(given)) => {
                 let count = given.0.len();
                 let mut all = self.required((*least..=*most).contains(&count), || {
                     let plural = if count == 1 { "y" } else { "ies" };
@@ -65,7 +64,7 @@ impl Key {
                             all.push(self.violation(format!("`{name}` has no field `{field}`")));
                             continue;
                         };
-                        let within = field_name(self, &record.name, field);
+                        let within = self.field_name(&record.name, field);
                         all.extend(key.violations_within(value, &within));
                     }
                 }
@@ -102,7 +101,7 @@ impl Key {
             KeyKind::Choice(_) | KeyKind::Text(_) => "a string",
             KeyKind::Flag => "true or false",
             KeyKind::Integers { .. } => "a list of integers",
-            KeyKind::Records { .. } => "a table",
+            KeyKind::Table { .. } => "a table",
         };
         self.violation(format!("`{}` must be {wanted}, not {found}", self.name))
     }
@@ -168,7 +167,7 @@ impl Key {
                     format!("{len_min} to {len_max} integers from {min} to {max}")
                 }
             }
-            KeyKind::Records { fields, least, most, .. } => {
+            KeyKind::Table { fields, least, most, .. } => {
                 let mut names = Vec::new();
                 for field in fields {
                     names.push(field.name);
@@ -187,7 +186,7 @@ impl Key {
                 options.iter().map(|option| Value::Text((*option).to_owned())).collect()
             }
             KeyKind::Flag => vec![Value::Flag(false), Value::Flag(true)],
-            KeyKind::Text(_) | KeyKind::Records { .. } => Vec::new(),
+            KeyKind::Text(_) | KeyKind::Table { .. } => Vec::new(),
             KeyKind::Integers { min, max, len_min, len_max } => {
                 vec![Value::Integers(vec![*min; *len_min]), Value::Integers(vec![*max; *len_max])]
             }
@@ -207,7 +206,7 @@ impl Value {
             Value::Text(text) => return format!("the string {}", quoted(text)),
             Value::Flag(_) => "flag",
             Value::Integers(_) => "list",
-            Value::Records(_) => "table",
+            Value::Table(_) => "table",
         };
         format!("the {kind} {}", shown(&self.bare()))
     }

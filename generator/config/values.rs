@@ -1,11 +1,18 @@
 //! Holds the values of keys, and a configuration of them.
+//!
+//! The value of most keys is a number, a word or a text. The value of a key such as `operands` of the device `expression` is
+//! a table, whose entries have names of the user's own:
+//!
+//! ```toml
+//! [operands]
+//! x = { from = -1, to = 1, fraction = 15 }
+//! y = { bits = 16, fraction = 15, signed = true }
+//! ```
 
-use serde::Serialize;
-
-use super::records::Records;
+use serde::ser::{Serialize, SerializeMap, Serializer};
 
 /// The value of a key. It is serialised as the value alone. For example, `Value::Integer(20)` is serialised as `20`.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, serde::Serialize)]
 #[serde(untagged)]
 pub enum Value {
     /// A value of [`super::KeyKind::Integer`].
@@ -18,8 +25,8 @@ pub enum Value {
     Flag(bool),
     /// A value of [`super::KeyKind::Integers`].
     Integers(Vec<i64>),
-    /// A value of [`super::KeyKind::Records`].
-    Records(Records),
+    /// A value of [`super::KeyKind::Table`].
+    Table(TableEntries),
 }
 
 impl Value {
@@ -35,7 +42,7 @@ impl Value {
                 let values: Vec<String> = values.iter().map(i64::to_string).collect();
                 format!("[{}]", values.join(", "))
             }
-            Value::Records(records) => records.toml(),
+            Value::Table(records) => records.toml(),
         }
     }
 
@@ -46,6 +53,105 @@ impl Value {
             Value::Text(text) if !is_integer(text) => format!("\"{text}\""),
             other => other.bare(),
         }
+    }
+}
+
+/// One entry of a table: its name, and the fields that the user gave.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TableEntry {
+    /// The name of the entry.
+    pub name: String,
+    /// The fields that are given, by their names.
+    pub fields: Vec<(&'static str, Value)>,
+}
+
+/// The entries of a table, in the order of the file.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct TableEntries(pub Vec<TableEntry>);
+
+impl TableEntry {
+    /// Makes an entry from the TOML of its fields. For example, `TableEntry::new("x", &[("fraction", Value::Integer(15))])`.
+    pub fn new(name: &str, fields: &[(&'static str, Value)]) -> Self {
+        Self { name: name.to_owned(), fields: fields.to_vec() }
+    }
+
+    /// Returns the value of a field; `None` if it is not given.
+    pub fn field(&self, name: &str) -> Option<&Value> {
+        self.fields.iter().find(|(own, _)| *own == name).map(|(_, value)| value)
+    }
+
+    /// Returns the text of a field; `None` if it is not given.
+    pub fn text(&self, name: &str) -> Option<&str> {
+        match self.field(name)? {
+            Value::Text(text) => Some(text),
+            _ => None,
+        }
+    }
+
+    /// Returns the number of bits that a field states; `None` if it is not given.
+    pub fn bits(&self, name: &str) -> Option<u32> {
+        match self.field(name)? {
+            Value::Integer(value) => u32::try_from(*value).ok(),
+            _ => None,
+        }
+    }
+
+    /// Returns the number of a field; `None` if it is not given.
+    pub fn number(&self, name: &str) -> Option<f64> {
+        match self.field(name)? {
+            Value::Number(value) => Some(*value),
+            _ => None,
+        }
+    }
+
+    /// Returns whether a field is given as `true`.
+    pub fn flag(&self, name: &str) -> bool {
+        self.field(name) == Some(&Value::Flag(true))
+    }
+
+    /// Returns the entry as TOML. `shorthand` names the field whose value alone states an entry without others.
+    pub(super) fn toml(&self, shorthand: Option<&str>) -> String {
+        if let [(name, value)] = self.fields.as_slice()
+            && Some(*name) == shorthand
+        {
+            return value.toml();
+        }
+        let mut fields = Vec::new();
+        for (name, value) in &self.fields {
+            fields.push(format!("{name} = {}", value.toml()));
+        }
+        format!("{{ {} }}", fields.join(", "))
+    }
+}
+
+impl TableEntries {
+    /// Returns the entries as a TOML table on one line. For example, `{ x = { fraction = 15 } }`.
+    pub(super) fn toml(&self) -> String {
+        let mut entries = Vec::new();
+        for record in &self.0 {
+            entries.push(format!("{} = {}", record.name, record.toml(None)));
+        }
+        if entries.is_empty() { "{}".to_owned() } else { format!("{{ {} }}", entries.join(", ")) }
+    }
+}
+
+impl Serialize for TableEntries {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut map = serializer.serialize_map(Some(self.0.len()))?;
+        for record in &self.0 {
+            map.serialize_entry(&record.name, record)?;
+        }
+        map.end()
+    }
+}
+
+impl Serialize for TableEntry {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut map = serializer.serialize_map(Some(self.fields.len()))?;
+        for (name, value) in &self.fields {
+            map.serialize_entry(name, value)?;
+        }
+        map.end()
     }
 }
 
@@ -138,9 +244,9 @@ impl Config {
     ///
     /// # Panics
     /// Panics as [`Config::integer`] does.
-    pub fn records(&self, key: &str) -> &Records {
+    pub fn records(&self, key: &str) -> &TableEntries {
         match self.value(key) {
-            Value::Records(records) => records,
+            Value::Table(records) => records,
             _ => self.wrong_kind(key, "a table of records"),
         }
     }

@@ -55,16 +55,20 @@ fn assignment(config: &Config, key: &str) -> String {
     format!("{key} = {}", config.value(key).toml())
 }
 
-/// Returns the lines that give a key its value under `name`: for a table of records one line for each entry, for any other
-/// key one line. For example, `operands.x = { fraction = 15 }`.
+/// Returns the lines that give a key its value under `name`: for a table one line for each entry, for any other key one line.
+/// The name of a table is empty below its heading. For example, `operands.x = { fraction = 15 }`.
 fn assignments(key: &Key, config: &Config, name: &str) -> Vec<String> {
     let value = config.value(key.name);
-    if let (KeyKind::Records { shorthand, .. }, Value::Records(records)) = (&key.kind, value)
-        && !records.0.is_empty()
+    if let (KeyKind::Table { shorthand, .. }, Value::Table(records)) = (&key.kind, value)
+        && (!records.0.is_empty() || name.is_empty())
     {
         let mut lines = Vec::new();
-        for record in &records.0 {
-            lines.push(format!("{name}.{} = {}", record.name, record.toml(*shorthand)));
+        for entry in &records.0 {
+            let entry_name = match name {
+                "" => entry.name.clone(),
+                table => format!("{table}.{}", entry.name),
+            };
+            lines.push(format!("{entry_name} = {}", entry.toml(*shorthand)));
         }
         return lines;
     }

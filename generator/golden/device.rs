@@ -133,6 +133,12 @@ pub trait Formula: Send + Sync {
         Vec::new()
     }
 
+    /// Returns the bound of an output by its number, where outputs have bounds of their own, as [`Contract::output_bound`].
+    fn output_bound(&self, output: usize) -> Option<f64> {
+        let _ = output;
+        None
+    }
+
     /// Returns the error, in units, below which the accuracy contract wants it, as [`Bound::limit`].
     fn limit(&self) -> f64 {
         1.0
@@ -257,6 +263,10 @@ impl<F: Formula> Contract for OfModel<F> {
 
     fn bound(&self) -> Bound {
         Bound { limit: self.formula.limit(), ..Bound::of(self.formula.terms()) }
+    }
+
+    fn output_bound(&self, output: usize) -> f64 {
+        self.formula.output_bound(output).unwrap_or_else(|| self.bound().units)
     }
 
     fn expressions(&self) -> Vec<String> {

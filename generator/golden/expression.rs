@@ -12,7 +12,7 @@ use super::{Contract, Model, Term};
 use glint_config::Config;
 use glint_formula::Enclosure;
 use glint_keys::expression::found;
-use glint_plan::{NodeId, Operation, Plan, PlanStep, ProvedPlan};
+use glint_plan::{ExpressionPlan, NodeId, Operation, PlanStep, ProvedPlan};
 
 /// A plan with the places of its values in the state of the model.
 struct PlanModel {
@@ -23,7 +23,7 @@ struct PlanModel {
 }
 
 impl PlanModel {
-    fn plan(&self) -> &Plan {
+    fn plan(&self) -> &ExpressionPlan {
         &self.found.plan
     }
 
@@ -135,15 +135,15 @@ pub fn model(config: &Config) -> Box<dyn Model> {
 /// Panics as [`model`] does.
 pub fn contract(config: &Config) -> Box<dyn Contract> {
     let found = found(config).expect("a configuration that is checked");
-    device(&found).contract(Stated { found })
+    device(&found).contract(ProvedFormulas { found })
 }
 
 /// The formulas with the bounds that were proved.
-struct Stated {
+struct ProvedFormulas {
     found: Arc<ProvedPlan>,
 }
 
-impl Stated {
+impl ProvedFormulas {
     /// Returns the operands by their names.
     fn enclosed(&self, operands: &[f64]) -> Vec<(&str, Enclosure)> {
         let mut named = Vec::with_capacity(operands.len());
@@ -154,7 +154,7 @@ impl Stated {
     }
 }
 
-impl Formula for Stated {
+impl Formula for ProvedFormulas {
     /// Returns the values of the formulas; no number where one has no value.
     fn exact(&self, operands: &[f64]) -> Vec<f64> {
         let enclosed = self.enclosed(operands);
@@ -196,6 +196,10 @@ impl Formula for Stated {
                 units: bound - rounding,
             },
         ]
+    }
+
+    fn output_bound(&self, output: usize) -> Option<f64> {
+        Some(self.found.bounds[output])
     }
 
     fn limit(&self) -> f64 {

@@ -209,6 +209,13 @@ pub trait Contract: Send + Sync {
         self.largest_error(place)
     }
 
+    /// Returns the bound of the error of one output, by its number, in units of its last place. It is never above
+    /// [`Contract::bound`].
+    fn output_bound(&self, output: usize) -> f64 {
+        let _ = output;
+        self.bound().units
+    }
+
     /// Returns the largest error of an output at raw operands, in units.
     fn largest_error(&self, operands: &[i64]) -> f64 {
         let (mut raw, mut exact) = (Vec::new(), Vec::new());

@@ -6,20 +6,20 @@ use std::sync::Arc;
 use glint_base::fixed::{Format, MAX_WIDTH};
 use glint_base::identifier;
 use glint_base::key_error::KeyError;
-use glint_config::{Config, Key, Problems, Record, Records, Schema, TextPattern, Value};
+use glint_config::{Config, Key, Problems, Schema, TableEntries, TableEntry, TextPattern, Value};
 use glint_formula::{Comparison, Expression, Fault, Kind, parse};
-use glint_plan::{ProvedPlan, StatedOperand, StatedResult, Statement, find};
+use glint_plan::{ExpressionStatement, ProvedPlan, StatedOperand, StatedResult, find};
 
 use super::function::End;
 
 glint_config::keys! {
     /// The keys of a configuration.
     pub struct Keys {
-        operands: Records = Key::records("operands", &example_operands(), operand_fields(), None, 1..=8,
+        operands: TableEntries = Key::records("operands", &example_operands(), operand_fields(), None, 1..=8,
             "The operands, in the order of the ports. Each has a whole format, by bits, or a domain, by from and to."),
-        parts: Records = Key::records("let", &[], part_fields(), Some("formula"), 0..=32,
+        parts: TableEntries = Key::records("let", &[], part_fields(), Some("formula"), 0..=32,
             "Named parts of the formulas. Each may name operands, and parts before it."),
-        results: Records = Key::records("results", &example_results(), result_fields(), None, 1..=8,
+        results: TableEntries = Key::records("results", &example_results(), result_fields(), None, 1..=8,
             "The results, in the order of the ports. Each is a formula of operands and named parts."),
     }
 }
@@ -59,23 +59,23 @@ fn result_fields() -> Vec<Key> {
 }
 
 /// Returns the operands of the example: the coordinates of a point.
-fn example_operands() -> Vec<Record> {
+fn example_operands() -> Vec<TableEntry> {
     let fields = [
         ("bits", Value::Integer(12)),
         ("fraction", Value::Integer(11)),
         ("signed", Value::Flag(true)),
     ];
-    vec![Record::new("x", &fields), Record::new("y", &fields)]
+    vec![TableEntry::new("x", &fields), TableEntry::new("y", &fields)]
 }
 
 /// Returns the result of the example: the distance of the point from the origin.
-fn example_results() -> Vec<Record> {
+fn example_results() -> Vec<TableEntry> {
     let fields = [
         ("formula", Value::Text("sqrt(x^2 + y^2)".to_owned())),
         ("fraction", Value::Integer(11)),
         ("error", Value::Number(1.0)),
     ];
-    vec![Record::new("r", &fields)]
+    vec![TableEntry::new("r", &fields)]
 }
 
 /// Returns the keys of the device.
@@ -126,7 +126,7 @@ pub fn found(config: &Config) -> Result<Arc<ProvedPlan>, StatementError> {
 }
 
 /// Returns the statement of a configuration: its formulas in terms of operands alone.
-fn statement(keys: &Keys) -> Result<Statement, StatementError> {
+fn statement(keys: &Keys) -> Result<ExpressionStatement, StatementError> {
     check_names(keys)?;
     let mut operands = Vec::new();
     for record in &keys.operands.0 {
@@ -134,7 +134,7 @@ fn statement(keys: &Keys) -> Result<Statement, StatementError> {
     }
     let mut parts: Vec<(String, Expression)> = Vec::new();
     for record in &keys.parts.0 {
-        let key = format!("let.{}", record.name);
+        let key = format!("let.{}.formula", record.name);
         let formula = formula(record.text("formula"), &key, keys, &parts)?;
         parts.push((record.name.clone(), formula));
     }
@@ -142,15 +142,40 @@ fn statement(keys: &Keys) -> Result<Statement, StatementError> {
     for record in &keys.results.0 {
         results.push(result(record, keys, &parts)?);
     }
-    Ok(Statement { operands, results })
+    for operand in &operands {
+        let names_it =
+            |result: &StatedResult| result.formula.operands().contains(&operand.name.as_str());
+        if !results.iter().any(names_it) {
+            let key = format!("operands.{}", operand.name);
+            let message = format!("no result depends on `{}`", operand.name);
+            return Err(StatementError::new(key, message, "remove it, or name it in a formula"));
+        }
+    }
+    Ok(ExpressionStatement { operands, results })
 }
+
+/// The ports that every core has, as a pipeline or with a microprogram.
+const PORTS: [&str; 12] = [
+    "clk",
+    "rst_n",
+    "start",
+    "busy",
+    "valid",
+    "done",
+    "in_valid",
+    "in_ready",
+    "out_valid",
+    "out_ready",
+    "side_in",
+    "side_out",
+];
 
 /// Checks that every name is an identifier, and that no two entries have the same name.
 fn check_names(keys: &Keys) -> Result<(), StatementError> {
     let mut known: Vec<(&str, &str)> = Vec::new();
     let tables = [("operands", &keys.operands), ("let", &keys.parts), ("results", &keys.results)];
     for (table, records) in tables {
-        for Record { name, .. } in &records.0 {
+        for TableEntry { name, .. } in &records.0 {
             let key = format!("{table}.{name}");
             if let Err(fault) = identifier::check(name) {
                 return Err(StatementError::new(
@@ -158,6 +183,10 @@ fn check_names(keys: &Keys) -> Result<(), StatementError> {
                     fault,
                     "a name has lower-case letters, digits and _",
                 ));
+            }
+            if PORTS.contains(&name.as_str()) {
+                let message = format!("`{name}` is a port that every core has");
+                return Err(StatementError::new(key, message, "give it another name"));
             }
             if let Some((other, _)) = known.iter().find(|(_, own)| own == name) {
                 let message = format!("`{name}` is an entry of [{other}] already");
@@ -173,7 +202,7 @@ fn check_names(keys: &Keys) -> Result<(), StatementError> {
     Ok(())
 }
 
-fn operand(record: &Record) -> Result<StatedOperand, StatementError> {
+fn operand(record: &TableEntry) -> Result<StatedOperand, StatementError> {
     let key = |field: &str| format!("operands.{}.{field}", record.name);
     let name = record.name.clone();
     let whole = format!("operands.{name}");
@@ -245,7 +274,7 @@ fn end(text: &str, fraction: u32, key: String) -> Result<End, StatementError> {
 }
 
 fn result(
-    record: &Record,
+    record: &TableEntry,
     keys: &Keys,
     parts: &[(String, Expression)],
 ) -> Result<StatedResult, StatementError> {

@@ -1,16 +1,27 @@
-//! Holds configurations of `function` to start from, by the name of the function: `exp2`, `sqrt`, `sigmoid`, ….
+//! Holds configurations to start from: of `function` by the name of the function (`exp2`, `sqrt`, `sigmoid`, …), and of
+//! `expression` by what it computes (`divide`, `polar`, `rotate`, …).
 
-use glint_config::Value;
+use glint_config::{TableEntries, TableEntry, Value};
 
-/// The device that they are configurations of.
-pub const DEVICE: &str = "function";
+/// The device of the formulas of one operand.
+pub const FUNCTION: &str = "function";
+
+/// A configuration to start from.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Preset {
+    /// The device that it is a configuration of.
+    pub device: &'static str,
+    /// The values of some keys. The others have their defaults.
+    pub values: Vec<(String, Value)>,
+}
 
 /// The name, the formula, the ends of the domain, the value of `outside`, the fraction bits of operand and result, and the
 /// range reduction.
-type Preset = (&'static str, &'static str, [&'static str; 2], &'static str, [i64; 2], &'static str);
+type FunctionPreset =
+    (&'static str, &'static str, [&'static str; 2], &'static str, [i64; 2], &'static str);
 
 /// Whole formats, but for functions that have no identity: these are between their flat tails.
-const PRESETS: [Preset; 16] = [
+const FUNCTIONS: [FunctionPreset; 16] = [
     ("exp2", "2^x", ["-8", "8"], "clamp", [12, 8], "exponent"),
     ("exp", "exp(x)", ["-8", "8"], "clamp", [12, 4], "exponent"),
     ("log2", "log2(x)", ["1 / 256", "256"], "clamp", [8, 12], "octaves"),
@@ -29,19 +40,109 @@ const PRESETS: [Preset; 16] = [
     ("gamma", "x^(1 / 2.2)", ["0", "1"], "clamp", [12, 12], "none"),
 ];
 
-/// Returns all names.
-pub fn names() -> impl Iterator<Item = &'static str> {
-    PRESETS.iter().map(|preset| preset.0)
+/// The name, the operands, the named parts and the results. Operands and results have the fields of their entries.
+struct ExpressionPreset {
+    name: &'static str,
+    operands: &'static [(&'static str, OperandFormat)],
+    parts: &'static [(&'static str, &'static str)],
+    /// The name, the formula, the fraction bits, and the condition of the promise or nothing.
+    results: &'static [(&'static str, &'static str, i64, &'static str)],
 }
 
-/// Returns the values of the keys of a name. For example, `sqrt` gives `function.formula = "sqrt(x)"`, `function.to = "256"`
-/// and five more.
-pub fn values(name: &str) -> Option<Vec<(String, Value)>> {
-    let (_, formula, [from, to], outside, [operand, result], reduction) =
-        PRESETS.into_iter().find(|preset| preset.0 == name)?;
+/// The format of an operand: a sign or none, the width, and the fraction bits.
+type OperandFormat = (bool, i64, i64);
+
+/// From −1 to below 1, with 16 bits.
+const COORDINATE: OperandFormat = (true, 16, 15);
+
+/// From 0 to below 1, with 16 bits.
+const PART_OF_ONE: OperandFormat = (false, 16, 16);
+
+const EXPRESSIONS: [ExpressionPreset; 9] = [
+    ExpressionPreset {
+        name: "divide",
+        operands: &[("x", PART_OF_ONE), ("y", PART_OF_ONE)],
+        parts: &[],
+        results: &[("q", "x / y", 15, "x < y")],
+    },
+    ExpressionPreset {
+        name: "hypot",
+        operands: &[("x", COORDINATE), ("y", COORDINATE)],
+        parts: &[],
+        results: &[("r", "hypot(x, y)", 15, "")],
+    },
+    ExpressionPreset {
+        name: "atan2",
+        operands: &[("x", COORDINATE), ("y", COORDINATE)],
+        parts: &[],
+        results: &[("angle", "atan2(y, x) / pi", 15, "x^2 + y^2 > 0")],
+    },
+    ExpressionPreset {
+        name: "polar",
+        operands: &[("x", COORDINATE), ("y", COORDINATE)],
+        parts: &[("s", "x^2 + y^2")],
+        results: &[("r", "sqrt(s)", 15, ""), ("angle", "atan2(y, x) / pi", 15, "s > 0")],
+    },
+    ExpressionPreset {
+        name: "sincos",
+        operands: &[("turn", PART_OF_ONE)],
+        parts: &[],
+        results: &[
+            ("sine", "sin(2 * pi * turn)", 15, ""),
+            ("cosine", "cos(2 * pi * turn)", 15, ""),
+        ],
+    },
+    ExpressionPreset {
+        name: "rotate",
+        operands: &[("x", COORDINATE), ("y", COORDINATE), ("turn", PART_OF_ONE)],
+        parts: &[("s", "sin(2 * pi * turn)"), ("c", "cos(2 * pi * turn)")],
+        results: &[("u", "x * c - y * s", 15, ""), ("v", "x * s + y * c", 15, "")],
+    },
+    ExpressionPreset {
+        name: "multiply-add",
+        operands: &[("a", COORDINATE), ("b", COORDINATE), ("c", COORDINATE), ("d", COORDINATE)],
+        parts: &[],
+        results: &[("r", "a * b + c * d", 15, "")],
+    },
+    ExpressionPreset {
+        name: "lerp",
+        operands: &[("a", COORDINATE), ("b", COORDINATE), ("t", PART_OF_ONE)],
+        parts: &[],
+        results: &[("r", "a + t * (b - a)", 15, "")],
+    },
+    ExpressionPreset {
+        name: "attenuation",
+        operands: &[("d", (false, 16, 12)), ("k", PART_OF_ONE)],
+        parts: &[],
+        results: &[("a", "1 / (1 + d + k * d^2)", 16, "")],
+    },
+];
+
+/// Returns all names.
+pub fn names() -> impl Iterator<Item = &'static str> {
+    names_of_functions().chain(EXPRESSIONS.iter().map(|preset| preset.name))
+}
+
+/// Returns the names of the configurations of `function`.
+pub fn names_of_functions() -> impl Iterator<Item = &'static str> {
+    FUNCTIONS.iter().map(|preset| preset.0)
+}
+
+/// Returns the configuration of a name. For example, `sqrt` is one of `function`, with `function.formula = "sqrt(x)"`,
+/// `function.to = "256"` and five more.
+pub fn find(name: &str) -> Option<Preset> {
+    if let Some(preset) = FUNCTIONS.iter().find(|preset| preset.0 == name) {
+        return Some(Preset { device: FUNCTION, values: of_function(preset) });
+    }
+    let preset = EXPRESSIONS.iter().find(|preset| preset.name == name)?;
+    Some(Preset { device: "expression", values: of_expression(preset) })
+}
+
+fn of_function(preset: &FunctionPreset) -> Vec<(String, Value)> {
+    let (_, formula, [from, to], outside, [operand, result], reduction) = *preset;
     let text = |key: &str, value: &str| (key.to_owned(), Value::Text(value.to_owned()));
     let number = |key: &str, value: i64| (key.to_owned(), Value::Integer(value));
-    Some(vec![
+    vec![
         text("function.formula", formula),
         text("function.from", from),
         text("function.to", to),
@@ -49,5 +150,40 @@ pub fn values(name: &str) -> Option<Vec<(String, Value)>> {
         number("operand.fraction", operand),
         number("result.fraction", result),
         text("approximation.reduction", reduction),
-    ])
+    ]
+}
+
+fn of_expression(preset: &ExpressionPreset) -> Vec<(String, Value)> {
+    let text = |text: &str| Value::Text(text.to_owned());
+    let mut operands = Vec::new();
+    for (name, (signed, bits, fraction)) in preset.operands {
+        let mut fields =
+            vec![("bits", Value::Integer(*bits)), ("fraction", Value::Integer(*fraction))];
+        if *signed {
+            fields.push(("signed", Value::Flag(true)));
+        }
+        operands.push(TableEntry::new(name, &fields));
+    }
+    let mut parts = Vec::new();
+    for (name, formula) in preset.parts {
+        parts.push(TableEntry::new(name, &[("formula", text(formula))]));
+    }
+    let mut results = Vec::new();
+    for (name, formula, fraction, promise) in preset.results {
+        let mut fields = vec![
+            ("formula", text(formula)),
+            ("fraction", Value::Integer(*fraction)),
+            ("error", Value::Number(1.0)),
+        ];
+        if !promise.is_empty() {
+            fields.push(("where", text(promise)));
+        }
+        results.push(TableEntry::new(name, &fields));
+    }
+    let mut values = vec![("operands".to_owned(), Value::Table(TableEntries(operands)))];
+    if !parts.is_empty() {
+        values.push(("let".to_owned(), Value::Table(TableEntries(parts))));
+    }
+    values.push(("results".to_owned(), Value::Table(TableEntries(results))));
+    values
 }

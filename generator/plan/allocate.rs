@@ -5,9 +5,9 @@
 
 use super::boxes::{BoxError, ResultProof};
 use super::lower::{Guards, lowered};
-use super::plan::Plan;
+use super::plan::ExpressionPlan;
 use super::refusal::PlanRefusal;
-use super::statement::Statement;
+use super::statement::ExpressionStatement;
 
 /// The guard with which each place begins.
 const FIRST_GUARD: i32 = -3;
@@ -23,7 +23,9 @@ const DIVISIONS: usize = 400;
 ///
 /// # Errors
 /// Fails if a formula has no plan, or if no number of bits is enough.
-pub(super) fn allocated(statement: &Statement) -> Result<(Guards, Plan), PlanRefusal> {
+pub(super) fn allocated(
+    statement: &ExpressionStatement,
+) -> Result<(Guards, ExpressionPlan), PlanRefusal> {
     let (_, sources) = lowered(statement, &Guards(Vec::new()), &[])?;
     let mut guards = Guards(vec![FIRST_GUARD; sources]);
     let mut plan = lowered(statement, &guards, &[])?.0;
@@ -48,15 +50,18 @@ pub(super) fn allocated(statement: &Statement) -> Result<(Guards, Plan), PlanRef
 }
 
 /// A result that does not keep its error yet.
-struct Excess {
+struct ExcessiveResult {
     result: usize,
     /// The operands at which the error is largest.
     worst: BoxError,
 }
 
 /// Returns the result that exceeds its error by the largest factor; `None` if every result keeps its error.
-fn largest_excess(statement: &Statement, plan: &Plan) -> Option<Excess> {
-    let mut largest: Option<(f64, Excess)> = None;
+fn largest_excess(
+    statement: &ExpressionStatement,
+    plan: &ExpressionPlan,
+) -> Option<ExcessiveResult> {
+    let mut largest: Option<(f64, ExcessiveResult)> = None;
     for (result, stated) in statement.results.iter().enumerate() {
         let proof = ResultProof::new(statement, plan, result);
         let Some(worst) = proof.worst(stated.error, DIVISIONS) else { continue };
@@ -64,17 +69,17 @@ fn largest_excess(statement: &Statement, plan: &Plan) -> Option<Excess> {
         if factor < 1.0 || largest.as_ref().is_some_and(|(most, _)| *most >= factor) {
             continue;
         }
-        largest = Some((factor, Excess { result, worst }));
+        largest = Some((factor, ExcessiveResult { result, worst }));
     }
     largest.map(|(_, excess)| excess)
 }
 
-impl Excess {
-    /// Returns the place that has the largest share of the error, among those that can have more bits.
+impl ExcessiveResult {
+    /// Returns the place with the largest share of the error. A place that cannot have more bits does not count.
     fn source(
         &self,
-        statement: &Statement,
-        plan: &Plan,
+        statement: &ExpressionStatement,
+        plan: &ExpressionPlan,
         guards: &Guards,
     ) -> Result<usize, PlanRefusal> {
         let proof = ResultProof::new(statement, plan, self.result);
@@ -92,12 +97,12 @@ impl Excess {
         largest.1.ok_or_else(|| self.refusal(statement, plan))
     }
 
-    fn refusal(&self, statement: &Statement, plan: &Plan) -> PlanRefusal {
+    fn refusal(&self, statement: &ExpressionStatement, plan: &ExpressionPlan) -> PlanRefusal {
         let message = format!(
             "the error of `{}` {} for {}, whatever the widths are",
             statement.results[self.result].name,
             self.worst.words(plan),
-            self.worst.place(statement)
+            statement.place(&self.worst.limits)
         );
         let remedy = "allow a larger error, or leave these operands out by `where`";
         PlanRefusal::new(message, remedy).of_result(self.result)

@@ -12,11 +12,11 @@ use glint_base::fixed::{Format, Rounding, exp2};
 use glint_formula::Enclosure;
 
 use super::node::{Approximation, NodeId, Operation, PlanNode, normalising_shifts};
-use super::plan::Plan;
+use super::plan::ExpressionPlan;
 
 /// What is known of a node for all operands within a box.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct NodeValue {
+pub(super) struct NodeError {
     /// Contains the value in real-number arithmetic.
     pub(super) ideal: Enclosure,
     /// Contains the hardware's value minus the ideal one.
@@ -37,7 +37,7 @@ pub(super) struct Undecided {
     pub(super) what: &'static str,
 }
 
-impl NodeValue {
+impl NodeError {
     fn new(ideal: Enclosure, error: Enclosure) -> Self {
         Self { ideal, error, actual: ideal + error }
     }
@@ -69,7 +69,7 @@ impl NodeValue {
     fn limited(self, limits: Enclosure) -> Self {
         let low = self.actual.low.max(limits.low);
         let high = self.actual.high.min(limits.high);
-        // Of limits that rounding has made empty, those that were known before stay.
+        // Where rounding has made the limits empty, the earlier limits stay.
         if low > high { self } else { Self { actual: Enclosure::between(low, high), ..self } }
     }
 
@@ -81,26 +81,26 @@ impl NodeValue {
 }
 
 /// Takes the values of all nodes, and the first node of which nothing could be said.
-type Visit<'v> = dyn FnMut(&[NodeValue], Option<&Undecided>) + 'v;
+type Visit<'v> = dyn FnMut(&[NodeError], Option<&Undecided>) + 'v;
 
 /// What is known of the nodes so far.
 #[derive(Clone)]
 struct Known {
-    values: Vec<NodeValue>,
+    values: Vec<NodeError>,
     undecided: Option<Undecided>,
 }
 
 /// The analysis of a plan: which of its errors count.
 #[derive(Clone, Copy)]
-pub(super) struct Analysis<'p> {
-    pub(super) plan: &'p Plan,
+pub(super) struct ErrorAnalysis<'p> {
+    pub(super) plan: &'p ExpressionPlan,
     /// The nodes whose values are wanted; the others get 0.
     pub(super) needed: &'p [bool],
     /// The only source whose error counts; `None` for all of them.
     pub(super) only: Option<usize>,
 }
 
-impl Analysis<'_> {
+impl ErrorAnalysis<'_> {
     /// Calls `visit` with the values of all nodes, once for each way in which words can be normalised. `operands` are the
     /// limits of the operands' values.
     pub(super) fn run(&self, operands: &[(&str, Enclosure)], visit: &mut Visit<'_>) {
@@ -116,9 +116,9 @@ impl Analysis<'_> {
             let is_choice = matches!(node.operation, Operation::Choose { .. });
             let is_unknown = |input: &NodeId| !known.values[input.0].is_limited();
             if !self.needed[id.0] {
-                known.values.push(NodeValue::exactly(NOTHING));
+                known.values.push(NodeError::exactly(NOTHING));
             } else if !is_choice && inputs.iter().any(is_unknown) {
-                known.values.push(NodeValue::UNKNOWN);
+                known.values.push(NodeError::UNKNOWN);
             } else if let Operation::Normalise { word, by_pairs } = node.operation {
                 return self.each_shift(word, by_pairs, &known, operands, visit);
             } else {
@@ -126,7 +126,7 @@ impl Analysis<'_> {
                     Ok(value) => known.values.push(value),
                     Err(undecided) => {
                         known.undecided.get_or_insert(undecided);
-                        known.values.push(NodeValue::UNKNOWN);
+                        known.values.push(NodeError::UNKNOWN);
                     }
                 }
             }
@@ -153,7 +153,7 @@ impl Analysis<'_> {
             // A word of zeros stays so, and counts as shifted as far as possible.
             let mut branch = known.clone();
             self.limit(&mut branch.values, word, NOTHING);
-            branch.values.push(NodeValue::exactly(NOTHING));
+            branch.values.push(NodeError::exactly(NOTHING));
             let places = Enclosure::exactly(f64::from(all_places / step));
             self.with_places(branch, places, operands, visit);
         }
@@ -175,8 +175,8 @@ impl Analysis<'_> {
             self.limit(&mut branch.values, word, octave);
             // The bits of the word are a fraction of as many bits.
             let factor = exp2(shift as i32 + format.frac - format.width() as i32);
-            let NodeValue { ideal, error, .. } = branch.values[word.0];
-            branch.values.push(NodeValue::new(scaled(ideal, factor), scaled(error, factor)));
+            let NodeError { ideal, error, .. } = branch.values[word.0];
+            branch.values.push(NodeError::new(scaled(ideal, factor), scaled(error, factor)));
             let count = Enclosure::exactly(f64::from(shift / step));
             self.with_places(branch, count, operands, visit);
         }
@@ -190,13 +190,13 @@ impl Analysis<'_> {
         operands: &[(&str, Enclosure)],
         visit: &mut Visit<'_>,
     ) {
-        branch.values.push(NodeValue::exactly(places));
+        branch.values.push(NodeError::exactly(places));
         self.run_from(branch, operands, visit);
     }
 
     /// Limits a node to hardware values within `limits`, and the nodes that it comes from as far as that follows.
-    fn limit(&self, values: &mut [NodeValue], id: NodeId, limits: Enclosure) {
-        let NodeValue { ideal, error, .. } = values[id.0];
+    fn limit(&self, values: &mut [NodeError], id: NodeId, limits: Enclosure) {
+        let NodeError { ideal, error, .. } = values[id.0];
         let within = limits - error;
         let low = ideal.low.max(within.low);
         let high = ideal.high.min(within.high);
@@ -205,7 +205,7 @@ impl Analysis<'_> {
         }
         let ideal = Enclosure::between(low, high);
         let before = values[id.0];
-        values[id.0] = NodeValue { ideal, error, actual: before.actual }.limited(limits);
+        values[id.0] = NodeError { ideal, error, actual: before.actual }.limited(limits);
         match self.plan.node(id).operation {
             Operation::Maximum(a, b) => {
                 for input in [a, b] {
@@ -223,25 +223,25 @@ impl Analysis<'_> {
     fn value(
         &self,
         id: NodeId,
-        values: &[NodeValue],
+        values: &[NodeError],
         operands: &[(&str, Enclosure)],
-    ) -> Result<NodeValue, Undecided> {
+    ) -> Result<NodeError, Undecided> {
         let node = self.plan.node(id);
         let input = |id: NodeId| values[id.0];
         let own_errors = node.source.is_none() || self.only.is_none() || self.only == node.source;
         let value = match &node.operation {
-            Operation::Operand(number) => NodeValue::exactly(operands[*number].1),
+            Operation::Operand(number) => NodeError::exactly(operands[*number].1),
             Operation::Constant { raw, value } => {
                 let own = Enclosure::exactly(node.format.to_f64(*raw)) - *value;
-                NodeValue::new(*value, if own_errors { own } else { NOTHING })
+                NodeError::new(*value, if own_errors { own } else { NOTHING })
             }
             Operation::Add(a, b) => {
                 let (a, b) = (input(*a), input(*b));
-                NodeValue::new(a.ideal + b.ideal, a.error + b.error)
+                NodeError::new(a.ideal + b.ideal, a.error + b.error)
             }
             Operation::Subtract(a, b) => {
                 let (a, b) = (input(*a), input(*b));
-                NodeValue::new(a.ideal - b.ideal, a.error - b.error)
+                NodeError::new(a.ideal - b.ideal, a.error - b.error)
             }
             Operation::Multiply(a, b) => product(input(*a), input(*b), a == b),
             Operation::Absolute(a) => absolute(input(*a)),
@@ -261,34 +261,34 @@ impl Analysis<'_> {
             }
             Operation::Scale(a) => {
                 let factor = exp2(self.plan.node(*a).format.frac - node.format.frac);
-                let NodeValue { ideal, error, .. } = input(*a);
-                NodeValue::new(scaled(ideal, factor), scaled(error, factor))
+                let NodeError { ideal, error, .. } = input(*a);
+                NodeError::new(scaled(ideal, factor), scaled(error, factor))
             }
             Operation::Narrow(a, rounding) => {
                 let places = self.plan.node(*a).format.frac - node.format.frac;
-                let NodeValue { ideal, error, .. } = input(*a);
+                let NodeError { ideal, error, .. } = input(*a);
                 let own = if own_errors {
                     rounding_error(places, node.format, *rounding)
                 } else {
                     NOTHING
                 };
-                NodeValue::new(ideal, error + own)
+                NodeError::new(ideal, error + own)
             }
             Operation::Normalise { .. } | Operation::Places(_) => {
                 unreachable!("each_shift gives the values of these nodes")
             }
             Operation::ShiftLeft(a, places) => {
                 let factor = exp2(known_places(id, input(*places))?);
-                let NodeValue { ideal, error, .. } = input(*a);
-                NodeValue::new(scaled(ideal, factor), scaled(error, factor))
+                let NodeError { ideal, error, .. } = input(*a);
+                NodeError::new(scaled(ideal, factor), scaled(error, factor))
             }
             Operation::ShiftRight(a, places) => {
                 let places = known_places(id, input(*places))?;
                 let factor = exp2(-places);
-                let NodeValue { ideal, error, .. } = input(*a);
+                let NodeError { ideal, error, .. } = input(*a);
                 let own = rounding_error(places, node.format, Rounding::Truncate);
                 let own = if own_errors { own } else { NOTHING };
-                NodeValue::new(scaled(ideal, factor), scaled(error, factor) + own)
+                NodeError::new(scaled(ideal, factor), scaled(error, factor) + own)
             }
             Operation::Polynomial(a, approximation) => {
                 approximated(id, approximation, input(*a), own_errors)?
@@ -305,7 +305,7 @@ impl Analysis<'_> {
     }
 
     /// Returns limits of the hardware's value that follow from the hardware's values of its inputs alone.
-    fn actual(&self, node: &PlanNode, values: &[NodeValue]) -> Enclosure {
+    fn actual(&self, node: &PlanNode, values: &[NodeError]) -> Enclosure {
         let input = |id: NodeId| values[id.0].actual;
         match node.operation {
             Operation::Add(a, b) => input(a) + input(b),
@@ -336,8 +336,8 @@ impl Analysis<'_> {
         condition: NodeId,
         cases: [NodeId; 2],
         is_continuous: bool,
-        values: &[NodeValue],
-    ) -> NodeValue {
+        values: &[NodeError],
+    ) -> NodeError {
         let [zero, one] = cases.map(|case| values[case.0]);
         match values[condition.0].known() {
             Some(0.0) => return zero,
@@ -349,24 +349,24 @@ impl Analysis<'_> {
             let apart = zero.ideal - one.ideal;
             error = error + apart.hull(-apart).hull(NOTHING);
         }
-        NodeValue::new(zero.ideal.hull(one.ideal), error)
+        NodeError::new(zero.ideal.hull(one.ideal), error)
     }
 
     /// Returns whether a condition is computed from values without errors.
-    fn is_exact(&self, condition: NodeId, values: &[NodeValue]) -> bool {
+    fn is_exact(&self, condition: NodeId, values: &[NodeError]) -> bool {
         let inputs = self.plan.node(condition).operation.inputs();
         inputs.iter().all(|input| values[input.0].error == NOTHING)
     }
 }
 
 /// Returns a bit, which is 1 for the whole box, or 0 for the whole box, or neither.
-fn bit(is_one: bool, is_zero: bool) -> NodeValue {
+fn bit(is_one: bool, is_zero: bool) -> NodeError {
     let low = if is_one { 1.0 } else { 0.0 };
     let high = if is_zero { 0.0 } else { 1.0 };
-    NodeValue::exactly(Enclosure::between(low, high))
+    NodeError::exactly(Enclosure::between(low, high))
 }
 
-fn product(a: NodeValue, b: NodeValue, is_square: bool) -> NodeValue {
+fn product(a: NodeError, b: NodeError, is_square: bool) -> NodeError {
     let mut ideal = a.ideal * b.ideal;
     if is_square {
         ideal = Enclosure::between(ideal.low.max(0.0), ideal.high);
@@ -375,14 +375,14 @@ fn product(a: NodeValue, b: NodeValue, is_square: bool) -> NodeValue {
         }
     }
     let error = a.ideal * b.error + b.ideal * a.error + a.error * b.error;
-    NodeValue::new(ideal, error)
+    NodeError::new(ideal, error)
 }
 
-fn negated(a: NodeValue) -> NodeValue {
-    NodeValue::new(-a.ideal, -a.error)
+fn negated(a: NodeError) -> NodeError {
+    NodeError::new(-a.ideal, -a.error)
 }
 
-fn absolute(a: NodeValue) -> NodeValue {
+fn absolute(a: NodeError) -> NodeError {
     let actual = a.actual;
     if actual.low >= 0.0 && a.ideal.low >= 0.0 {
         return a;
@@ -392,13 +392,13 @@ fn absolute(a: NodeValue) -> NodeValue {
         return other;
     }
     let largest = a.ideal.high.max(-a.ideal.low);
-    NodeValue::new(Enclosure::between(0.0, largest), a.error.hull(other.error))
+    NodeError::new(Enclosure::between(0.0, largest), a.error.hull(other.error))
 }
 
 /// Returns the smaller of two. An error of the result is never beyond the errors of both.
-fn minimum(a: NodeValue, b: NodeValue) -> NodeValue {
+fn minimum(a: NodeError, b: NodeError) -> NodeError {
     let ideal = Enclosure::between(a.ideal.low.min(b.ideal.low), a.ideal.high.min(b.ideal.high));
-    NodeValue::new(ideal, a.error.hull(b.error))
+    NodeError::new(ideal, a.error.hull(b.error))
 }
 
 /// Returns the enclosure times a power of two, which loses nothing.
@@ -428,7 +428,7 @@ fn raw_limits(value: Enclosure, format: Format) -> (i128, i128) {
 }
 
 /// Checks that the bits that a node drops at the top are copies of the sign.
-fn check_fit(node: NodeId, value: NodeValue, format: Format) -> Result<(), Undecided> {
+fn check_fit(node: NodeId, value: NodeError, format: Format) -> Result<(), Undecided> {
     let unit = exp2(format.frac);
     let actual = value.actual;
     let (low, high) = format.range();
@@ -441,7 +441,7 @@ fn check_fit(node: NodeId, value: NodeValue, format: Format) -> Result<(), Undec
     Ok(())
 }
 
-fn known_places(node: NodeId, places: NodeValue) -> Result<i32, Undecided> {
+fn known_places(node: NodeId, places: NodeError) -> Result<i32, Undecided> {
     match places.known() {
         Some(places) => Ok(places as i32),
         None => Err(Undecided { node, what: "the places of its shift are not known" }),
@@ -453,9 +453,9 @@ fn known_places(node: NodeId, places: NodeValue) -> Result<i32, Undecided> {
 fn approximated(
     id: NodeId,
     approximation: &Approximation,
-    operand: NodeValue,
+    operand: NodeError,
     own_errors: bool,
-) -> Result<NodeValue, Undecided> {
+) -> Result<NodeError, Undecided> {
     let function = &approximation.function;
     let actual = operand.actual;
     let (first, last) = function.domain;
@@ -491,5 +491,5 @@ fn approximated(
         let own = approximation.error();
         error = error + Enclosure::between(-own, own);
     }
-    Ok(NodeValue::new(ideal, error))
+    Ok(NodeError::new(ideal, error))
 }

@@ -8,9 +8,9 @@ use std::collections::BinaryHeap;
 
 use glint_base::fixed::exp2;
 
-use super::analyse::{Analysis, NodeValue, Undecided};
-use super::plan::Plan;
-use super::statement::Statement;
+use super::analyse::{ErrorAnalysis, NodeError, Undecided};
+use super::plan::ExpressionPlan;
+use super::statement::ExpressionStatement;
 
 /// Raw limits of each operand, both included.
 pub(super) type OperandBox = Vec<(i64, i64)>;
@@ -48,26 +48,13 @@ impl Ord for BoxError {
 
 impl BoxError {
     /// Returns the error in words, with the part of the plan that has no limit. For example, `is 1.250 units`.
-    pub(super) fn words(&self, plan: &Plan) -> String {
+    pub(super) fn words(&self, plan: &ExpressionPlan) -> String {
         match &self.undecided {
             None => format!("is {:.3} units", self.units),
             Some(Undecided { node, what }) => {
                 format!("has no limit, because of the part `{}`: {what},", plan.node(*node).name)
             }
         }
-    }
-
-    /// Returns the operands in words. For example, `x from 0 to 0.5 and y = 1`.
-    pub(super) fn place(&self, statement: &Statement) -> String {
-        let mut place = Vec::new();
-        for (name, value) in statement.enclosed_operands(&self.limits) {
-            place.push(if value.low == value.high {
-                format!("{name} = {}", value.low)
-            } else {
-                format!("{name} from {} to {}", value.low, value.high)
-            });
-        }
-        place.join(" and ")
     }
 }
 
@@ -82,22 +69,26 @@ fn size_of(limits: &OperandBox) -> u128 {
 
 /// The proof of one result of a plan.
 pub(super) struct ResultProof<'p> {
-    pub(super) statement: &'p Statement,
-    pub(super) plan: &'p Plan,
+    pub(super) statement: &'p ExpressionStatement,
+    pub(super) plan: &'p ExpressionPlan,
     pub(super) result: usize,
     /// For each node, whether the result reads it.
     pub(super) needed: Vec<bool>,
 }
 
 impl<'p> ResultProof<'p> {
-    pub(super) fn new(statement: &'p Statement, plan: &'p Plan, result: usize) -> Self {
+    pub(super) fn new(
+        statement: &'p ExpressionStatement,
+        plan: &'p ExpressionPlan,
+        result: usize,
+    ) -> Self {
         Self { statement, plan, result, needed: plan.needed_for(result) }
     }
 
     /// Returns the box with the largest error, after as many divisions as bring the error below `enough` units, at most
     /// `divisions`.
     ///
-    /// The largest error over all operands is at most that of the box.
+    /// No error of any operand is larger than the error of the box.
     pub(super) fn worst(&self, enough: f64, divisions: usize) -> Option<BoxError> {
         let mut open = BinaryHeap::new();
         open.extend(self.error_in(self.statement.domain()));
@@ -106,10 +97,12 @@ impl<'p> ResultProof<'p> {
             if worst.units <= enough {
                 break;
             }
-            let Some([low, high]) = halves(&worst.limits) else { break };
+            let Some(halves) = best_halves(&worst.limits, &|limits| self.error_in(limits.clone()))
+            else {
+                break;
+            };
             open.pop();
-            open.extend(self.error_in(low));
-            open.extend(self.error_in(high));
+            open.extend(halves);
         }
         open.pop()
     }
@@ -136,16 +129,16 @@ impl<'p> ResultProof<'p> {
         &self,
         limits: &OperandBox,
         only: Option<usize>,
-        visit: &mut dyn FnMut(&NodeValue, Option<&Undecided>),
+        visit: &mut dyn FnMut(&NodeError, Option<&Undecided>),
     ) {
-        let analysis = Analysis { plan: self.plan, needed: &self.needed, only };
+        let analysis = ErrorAnalysis { plan: self.plan, needed: &self.needed, only };
         let node = self.plan.results[self.result];
         let operands = self.statement.enclosed_operands(limits);
         analysis.run(&operands, &mut |values, undecided| visit(&values[node.0], undecided));
     }
 
     /// Returns the largest error of a value, in units of the last place of the result.
-    fn units(&self, value: &NodeValue) -> f64 {
+    fn units(&self, value: &NodeError) -> f64 {
         if !value.is_limited() {
             return f64::INFINITY;
         }
@@ -161,19 +154,54 @@ impl<'p> ResultProof<'p> {
     }
 }
 
-/// Returns the two halves of a box, divided along the operand with the most values; `None` for a single combination.
-pub(super) fn halves(limits: &OperandBox) -> Option<[OperandBox; 2]> {
-    let width = |(low, high): &(i64, i64)| high.abs_diff(*low);
-    let (longest, _) =
-        limits.iter().enumerate().max_by_key(|(at, limits)| (width(limits), usize::MAX - at))?;
-    let (low, high) = limits[longest];
+/// Something that is known of a box, for the choice of the operand along which a box is divided.
+pub(super) trait BoxScore {
+    /// Returns a number that is smaller the more is known; infinite if nothing is.
+    fn score(&self) -> f64;
+}
+
+impl BoxScore for BoxError {
+    fn score(&self) -> f64 {
+        self.units
+    }
+}
+
+/// Returns what is known of the two halves of a box, divided along the operand that makes the most known; `None` for a single
+/// combination. A half for which `known` gives nothing is left out.
+pub(super) fn best_halves<K: BoxScore>(
+    limits: &OperandBox,
+    known: &dyn Fn(&OperandBox) -> Option<K>,
+) -> Option<Vec<K>> {
+    let mut best: Option<((usize, f64, u64), Vec<K>)> = None;
+    for operand in 0..limits.len() {
+        let Some(halves) = halves_along(limits, operand) else { continue };
+        let mut found = Vec::new();
+        for half in &halves {
+            found.extend(known(half));
+        }
+        let unknown = found.iter().filter(|half| half.score().is_infinite()).count();
+        let finite = found.iter().map(BoxScore::score).filter(|score| score.is_finite());
+        let largest = finite.fold(0.0, f64::max);
+        let (low, high) = limits[operand];
+        // Of operands that are equally good, the one with the most values.
+        let rank = (unknown, largest, u64::MAX - high.abs_diff(low));
+        if best.as_ref().is_none_or(|(other, _)| rank < *other) {
+            best = Some((rank, found));
+        }
+    }
+    best.map(|(_, halves)| halves)
+}
+
+/// Returns the two halves of a box along one operand; `None` if it has a single value of this operand.
+fn halves_along(limits: &OperandBox, operand: usize) -> Option<[OperandBox; 2]> {
+    let (low, high) = limits[operand];
     if low == high {
         return None;
     }
     let middle = low + (high - low) / 2;
     let mut first = limits.clone();
-    first[longest] = (low, middle);
+    first[operand] = (low, middle);
     let mut second = limits.clone();
-    second[longest] = (middle + 1, high);
+    second[operand] = (middle + 1, high);
     Some([first, second])
 }

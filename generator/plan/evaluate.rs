@@ -1,9 +1,9 @@
 //! Computes the values of a plan in integers, from the definitions of its operations.
 
 use super::node::{NodeId, Operation, PlanNode, normalising_shifts};
-use super::plan::Plan;
+use super::plan::ExpressionPlan;
 
-impl Plan {
+impl ExpressionPlan {
     /// Returns the raw value of each node for raw operands. For example, the plan of `x * y` gives 6 for 2 and 3.
     ///
     /// # Panics
@@ -20,7 +20,7 @@ impl Plan {
     /// Returns the raw value of a node. `known` gives the values of the nodes that it reads.
     ///
     /// # Panics
-    /// Panics as [`Plan::values`] does.
+    /// Panics as [`ExpressionPlan::values`] does.
     pub fn value(&self, id: NodeId, operands: &[i64], known: &dyn Fn(NodeId) -> i128) -> i128 {
         let node = self.node(id);
         // The value of an input with as many fraction bits as the other input, or as the result, has.

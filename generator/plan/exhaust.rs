@@ -4,16 +4,19 @@ use glint_base::fixed::exp2;
 use glint_formula::Enclosure;
 use rayon::prelude::*;
 
-use super::plan::Plan;
+use super::plan::ExpressionPlan;
 use super::refusal::PlanRefusal;
-use super::statement::Statement;
+use super::statement::ExpressionStatement;
 
 /// Returns the largest error of each result, in units of its last place, over every combination of operands for which the
 /// result is promised.
 ///
 /// # Errors
 /// Fails if a formula has no value for a combination.
-pub(super) fn largest_errors(statement: &Statement, plan: &Plan) -> Result<Vec<f64>, PlanRefusal> {
+pub(super) fn largest_errors(
+    statement: &ExpressionStatement,
+    plan: &ExpressionPlan,
+) -> Result<Vec<f64>, PlanRefusal> {
     let domain = statement.domain();
     let Some((first, rest)) = domain.split_first() else { return Ok(Vec::new()) };
     let none = || vec![0.0; statement.results.len()];
@@ -31,8 +34,8 @@ pub(super) fn largest_errors(statement: &Statement, plan: &Plan) -> Result<Vec<f
 
 /// Returns the largest errors over all combinations with one value of the first operand.
 fn errors_at(
-    statement: &Statement,
-    plan: &Plan,
+    statement: &ExpressionStatement,
+    plan: &ExpressionPlan,
     first: i64,
     rest: &[(i64, i64)],
 ) -> Result<Vec<f64>, PlanRefusal> {
@@ -58,10 +61,10 @@ fn errors_at(
     }
 }
 
-/// Raises the largest errors to those of one combination.
+/// Raises the largest errors to the errors of one combination, where these are larger.
 fn add_errors(
-    statement: &Statement,
-    plan: &Plan,
+    statement: &ExpressionStatement,
+    plan: &ExpressionPlan,
     raw: &[i64],
     largest: &mut [f64],
 ) -> Result<(), PlanRefusal> {
@@ -88,20 +91,15 @@ fn add_errors(
 }
 
 fn evaluated_exactly(
-    statement: &Statement,
+    statement: &ExpressionStatement,
     result: usize,
     raw: &[i64],
 ) -> Result<Enclosure, PlanRefusal> {
     let formula = &statement.results[result].formula;
     let operands = statement.exact_operands(raw);
     formula.evaluate_exactly(&operands).map_err(|fault| {
-        let mut place = Vec::new();
-        for (name, value) in
-            statement.enclosed_operands(&raw.iter().map(|raw| (*raw, *raw)).collect::<Vec<_>>())
-        {
-            place.push(format!("{name} = {}", value.low));
-        }
-        let message = format!("at {}: {}", place.join(", "), fault.message);
+        let limits: Vec<(i64, i64)> = raw.iter().map(|raw| (*raw, *raw)).collect();
+        let message = format!("at {}: {}", statement.place(&limits), fault.message);
         let remedy = "leave these operands out by `where`, for example where = \"y > 0\"";
         PlanRefusal::new(message, remedy).at(&fault.span).of_result(result)
     })

@@ -9,9 +9,9 @@ use super::allocate::allocated;
 use super::boxes::ResultProof;
 use super::exhaust::largest_errors;
 use super::lower::lowered;
-use super::plan::Plan;
+use super::plan::ExpressionPlan;
 use super::refusal::PlanRefusal;
-use super::statement::Statement;
+use super::statement::ExpressionStatement;
 
 /// The divisions of the domain for the last bound.
 const DIVISIONS: usize = 4000;
@@ -21,14 +21,14 @@ const MOST_COMBINATIONS: u32 = 20;
 
 /// How a bound was proved.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Proof {
+pub enum ProofKind {
     /// The result of every combination of operands was computed and compared with the formula.
     EveryCombination,
     /// The error was enclosed, from parts that are proved at every operand of theirs.
     Enclosed,
 }
 
-impl Proof {
+impl ProofKind {
     /// Returns the kind of proof in words.
     pub fn words(self) -> &'static str {
         match self {
@@ -42,13 +42,13 @@ impl Proof {
 #[derive(Clone, Debug)]
 pub struct ProvedPlan {
     /// What was asked for.
-    pub statement: Statement,
+    pub statement: ExpressionStatement,
     /// How it is computed.
-    pub plan: Plan,
+    pub plan: ExpressionPlan,
     /// For each result, the proved bound of its error in units of its last place.
     pub bounds: Vec<f64>,
     /// How the bounds were proved.
-    pub proof: Proof,
+    pub proof: ProofKind,
 }
 
 type FindResult = Result<Arc<ProvedPlan>, PlanRefusal>;
@@ -57,7 +57,7 @@ type FindResult = Result<Arc<ProvedPlan>, PlanRefusal>;
 ///
 /// # Errors
 /// Fails if a formula has no plan, or if the plan does not keep the errors. The refusal says why.
-pub fn find(statement: &Statement) -> FindResult {
+pub fn find(statement: &ExpressionStatement) -> FindResult {
     static FOUND: LazyLock<Mutex<HashMap<String, FindResult>>> = LazyLock::new(Mutex::default);
     let key = format!("{statement:?}");
     if let Some(known) = FOUND.lock().expect("no search panics").get(&key) {
@@ -68,7 +68,7 @@ pub fn find(statement: &Statement) -> FindResult {
     found
 }
 
-fn searched(statement: &Statement) -> Result<ProvedPlan, PlanRefusal> {
+fn searched(statement: &ExpressionStatement) -> Result<ProvedPlan, PlanRefusal> {
     let (guards, estimate) = allocated(statement)?;
     let mut found = Vec::new();
     for function in estimate.functions() {
@@ -79,9 +79,9 @@ fn searched(statement: &Statement) -> Result<ProvedPlan, PlanRefusal> {
     }
     let (plan, _) = lowered(statement, &guards, &found)?;
     let mut bounds = enclosed_errors(statement, &plan)?;
-    let mut proof = Proof::Enclosed;
+    let mut proof = ProofKind::Enclosed;
     if statement.combinations() <= 1 << MOST_COMBINATIONS {
-        proof = Proof::EveryCombination;
+        proof = ProofKind::EveryCombination;
         for (bound, largest) in bounds.iter_mut().zip(largest_errors(statement, &plan)?) {
             *bound = bound.min(largest);
         }
@@ -90,7 +90,10 @@ fn searched(statement: &Statement) -> Result<ProvedPlan, PlanRefusal> {
 }
 
 /// Returns a proved bound of the error of each result.
-pub(super) fn enclosed_errors(statement: &Statement, plan: &Plan) -> Result<Vec<f64>, PlanRefusal> {
+pub(super) fn enclosed_errors(
+    statement: &ExpressionStatement,
+    plan: &ExpressionPlan,
+) -> Result<Vec<f64>, PlanRefusal> {
     let mut bounds = Vec::new();
     for (result, stated) in statement.results.iter().enumerate() {
         let proof = ResultProof::new(statement, plan, result);
@@ -104,7 +107,7 @@ pub(super) fn enclosed_errors(statement: &Statement, plan: &Plan) -> Result<Vec<
                 "the error of `{}` {} for {}",
                 stated.name,
                 worst.words(plan),
-                worst.place(statement)
+                statement.place(&worst.limits)
             );
             return Err(PlanRefusal::new(message, "allow a larger error").of_result(result));
         }

@@ -1,13 +1,13 @@
 //! Plans an expression of several operands as integer operations, and proves the error of its results.
 //!
-//! A [`Statement`] has operands, formulas, and the error that each result may have. [`find`] rewrites the formulas as a
-//! [`Plan`], a list of operations on raw values. It chooses the widths so that the errors are kept, and proves them. The
+//! A [`ExpressionStatement`] has operands, formulas, and the error that each result may have. [`find`] rewrites the formulas as a
+//! [`ExpressionPlan`], a list of operations on raw values. It chooses the widths so that the errors are kept, and proves them. The
 //! hardware description, the golden model and the proof all read the same plan.
 //!
 //! ```
 //! use glint_base::fixed::Format;
 //! use glint_formula::parse;
-//! use glint_plan::{StatedOperand, StatedResult, Statement, find};
+//! use glint_plan::{StatedOperand, StatedResult, ExpressionStatement, find};
 //!
 //! let byte = Format::unsigned(0, 8);
 //! let operand = |name: &str| StatedOperand { name: name.to_owned(), format: byte, domain: (0, 255) };
@@ -18,7 +18,7 @@
 //!     error: 1.0,
 //!     promise: None,
 //! };
-//! let statement = Statement { operands: vec![operand("x"), operand("y")], results: vec![length] };
+//! let statement = ExpressionStatement { operands: vec![operand("x"), operand("y")], results: vec![length] };
 //! let found = find(&statement).unwrap();
 //! assert!(found.bounds[0] < 1.0);
 //! // 3/16 and 4/16 have the length 5/16, within a unit of 1/256.
@@ -41,12 +41,12 @@ mod refusal;
 mod schedule;
 mod statement;
 
-pub use find::{Proof, ProvedPlan, find};
+pub use find::{ProofKind, ProvedPlan, find};
 pub use node::{Approximation, NodeId, Operation, PlanNode, normalising_shifts};
-pub use plan::Plan;
+pub use plan::ExpressionPlan;
 pub use refusal::PlanRefusal;
-pub use schedule::{PlanStep, Schedule};
-pub use statement::{StatedOperand, StatedResult, Statement};
+pub use schedule::{PlanSchedule, PlanStep};
+pub use statement::{ExpressionStatement, StatedOperand, StatedResult};
 
 #[cfg(test)]
 mod tests;

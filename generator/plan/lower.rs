@@ -15,10 +15,10 @@ use glint_formula::{Comparison, Enclosure, Expression, Function, Kind, Operator,
 
 use super::boxes::ResultProof;
 use super::node::{Approximation, NodeId};
-use super::plan::Plan;
+use super::plan::ExpressionPlan;
 use super::range::range_of;
 use super::refusal::PlanRefusal;
-use super::statement::{StatedResult, Statement};
+use super::statement::{ExpressionStatement, StatedResult};
 
 /// The widest operand of a table of polynomials, in bits. A wider one is shortened first.
 const WIDEST_OPERAND: u32 = 20;
@@ -35,6 +35,10 @@ const DIVISIONS_FOR_AN_ERROR: usize = 64;
 /// The error that polynomials inside a plan may have, in units of the last place of their result.
 const UNITS: f64 = 1.0;
 
+/// The remedy where a formula has no finite value.
+const LIMIT_THE_OPERANDS: &str =
+    "limit the operands by `where`, for example where = \"y > 0\", or by `from` and `to`";
+
 /// The fraction bits of each place where a plan rounds, relative to the result with the most of them.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub(super) struct Guards(pub(super) Vec<i32>);
@@ -44,10 +48,10 @@ pub(super) type Found = [Arc<Piecewise>];
 
 /// A plan in the making.
 pub(super) struct Lowering<'s> {
-    statement: &'s Statement,
+    statement: &'s ExpressionStatement,
     guards: &'s Guards,
     found: &'s Found,
-    plan: Plan,
+    plan: ExpressionPlan,
     /// The parts that have a node already.
     known: Vec<(Expression, NodeId)>,
     /// The number of places where the plan rounds, so far.
@@ -63,16 +67,16 @@ pub(super) struct Lowering<'s> {
 /// # Errors
 /// Fails if a formula has a part that no rule computes, or a part with too many bits.
 pub(super) fn lowered(
-    statement: &Statement,
+    statement: &ExpressionStatement,
     guards: &Guards,
     found: &Found,
-) -> Result<(Plan, usize), PlanRefusal> {
+) -> Result<(ExpressionPlan, usize), PlanRefusal> {
     let finest = statement.results.iter().map(|result| result.fraction as i32).max();
     let mut lowering = Lowering {
         statement,
         guards,
         found,
-        plan: Plan::default(),
+        plan: ExpressionPlan::default(),
         known: Vec::new(),
         sources: 0,
         functions: 0,
@@ -114,12 +118,10 @@ impl<'s> Lowering<'s> {
 
     /// Returns limits of the values of a part where something is promised.
     fn range(&self, part: &Expression) -> Result<Enclosure, PlanRefusal> {
-        range_of(self.statement, part).ok_or_else(|| {
-            PlanRefusal::new(
-                "this is not finite, or has no value, for some of the operands",
-                "limit the operands by `where`, for example where = \"y > 0\", or by `from` and `to`",
-            )
-            .at(&part.span)
+        range_of(self.statement, part).map_err(|limits| {
+            let place = self.statement.place(&limits);
+            let message = format!("this is not finite, or has no value, for {place}");
+            PlanRefusal::new(message, LIMIT_THE_OPERANDS).at(&part.span)
         })
     }
 
@@ -355,7 +357,7 @@ impl<'s> Lowering<'s> {
         let values = function_range(function, operand, domain).ok_or_else(|| {
             PlanRefusal::new(
                 "this is not finite, or has no value, for some of the operands",
-                "limit the operands by `where`, for example where = \"y > 0\", or by `from` and `to`",
+                LIMIT_THE_OPERANDS,
             )
         })?;
         let unit = exp2(fraction as i32);

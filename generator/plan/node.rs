@@ -7,7 +7,7 @@ use glint_base::fixed::{Format, Rounding};
 use glint_base::interval::Interval;
 use glint_formula::Enclosure;
 
-/// A node of a plan, by its place in [`super::Plan::nodes`]. A node reads only nodes that are before it.
+/// A node of a plan, by its place in [`super::ExpressionPlan::nodes`]. A node reads only nodes that are before it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct NodeId(pub usize);
 

@@ -13,14 +13,14 @@ const ANYTHING: Enclosure = Enclosure::between(f64::NEG_INFINITY, f64::INFINITY)
 
 /// An expression as a list of integer operations.
 #[derive(Clone, Debug, Default)]
-pub struct Plan {
+pub struct ExpressionPlan {
     /// The operations, in an order in which they can be computed.
     pub nodes: Vec<PlanNode>,
     /// The node of each result, in the order in which the results are stated.
     pub results: Vec<NodeId>,
 }
 
-impl Plan {
+impl ExpressionPlan {
     /// Returns a node.
     pub fn node(&self, id: NodeId) -> &PlanNode {
         &self.nodes[id.0]
@@ -54,7 +54,7 @@ impl Plan {
 
 /// Adds nodes to a plan. Each method returns the node of its result, whose format holds every value that the ranges of
 /// the inputs allow.
-impl Plan {
+impl ExpressionPlan {
     fn insert(
         &mut self,
         name: &str,

@@ -5,45 +5,70 @@ use std::collections::BinaryHeap;
 
 use glint_formula::{Enclosure, Expression};
 
-use super::boxes::{OperandBox, halves};
-use super::statement::{StatedResult, Statement};
+use super::boxes::{BoxScore, OperandBox, best_halves};
+use super::statement::{ExpressionStatement, StatedResult};
 
 /// The divisions of the domain, at most, until the values have limits.
-const DIVISIONS_TO_LIMITS: usize = 1 << 14;
+const DIVISIONS_TO_LIMITS: usize = 1 << 12;
 
 /// The divisions of the domain that bring each limit nearer to the true one.
-const DIVISIONS_OF_AN_END: usize = 600;
+const DIVISIONS_OF_AN_END: usize = 300;
 
-/// A box with the limits of the values in it. The box with the largest limit comes first.
+/// A box with the limits of the values in it.
+#[derive(Clone)]
 struct BoxValues {
     limits: OperandBox,
-    high: f64,
+    values: Enclosure,
 }
 
-impl PartialEq for BoxValues {
+impl BoxScore for BoxValues {
+    fn score(&self) -> f64 {
+        if self.values.is_finite() { self.values.high - self.values.low } else { f64::INFINITY }
+    }
+}
+
+/// A box with a limit of the values in it. The box with the largest limit comes first.
+struct BoxEnd {
+    limits: OperandBox,
+    end: f64,
+}
+
+impl BoxScore for BoxEnd {
+    fn score(&self) -> f64 {
+        self.end
+    }
+}
+
+impl PartialEq for BoxEnd {
     fn eq(&self, other: &Self) -> bool {
         self.cmp(other) == Ordering::Equal
     }
 }
 
-impl Eq for BoxValues {}
+impl Eq for BoxEnd {}
 
-impl PartialOrd for BoxValues {
+impl PartialOrd for BoxEnd {
     fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
         Some(self.cmp(other))
     }
 }
 
-impl Ord for BoxValues {
+impl Ord for BoxEnd {
     fn cmp(&self, other: &Self) -> Ordering {
-        self.high.total_cmp(&other.high)
+        self.end.total_cmp(&other.end)
     }
 }
 
-/// Returns limits of the values of a part of the formulas, where a result that has the part is promised; `None` if they are not finite, as near a pole.
+/// Returns limits of the values of a part of the formulas, where a result that has the part is promised.
 ///
 /// The domain is divided where the formula has no finite limits, and then where its largest and its smallest values are.
-pub(super) fn range_of(statement: &Statement, formula: &Expression) -> Option<Enclosure> {
+///
+/// # Errors
+/// Fails if the values have no finite limits, as near a pole. The error is a box of operands where that is so.
+pub(super) fn range_of(
+    statement: &ExpressionStatement,
+    formula: &Expression,
+) -> Result<Enclosure, OperandBox> {
     // A part that is made of others, as a size, is in no formula: it counts for every result.
     let reads = |result: &&StatedResult| result.formula.count(&|part| part == formula) > 0;
     let mut readers: Vec<&StatedResult> = statement.results.iter().filter(reads).collect();
@@ -56,42 +81,53 @@ pub(super) fn range_of(statement: &Statement, formula: &Expression) -> Option<En
         if !readers.iter().any(may_be_promised) {
             return None;
         }
-        Some(match formula.enclose(&operands) {
-            Ok(values) => values,
-            Err(_) => Enclosure::between(f64::NEG_INFINITY, f64::INFINITY),
-        })
+        let values = formula
+            .enclose(&operands)
+            .unwrap_or(Enclosure::between(f64::NEG_INFINITY, f64::INFINITY));
+        Some(BoxValues { limits: limits.clone(), values })
     };
     let mut finite = Vec::new();
-    let mut open = vec![statement.domain()];
-    for _ in 0..DIVISIONS_TO_LIMITS {
-        let Some(limits) = open.pop() else { break };
-        match values_in(&limits) {
-            None => {}
-            Some(values) if values.is_finite() => finite.push(limits),
-            Some(_) => open.extend(halves(&limits)?),
+    let mut open: Vec<BoxValues> = values_in(&statement.domain()).into_iter().collect();
+    let mut divisions = 0;
+    while let Some(next) = open.pop() {
+        if next.values.is_finite() {
+            finite.push(next);
+            continue;
+        }
+        divisions += 1;
+        let halves = best_halves(&next.limits, &values_in);
+        match halves {
+            Some(halves) if divisions <= DIVISIONS_TO_LIMITS => open.extend(halves),
+            _ => return Err(next.limits),
         }
     }
-    if !open.is_empty() {
-        return None;
+    if finite.is_empty() {
+        // Nothing is promised at all.
+        return Ok(Enclosure::exactly(0.0));
     }
-    let high = largest(&finite, &|limits| values_in(limits).map(|values| values.high))?;
-    let low = largest(&finite, &|limits| values_in(limits).map(|values| -values.low))?;
-    Some(Enclosure::between(-low, high))
+    let high_of = |it: BoxValues| BoxEnd { limits: it.limits, end: it.values.high };
+    let low_of = |it: BoxValues| BoxEnd { limits: it.limits, end: -it.values.low };
+    let high =
+        largest(finite.iter().cloned().map(high_of), &|limits| values_in(limits).map(high_of));
+    let low = largest(finite.iter().cloned().map(low_of), &|limits| values_in(limits).map(low_of));
+    Ok(Enclosure::between(-low, high))
 }
 
-/// Returns a limit of the largest value in any of the boxes. `value` gives a limit within a box, or nothing if the box has no
-/// values.
-fn largest(boxes: &[OperandBox], value: &dyn Fn(&OperandBox) -> Option<f64>) -> Option<f64> {
-    let with_value = |limits: &OperandBox| {
-        let high = value(limits)?;
-        Some(BoxValues { limits: limits.clone(), high })
-    };
-    let mut open: BinaryHeap<BoxValues> = boxes.iter().filter_map(with_value).collect();
+/// Returns a limit of the largest value in any of the boxes. `end_in` gives a limit within a box, or nothing if nothing is
+/// promised there.
+fn largest(
+    boxes: impl Iterator<Item = BoxEnd>,
+    end_in: &dyn Fn(&OperandBox) -> Option<BoxEnd>,
+) -> f64 {
+    let mut open: BinaryHeap<BoxEnd> = boxes.collect();
+    let mut end = f64::NEG_INFINITY;
     for _ in 0..DIVISIONS_OF_AN_END {
-        let first = open.peek()?;
-        let Some(halves) = halves(&first.limits) else { break };
-        open.pop();
-        open.extend(halves.iter().filter_map(with_value));
+        let Some(first) = open.pop() else { break };
+        end = first.end;
+        match best_halves(&first.limits, end_in) {
+            Some(halves) => open.extend(halves),
+            None => return end,
+        }
     }
-    open.pop().map(|first| first.high)
+    open.pop().map_or(end, |first| first.end)
 }

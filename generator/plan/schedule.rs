@@ -5,7 +5,7 @@
 //! registers.
 
 use super::node::{NodeId, Operation};
-use super::plan::Plan;
+use super::plan::ExpressionPlan;
 
 /// A microinstruction of a plan.
 #[derive(Clone, Debug, PartialEq)]
@@ -32,20 +32,20 @@ pub enum PlanStep {
 
 /// The microprogram of a plan.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Schedule {
+pub struct PlanSchedule {
     /// For each node, whether a register holds its value.
     pub held: Vec<bool>,
     /// The microinstructions, in order.
     pub steps: Vec<PlanStep>,
 }
 
-impl Plan {
+impl ExpressionPlan {
     /// Returns the microprogram of the plan.
     ///
     /// # Panics
     /// Panics if the polynomials of the plan are not known yet.
-    pub fn schedule(&self) -> Schedule {
-        let mut schedule = Schedule { held: vec![false; self.nodes.len()], steps: Vec::new() };
+    pub fn schedule(&self) -> PlanSchedule {
+        let mut schedule = PlanSchedule { held: vec![false; self.nodes.len()], steps: Vec::new() };
         for at in 0..self.nodes.len() {
             let node = NodeId(at);
             match &self.nodes[at].operation {

@@ -6,7 +6,7 @@ use glint_formula::{Comparison, Enclosure, Expression, RBig};
 
 /// What a user asks for: results as formulas of operands, each with the error that it may have.
 #[derive(Clone, Debug)]
-pub struct Statement {
+pub struct ExpressionStatement {
     /// The operands, in the order of the ports.
     pub operands: Vec<StatedOperand>,
     /// The results, in the order of the ports.
@@ -39,7 +39,7 @@ pub struct StatedResult {
     pub promise: Option<Comparison>,
 }
 
-impl Statement {
+impl ExpressionStatement {
     /// Returns the exact values of raw operands, by their names.
     pub fn exact_operands(&self, raw: &[i64]) -> Vec<(&str, RBig)> {
         let mut values = Vec::with_capacity(raw.len());
@@ -59,6 +59,19 @@ impl Statement {
             values.push((operand.name.as_str(), Enclosure::between(low, high)));
         }
         values
+    }
+
+    /// Returns the operands within raw limits in words. For example, `x from 0 to 0.5 and y = 1`.
+    pub fn place(&self, limits: &[(i64, i64)]) -> String {
+        let mut place = Vec::new();
+        for (name, value) in self.enclosed_operands(limits) {
+            place.push(if value.low == value.high {
+                format!("{name} = {}", value.low)
+            } else {
+                format!("{name} from {} to {}", value.low, value.high)
+            });
+        }
+        place.join(" and ")
     }
 
     /// Returns the domain: the smallest and the largest raw value of each operand.

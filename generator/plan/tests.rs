@@ -5,7 +5,7 @@ use glint_formula::{Comparison, Enclosure, Expression, Kind, parse};
 
 use super::exhaust::largest_errors;
 use super::find::enclosed_errors;
-use super::{Operation, Proof, StatedOperand, StatedResult, Statement, find};
+use super::{ExpressionStatement, Operation, ProofKind, StatedOperand, StatedResult, find};
 
 /// Returns an operand with a whole format as its domain.
 fn operand(name: &str, format: Format) -> StatedOperand {
@@ -33,7 +33,7 @@ fn comparison(text: &str) -> Comparison {
 }
 
 /// The statements of the tests: formulas of x and y, the format of both, and where the errors are promised.
-fn statements(bits: i32) -> Vec<Statement> {
+fn statements(bits: i32) -> Vec<ExpressionStatement> {
     let signed = Format::signed(0, bits - 1);
     let unsigned = Format::unsigned(0, bits);
     let not_origin = Some("x^2 + y^2 > 0");
@@ -57,7 +57,7 @@ fn statements(bits: i32) -> Vec<Statement> {
             results.push(StatedResult { promise, ..result });
         }
         let operands = vec![operand("x", format), operand("y", format)];
-        statements.push(Statement { operands, results });
+        statements.push(ExpressionStatement { operands, results });
     }
     statements
 }
@@ -88,7 +88,7 @@ fn enclosed_errors_hold_for_every_combination() {
 fn sixteen_bits_are_enclosed() {
     for statement in statements(16) {
         let found = find(&statement).unwrap_or_else(|refusal| panic!("{refusal:?}"));
-        assert_eq!(found.proof, Proof::Enclosed);
+        assert_eq!(found.proof, ProofKind::Enclosed);
         for (bound, result) in found.bounds.iter().zip(&statement.results) {
             assert!(*bound < result.error);
         }
@@ -141,7 +141,8 @@ fn refusals_name_the_part_and_a_remedy() {
         let promise: Option<&str> = promise;
         let result = StatedResult { promise: promise.map(comparison), ..result("r", formula, 8) };
         let operands = vec![operand("x", byte), operand("y", byte)];
-        let refusal = find(&Statement { operands, results: vec![result] }).expect_err(formula);
+        let refusal =
+            find(&ExpressionStatement { operands, results: vec![result] }).expect_err(formula);
         assert!(refusal.message.contains(message), "{formula}: {refusal:?}");
         assert!(refusal.remedy.contains(remedy), "{formula}: {refusal:?}");
         assert_eq!(refusal.result, Some(0));
@@ -153,7 +154,7 @@ fn refusals_name_the_part_and_a_remedy() {
 /// Formulas of x and y by their definitions in whole numbers: values that need no rounding.
 #[test]
 fn exact_plans_have_exact_values() {
-    let statement = Statement {
+    let statement = ExpressionStatement {
         operands: vec![operand("x", Format::signed(7, 0)), operand("y", Format::signed(7, 0))],
         results: vec![
             result("p", "x * y - 3 * x", 0),

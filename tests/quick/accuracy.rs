@@ -6,7 +6,7 @@ use std::path::Path;
 use glint::config;
 use glint::fixed::exp2;
 use glint::golden::{Contract, blinn, nearer};
-use glint::keys::presets::DEVICE as FUNCTION;
+use glint::keys::presets::FUNCTION;
 use glint::registry::Registry;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{RngCore, SeedableRng};

@@ -2,7 +2,7 @@
 
 use glint::config::{Config, Key, KeyKind, Problems, Schema, Value, parse};
 use glint::core::Core;
-use glint::keys::presets::DEVICE as FUNCTION;
+use glint::keys::presets::FUNCTION;
 use glint::registry::Registry;
 
 use crate::common::Sure;

@@ -5,7 +5,7 @@ use crate::common::cores::device;
 use crate::config_device::{lamp, schemas, uncommented};
 use glint::config::{Config, Schema, commented, parse, read, sample};
 use glint::core::Core;
-use glint::keys::presets::DEVICE as FUNCTION;
+use glint::keys::presets::FUNCTION;
 use glint::registry::Registry;
 use proptest::collection::vec;
 use proptest::prelude::*;

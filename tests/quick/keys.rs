@@ -54,7 +54,7 @@ fn others(key: &Key) -> Vec<String> {
         KeyKind::Text(TextPattern::Version) => vec!["\"9.8.7\"".to_owned()],
         KeyKind::Text(TextPattern::Name | TextPattern::Licence) => vec!["\"Another\"".to_owned()],
         KeyKind::Text(TextPattern::Samples) => vec!["\"1,0 4,1\"".to_owned()],
-        KeyKind::Integers { .. } | KeyKind::Records { .. } => Vec::new(),
+        KeyKind::Integers { .. } | KeyKind::Table { .. } => Vec::new(),
     };
     candidates
         .into_iter()

@@ -122,7 +122,7 @@ fn approximation(values: Vec<(String, ConfigValue)>) -> Arc<Piecewise> {
 /// Writes bits of coefficients of a function by its name, with the reduction and without.
 fn preset(row: &mut Row) {
     let name = row[0].split(',').next().expect("a name");
-    let values = presets::values(name).unwrap_or_else(|| panic!("no function is `{name}`"));
+    let values = presets::find(name).unwrap_or_else(|| panic!("no function is `{name}`")).values;
     let mut plain = values.clone();
     plain.push(("approximation.reduction".to_owned(), ConfigValue::Text("none".to_owned())));
     let bits = [values, plain].map(|values| grouped(approximation(values).rom_bits()));

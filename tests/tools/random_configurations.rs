@@ -8,7 +8,7 @@ use crate::common::cores::{Emitted, assert_agrees, parsed, random};
 use crate::common::sample::sampled;
 use crate::common::tools::{assert_bench_passes, assert_files_are_clean};
 use glint::core::Core;
-use glint::keys::presets::DEVICE as FUNCTION;
+use glint::keys::presets::FUNCTION;
 use glint::registry::{Device, Registry};
 use glint::tools::VerilogSimulator;
 use rayon::prelude::*;

@@ -60,8 +60,8 @@ const SCHEMA: &str =
 /// Runs `glint new`.
 pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) -> Result<bool> {
     let device = &arguments.device;
-    let preset = presets::values(device);
-    let device_of_preset = preset.as_ref().and_then(|_| registry.device(presets::DEVICE));
+    let preset = presets::find(device);
+    let device_of_preset = preset.as_ref().and_then(|preset| registry.device(preset.device));
     let Some(found) = registry.device(device).or(device_of_preset) else {
         let names = registry.devices().iter().map(|device| device.name);
         let names: Vec<&str> = names.chain(presets::names()).collect();
@@ -71,7 +71,7 @@ pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) ->
     let default_name = || if preset.is_some() { device.replace('-', "_") } else { schema.module() };
     let name = arguments.name.clone().unwrap_or_else(default_name);
     let mut settings = arguments.settings()?;
-    for (key, value) in preset.iter().flatten() {
+    for (key, value) in preset.iter().flat_map(|preset| &preset.values) {
         if settings.iter().all(|setting| setting.key != *key) {
             settings.push(KeyAssignment { key: key.clone(), value: value.toml() });
         }

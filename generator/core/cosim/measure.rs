@@ -22,6 +22,9 @@ struct OutputQuantity {
     /// The weight of its last place, and its inverse.
     unit: f64,
     per_unit: f64,
+    /// The largest bound of any output, divided by the bound of this one: errors of outputs with bounds of their own are
+    /// compared by it.
+    weight: f64,
 }
 
 impl OutputQuantity {
@@ -41,7 +44,12 @@ impl<'a> Measure<'a> {
     /// # Errors
     /// Fails if an output is missing in the design, or has another format there.
     pub(super) fn new(design: &Design, contract: &'a dyn Contract, nets: &[NetId]) -> Result<Self> {
-        let quantity = |Output { name, format }: &Output| {
+        let largest = contract.bound().units;
+        let weight = |number: usize| {
+            let own = contract.output_bound(number);
+            if own == largest || own <= 0.0 { 1.0 } else { largest / own }
+        };
+        let quantity = |(number, Output { name, format }): (usize, &Output)| {
             let at = |net| Some((nets.iter().position(|&it| it == net)?, net));
             let (at, net) = (design.find(name).and_then(at))
                 .with_context(|| format!("the contract takes `{name}` for an output"))?;
@@ -52,9 +60,10 @@ impl<'a> Measure<'a> {
                 format: real,
                 unit: exp2(-real.frac),
                 per_unit: exp2(real.frac),
+                weight: weight(number),
             })
         };
-        let outputs = contract.outputs().iter().map(quantity).collect::<Result<_>>()?;
+        let outputs = contract.outputs().iter().enumerate().map(quantity).collect::<Result<_>>()?;
         Ok(Self { contract, outputs })
     }
 
@@ -81,19 +90,21 @@ impl<'a> Measure<'a> {
         } else {
             self.contract.exact(operands, index, &mut seen.exact);
         }
-        let mut largest = (seen.worst.as_ref().map_or(-1.0, |worst| worst.units), None);
+        let mut largest = (seen.worst.as_ref().map_or(-1.0, |worst| worst.weighted), None);
         for (number, (output, &exact)) in self.outputs.iter().zip(&seen.exact).enumerate() {
             let units = nearer(output.value(values[output.at]), exact) * output.per_unit;
-            if units > largest.0 {
-                largest = (units, Some(number));
+            let weighted = units * output.weight;
+            if weighted > largest.0 {
+                largest = (weighted, Some((number, units)));
             }
         }
-        let (units, Some(number)) = largest else {
+        let (weighted, Some((number, units))) = largest else {
             return;
         };
         let names = self.contract.operands().iter().map(|it| it.name.clone());
         seen.worst = Some(Worst {
             units,
+            weighted,
             output: self.contract.outputs()[number].name.clone(),
             operands: names.zip(operands.iter().copied()).collect(),
         });

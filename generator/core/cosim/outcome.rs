@@ -39,8 +39,9 @@ impl Outcome {
             outcome.points += seen.points;
             outcome.clocks += seen.clocks;
             outcome.histogram.merge(&seen.histogram);
-            let units = |worst: &Option<Worst>| worst.as_ref().map_or(-1.0, |worst| worst.units);
-            if units(&seen.worst) > units(&outcome.worst) {
+            let weighted =
+                |worst: &Option<Worst>| worst.as_ref().map_or(-1.0, |worst| worst.weighted);
+            if weighted(&seen.worst) > weighted(&outcome.worst) {
                 outcome.worst = seen.worst;
             }
             if seen.mismatch.is_some() {
@@ -68,11 +69,13 @@ impl Outcome {
                 operands.collect::<Vec<_>>().join(", ")
             ));
         } else if let Some(worst) = &self.worst
-            && worst.units > bound.units
+            && worst.weighted > bound.units
         {
+            // The bound of the output itself.
+            let own = bound.units * worst.units / worst.weighted;
             failures.push(format!(
-                "`{}` is off by {:.6} units, beyond the stated bound of {:.6}",
-                worst.output, worst.units, bound.units
+                "`{}` is off by {:.6} units, beyond the stated bound of {own:.6}",
+                worst.output, worst.units
             ));
         }
         failures
@@ -84,6 +87,8 @@ impl Outcome {
 pub struct Worst {
     /// In output units; infinite where the formula has no value.
     pub units: f64,
+    /// The error in units, times the largest bound of any output and divided by the bound of this output.
+    pub weighted: f64,
     /// The output.
     pub output: String,
     /// Raw operands, by name.

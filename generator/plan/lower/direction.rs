@@ -31,7 +31,7 @@ impl Scaling {
 }
 
 impl Lowering<'_> {
-    /// Returns the node of a constant times a direction, where `function` is that of x in the place of the direction `core`;
+    /// Returns the node of a constant times a direction. `core` is the direction, and `function` the formula with x in its place;
     /// `None` for any other formula. The constant then is a part of the table.
     pub(super) fn scaled_direction(
         &mut self,
