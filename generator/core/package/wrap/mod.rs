@@ -45,14 +45,14 @@ pub fn files(job: &EmitJob, files: &mut OutputFiles) -> Result<()> {
 fn add_proof(
     job: &EmitJob,
     wrapper: &str,
-    stubs: &[String],
+    stubs: Vec<String>,
     text: String,
     files: &mut OutputFiles,
 ) -> Result<()> {
     if job.inputs.vectors.is_some() {
         let script = fill!("wrapper_formal.ys" { name: &'a str = wrapper })?;
         let mut modules = vec![format!("{wrapper}_formal")];
-        modules.extend_from_slice(stubs);
+        modules.extend(stubs);
         files.add_system_verilog(FileKind::WrapperProof, modules, text);
         files.add(FileKind::WrapperProofScript, format!("{wrapper}_formal.ys"), script);
     }

@@ -134,5 +134,5 @@ pub fn modules(job: &EmitJob, pipeline: &Pipeline, files: &mut OutputFiles) -> R
     if memory.is_some() {
         stubs.push(format!("{name}_delay"));
     }
-    add_proof(job, &format!("{name}_axis"), &stubs, text, files)
+    add_proof(job, &format!("{name}_axis"), stubs, text, files)
 }

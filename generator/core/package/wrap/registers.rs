@@ -47,8 +47,8 @@ pub fn modules(job: &EmitJob, bus: &Bus, map: &Map, files: &mut OutputFiles) -> 
     files.add_verilog(FileKind::BusWrapper, vec![bus.clone()], module);
     files.add_verilog(FileKind::BusWrapper, vec![registers.clone()], block(job, map)?);
     // The proof of the bus has a stub in place of the registers, and the proof of the registers in place of the core.
-    add_proof(job, &bus, &[registers.clone()], module_proof, files)?;
-    add_proof(job, &registers, &[core], proof(job, map)?, files)
+    add_proof(job, &bus, vec![registers.clone()], module_proof, files)?;
+    add_proof(job, &registers, vec![core], proof(job, map)?, files)
 }
 
 fn block(job: &EmitJob, map: &Map) -> Result<String> {

@@ -137,7 +137,7 @@ pub fn modules(job: &EmitJob, files: &mut OutputFiles) -> Result<()> {
     if line.is_some() {
         stubs.push(format!("{name}_axis_buffer"));
     }
-    add_proof(job, &format!("{name}_axis"), &stubs, text, files)
+    add_proof(job, &format!("{name}_axis"), stubs, text, files)
 }
 
 /// Declares nets below the top, with their widths: with these Yosys finds them by their path.
