@@ -11,13 +11,13 @@ use glint::core::Core;
 use glint::dsl::{Designer, end, step, valid};
 use glint::fixed::{Format, Overflow, Rounding};
 use glint::hdl::netlist::Design;
-use glint::package::OutputFile;
+use glint::package::OutputFiles;
 use glint::registry::Registry;
 
 /// One configuration of each device.
 const CONFIGS: [&str; 2] = ["configs/rough.toml", "configs/cosine_power.toml"];
 
-fn generate(registry: &Registry, path: &str, text: &str) -> Result<Vec<OutputFile>> {
+fn generate(registry: &Registry, path: &str, text: &str) -> Result<OutputFiles> {
     let config = config::parse(path, text, &registry.schemas())?;
     let device = registry.device(&config.device).context("a device")?;
     let core = Core::new(*device, config)?;
@@ -25,7 +25,7 @@ fn generate(registry: &Registry, path: &str, text: &str) -> Result<Vec<OutputFil
     core.files(path, core.shipped_vectors()?)
 }
 
-fn both(registry: &Registry, texts: &[(&str, String)]) -> Result<Vec<Vec<OutputFile>>> {
+fn both(registry: &Registry, texts: &[(&str, String)]) -> Result<Vec<OutputFiles>> {
     let all = texts.iter();
     all.map(|(path, text)| generate(registry, path, text)).collect()
 }
@@ -42,7 +42,7 @@ fn all(criterion: &mut Criterion) {
     let registry = Registry::catalogue();
     let texts = CONFIGS.map(|path| (path, fs::read_to_string(path).expect("a configuration")));
     let files = both(&registry, &texts).expect("files");
-    let count = files.iter().map(Vec::len).sum::<usize>();
+    let count = files.iter().map(OutputFiles::len).sum::<usize>();
     let peak = peak_memory().unwrap_or_else(|| "unknown".to_owned());
     println!("{count} files of {CONFIGS:?}; peak memory of the process: {peak}");
     criterion.bench_function("generate both devices", |bencher| {

@@ -32,7 +32,7 @@ use glint::core::Core;
 use glint::cosim::{Lockstep, Outcome};
 use glint::hdl::netlist::{NetId, Role};
 use glint::hdl::sim::Simulator;
-use glint::package::Vectors;
+use glint::package::{FileKind, Vectors};
 use glint::registry::Registry;
 use glint::tools::Tool;
 
@@ -279,16 +279,15 @@ fn verdict(core: &Core) -> Result<f64> {
     Ok(begin.elapsed().as_secs_f64())
 }
 
-/// Writes what the simulators outside need, and returns the names of the Verilog files.
-fn write(core: &Core, vectors: &Vectors, dir: &Path) -> Result<Vec<String>> {
+/// Writes the files that the simulators outside read, and returns the names of the Verilog files of the kinds `compiled`.
+fn write(core: &Core, vectors: &Vectors, compiled: &[FileKind], dir: &Path) -> Result<Vec<String>> {
     let mut sources = Vec::new();
     let files = core.files("bench", vectors.clone())?;
-    // The form of a multiplier that is ECP5's own has a model of none of the simulators.
-    for file in files.iter().filter(|file| !file.path.contains("/ecp5/")) {
-        let name = file.name().to_owned();
-        fs::write(dir.join(&name), &file.contents)?;
-        if name.ends_with(".v") {
-            sources.push(name);
+    for file in files.of(FileKind::SIMULATED) {
+        let (name, contents) = file.source();
+        fs::write(dir.join(name), contents)?;
+        if compiled.contains(&file.kind) && file.kind.is_verilog() {
+            sources.push(name.to_owned());
         }
     }
     Ok(sources)
@@ -307,7 +306,7 @@ impl Verilator {
     fn build(core: &Core, streams: &Streams) -> Result<Self> {
         let dir = tempfile::tempdir()?;
         let name = |net: NetId| &core.design.net(net).name;
-        let sources = write(core, &streams.vectors(core)?, dir.path())?;
+        let sources = write(core, &streams.vectors(core)?, FileKind::DESIGN_SOURCES, dir.path())?;
         let mut ports = format!(
             "constexpr int INPUTS = {};\n\nstatic void drive(Vtop& top, const uint64_t* row) {{\n",
             core.design.inputs().count()
@@ -333,8 +332,7 @@ impl Verilator {
                 .filter(|argument| !argument.is_empty())
                 .collect();
         arguments.push(&core.config.name);
-        arguments
-            .extend(sources.iter().map(String::as_str).filter(|file| !file.ends_with("_tb.v")));
+        arguments.extend(sources.iter().map(String::as_str));
         arguments.push("paired.cpp");
         Tool::find("verilator")?.run_to_success(arguments, dir.path(), LIMIT)?;
         Ok(Self {
@@ -373,7 +371,7 @@ struct Icarus {
 impl Icarus {
     fn build(core: &Core, streams: &Streams) -> Result<Self> {
         let dir = tempfile::tempdir()?;
-        let sources = write(core, &streams.vectors(core)?, dir.path())?;
+        let sources = write(core, &streams.vectors(core)?, FileKind::SIMULATED, dir.path())?;
         let mut arguments = ["-g2012", "-o", "bench.vvp"].map(str::to_owned).to_vec();
         arguments.extend(sources);
         Tool::find("iverilog")?.run_to_success(arguments, dir.path(), LIMIT)?;

@@ -14,7 +14,7 @@ use serde_json::{Map, Value, json};
 use glint_config::{self as config, Key, KeyKind, Problems};
 use glint_core::core::Core;
 use glint_core::cosim::batch::Golden;
-use glint_core::package::{self, OutputFile};
+use glint_core::package::{self, FileKind, OutputFile};
 use glint_core::registry::Registry;
 use glint_keys::presets;
 use glint_prove::synth::TARGETS;
@@ -120,22 +120,24 @@ fn answered(request: &[u8]) -> Result<Value> {
             Ok(json!({ "ok": true, "svg": svg, "described": described }))
         }),
         Question::Files { toml } => of(&toml, |core| {
-            let mut files = core.files(FILE, core.shipped_vectors()?)?;
-            files.push(package::driver());
-            Ok(listed(&files))
+            let files = core.files(FILE, core.shipped_vectors()?)?;
+            Ok(listed(files.iter().chain([&package::driver()])))
         }),
         Question::Sources { toml } => of(&toml, |core| {
-            let mut files = core.files(FILE, None)?;
-            // Manifest and FuseSoC core list the bench, too.
-            files.retain(|it| ![".json", ".core"].iter().any(|ending| it.path.ends_with(ending)));
-            Ok(listed(&files))
+            let files = core.files(FILE, None)?;
+            // The manifest and the FuseSoC core list the bench, too.
+            let of_bench = [FileKind::Manifest, FileKind::CorePackage];
+            Ok(listed(files.iter().filter(|file| !of_bench.contains(&file.kind))))
         }),
     }
 }
 
-fn listed(files: &[OutputFile]) -> Value {
-    let files = files.iter().map(|it| json!({ "name": it.path, "text": it.contents }));
-    json!({ "ok": true, "files": files.collect::<Vec<_>>() })
+fn listed<'a>(files: impl IntoIterator<Item = &'a OutputFile>) -> Value {
+    let mut list = Vec::new();
+    for file in files {
+        list.push(json!({ "name": file.path, "text": file.contents }));
+    }
+    json!({ "ok": true, "files": list })
 }
 
 /// Returns the answer of `ask` to the core of a configuration.

@@ -8,8 +8,8 @@ use anyhow::Result;
 use crate::cosim::exhaustive::{Backing, Clocks, Job, Places};
 use crate::cosim::{Lockstep, directed, trial};
 use crate::package::{
-    self, ContractFacts, EmitInputs, HandshakeTiming, InstanceExample, LineClocks, OutputFile,
-    Surroundings, Vectors, WorkedExample,
+    self, ContractFacts, EmitInputs, FileKind, HandshakeTiming, InstanceExample, LineClocks,
+    OutputFiles, Surroundings, Vectors, WorkedExample,
 };
 use crate::registry::{DesignError, Device};
 use glint_base::input;
@@ -271,7 +271,7 @@ impl Core {
     ///
     /// # Errors
     /// Fails if the contract is no formula of one operand.
-    pub fn recomputation(&self) -> Result<Vec<OutputFile>> {
+    pub fn recomputation(&self) -> Result<OutputFiles> {
         let asked = Surroundings { software: true, recomputation: true, ..Surroundings::default() };
         let inputs = EmitInputs {
             accuracy: Some(ContractFacts::new(self.contract.as_ref())),
@@ -292,11 +292,7 @@ impl Core {
     ///
     /// # Errors
     /// Fails if golden model and simulation do not agree, or if the design cannot be written as Verilog.
-    pub fn files(
-        &self,
-        config: &str,
-        vectors: impl Into<Option<Vectors>>,
-    ) -> Result<Vec<OutputFile>> {
+    pub fn files(&self, config: &str, vectors: impl Into<Option<Vectors>>) -> Result<OutputFiles> {
         let around = Surroundings::new(&self.config, self.design.pipeline.as_ref());
         let sequential = self.microprogram(around.software)?;
         let inputs = EmitInputs {
@@ -326,7 +322,19 @@ impl Core {
         package::instances(&self.design, &inputs)
     }
 
-    /// Returns only the files that synthesis needs, Verilog and ROM contents, as pairs of a plain name and contents.
+    /// Returns only the files that synthesis needs: the Verilog of the core, for every target, and the contents of its ROMs.
+    ///
+    /// # Errors
+    /// Fails if the design cannot be written as Verilog.
+    pub fn core_files(&self) -> Result<OutputFiles> {
+        let around = Surroundings {
+            style: Surroundings::new(&self.config, None).style,
+            ..Surroundings::default()
+        };
+        package::emit_core(&self.design, &EmitInputs { around, ..EmitInputs::default() })
+    }
+
+    /// Returns the files of [`Core::core_files`] for all targets, as pairs of a plain name and contents.
     ///
     /// # Errors
     /// Fails if the design cannot be written as Verilog.
@@ -339,11 +347,6 @@ impl Core {
     /// # Errors
     /// Fails if the design cannot be written as Verilog.
     pub fn verilog_for(&self, target: &str) -> Result<Vec<(String, String)>> {
-        let around = Surroundings {
-            style: Surroundings::new(&self.config, None).style,
-            ..Surroundings::default()
-        };
-        let files = package::emit(&self.design, &EmitInputs { around, ..EmitInputs::default() })?;
-        Ok(package::sources_for(files, target))
+        Ok(self.core_files()?.sources_for(FileKind::CORE_SOURCES, target))
     }
 }

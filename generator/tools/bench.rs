@@ -10,6 +10,7 @@ use std::time::{Duration, Instant};
 use anyhow::{Context, Result, anyhow, bail, ensure};
 
 use super::{Tool, capture};
+use crate::file_names::is_verilog;
 use crate::transient::Directory;
 
 /// An event-driven or compiling Verilog simulator.
@@ -214,7 +215,7 @@ fn write_files<'a, N: AsRef<str>, C: AsRef<[u8]>>(
         let path = directory.join(name);
         ensure!(!path.exists(), "there are two files named `{name}`");
         fs::write(&path, contents).with_context(|| format!("cannot write {}", path.display()))?;
-        if name.ends_with(".v") || name.ends_with(".sv") {
+        if is_verilog(name) {
             sources.push(name);
         }
     }

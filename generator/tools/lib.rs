@@ -21,6 +21,7 @@ mod bench;
 mod capture;
 mod difference;
 mod elaborate;
+mod file_names;
 pub mod gates;
 mod lint;
 mod proof;
@@ -34,6 +35,7 @@ pub use bench::{BenchOutcome, BuiltBench, VerilogSimulator, Waveform, run_bench}
 use capture::Capture;
 pub use difference::{BenchDifference, bench_waveform};
 pub use elaborate::elaborate;
+pub use file_names::is_verilog;
 pub use lint::lint;
 pub use proof::{PROOF_LIMITS, prove};
 

@@ -11,16 +11,16 @@ use super::{LimitReached, Limits, Tool, capture};
 /// The limits of each command of a proof, unless less is asked for.
 pub const PROOF_LIMITS: Limits = Limits { time: Duration::from_secs(300), memory: Some(4 << 30) };
 
-/// Runs the commands that the head of the wrapper `<name>_formal.sv` gives to users. `directory` must have the wrapper
-/// and the files of its device. The head must have three lines that begin with `$ yosys`. For example, the first
-/// command for AXI4-Lite is `yosys -q threshold_levels_axil_formal.ys`.
+/// Runs the commands that the head of the proof `file` gives to users. `directory` must have the proof and the files of
+/// its device. The head must have three lines that begin with `$ yosys`. For example, the first command of
+/// `threshold_levels_axil_formal.sv` is `yosys -q threshold_levels_axil_formal.ys`.
 ///
 /// # Errors
 /// Fails if the proof does not succeed, or if a tool is missing. Fails with [`LimitReached`], which says nothing
 /// about the properties, if a command takes more than its limits.
-pub fn prove(directory: &Path, name: &str, limits: impl Into<Limits>) -> Result<()> {
+pub fn prove(directory: &Path, file: &str, limits: impl Into<Limits>) -> Result<()> {
     let limits = limits.into();
-    let file = directory.join(format!("{name}_formal.sv"));
+    let file = directory.join(file);
     let wrapper =
         fs::read_to_string(&file).with_context(|| format!("cannot read `{}`", file.display()))?;
     let commands: Vec<Vec<&str>> = wrapper

@@ -8,6 +8,7 @@ use anyhow::{Context, Result};
 use serde_json::Value;
 
 use super::Tool;
+use crate::file_names::is_verilog;
 use crate::transient::Directory;
 
 /// Files with the Yosys that reads them.
@@ -19,7 +20,7 @@ pub struct YosysSources<'a> {
 }
 
 impl<'a> YosysSources<'a> {
-    /// Writes `files`, pairs of a plain name and contents. Yosys reads the files that end in `.v`. No run of Yosys
+    /// Writes `files`, pairs of a plain name and contents. Yosys reads the files in Verilog. No run of Yosys
     /// takes longer than `limit`.
     ///
     /// # Errors
@@ -27,7 +28,7 @@ impl<'a> YosysSources<'a> {
     pub fn new(yosys: &'a Tool, files: &[(String, String)], limit: Duration) -> Result<Self> {
         let directory = Directory::new().context("cannot make a directory for synthesis")?;
         let names = files.iter().map(|(name, _)| name.as_str());
-        let verilog: Vec<&str> = names.filter(|name| name.ends_with(".v")).collect();
+        let verilog: Vec<&str> = names.filter(|name| is_verilog(name)).collect();
         let sources = Self { directory, yosys, verilog: verilog.join(" "), limit };
         files.iter().try_for_each(|(name, contents)| sources.write(name, contents))?;
         Ok(sources)

@@ -3,7 +3,7 @@
 use std::fs;
 
 use super::Sure;
-use glint::tools::{Run, VerilogSimulator};
+use glint::tools::{Run, VerilogSimulator, is_verilog};
 use tempfile::TempDir;
 
 use super::cores::{Files, write};
@@ -39,8 +39,8 @@ impl Bench {
     fn build_with(simulator: VerilogSimulator, files: &Files, top: &str) -> (Self, String) {
         let dir = tempfile::tempdir().expect("a directory");
         write(dir.path(), files);
-        let sources =
-            files.iter().map(|(name, _)| name.as_str()).filter(|name| name.ends_with(".v"));
+        let names = files.iter().map(|(name, _)| name.as_str());
+        let sources = names.filter(|name| is_verilog(name));
         let (compiler, arguments) = match simulator {
             VerilogSimulator::Icarus => ("iverilog", "-g2012 -Wall -o bench.vvp -s"),
             // It takes a warning for an error. The bench runs for an instant: optimising it takes longer.

@@ -6,7 +6,7 @@ use std::path::Path;
 use glint::config::{self, Config, Problems};
 use glint::core::Core;
 use glint::cosim::{Outcome, trial};
-use glint::package::{Computation, OutputFile, sources, sources_for};
+use glint::package::{Computation, FileKind, OutputFile, OutputFiles, driver};
 use glint::registry::{Device, Registry};
 use tempfile::TempDir;
 
@@ -170,7 +170,7 @@ pub fn random(device: Device, seed: u64) -> (String, Core) {
 /// The files of a configuration whose bench runs over so many points.
 pub struct Emitted {
     /// Everything, as it would be written.
-    pub files: Vec<OutputFile>,
+    pub files: OutputFiles,
     /// The name of the top module.
     pub name: String,
 }
@@ -194,43 +194,49 @@ impl Emitted {
 
     /// Verilog and memories of the device, without its bench.
     pub fn rtl(&self) -> Files {
-        self.below("rtl_out/")
+        self.files.sources(FileKind::DESIGN_SOURCES)
     }
 
     /// Returns the files for a family of FPGAs, its own in place of portable ones.
     pub fn rtl_for(&self, family: &str) -> Files {
-        let rtl = self.files.iter().filter(|file| file.path.starts_with("rtl_out/"));
-        sources_for(rtl.cloned().collect(), family)
+        self.files.sources_for(FileKind::DESIGN_SOURCES, family)
     }
 
     /// Verilog and memories of the device and of its bench.
     pub fn simulated(&self) -> Files {
-        self.below("")
+        self.files.sources(FileKind::SIMULATED)
     }
 
-    /// Returns all files in a directory, each where it would be written.
+    /// Returns all files and the driver of the benches in Python in a directory, each where it would be written.
     pub fn tree(&self) -> TempDir {
         let dir = tempfile::tempdir().expect("a directory");
-        self.files.iter().for_each(|it| put(dir.path().join(&it.path), &it.contents));
-        dir
-    }
-
-    /// Returns the files of which the path begins so, beside each other in a directory. A form of a file for one target has the
-    /// name of the portable one, and is left out.
-    pub fn beside(&self, start: &str) -> TempDir {
-        let dir = tempfile::tempdir().expect("a directory");
-        let files = self.files.iter().filter(|file| file.path.starts_with(start));
-        for file in files.filter(|file| !file.path.contains("/ecp5/")) {
-            fs::write(dir.path().join(file.name()), &file.contents).expect("written");
+        for file in self.files.iter().chain([&driver()]) {
+            put(dir.path().join(&file.path), &file.contents);
         }
         dir
     }
 
-    fn below(&self, directory: &str) -> Files {
-        let files = self.files.iter();
-        let below = files.filter(|file| file.path.starts_with(directory));
-        sources(below.cloned().collect())
+    /// Returns the files of one folder beside each other in a directory. For example, the folder `rtl_out`.
+    pub fn beside(&self, folder: &str) -> TempDir {
+        side_by_side(self.files.iter().filter(|file| file.kind.folder() == folder))
     }
+
+    /// Returns the files of all folders beside each other in a directory.
+    pub fn all_beside(&self) -> TempDir {
+        side_by_side(self.files.iter())
+    }
+}
+
+/// Writes files beside each other into a directory. A form of a file for one target has the name of the form for all targets,
+/// and is left out.
+fn side_by_side<'a>(files: impl Iterator<Item = &'a OutputFile>) -> TempDir {
+    let dir = tempfile::tempdir().expect("a directory");
+    for file in files {
+        if file.target.is_none() {
+            fs::write(dir.path().join(file.name()), &file.contents).expect("written");
+        }
+    }
+    dir
 }
 
 /// Writes files into a directory.

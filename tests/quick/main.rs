@@ -20,6 +20,7 @@ mod datasheet;
 mod devices;
 mod diagnostics;
 mod divider;
+mod emission;
 mod keys;
 mod lines;
 mod multipliers;

@@ -5,7 +5,7 @@ use crate::common::tools::{LIMIT, benched};
 use glint::dsl::{Designer, end, step, valid};
 use glint::fixed::{Format, Overflow, Rounding};
 use glint::hdl::netlist::Design;
-use glint::package::{EmitInputs, Vectors, emit, sources};
+use glint::package::{EmitInputs, FileKind, Vectors, emit};
 use glint::tools::{BenchDifference, BenchOutcome, VerilogSimulator, bench_waveform};
 
 /// y = x², of an operand of four bits, to four bits.
@@ -45,7 +45,7 @@ fn vectors() -> Vectors {
 
 fn files(vectors: Vectors) -> Vec<(String, String)> {
     let inputs = EmitInputs { vectors: Some(vectors), ..EmitInputs::default() };
-    sources(emit(&squarer(), &inputs).sure())
+    emit(&squarer(), &inputs).sure().sources(FileKind::SIMULATED)
 }
 
 fn run(simulator: VerilogSimulator, vectors: Vectors) -> BenchOutcome {

@@ -12,7 +12,6 @@ use crate::common::sample::sampled;
 use crate::common::tools::{LIMIT, tool};
 use crate::faults::faults;
 use glint::core::Core;
-use glint::package;
 use glint::tools::Run;
 use rayon::prelude::*;
 
@@ -132,8 +131,7 @@ fn benches_of_wrappers_pass() {
     ];
     wrappers.par_iter().for_each(|&(name, wrapper)| {
         let core = configuration(&format!("configs/{name}.toml"));
-        let mut emitted = Emitted::new(&core, 20, 1);
-        emitted.files.push(package::driver());
+        let emitted = Emitted::new(&core, 20, 1);
         let run = run(emitted.tree().path(), &format!("{name}_{wrapper}"), name);
         let passed = format!("PASS {name}_{wrapper}: ");
         assert!(run.status.success() && run.output.contains(&passed), "{}", run.output);
@@ -142,9 +140,7 @@ fn benches_of_wrappers_pass() {
 
 /// Returns the files of a configuration where the bench expects them.
 fn dir(core: &Core) -> tempfile::TempDir {
-    let mut emitted = Emitted::new(core, 1, 1);
-    emitted.files.push(package::driver());
-    emitted.tree()
+    Emitted::new(core, 1, 1).tree()
 }
 
 /// Runs the command that the head of the bench of a module gives, in the directory of its core.

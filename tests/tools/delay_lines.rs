@@ -1,6 +1,7 @@
 //! Delay lines of the emitted Verilog: memories in place of registers. A bench fails where one is too long or too short,
 //! or does not wait when points do.
 
+use glint::package::FileKind;
 use glint::tools::VerilogSimulator;
 
 use crate::common::cores::{Emitted, Files, configuration, configuration_with};
@@ -44,8 +45,7 @@ fn with_words(text: &str, words: usize, other: usize) -> String {
 #[test]
 fn a_line_that_is_too_long_or_too_short_is_noticed() {
     let emitted = Emitted::new(&configuration(CONFIG), POINTS, 1);
-    let text = emitted.rtl().into_iter().find(|(name, _)| name.ends_with("_pipelined.v"));
-    let slots = slots(&text.expect("a module").1);
+    let slots = slots(&emitted.files.of(&[FileKind::CoreVerilog])[0].contents);
     assert!(!slots.is_empty(), "no delay lines");
     let mut cases = Vec::new();
     for simulator in [VerilogSimulator::Icarus, VerilogSimulator::Verilator] {

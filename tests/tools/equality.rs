@@ -9,10 +9,11 @@ use glint::equality::{Open, TextVerdict, Verdict, compare, compare_text};
 use glint::fixed::Format;
 use glint::hdl::netlist::{Design, Driver, NetId, Op};
 use glint::hdl::pipeline::{Delays, Goal, IntervalGoal, Options, pipeline};
+use glint::package::FileKind;
 use glint::tools::elaborate;
 
 use crate::common::Sure;
-use crate::common::cores::{configuration, configuration_with, pipelines};
+use crate::common::cores::{Files, configuration, configuration_with, pipelines};
 use crate::common::sample::sampled;
 use crate::common::tools::tool;
 
@@ -168,9 +169,11 @@ fn what_the_solver_leaves_open_is_unknown_or_a_limit() {
 fn of_text(core: &Core, limit: u64, change: impl Fn(&str) -> String) -> TextVerdict {
     let [yosys, z3] = ["yosys", "z3"].map(tool);
     let limit = Duration::from_secs(limit);
-    let mut files = core.verilog().expect("Verilog");
-    for (_, text) in files.iter_mut().filter(|(name, _)| name.ends_with(".v")) {
-        *text = change(text);
+    let mut files = Files::new();
+    for file in core.core_files().expect("Verilog").of(FileKind::CORE_SOURCES) {
+        let (name, text) = file.source();
+        let text = if file.kind.is_verilog() { change(text) } else { text.to_owned() };
+        files.push((name.to_owned(), text));
     }
     let text = elaborate(&yosys, &files, &core.config.name, limit).expect("a netlist");
     compare_text(&core.design, &text, &z3, limit).expect("a verdict")

@@ -62,7 +62,7 @@ impl Fault {
     /// The proof of a module holds with the fault in a file beside it.
     pub fn assert_breaks(&self, place: &Path, module: &str, file: &str) {
         self.plant(&place.join(file));
-        let proof = prove(place, module, LIMIT);
+        let proof = prove(place, &format!("{module}_formal.sv"), LIMIT);
         assert!(proof.is_err(), "`{}` in {file} is proved", self.wrong);
     }
 }

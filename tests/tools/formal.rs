@@ -71,7 +71,7 @@ fn faults_break_the_proof() {
 
 fn assert_proved(core: &Core, what: &str) {
     let (dir, name) = emitted(core);
-    prove(dir.path(), &name, LIMIT).sure_of(what);
+    prove(dir.path(), &proof_of(&name), LIMIT).sure_of(what);
 }
 
 fn assert_breaks(core: &Core, fault: &Fault) {
@@ -89,7 +89,7 @@ fn a_wrong_bit_of_sequencing_breaks_the_proof() {
             let (dir, name) = emitted(&core);
             let path = dir.path().join(format!("{name}_control.mem"));
             put(&path, with_flipped_bit(&read(&path), word, bit));
-            let proof = prove(dir.path(), &name, LIMIT);
+            let proof = prove(dir.path(), &proof_of(&name), LIMIT);
             assert!(proof.is_err(), "{name}: word {word} without bit {bit}");
         });
     });
@@ -102,7 +102,7 @@ fn a_domain_narrower_than_its_port_is_proved() {
     let text = "device = \"lyon\"\n[domain]\nexponent_min = 100\nexponent_max = 150\n";
     let core = parsed("test.toml", text);
     let (dir, name) = emitted(&core);
-    prove(dir.path(), &name, PROOF_LIMITS).sure();
+    prove(dir.path(), &proof_of(&name), PROOF_LIMITS).sure();
 }
 
 #[test]
@@ -112,7 +112,7 @@ fn a_proof_that_takes_too_much_says_so() {
     // Enough for Yosys and Python, not for the solver.
     let memory = Limits { time: LIMIT, memory: Some(40 << 20) };
     for limits in [time, memory] {
-        let error = prove(dir.path(), &name, limits).expect_err("a limit");
+        let error = prove(dir.path(), &proof_of(&name), limits).expect_err("a limit");
         assert!(error.downcast_ref::<LimitReached>().is_some(), "{limits:?}: {error:#}");
     }
 }
@@ -120,7 +120,12 @@ fn a_proof_that_takes_too_much_says_so() {
 /// Returns the files of a configuration in a directory of their own, and its name.
 fn emitted(core: &Core) -> (tempfile::TempDir, String) {
     let emitted = Emitted::new(core, 1, 1);
-    (emitted.beside(""), emitted.name)
+    (emitted.all_beside(), emitted.name)
+}
+
+/// Returns the file of the proof of a core.
+fn proof_of(name: &str) -> String {
+    format!("{name}_formal.sv")
 }
 
 /// `glint verify` proves, lints and simulates what is emitted around a core too.

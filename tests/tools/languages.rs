@@ -8,6 +8,7 @@ use std::path::Path;
 use glint::core::Core;
 use glint::fixed::Format;
 use glint::hdl::netlist::{Design, Role};
+use glint::package::FileKind;
 use glint::tools::VerilogSimulator;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{RngCore, SeedableRng};
@@ -57,7 +58,7 @@ fn of_cores(
 fn the_entity_in_vhdl_is_the_core() {
     cores().for_each(|(name, core)| {
         let emitted = Emitted::new(&core, 100, 1);
-        let dir = emitted.beside("rtl_out/");
+        let dir = emitted.beside("rtl_out");
         let top = format!("{name}_fixed");
         ran("ghdl", ["-a", "--std=08", &format!("{name}.vhd")], dir.path());
         let made = ran("ghdl", ["synth", "--std=08", "--out=verilog", &top], dir.path());
@@ -67,8 +68,9 @@ fn the_entity_in_vhdl_is_the_core() {
         let entity = entity.split("module ").nth(1).expect("the entity");
         let entity = entity.split_inclusive("endmodule\n").next().expect("its end");
         let mut files = emitted.simulated();
+        let bench = emitted.files.of(&[FileKind::Bench])[0].name();
         for (file, text) in &mut files {
-            if *file == format!("{name}_tb.v") {
+            if file == bench {
                 let through = text.replace("dut.", "dut.core.");
                 let through = through.replace(&format!("{name} dut"), &format!("{top} dut"));
                 assert!(through.contains(&format!("{top} dut")), "{through}");
@@ -102,7 +104,7 @@ fn names_that_vhdl_reserves_are_analysed() {
         let text = format!(
             "device = \"schlick\"\nname = \"{name}\"\n[interface]\nstream = true\n[package]\nvhdl = true\n"
         );
-        let dir = Emitted::new(&parsed("core.toml", &text), 1, 1).beside("rtl_out/");
+        let dir = Emitted::new(&parsed("core.toml", &text), 1, 1).beside("rtl_out");
         ran("ghdl", ["-a", "--std=08", &format!("{name}.vhd")], dir.path());
     }
 }
@@ -112,7 +114,7 @@ fn names_that_vhdl_reserves_are_analysed() {
 fn a_sign_alone_is_a_type_of_systemverilog() {
     let text = "device = \"function\"\nname = \"f\"\n[function]\nformula = \"-x\"\nfrom = 0\nto = 1\nto_included = true\n\
                 [operand]\nfraction = 0\n[result]\nfraction = 0\n[package]\nsystemverilog = true\n";
-    let dir = Emitted::new(&parsed("core.toml", text), 1, 1).beside("rtl_out/");
+    let dir = Emitted::new(&parsed("core.toml", text), 1, 1).beside("rtl_out");
     let check = "module check;\n    import f_pkg::*;\n    initial $display(\"%0d %0d\", y_from(-3.0), y_from(2.0));\nendmodule\n";
     let package = read(dir.path().join("f_pkg.sv"));
     let result = package.split("function automatic real ").nth(2).expect("the result");
@@ -167,7 +169,7 @@ fn components_of_vhdl_have_the_ports_of_the_verilog() {
     let compared: usize = some_cores("components of VHDL")
         .map(|(name, core)| {
             let emitted = Emitted::new(&core, 1, 1);
-            let dir = emitted.beside("rtl_out/");
+            let dir = emitted.beside("rtl_out");
             let text = read(dir.path().join(format!("{name}.vhd")));
             let components = ports_of_components(&text);
             for (top, ports) in &components {
@@ -209,7 +211,7 @@ fn transfer(core: &Core, numbers: &[(String, Format)]) -> usize {
 fn types_of_systemverilog_hold_the_numbers() {
     some_cores("types of SystemVerilog").for_each(|(name, core)| {
         let emitted = Emitted::new(&core, 1, 1);
-        let dir = emitted.beside("rtl_out/");
+        let dir = emitted.beside("rtl_out");
         let values = [-1e30, -3.7, -2.0, -1.5, -0.25, 0.0, 1e-8, 0.75, 1.0, 1.999, 2.0, 300.5, 7e9];
         let mut functions = String::new();
         let mut text = String::new();

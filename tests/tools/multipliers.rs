@@ -8,6 +8,7 @@ use crate::common::cores::{Emitted, Files, configuration, configuration_with};
 use crate::common::netlist::{self, POINTS, synthesise};
 use crate::common::tools::{ran, tool};
 use crate::faults::faults;
+use glint::package::FileKind;
 use glint::target::{ECP5, ICE40};
 use glint::tools::{VerilogSimulator, gates};
 use rayon::prelude::*;
@@ -20,8 +21,7 @@ const TWINS: &str = include_str!("benches/twins.v");
 /// Returns the files of the configuration, and the text of its multiplier for ECP5.
 fn emitted() -> (Emitted, String) {
     let emitted = Emitted::new(&configuration(CONFIGURATION), POINTS, 1);
-    let own = emitted.files.iter().find(|file| file.path.contains("/ecp5/")).expect("a file");
-    let own = own.contents.clone();
+    let own = emitted.files.of(&[FileKind::TargetVerilog])[0].contents.clone();
     (emitted, own)
 }
 

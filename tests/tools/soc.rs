@@ -56,5 +56,5 @@ fn proof(words: u32, change: impl Fn(String) -> String) -> Result<()> {
     put(dir.path().join("span_formal.sv"), problem);
     put(dir.path().join("span_formal.ys"), read("span_formal.ys"));
     put(dir.path().join("span.v"), change(read("span.v")));
-    prove(dir.path(), "span", LIMIT)
+    prove(dir.path(), "span_formal.sv", LIMIT)
 }

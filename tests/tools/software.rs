@@ -147,7 +147,7 @@ struct Model {
 impl Model {
     fn new(config: &str) -> Self {
         let core = configuration_with(config, SOFTWARE);
-        let dir = Emitted::new(&core, 1, 1).beside("software/");
+        let dir = Emitted::new(&core, 1, 1).beside("software");
         Self { core, dir }
     }
 

@@ -8,7 +8,7 @@ use glint::base::input;
 use glint::dsl::{Designer, end, step, valid};
 use glint::fixed::{Format, Overflow, Rounding};
 use glint::hdl::netlist::Design;
-use glint::package::{self, EmitInputs};
+use glint::package::{self, EmitInputs, FileKind};
 use glint::synth::{self, Area, Figures, Flow, SynthesisRecord, SynthesisSubject, Target};
 
 use crate::common::Sure;
@@ -34,8 +34,8 @@ fn flow(target: Target) -> Flow {
 }
 
 fn measured(target: Target, design: &Design, seeds: u32) -> Figures {
-    let files = package::emit(design, &EmitInputs::default()).expect("Verilog");
-    let files = package::sources_for(files, target.name());
+    let emitted = package::emit_core(design, &EmitInputs::default()).expect("Verilog");
+    let files = emitted.sources_for(FileKind::CORE_SOURCES, target.name());
     let subject = SynthesisSubject { design, files: &files, seeds, limit: LIMIT };
     flow(target).measure(&subject, &|| ()).sure()
 }

@@ -12,7 +12,7 @@ use crate::store::{self, Written};
 use crate::{Configs, OutputOptions, failure, progress, say, tables};
 use glint_base::program::Program;
 use glint_core::cosim::directed::ComputationCache;
-use glint_core::package::{self, OutputFile, Seal};
+use glint_core::package::{self, OutputFiles, Seal};
 use glint_core::registry::Registry;
 use glint_prove::synth::TARGETS;
 use glint_prove::tune::Cost;
@@ -126,7 +126,7 @@ fn misfit(one: &Loaded) -> Option<String> {
 /// The files of a configuration.
 pub struct Made {
     /// The files.
-    pub files: Vec<OutputFile>,
+    pub files: OutputFiles,
     /// The bench notices a fault in every word of the memories if this is 1. For example, 4 means that the bench checks
     /// one of four words.
     word_stride: usize,
@@ -146,7 +146,8 @@ pub fn all_files(output: OutputOptions, loaded: &[Loaded], with_bench: bool) -> 
         .collect();
     bar.finish_and_clear();
     let made: Vec<Made> = made?;
-    let named = loaded.iter().zip(&made).map(|(one, made)| (one.path.as_str(), &made.files[..]));
+    let named =
+        loaded.iter().zip(&made).map(|(one, made)| (one.path.as_str(), made.files.as_slice()));
     package::module_names::check_together(named)?;
     Ok(made)
 }
@@ -160,14 +161,14 @@ fn files(one: &Loaded, known: &ComputationCache, with_bench: bool) -> Result<Mad
 }
 
 /// Writes the files of a configuration, and the driver that its bench in Python shares with others.
-pub fn write(out: &Path, one: &Loaded, files: &[OutputFile], force: bool) -> Result<Written> {
+pub fn write(out: &Path, one: &Loaded, files: &OutputFiles, force: bool) -> Result<Written> {
     let driver = package::driver();
     let path = out.join(&driver.path);
     // This comes before anything is written. Other obstacles show in writing.
     if path.is_file() {
         store::may_write(&path, Seal::Python, force)?;
     }
-    let written = store::write(out, &one.core.config.name, files, force)
+    let written = store::write(out, &one.core.config.name, files.as_slice(), force)
         .with_context(|| format!("`{}` was not generated", one.path))?;
     store::write_sealed(&path, &driver.contents, Seal::Python, force)?;
     Ok(written)
@@ -181,7 +182,7 @@ fn compare(output: OutputOptions, out: &Path, loaded: &[Loaded], made: &[Made]) 
         all.push(driver.path);
     }
     for (one, Made { files, .. }) in loaded.iter().zip(made) {
-        all.extend(store::differences(out, &one.core.config.name, files)?);
+        all.extend(store::differences(out, &one.core.config.name, files.as_slice())?);
     }
     if output.json {
         tables::print_json(&json!({ "ok": all.is_empty(), "different": all }));

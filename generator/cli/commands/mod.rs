@@ -43,7 +43,7 @@ use glint_base::program::Program;
 use glint_base::text;
 use glint_config::{self as config, Problems};
 use glint_core::core::Core;
-use glint_core::package::{OutputFile, Vectors};
+use glint_core::package::{OutputFiles, Vectors};
 use glint_core::registry::{CLOCK_MHZ, Registry};
 use glint_golden::Bound;
 use glint_show::evidence::advice;
@@ -206,7 +206,7 @@ fn verdict(bound: &Bound, failures: &[String]) -> &'static str {
 impl Loaded {
     /// Returns every file of the configuration. If a key asks for something that the core cannot have, the error
     /// shows the place of the key in the file.
-    fn files(&self, vectors: impl Into<Option<Vectors>>) -> Result<Vec<OutputFile>> {
+    fn files(&self, vectors: impl Into<Option<Vectors>>) -> Result<OutputFiles> {
         let files = self.core.files(&self.path, vectors);
         files.map_err(|error| located(error, &self.path, &self.locations))
     }

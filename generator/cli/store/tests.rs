@@ -4,19 +4,20 @@ use std::fs;
 use std::path::Path;
 
 use super::*;
-use glint_core::package::digest;
+use glint_core::package::{FileKind, digest};
 
 /// Returns a manifest that vouches for the other files, last.
 fn files(text: &str) -> Vec<OutputFile> {
-    let mut files: Vec<OutputFile> = ["rtl_out/core/core.v", "testbench/core/core_tb.v"]
-        .map(|path| OutputFile { path: path.to_owned(), contents: text.to_owned() })
-        .into();
+    let mut files = vec![
+        OutputFile::new(FileKind::CoreVerilog, "rtl_out/core/core.v", text),
+        OutputFile::new(FileKind::Bench, "testbench/core/core_tb.v", text),
+    ];
     let digests: serde_json::Map<_, _> = files
         .iter()
         .map(|file| (file.path.clone(), digest(file.contents.as_bytes()).into()))
         .collect();
     let contents = serde_json::json!({ "sha256": digests }).to_string();
-    files.push(OutputFile { path: "rtl_out/core/core.json".to_owned(), contents });
+    files.push(OutputFile::new(FileKind::Manifest, "rtl_out/core/core.json", contents));
     files
 }
 
@@ -73,7 +74,7 @@ fn what_is_stale_goes_and_what_is_foreign_stays() {
     let dir = written("old");
     let at = |path: &str| dir.path().join(path);
     let mut less = files("new");
-    less.retain(|file| file.path.starts_with("rtl_out"));
+    less.retain(|file| file.kind != FileKind::Bench);
     fs::remove_file(at("rtl_out/core/core.v")).unwrap();
     fs::create_dir(at("rtl_out/core/core.v")).unwrap();
     assert!(write(dir.path(), "core", &less, false).is_err() && at("testbench/core").is_dir());

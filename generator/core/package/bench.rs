@@ -4,7 +4,9 @@
 use anyhow::{Result, ensure};
 use glint_base::fill;
 
-use super::artifact::{ArtifactKind, Artifacts, EmitJob};
+use super::emit_job::EmitJob;
+use super::file_kind::FileKind;
+use super::output_files::OutputFiles;
 use crate::observation::Vectors;
 use glint_base::fixed::mask;
 use glint_rtl::netlist::{Design, Port, Role};
@@ -39,7 +41,7 @@ struct StepLabel {
 ///
 /// # Errors
 /// Fails if the vectors do not fit the ports.
-pub fn files(job: &EmitJob, vectors: &Vectors, files: &mut Artifacts) -> Result<()> {
+pub fn files(job: &EmitJob, vectors: &Vectors, files: &mut OutputFiles) -> Result<()> {
     let design = job.design;
     let inputs: Vec<_> = design.inputs().collect();
     let outputs: Vec<_> = design.outputs().collect();
@@ -60,9 +62,9 @@ pub fn files(job: &EmitJob, vectors: &Vectors, files: &mut Artifacts) -> Result<
     let stimulus = vector_file(design, "stimulus", &inputs, &vectors.inputs)?;
     let expected = vector_file(design, "expected outputs", &outputs, &vectors.expected)?;
     let name = job.name();
-    files.add(ArtifactKind::Bench, format!("{name}_tb.v"), bench(job, vectors)?);
-    files.add(ArtifactKind::Bench, format!("{name}_stimulus.mem"), stimulus);
-    files.add(ArtifactKind::Bench, format!("{name}_expected.mem"), expected);
+    files.add_verilog(FileKind::Bench, vec![format!("{name}_tb")], bench(job, vectors)?);
+    files.add(FileKind::BenchVectors, format!("{name}_stimulus.mem"), stimulus);
+    files.add(FileKind::BenchVectors, format!("{name}_expected.mem"), expected);
     Ok(())
 }
 

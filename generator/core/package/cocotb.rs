@@ -4,8 +4,10 @@
 use anyhow::Result;
 use glint_base::fill;
 
-use super::artifact::{ArtifactKind, Artifacts, EmitJob};
+use super::emit_job::EmitJob;
+use super::file_kind::FileKind;
 use super::output_file::OutputFile;
+use super::output_files::OutputFiles;
 use super::seal::{Seal, sealed};
 use crate::observation::{ContractFacts, Quantity, WorkedExample};
 
@@ -37,7 +39,7 @@ pub fn file(
     job: &EmitJob,
     example: &WorkedExample,
     accuracy: &ContractFacts,
-    files: &mut Artifacts,
+    files: &mut OutputFiles,
 ) -> Result<()> {
     let (name, design) = (job.name(), job.design);
     let pipeline = design.pipeline.is_some();
@@ -58,7 +60,7 @@ pub fn file(
         // The results of the example.
         shown: &'a str = if pipeline { "shown" } else { "shown.results[0]" },
     })?;
-    files.add(ArtifactKind::Python, format!("test_{name}.py"), text);
+    files.add(FileKind::CocotbBench, format!("test_{name}.py"), text);
     Ok(())
 }
 
@@ -78,8 +80,7 @@ fn lines(quantities: &[Quantity], code: fn(&str, i128) -> String) -> Vec<String>
 /// Returns the driver, with a digest of its text in the last line.
 pub fn driver() -> OutputFile {
     let text = fill!("glint_cocotb.py" {}).expect("a template without fields");
-    OutputFile {
-        path: "testbench/glint_cocotb.py".to_owned(),
-        contents: sealed(text, Seal::Python),
-    }
+    let kind = FileKind::CocotbDriver;
+    let path = format!("{}/glint_cocotb.py", kind.folder());
+    OutputFile::new(kind, path, sealed(text, Seal::Python))
 }

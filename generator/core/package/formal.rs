@@ -7,7 +7,9 @@
 use anyhow::Result;
 use glint_base::fill;
 
-use super::artifact::{ArtifactKind, Artifacts, EmitJob};
+use super::emit_job::EmitJob;
+use super::file_kind::FileKind;
+use super::output_files::OutputFiles;
 use crate::observation::Computation;
 use glint_rtl::netlist::HandshakeTiming;
 use glint_rtl::netlist::termination::{self, Left};
@@ -81,20 +83,20 @@ impl Script<'_> {
         wrapper: String,
         depth: u32,
         engine: &str,
-        files: &mut Artifacts,
+        files: &mut OutputFiles,
     ) -> Result<()> {
         let Self { name, within, initial } = *self;
-        let (rtl, memories) =
-            (files.names(&[ArtifactKind::Rtl]), files.names(&[ArtifactKind::Memory]));
+        let rtl = files.local_paths(&[FileKind::CoreVerilog]);
+        let memories = files.local_paths(&[FileKind::Memory]);
         let script = fill!("formal.ys" {
             name: &'a str, within: &'a str, rtl: &'a [String] = &rtl, initial: bool,
         })?;
         let task = fill!("formal.sby" {
             name: &'a str, within: &'a str, depth: u32, engine: &'a str, rtl: Vec<String>, memories: Vec<String>,
         })?;
-        for (ending, text) in [("sv", wrapper), ("ys", script), ("sby", task)] {
-            files.add(ArtifactKind::Proof, format!("{name}.{ending}"), text);
-        }
+        files.add_system_verilog(FileKind::CoreProof, vec![name.to_owned()], wrapper);
+        files.add(FileKind::CoreProofScript, format!("{name}.ys"), script);
+        files.add(FileKind::CoreProofScript, format!("{name}.sby"), task);
         Ok(())
     }
 }
@@ -121,7 +123,7 @@ fn valid_delay(design: &Design) -> u32 {
 ///
 /// # Errors
 /// Fails if a template fails.
-pub fn files(job: &EmitJob, files: &mut Artifacts) -> Result<()> {
+pub fn files(job: &EmitJob, files: &mut OutputFiles) -> Result<()> {
     let EmitJob { design, inputs, naming, .. } = *job;
     let (timing, module) = (&inputs.timing, job.name());
     let name = format!("{module}_formal");

@@ -7,8 +7,9 @@
 use anyhow::Result;
 use glint_base::fill;
 
-use super::artifact::{Artifacts, EmitJob};
+use super::emit_job::EmitJob;
 use super::formal::{Script, inputs_of, outputs_of};
+use super::output_files::OutputFiles;
 use glint_rtl::netlist::{NetId, Pipeline, Role};
 use glint_rtl::verilog::naming::Naming;
 use glint_rtl::verilog::rows::{connections, separated};
@@ -42,7 +43,7 @@ struct SideStage {
 ///
 /// # Errors
 /// Fails if a template fails.
-pub fn files(job: &EmitJob, pipeline: &Pipeline, files: &mut Artifacts) -> Result<()> {
+pub fn files(job: &EmitJob, pipeline: &Pipeline, files: &mut OutputFiles) -> Result<()> {
     let (module, design) = (job.name(), job.design);
     let name = format!("{module}_formal");
     let port_name = |net: NetId| design.net(net).name.clone();

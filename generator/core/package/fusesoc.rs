@@ -4,25 +4,24 @@
 use anyhow::Result;
 use glint_base::fill;
 
-use super::artifact::{ArtifactKind, Artifacts, EmitJob};
+use super::emit_job::EmitJob;
+use super::file_kind::FileKind;
+use super::output_files::OutputFiles;
+use super::tops::{Face, Top};
 use glint_rtl::verilog::text::ascii;
 
 /// Adds `<name>.core`, with a simulation target if there is a bench, and then `<name>_tb.core`. File names are relative to them.
 ///
 /// # Errors
 /// Fails if a template fails to print.
-pub fn files(job: &EmitJob, files: &mut Artifacts) -> Result<()> {
+pub fn files(job: &EmitJob, tops: &[Top], files: &mut OutputFiles) -> Result<()> {
     let (name, around) = (job.name(), &job.inputs.around);
     let (version, licence) = (around.version.as_str(), around.licence.as_str());
-    let of = |kind: ArtifactKind| files.names(&[kind]);
-    let (rtl, primitives, benches) =
-        (of(ArtifactKind::Rtl), of(ArtifactKind::Primitive), of(ArtifactKind::Bench));
-    let named = primitives.iter().filter_map(|file| Some(file.split_once('/')?.1.to_owned()));
-    let replaced: Vec<String> = named.collect();
-    let wrapper = |file: &String| {
-        let bench = file.strip_prefix(name)?.strip_prefix('_')?.strip_suffix("_tb.v")?;
-        Some(bench.to_owned())
-    };
+    let rtl = files.local_paths(&[FileKind::CoreVerilog]);
+    let primitives = files.local_paths(&[FileKind::TargetVerilog]);
+    let forms = files.of(&[FileKind::TargetVerilog]);
+    let replaced: Vec<String> = forms.iter().map(|file| file.name().to_owned()).collect();
+    let benches = files.local_paths(FileKind::BENCH_SOURCES);
     let core = fill!("device.core" {
         name: &'a str,
         // A YAML string in single quotes; a quote in it is doubled.
@@ -32,25 +31,42 @@ pub fn files(job: &EmitJob, files: &mut Artifacts) -> Result<()> {
         // The portable files that a target has its own of.
         replaced: &'a [String] = &replaced,
         primitives: &'a [String] = &primitives,
-        wrappers: Vec<String> = of(ArtifactKind::Wrapper),
-        memories: Vec<String> = of(ArtifactKind::Memory),
+        wrappers: Vec<String> =
+            files.local_paths(&[FileKind::StreamWrapper, FileKind::BusWrapper]),
+        memories: Vec<String> = files.local_paths(&[FileKind::Memory]),
         // The benches beside the core's own, without `_tb`; none without it.
-        benches: Option<Vec<String>> =
-            (!benches.is_empty()).then(|| benches.iter().filter_map(wrapper).collect()),
+        benches: Option<Vec<&'static str>> = wrapper_benches(tops, files),
         // The clock of `<name>.xdc` and `<name>.sdc`, if these files exist.
         clock_mhz: Option<f64> = around.clock_mhz,
         vendor: &'a str = &around.vendor,
         version: &'a str,
         licence: &'a str,
     })?;
-    files.add(ArtifactKind::Core, format!("{name}.core"), core);
+    files.add(FileKind::CorePackage, format!("{name}.core"), core);
     if let Some((bench, others)) = benches.split_first() {
         let text = fill!("testbench.core" {
             name: &'a str, vendor: &'a str = &around.vendor, version: &'a str, licence: &'a str, bench: &'a str,
             // Its vectors, and the benches of wrappers with theirs.
             others: &'a [String],
         })?;
-        files.add(ArtifactKind::BenchCore, format!("{name}_tb.core"), text);
+        files.add(FileKind::BenchPackage, format!("{name}_tb.core"), text);
     }
     Ok(())
+}
+
+/// Returns the suffixes of the wrappers that have a bench, and `None` for a core without a bench. For example, `axis` and
+/// `axil`.
+fn wrapper_benches(tops: &[Top], files: &OutputFiles) -> Option<Vec<&'static str>> {
+    let benches = files.modules(&[FileKind::Bench]);
+    if benches.is_empty() {
+        return None;
+    }
+    let mut wrappers = Vec::new();
+    for top in tops {
+        let bench = format!("{}_tb", top.module);
+        if top.face != Face::Core && benches.contains(&bench.as_str()) {
+            wrappers.push(top.suffix);
+        }
+    }
+    Some(wrappers)
 }

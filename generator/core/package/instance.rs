@@ -2,9 +2,10 @@
 
 use anyhow::Result;
 
-use super::artifact::{Artifacts, EmitJob};
+use super::emit_job::EmitJob;
 use super::inputs::EmitInputs;
 use super::map::Map;
+use super::output_files::OutputFiles;
 use super::tops::{Face, Top, TopPort, tops};
 use glint_rtl::netlist::Design;
 use glint_rtl::verilog::naming::{Naming, remark};
@@ -32,7 +33,7 @@ pub fn instances(design: &Design, inputs: &EmitInputs) -> Result<Vec<InstanceExa
         None => None,
     };
     let job = EmitJob { design, inputs, naming: &naming, registers };
-    let modules = tops(&job, &Artifacts::default())?;
+    let modules = tops(&job, &OutputFiles::new(job.name()))?;
     // The outermost module is what most systems use.
     Ok(modules.into_iter().rev().map(|top| instance(design, top)).collect())
 }

@@ -4,7 +4,9 @@ use anyhow::Result;
 use glint_base::fill;
 use glint_base::fixed::{Format, exp2};
 
-use super::artifact::{ArtifactKind, Artifacts, EmitJob};
+use super::emit_job::EmitJob;
+use super::file_kind::FileKind;
+use super::output_files::OutputFiles;
 use super::tops::{Face, Top, TopPort};
 use super::wrap::fields::Transfer;
 use glint_rtl::netlist::{Port, Role};
@@ -15,14 +17,14 @@ use glint_rtl::verilog::text::{Names, ascii, comment, constant_name, literal};
 ///
 /// # Errors
 /// Fails if a template fails.
-pub fn files(job: &EmitJob, tops: &[Top], files: &mut Artifacts) -> Result<()> {
+pub fn files(job: &EmitJob, tops: &[Top], files: &mut OutputFiles) -> Result<()> {
     if job.inputs.around.vhdl {
         let text = vhdl(job, tops)?;
-        files.add(ArtifactKind::Language, format!("{}.vhd", job.name()), text);
+        files.add(FileKind::Vhdl, format!("{}.vhd", job.name()), text);
     }
     if job.inputs.around.systemverilog {
         let text = systemverilog(job)?;
-        files.add(ArtifactKind::Language, format!("{}_pkg.sv", job.name()), text);
+        files.add(FileKind::SystemVerilogPackage, format!("{}_pkg.sv", job.name()), text);
     }
     Ok(())
 }

@@ -6,11 +6,13 @@ use serde::Serialize;
 use serde_json::value::{RawValue, to_raw_value};
 use serde_json::{Value, json};
 
-use super::artifact::{ArtifactKind, Artifacts, EmitJob};
+use super::emit_job::EmitJob;
 use super::facts::{self, PortFacts, RomFacts};
+use super::file_kind::FileKind;
 use super::inputs::EmitInputs;
 use super::map::BusRegister;
-use super::output_file::{OutputFile, digest};
+use super::output_file::digest;
+use super::output_files::OutputFiles;
 use super::wrap::fields::{StreamField, Transfer};
 use crate::observation::{Computation, ContractFacts, Quantity};
 use glint_rtl::netlist::HandshakeTiming;
@@ -40,7 +42,7 @@ struct Manifest<'a> {
     #[serde(skip_serializing_if = "Option::is_none")]
     pipeline: Option<Value>,
     roms: Vec<RomFacts<'a>>,
-    files: &'a serde_json::Map<String, Value>,
+    files: serde_json::Map<String, Value>,
     sha256: serde_json::Map<String, Value>,
     #[serde(skip_serializing_if = "Option::is_none")]
     example: Option<Value>,
@@ -65,39 +67,47 @@ struct ComputationNames<'a> {
     points: Vec<Box<RawValue>>,
 }
 
-/// The names of the files that the manifest lists, by purpose.
-pub struct FileNames(serde_json::Map<String, Value>);
-
-impl FileNames {
-    /// Lists the names of all files but the manifest itself, by purpose.
-    pub fn new(files: &Artifacts) -> Self {
-        use ArtifactKind::{
-            Bench, BenchCore, Core, Primitive, Proof, Python, Wrapper, WrapperProof,
-        };
-        let lists: [(&str, &[ArtifactKind]); 10] = [
-            ("rtl", &[ArtifactKind::Rtl]),
-            ("memories", &[ArtifactKind::Memory]),
-            ("cores", &[Core, BenchCore]),
-            ("testbench", &[Python, WrapperProof, Proof, Bench]),
-            ("primitives", &[Primitive]),
-            ("wrappers", &[Wrapper]),
-            ("software", &[ArtifactKind::Software]),
-            ("constraints", &[ArtifactKind::Constraint]),
-            ("scripts", &[ArtifactKind::Script]),
-            ("languages", &[ArtifactKind::Language]),
-        ];
-        let named = lists.into_iter().map(|(list, kinds)| (list, files.names(kinds))).enumerate();
+/// Returns the names of all files but the manifest itself, by purpose.
+fn file_names(files: &OutputFiles) -> serde_json::Map<String, Value> {
+    let lists: [(&str, &[FileKind]); 10] = [
+        ("rtl", &[FileKind::CoreVerilog]),
+        ("memories", &[FileKind::Memory]),
+        ("cores", &[FileKind::CorePackage, FileKind::BenchPackage]),
+        (
+            "testbench",
+            &[
+                FileKind::CocotbBench,
+                FileKind::WrapperProof,
+                FileKind::WrapperProofScript,
+                FileKind::CoreProof,
+                FileKind::CoreProofScript,
+                FileKind::Bench,
+                FileKind::BenchVectors,
+            ],
+        ),
+        ("primitives", &[FileKind::TargetVerilog]),
+        ("wrappers", &[FileKind::StreamWrapper, FileKind::BusWrapper]),
+        ("software", &[FileKind::Software, FileKind::Recomputation]),
+        ("constraints", &[FileKind::Constraint]),
+        ("scripts", &[FileKind::VendorScript]),
+        ("languages", &[FileKind::Vhdl, FileKind::SystemVerilogPackage]),
+    ];
+    let mut names = serde_json::Map::new();
+    for (place, (list, kinds)) in lists.into_iter().enumerate() {
+        let files = files.local_paths(kinds);
         // The first four are there even if they are empty.
-        let shown = named.filter(|(at, (_, names))| *at < 4 || !names.is_empty());
-        Self(shown.map(|(_, (list, names))| (list.to_owned(), json!(names))).collect())
+        if place < 4 || !files.is_empty() {
+            names.insert(list.to_owned(), json!(files));
+        }
     }
+    names
 }
 
-/// Returns the manifest as text, with the digests of all `others`.
+/// Returns the manifest as text, with the digests of all `others`, which are complete but for the manifest.
 ///
 /// # Errors
 /// Fails if a number is not finite, because JSON cannot represent it.
-pub fn contents(job: &EmitJob, names: &FileNames, others: &[OutputFile]) -> Result<String> {
+pub fn contents(job: &EmitJob, others: &OutputFiles) -> Result<String> {
     let EmitJob { design, inputs, naming, .. } = *job;
     let about = &design.about;
     let manifest = Manifest {
@@ -116,7 +126,7 @@ pub fn contents(job: &EmitJob, names: &FileNames, others: &[OutputFile]) -> Resu
         control: design.pipeline.is_none().then(|| control(design)),
         pipeline: design.pipeline.as_ref().map(pipeline),
         roms: facts::roms(design, naming),
-        files: &names.0,
+        files: file_names(others),
         sha256: others
             .iter()
             .map(|file| (file.path.clone(), json!(digest(file.contents.as_bytes()))))

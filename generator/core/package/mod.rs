@@ -20,11 +20,12 @@ macro_rules! fresh_names {
     };
 }
 
-mod artifact;
 mod bench;
 mod bus;
 mod cocotb;
+mod emit_job;
 pub mod facts;
+mod file_kind;
 mod formal;
 mod formal_pipeline;
 mod fusesoc;
@@ -36,6 +37,7 @@ mod map;
 pub mod module_names;
 mod multiplier;
 mod output_file;
+mod output_files;
 mod points;
 pub mod seal;
 mod software;
@@ -46,7 +48,7 @@ mod wrap;
 
 use anyhow::{Result, ensure};
 
-use artifact::{ArtifactKind, Artifacts, EmitJob};
+use emit_job::EmitJob;
 use glint_rtl::netlist::Design;
 use glint_rtl::verilog;
 use glint_rtl::verilog::naming::Naming;
@@ -56,10 +58,12 @@ pub use crate::observation::{
     Computation, ContractFacts, LineClocks, Linear, Quantity, TimedResult, Vectors, WorkedExample,
 };
 pub use cocotb::driver;
+pub use file_kind::FileKind;
 pub use glint_rtl::netlist::HandshakeTiming;
 pub use inputs::EmitInputs;
 pub use instance::{InstanceExample, instances};
-pub use output_file::{OutputFile, digest, sources, sources_for};
+pub use output_file::{OutputFile, digest};
+pub use output_files::OutputFiles;
 pub use points::{POINTS_FILE, PointsBench, RESULTS_FILE};
 pub use seal::{Seal, is_sealed, sealed, sealed_json};
 pub use software::check_recomputation;
@@ -77,26 +81,43 @@ pub fn points_bench(design: &Design, limit: u32) -> Result<PointsBench> {
     }
 }
 
+/// Returns only the Verilog of a design and the contents of its ROMs, without wrappers, benches and descriptions.
+///
+/// # Errors
+/// Fails if [`Design::verify_structure`] finds mistakes, or if a net is named `clk`.
+pub fn emit_core(design: &Design, inputs: &EmitInputs) -> Result<OutputFiles> {
+    let naming = Naming::new(design).styled(inputs.around.style);
+    let files = core_files(&EmitJob { design, inputs, naming: &naming, registers: None })?;
+    module_names::check(files.as_slice())?;
+    Ok(files)
+}
+
+/// Returns the Verilog of a design and the contents of its ROMs. Names of modules are not checked yet.
+fn core_files(job: &EmitJob) -> Result<OutputFiles> {
+    let EmitJob { design, inputs, naming, .. } = *job;
+    ensure!(design.find("clk").is_none(), "`clk` is the clock; no other net can have that name");
+    let plan = Plan::new(design)?;
+    let mut files = OutputFiles::new(&design.name);
+    for file in verilog::modules(&plan, naming, &inputs.origin()) {
+        files.add_verilog(FileKind::CoreVerilog, file.modules, file.text);
+    }
+    multiplier::files(job, &mut files)?;
+    for (file, contents) in verilog::memories(design, naming)? {
+        files.add(FileKind::Memory, file, contents);
+    }
+    Ok(files)
+}
+
 /// Returns every file of a design.
 ///
 /// # Errors
 /// Fails if [`Design::verify_structure`] finds mistakes, if a net is named `clk`, or if vectors do not fit the ports.
-pub fn emit(design: &Design, inputs: &EmitInputs) -> Result<Vec<OutputFile>> {
-    ensure!(design.find("clk").is_none(), "`clk` is the clock; no other net can have that name");
-    let plan = Plan::new(design)?;
+pub fn emit(design: &Design, inputs: &EmitInputs) -> Result<OutputFiles> {
     let naming = Naming::new(design).styled(inputs.around.style);
-    let registers = match inputs.around.registers {
-        Some(bus) => Some((bus, map::Map::new(design, inputs)?)),
-        None => None,
-    };
-    let job = EmitJob { design, inputs, naming: &naming, registers };
-    let mut files = Artifacts::default();
-    for (file, module) in verilog::modules(&plan, &naming, &inputs.origin()) {
-        files.add(ArtifactKind::Rtl, file, module);
-    }
-    multiplier::files(&job, &mut files)?;
-    for (file, contents) in verilog::memories(design, &naming)? {
-        files.add(ArtifactKind::Memory, file, contents);
+    let mut job = EmitJob { design, inputs, naming: &naming, registers: None };
+    let mut files = core_files(&job)?;
+    if let Some(bus) = inputs.around.registers {
+        job.registers = Some((bus, map::Map::new(design, inputs)?));
     }
     if let (Some(_), Some(example), Some(accuracy)) =
         (&inputs.vectors, &inputs.example, &inputs.accuracy)
@@ -115,12 +136,10 @@ pub fn emit(design: &Design, inputs: &EmitInputs) -> Result<Vec<OutputFile>> {
     vendor::files(&job, &tops, &mut files)?;
     languages::files(&job, &tops, &mut files)?;
     software::files(&job, &tops, &mut files)?;
-    fusesoc::files(&job, &mut files)?;
-    let names = manifest::FileNames::new(&files);
-    let mut files = files.files(&design.name);
-    module_names::check(&files)?;
+    fusesoc::files(&job, &tops, &mut files)?;
+    module_names::check(files.as_slice())?;
     // The manifest has the digests of all other files.
-    let contents = manifest::contents(&job, &names, &files)?;
-    files.push(OutputFile { path: format!("rtl_out/{0}/{0}.json", design.name), contents });
+    let contents = manifest::contents(&job, &files)?;
+    files.add(FileKind::Manifest, format!("{}.json", design.name), contents);
     Ok(files)
 }

@@ -1,4 +1,5 @@
-//! Finds the modules that files define, and checks whether their names mean anything else in the text.
+//! Checks that the names of modules mean nothing else in the emitted Verilog, and that no two configurations define the same
+//! module. Emission says which modules a file defines ([`OutputFile::modules`]).
 //!
 //! In Verilog a module may have the name of something inside it, but tools do not always accept that. For example, if a bench
 //! looks into instance `control` of a module `control`, it is not elaborated. Linters warn of a port that is named like its
@@ -8,6 +9,7 @@ use std::collections::BTreeMap;
 
 use anyhow::{Result, bail};
 
+use super::file_kind::FileKind;
 use super::output_file::OutputFile;
 
 /// Makes sure that in some files of one configuration the name of every module is used for the module alone.
@@ -15,12 +17,17 @@ use super::output_file::OutputFile;
 /// # Errors
 /// Fails if the name of a module is also used for something else. The error names the module, the file and the line.
 pub fn check(files: &[OutputFile]) -> Result<()> {
-    let sources: Vec<(&OutputFile, Vec<Token<'_>>)> =
-        verilog(files).map(|file| (file, tokens(&file.contents))).collect();
-    let modules: Vec<&str> = sources.iter().flat_map(|(_, tokens)| defined(tokens)).collect();
-    for (file, tokens) in &sources {
+    let mut modules: Vec<&str> = Vec::new();
+    for file in files {
+        modules.extend(file.modules.iter().map(String::as_str));
+    }
+    for file in files {
+        if !is_checked(file.kind) {
+            continue;
+        }
+        let tokens = tokens(&file.contents);
         for (at, token) in tokens.iter().enumerate() {
-            if modules.contains(&token.text) && !names_module(tokens, at) {
+            if modules.contains(&token.text) && !names_module(&tokens, at) {
                 bail!(
                     "a module cannot be named `{name}`: that is the name of something else in the emitted \
                      Verilog (`{}`, line {}); set another `name` in the configuration, as \"{name}_core\"",
@@ -42,11 +49,11 @@ pub fn check(files: &[OutputFile]) -> Result<()> {
 pub fn check_together<'a>(
     configurations: impl IntoIterator<Item = (&'a str, &'a [OutputFile])>,
 ) -> Result<()> {
-    let mut found: BTreeMap<String, &str> = BTreeMap::new();
+    let mut found: BTreeMap<&str, &str> = BTreeMap::new();
     for (path, files) in configurations {
-        for file in verilog(files) {
-            for module in defined(&tokens(&file.contents)) {
-                let other = *found.entry(module.to_owned()).or_insert(path);
+        for file in files {
+            for module in &file.modules {
+                let other = *found.entry(module).or_insert(path);
                 if other != path {
                     bail!(
                         "`{other}` and `{path}` both make a module `{module}`; set another `name` in one of them"
@@ -58,14 +65,13 @@ pub fn check_together<'a>(
     Ok(())
 }
 
-fn verilog(files: &[OutputFile]) -> impl Iterator<Item = &OutputFile> {
-    files.iter().filter(|file| file.path.ends_with(".v") || file.path.ends_with(".sv"))
-}
-
-/// Returns the modules that a text defines.
-fn defined<'a>(tokens: &[Token<'a>]) -> Vec<&'a str> {
-    let pairs = tokens.windows(2).filter(|pair| pair[0].text == "module");
-    pairs.map(|pair| pair[1].text).collect()
+/// Returns whether the files of a kind are Verilog or SystemVerilog, in which the name of a module may have another meaning.
+fn is_checked(kind: FileKind) -> bool {
+    let is_system_verilog = matches!(
+        kind,
+        FileKind::SystemVerilogPackage | FileKind::WrapperProof | FileKind::CoreProof
+    );
+    is_system_verilog || kind.is_verilog()
 }
 
 /// Returns whether token `at`, which is the name of a module, means the module: the module is defined or instantiated there.
@@ -116,8 +122,9 @@ fn tokens(text: &str) -> Vec<Token<'_>> {
 mod tests {
     use super::*;
 
-    fn file(path: &str, contents: &str) -> OutputFile {
-        OutputFile { path: path.to_owned(), contents: contents.to_owned() }
+    fn file(kind: FileKind, module: &str, contents: &str) -> OutputFile {
+        let path = format!("{module}.v");
+        OutputFile { modules: vec![module.to_owned()], ..OutputFile::new(kind, path, contents) }
     }
 
     #[test]
@@ -130,7 +137,16 @@ mod tests {
                     .replace("module core", &format!("module {name}"))
                     .replace("    core dut", &format!("    {name} dut"))
             };
-            [file("core.v", &renamed(core)), file("core_tb.v", &renamed(bench))]
+            [
+                OutputFile {
+                    path: "core.v".to_owned(),
+                    ..file(FileKind::CoreVerilog, name, &renamed(core))
+                },
+                OutputFile {
+                    path: "core_tb.v".to_owned(),
+                    ..file(FileKind::Bench, &format!("{name}_tb"), &renamed(bench))
+                },
+            ]
         };
         check(&files("core")).unwrap();
         for (name, place) in [
@@ -146,10 +162,10 @@ mod tests {
     #[test]
     fn two_configurations_with_one_module() {
         let one = [
-            file("core.v", "module core;\nendmodule\n"),
-            file("core_tb.v", "module core_tb;\nendmodule\n"),
+            file(FileKind::CoreVerilog, "core", "module core;\nendmodule\n"),
+            file(FileKind::Bench, "core_tb", "module core_tb;\nendmodule\n"),
         ];
-        let two = [file("core_tb.v", "module core_tb;\nendmodule\n")];
+        let two = [file(FileKind::Bench, "core_tb", "module core_tb;\nendmodule\n")];
         check_together([("a.toml", &one[..])]).unwrap();
         let refused = check_together([("a.toml", &one[..]), ("b.toml", &two[..])]).unwrap_err();
         assert!(refused.to_string().contains("`a.toml` and `b.toml` both make a module `core_tb`"));

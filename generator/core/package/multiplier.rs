@@ -7,7 +7,9 @@
 use anyhow::Result;
 use glint_base::fill;
 
-use super::artifact::{ArtifactKind, Artifacts, EmitJob};
+use super::emit_job::EmitJob;
+use super::file_kind::FileKind;
+use super::output_files::OutputFiles;
 use glint_rtl::verilog::header;
 use glint_rtl::verilog::rows::separated;
 use glint_rtl::verilog::text::comment;
@@ -26,7 +28,7 @@ const ECP5: &str = "For ECP5: a DSP block with its output register and no other.
 ///
 /// # Errors
 /// Fails if a template fails to print.
-pub fn files(job: &EmitJob, files: &mut Artifacts) -> Result<()> {
+pub fn files(job: &EmitJob, files: &mut OutputFiles) -> Result<()> {
     let Some(pipeline) = job.design.pipeline.as_ref().filter(|it| !it.registered.is_empty()) else {
         return Ok(());
     };
@@ -42,8 +44,8 @@ pub fn files(job: &EmitJob, files: &mut Artifacts) -> Result<()> {
     let own = fill!("multiplier_ecp5.v" {
         header: Vec<String> = header(ECP5), name: &'a str = &name, pins: Vec<String> = pins(),
     })?;
-    files.add(ArtifactKind::Rtl, format!("{name}.v"), portable);
-    files.add(ArtifactKind::Primitive, format!("{}/{name}.v", pipeline.target), own);
+    files.add_verilog(FileKind::CoreVerilog, vec![name.clone()], portable);
+    files.add_for_target(&pipeline.target, &name, own);
     Ok(())
 }
 

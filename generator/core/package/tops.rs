@@ -2,8 +2,10 @@
 
 use anyhow::Result;
 
-use super::artifact::{ArtifactKind, Artifacts, EmitJob};
 use super::bus::{Bus, Protocol, STREAMS};
+use super::emit_job::EmitJob;
+use super::file_kind::FileKind;
+use super::output_files::OutputFiles;
 use super::wrap::fields::Transfer;
 use glint_rtl::netlist::{Design, Role};
 use glint_rtl::verilog::text::ascii;
@@ -42,6 +44,8 @@ pub struct TopPort {
 pub struct Top {
     /// Its name.
     pub module: String,
+    /// What its name has after the name of the core and `_`; empty for the core. For example, `axis`.
+    pub suffix: &'static str,
     /// The interface.
     pub face: Face,
     /// The purpose, in a few words.
@@ -89,11 +93,12 @@ impl Top {
 ///
 /// # Errors
 /// Fails if a stream surrounds a core without operands or results.
-pub fn tops(job: &EmitJob, files: &Artifacts) -> Result<Vec<Top>> {
+pub fn tops(job: &EmitJob, files: &OutputFiles) -> Result<Vec<Top>> {
     let (name, design) = (job.name(), job.design);
     let reset = design.port(|role| role == Role::Reset);
     let mut tops = vec![Top {
         module: name.to_owned(),
+        suffix: "",
         face: Face::Core,
         what: "the core".to_owned(),
         clock: "clk".to_owned(),
@@ -101,29 +106,35 @@ pub fn tops(job: &EmitJob, files: &Artifacts) -> Result<Vec<Top>> {
         reset_level: 0,
         ports: core_ports(design),
         protocols: &[],
-        verilog: files.names(&[ArtifactKind::Rtl]),
+        verilog: files.local_paths(&[FileKind::CoreVerilog]),
     }];
-    let mut add = |suffix: &str, face: Face, what: String, level: u8, ports: Vec<TopPort>| {
-        // The files of the stream with its buffer, or the files of the registers with their bus.
-        let streamed = format!("{name}_axis");
-        let of_core = |file: &String| file.starts_with(&streamed) == (face == Face::Stream);
-        let own = files.names(&[ArtifactKind::Wrapper]).into_iter().filter(of_core);
-        tops.push(Top {
-            module: format!("{name}_{suffix}"),
-            face,
-            what: format!("the core {what}"),
-            clock: ports[0].name.clone(),
-            reset: ports[1].name.clone(),
-            reset_level: level,
-            ports,
-            protocols: match face {
-                Face::Core => &[],
-                Face::Stream => &STREAMS,
-                Face::Registers(bus) => bus.protocol,
-            },
-            verilog: own.chain(files.names(&[ArtifactKind::Rtl])).collect(),
-        });
-    };
+    let mut add =
+        |suffix: &'static str, face: Face, what: String, level: u8, ports: Vec<TopPort>| {
+            // The files of the stream with its buffer, or the files of the registers with their bus.
+            let kind = match face {
+                Face::Core => FileKind::CoreVerilog,
+                Face::Stream => FileKind::StreamWrapper,
+                Face::Registers(_) => FileKind::BusWrapper,
+            };
+            let mut verilog = files.local_paths(&[kind]);
+            verilog.extend(files.local_paths(&[FileKind::CoreVerilog]));
+            tops.push(Top {
+                module: format!("{name}_{suffix}"),
+                suffix,
+                face,
+                what: format!("the core {what}"),
+                clock: ports[0].name.clone(),
+                reset: ports[1].name.clone(),
+                reset_level: level,
+                ports,
+                protocols: match face {
+                    Face::Core => &[],
+                    Face::Stream => &STREAMS,
+                    Face::Registers(bus) => bus.protocol,
+                },
+                verilog,
+            });
+        };
     if job.inputs.around.stream {
         add("axis", Face::Stream, "between two AXI4-Streams".to_owned(), 0, stream_ports(job)?);
     }

@@ -34,25 +34,45 @@ use plan::Plan;
 pub fn files(design: &Design) -> Result<Vec<(String, String)>> {
     let (plan, naming) = (Plan::new(design)?, Naming::new(design));
     let origin = Origin { regenerate: "", timing: &HandshakeTiming::default() };
-    Ok([modules(&plan, &naming, &origin), memories(design, &naming)?].concat())
+    let mut files = Vec::new();
+    for file in modules(&plan, &naming, &origin) {
+        files.push((format!("{}.v", file.modules[0]), file.text));
+    }
+    files.extend(memories(design, &naming)?);
+    Ok(files)
 }
 
-/// Returns the modules by the names of their files. A pipeline is one module. Other designs have the top module, the
-/// control unit and the datapath.
-pub fn modules(plan: &Plan, naming: &Naming, origin: &Origin) -> Vec<(String, String)> {
-    let file = |module: &str, text: String| (format!("{module}.v"), text);
+/// The text of a file in Verilog, with the names of the modules that it defines.
+pub struct ModuleFile {
+    /// The names of the modules, the main one first.
+    pub modules: Vec<String>,
+    /// The whole text.
+    pub text: String,
+}
+
+/// Returns the files of the modules, the top module first. A pipeline is one module, in one file with its delay line. Other
+/// designs have the top module, the control unit and the datapath, each in a file of its own.
+pub fn modules(plan: &Plan, naming: &Naming, origin: &Origin) -> Vec<ModuleFile> {
     if let Some(pipeline) = &plan.design.pipeline {
-        return vec![file(&plan.design.name, pipeline::module(plan, naming, pipeline, origin))];
+        let mut modules = vec![plan.design.name.clone()];
+        if !plan.delays.is_empty() {
+            modules.push(naming.delay());
+        }
+        return vec![ModuleFile {
+            modules,
+            text: pipeline::module(plan, naming, pipeline, origin),
+        }];
     }
     let control = Interface::new(plan, Partition::Control);
     let datapath = Interface::new(plan, Partition::Datapath);
     let units = [(Partition::Control, &control), (Partition::Datapath, &datapath)];
-    let top = file(&plan.design.name, top::module(plan, naming, units, origin));
-    let parts = units.map(|(partition, interface)| {
-        let module = module::Builder::new(plan, naming, interface, partition).module(origin);
-        file(&naming.module(partition), module)
-    });
-    [vec![top], parts.to_vec()].concat()
+    let top = top::module(plan, naming, units, origin);
+    let mut files = vec![ModuleFile { modules: vec![plan.design.name.clone()], text: top }];
+    for (partition, interface) in units {
+        let text = module::Builder::new(plan, naming, interface, partition).module(origin);
+        files.push(ModuleFile { modules: vec![naming.module(partition)], text });
+    }
+    files
 }
 
 /// Returns the contents of the ROMs that have files of their own, by the names of these files.

@@ -20,7 +20,7 @@ use serde::{Deserialize, Serialize};
 
 use super::formal;
 use glint_core::core::{Core, TEST_SEED};
-use glint_core::package::{self, EmitInputs};
+use glint_core::package::{self, EmitInputs, FileKind, OutputFile, OutputFiles};
 use glint_tools::transient::Directory;
 use glint_tools::{BuiltBench, Tool, VerilogSimulator, Waveform};
 
@@ -84,13 +84,16 @@ pub struct TextFaultResult {
 /// The tools to which faults are shown.
 const TOOLS: [&str; 4] = ["iverilog", "vvp", "verilator", "yosys"];
 
-/// Files by name, with which ones are modules of the device.
+/// The files of a configuration in which faults are planted, and the files that notice the faults.
 pub struct VerilogText {
-    files: Vec<(String, String)>,
+    files: Vec<OutputFile>,
     /// A bench with more points, all at random, and its vectors: they take the place of the shipped ones. Golden model
     /// and built-in simulator agree on the vectors of both.
-    longer: Vec<(String, String)>,
-    top: String,
+    longer: Vec<OutputFile>,
+    /// The name of the core.
+    core: String,
+    is_pipeline: bool,
+    /// The places in `files` of the files in which faults are planted.
     modules: Vec<usize>,
 }
 
@@ -181,28 +184,10 @@ impl VerilogText {
         let files = core.files(&format!("{name}.toml"), core.shipped_vectors()?)?;
         let vectors = Some(core.vectors(POINTS, TEST_SEED)?);
         let longer = package::emit(&core.design, &EmitInputs { vectors, ..EmitInputs::default() })?;
-        let bench = longer.into_iter().filter(|file| file.path.starts_with("testbench/"));
-        let mut text = Self {
-            files: Vec::new(),
-            longer: package::sources(bench.collect()),
-            top: format!("{name}_tb"),
-            modules: Vec::new(),
-        };
         // Wrappers around the core have a bench and proofs of their own.
-        let core = ["", "_control", "_datapath", "_multiplier"]
-            .map(|part| format!("rtl_out/{name}/{name}{part}.v"));
-        for file in files {
-            let plain = file.path.rsplit('/').next().unwrap_or(&file.path).to_owned();
-            let module = core.contains(&file.path);
-            let other = plain.ends_with(".v") && file.path.starts_with("rtl_out/") && !module;
-            if other || !plain.ends_with(".v") && !plain.ends_with(".mem") {
-                continue;
-            }
-            if module {
-                text.modules.push(text.files.len());
-            }
-            text.files.push((plain, file.contents));
-        }
+        let read = [FileKind::CORE_SOURCES, FileKind::BENCH_SOURCES].concat();
+        let mut text = Self::new(core, &files, &read, &[FileKind::CoreVerilog]);
+        text.longer = longer.of(FileKind::BENCH_SOURCES).into_iter().cloned().collect();
         Ok(text)
     }
 
@@ -212,43 +197,59 @@ impl VerilogText {
     /// Fails if golden model and simulation differ, or if the design cannot be written.
     pub fn of_wrappers(core: &Core) -> Result<Self> {
         let name = &core.config.name;
-        let mut text =
-            Self { files: Vec::new(), longer: Vec::new(), top: name.clone(), modules: Vec::new() };
-        for file in core.files(&format!("{name}.toml"), core.shipped_vectors()?)? {
-            let read = [".v", ".mem", ".sv", ".ys"].iter().any(|it| file.path.ends_with(it));
-            let wrapper = ["_axis.", "_axis_buffer.", "_registers.", "_axil.", "_wb."]
-                .iter()
-                .any(|part| file.path == format!("rtl_out/{name}/{name}{part}v"));
-            if wrapper {
-                text.modules.push(text.files.len());
-            }
-            let own = file.path.split('/').count() == 3 && !file.path.starts_with("software/");
-            if read && own {
-                text.files.push((file.name().to_owned(), file.contents));
-            }
-        }
-        Ok(text)
+        let files = core.files(&format!("{name}.toml"), core.shipped_vectors()?)?;
+        let proofs = [FileKind::WrapperProof, FileKind::WrapperProofScript];
+        let read = [FileKind::SIMULATED, &proofs].concat();
+        let wrappers = [FileKind::StreamWrapper, FileKind::BusWrapper];
+        Ok(Self::new(core, &files, &read, &wrappers))
     }
 
-    /// Returns all files, each with its plain name.
-    pub fn files(&self) -> &[(String, String)] {
+    /// Collects the files of the kinds `read`. Faults are planted in the files of the kinds `planted`.
+    fn new(core: &Core, files: &OutputFiles, read: &[FileKind], planted: &[FileKind]) -> Self {
+        let mut text = Self {
+            files: Vec::new(),
+            longer: Vec::new(),
+            core: core.config.name.clone(),
+            is_pipeline: core.design.pipeline.is_some(),
+            modules: Vec::new(),
+        };
+        for file in files.of(read) {
+            if planted.contains(&file.kind) {
+                text.modules.push(text.files.len());
+            }
+            text.files.push(file.clone());
+        }
+        text
+    }
+
+    /// Returns all files.
+    pub fn files(&self) -> &[OutputFile] {
         &self.files
     }
 
     /// Returns all files, with a fault.
-    pub fn planted(&self, fault: &TextFault) -> Vec<(String, String)> {
+    pub fn planted(&self, fault: &TextFault) -> Vec<OutputFile> {
+        let mut text = String::new();
+        for (number, line) in self.files[fault.file].contents.lines().enumerate() {
+            text += if number == fault.line { &fault.text } else { line };
+            text += "\n";
+        }
         let mut files = self.files.clone();
-        let lines = files[fault.file].1.lines().enumerate();
-        let lines = lines.map(|(at, line)| if at == fault.line { &fault.text } else { line });
-        files[fault.file].1 = lines.fold(String::new(), |text, line| text + line + "\n");
+        files[fault.file].contents = text;
         files
+    }
+
+    /// Returns the module of the shipped bench of the core.
+    fn bench(&self) -> &str {
+        let bench = self.files.iter().find(|file| file.kind == FileKind::Bench);
+        bench.map_or("", OutputFile::main_module)
     }
 
     /// Returns every fault, in the order of the text.
     pub fn faults(&self) -> Vec<TextFault> {
         let mut faults = Vec::new();
         for &file in &self.modules {
-            let (name, text) = &self.files[file];
+            let (name, text) = self.files[file].source();
             let mut inside = false;
             let mut formal = false;
             for (line, whole) in text.lines().enumerate() {
@@ -310,20 +311,16 @@ impl VerilogText {
     }
 
     /// Returns whether lint refuses the modules or warns of them.
-    fn is_linted(
-        &self,
-        files: &[(String, String)],
-        verilator: &Tool,
-        limit: Duration,
-    ) -> Result<bool> {
+    fn is_linted(&self, files: &[OutputFile], verilator: &Tool, limit: Duration) -> Result<bool> {
         let dir = Directory::new().context("cannot make a temporary directory")?;
-        for (name, contents) in files {
+        for file in files {
+            let (name, contents) = file.source();
             fs::write(dir.path().join(name), contents)
                 .with_context(|| format!("cannot write `{name}`"))?;
         }
         let mut arguments = vec!["--lint-only", "-Wall", "--top-module"];
-        arguments.push(self.top.trim_end_matches("_tb"));
-        arguments.extend(self.modules.iter().map(|&at| files[at].0.as_str()));
+        arguments.push(&self.core);
+        arguments.extend(self.modules.iter().map(|&at| files[at].name()));
         let lint = verilator.run(arguments, dir.path(), limit)?;
         Ok(!lint.status.success() || !lint.output.is_empty())
     }
@@ -331,11 +328,13 @@ impl VerilogText {
     /// Returns the shipped bench's verdict on a mutant, and the bench as it was built.
     fn benches(
         &self,
-        mutant: &[(String, String)],
+        mutant: &[OutputFile],
         limit: Duration,
     ) -> Result<(ShippedBench, Option<BuiltBench>)> {
-        let build = |files: &[(String, String)]| {
-            BuiltBench::build(VerilogSimulator::Icarus, files, &self.top, Waveform::None, limit)
+        let build = |files: &[OutputFile]| {
+            let sources: Vec<_> = files.iter().map(OutputFile::source).collect();
+            let simulator = VerilogSimulator::Icarus;
+            BuiltBench::build(simulator, &sources, self.bench(), Waveform::None, limit)
         };
         // A bench that does not end, or ends without a verdict, does not pass either.
         let fails = |bench: &BuiltBench| !bench.run(limit).is_ok_and(|outcome| outcome.passed);
@@ -346,9 +345,9 @@ impl VerilogText {
             return Ok((ShippedBench::Noticed, None));
         }
         let mut longer = mutant.to_vec();
-        for (name, contents) in &self.longer {
-            if let Some(file) = longer.iter_mut().find(|(other, _)| other == name) {
-                file.1.clone_from(contents);
+        for replacement in &self.longer {
+            if let Some(file) = longer.iter_mut().find(|file| file.path == replacement.path) {
+                file.contents.clone_from(&replacement.contents);
             }
         }
         Ok(if fails(&build(&longer)?) {
@@ -362,26 +361,28 @@ impl VerilogText {
     /// a pipeline with its multiplier, the pipeline.
     fn proves(
         &self,
-        mutant: &[(String, String)],
+        mutant: &[OutputFile],
         file: usize,
         dir: &Path,
         limit: Duration,
     ) -> Result<bool> {
-        let (name, fault_free) = &self.files[file];
-        fs::write(dir.join(formal::MUTANT), &mutant[file].1)
+        let (name, fault_free) = self.files[file].source();
+        fs::write(dir.join(formal::MUTANT), &mutant[file].contents)
             .and_then(|()| fs::write(dir.join(name), fault_free))
             .with_context(|| format!("cannot write `{name}`"))?;
-        let top = self.top.trim_end_matches("_tb");
-        let multiplier = format!("{top}_multiplier.v");
-        let gold: Vec<&str> = if self.files.iter().any(|(name, _)| *name == multiplier) {
+        let proved = if self.is_pipeline {
             // By itself, the multiplier has its default parameters, which no instance has.
-            self.modules.iter().map(|&at| self.files[at].0.as_str()).collect()
+            self.modules.clone()
         } else {
-            vec![name]
+            vec![file]
         };
-        let gate = gold.iter().map(|file| if file == name { formal::MUTANT } else { file });
-        let gate: Vec<&str> = gate.collect();
-        let module = gold[0].trim_end_matches(".v");
+        let mut gold = Vec::new();
+        let mut gate = Vec::new();
+        for &place in &proved {
+            gold.push(self.files[place].name());
+            gate.push(if place == file { formal::MUTANT } else { self.files[place].name() });
+        }
+        let module = self.files[proved[0]].main_module();
         formal::proves(dir, module, [&gold, &gate], limit.min(PROOF_LIMIT))
     }
 }

@@ -21,7 +21,7 @@ use serde::Serialize;
 
 use glint_base::input;
 use glint_core::core::Core;
-use glint_core::package::{self, OutputFile};
+use glint_core::package::{self, FileKind, OutputFiles};
 use glint_tools::{LimitReached, Tool};
 
 /// A configuration to be verified.
@@ -34,7 +34,7 @@ pub struct CheckSubject<'a> {
     pub effort: Effort,
     /// The directory of records of `cosim --exhaustive --json`.
     pub proofs: &'a Path,
-    files: OnceLock<Vec<OutputFile>>,
+    files: OnceLock<OutputFiles>,
 }
 
 impl<'a> CheckSubject<'a> {
@@ -44,7 +44,7 @@ impl<'a> CheckSubject<'a> {
     }
 
     /// Returns every file that `generate` writes.
-    fn files(&self) -> Result<&[OutputFile]> {
+    fn files(&self) -> Result<&OutputFiles> {
         if let Some(files) = self.files.get() {
             return Ok(files);
         }
@@ -54,11 +54,7 @@ impl<'a> CheckSubject<'a> {
 
     /// Returns the core's files that tools read for a target, pairs of a plain name and contents.
     fn sources(&self, target: &str) -> Result<Vec<(String, String)>> {
-        let own = self.core.verilog()?;
-        let is_own = |file: &&OutputFile| {
-            file.path.starts_with("rtl_out/") && own.iter().any(|(name, _)| name == file.name())
-        };
-        Ok(package::sources_for(self.files()?.iter().filter(is_own).cloned().collect(), target))
+        Ok(self.files()?.sources_for(FileKind::CORE_SOURCES, target))
     }
 }
 
@@ -382,12 +378,14 @@ impl VerificationRecord {
     /// Makes the record of the answers of all checks.
     pub fn new(subject: &CheckSubject<'_>, checks: Vec<CheckAnswer>) -> Self {
         let mut counts = BTreeMap::new();
-        let of_text = |file: &&OutputFile| [".v", ".mem"].iter().any(|it| file.path.ends_with(it));
-        let files = subject.files().unwrap_or_default().iter().filter(of_text);
-        let digest = |file: &OutputFile| FileDigest {
-            path: file.path.clone(),
-            sha256: package::digest(file.contents.as_bytes()),
-        };
+        let mut files = Vec::new();
+        if let Ok(emitted) = subject.files() {
+            let checked = [FileKind::SIMULATED, &[FileKind::TargetVerilog]].concat();
+            for file in emitted.of(&checked) {
+                let sha256 = package::digest(file.contents.as_bytes());
+                files.push(FileDigest { path: file.path.clone(), sha256 });
+            }
+        }
         checks.iter().for_each(|it| *counts.entry(it.finding.verdict).or_insert(0) += 1);
         Self {
             glint: env!("CARGO_PKG_VERSION"),
@@ -395,7 +393,7 @@ impl VerificationRecord {
             name: subject.core.config.name.clone(),
             device: subject.core.device.name,
             configuration: subject.core.digest(),
-            files: files.map(digest).collect(),
+            files,
             full: subject.effort.full,
             conclusion: Conclusion::of(&checks),
             counts,

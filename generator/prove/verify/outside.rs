@@ -17,7 +17,7 @@ use glint_base::program::Program;
 use glint_base::target::{FAMILIES, Family};
 use glint_base::text::{counted, grouped};
 use glint_core::core::{BENCH_SEED, Core};
-use glint_core::package::{self, OutputFile};
+use glint_core::package::{self, FileKind, OutputFile};
 use glint_tools::gates;
 use glint_tools::gates::cells::{LIBERTY, Start};
 use glint_tools::synthesis::synthesise;
@@ -40,10 +40,6 @@ const EQUAL: Duration = Duration::from_secs(300);
 
 /// The version of cocotb that the benches in Python are written for.
 const COCOTB_VERSION: &str = "2.1.0";
-
-/// The suffixes of the modules that a system can instantiate. For example, `threshold_levels_axil` is the device with
-/// registers on AXI4-Lite.
-const TOPS: [&str; 4] = ["", "_axis", "_axil", "_wb"];
 
 /// Results of a bench around a netlist.
 const GATE_POINTS: u64 = 40;
@@ -130,8 +126,8 @@ pub const RECOMPUTATION: Check = Check {
             Err(error) => return Err(error),
         };
         let (dir, limit) = (directory_of(&files)?, subject.effort.time_limit);
-        let name = &subject.core.config.name;
-        let source = format!("software/{name}/{name}_recompute.c");
+        let program = files.of(&[FileKind::Recomputation]);
+        let program = program.first().context("no program that recomputes every operand")?;
         let (first, last) = subject.core.contract.operands()[0].domain;
         if last.abs_diff(first) >= RECOMPUTED && !subject.effort.full {
             let why = format!(
@@ -151,15 +147,16 @@ pub const RECOMPUTATION: Check = Check {
             let why = "MPFR is not installed for the C compiler: package libmpfr-dev, say";
             return Ok(Finding::without(CheckVerdict::NotRun, why));
         }
-        let compiled = compile(&source)?;
-        ensure!(compiled.status.success(), "`{source}`: {}", compiled.output.trim());
-        let program = Tool::find_in("recompute", dir.path().as_os_str())?;
-        let text = files.iter().find(|file| file.path == source).map_or("", |file| &file.contents);
-        let directory = format!("rtl_out/{name}");
+        let compiled = compile(&program.path)?;
+        ensure!(compiled.status.success(), "`{}`: {}", program.path, compiled.output.trim());
+        let recompute = Tool::find_in("recompute", dir.path().as_os_str())?;
         // A program that has no memory to check takes no argument.
-        let arguments =
-            if text.contains("check_memory(argv") { vec![directory] } else { Vec::new() };
-        let run = program.run(arguments, dir.path(), limit)?;
+        let mut arguments = Vec::new();
+        if program.contents.contains("check_memory(argv") {
+            let name = &subject.core.config.name;
+            arguments.push(format!("{}/{name}", FileKind::Memory.folder()));
+        }
+        let run = recompute.run(arguments, dir.path(), limit)?;
         if run.status.code() == Some(SOME_UNDECIDED) {
             let said = run.output.lines().rev().take(2).collect::<Vec<_>>();
             let why = format!(
@@ -293,19 +290,19 @@ pub const LINT: Check = Check {
     steps: |_| 1,
     run: |subject, tools, _| {
         let dir = Directory::new().context("cannot make a directory for the linters")?;
-        let (name, limit) = (&subject.core.config.name, subject.effort.time_limit);
+        let limit = subject.effort.time_limit;
+        let files = subject.files()?;
         let mut sources = Vec::new();
-        let rtl = subject.files()?.iter().filter(|file| file.path.starts_with("rtl_out/"));
-        for (name, contents) in package::sources(rtl.cloned().collect()) {
-            fs::write(dir.path().join(&name), contents)
+        for file in files.of(FileKind::DESIGN_SOURCES) {
+            let name = file.name();
+            fs::write(dir.path().join(name), &file.contents)
                 .with_context(|| format!("cannot write `{name}` for the linters"))?;
-            if name.ends_with(".v") {
-                sources.push(name);
+            if file.kind.is_verilog() {
+                sources.push(name.to_owned());
             }
         }
         let mut failures = Vec::new();
-        let tops = TOPS.map(|top| format!("{name}{top}"));
-        for top in tops.iter().filter(|top| sources.contains(&format!("{top}.v"))) {
+        for top in files.top_modules() {
             for tool in tools {
                 let remarks = lint(tool, dir.path(), &sources, top, limit)?;
                 if !remarks.trim().is_empty() {
@@ -349,11 +346,11 @@ fn bench(subject: &CheckSubject<'_>, simulator: VerilogSimulator) -> Result<Find
     let points = POINTS[usize::from(effort.full)];
     let vectors = core.vectors(points, BENCH_SEED)?;
     let clocks = vectors.inputs.len() as u64;
-    let files = package::sources(core.files(subject.path, vectors)?);
+    let files = core.files(subject.path, vectors)?;
+    let sources = files.sources(FileKind::SIMULATED);
     let mut failures = Vec::new();
-    let tops = TOPS.map(|top| format!("{}{top}_tb", core.config.name));
-    for top in tops.iter().filter(|top| files.iter().any(|(it, _)| *it == format!("{top}.v"))) {
-        let outcome = run_bench(simulator, &files, top, effort.time_limit)?;
+    for bench in files.modules(&[FileKind::Bench]) {
+        let outcome = run_bench(simulator, &sources, bench, effort.time_limit)?;
         if !outcome.passed {
             failures.push(outcome.transcript.trim().to_owned());
         }
@@ -406,26 +403,22 @@ pub const FORMAL: Check = Check {
     tools: &["yosys", "yosys-smtbmc", "z3"],
     steps: |_| 1,
     run: |subject, _, _| {
-        // All files in one directory, without the files in subdirectories, which belong to a target.
-        let plain = subject.files()?.iter().filter_map(|file| {
-            let path = match file.path.split('/').collect::<Vec<_>>()[..] {
-                ["rtl_out" | "testbench", _, name] => name.to_owned(),
-                _ => return None,
-            };
-            Some(OutputFile { path, contents: file.contents.clone() })
-        });
-        let plain: Vec<OutputFile> = plain.collect();
+        // All files are in one directory. The forms of modules for one target are left out.
+        let mut plain = Vec::new();
+        for file in subject.files()? {
+            if file.kind.folder() != "software" && file.target.is_none() {
+                plain.push(OutputFile { path: file.name().to_owned(), ..file.clone() });
+            }
+        }
         let dir = directory_of(&plain)?;
         let time = subject.effort.time_limit.min(PROOF_LIMITS.time);
-        // The core's, and one for each wrapper.
-        let mut proofs: Vec<&str> =
-            plain.iter().filter_map(|file| file.path.strip_suffix("_formal.sv")).collect();
-        proofs.sort_unstable();
-        for module in &proofs {
-            prove(dir.path(), module, Limits { time, ..PROOF_LIMITS })?;
+        // The proof of the core, and one for each wrapper.
+        let proofs = subject.files()?.of(&[FileKind::CoreProof, FileKind::WrapperProof]);
+        let mut files: Vec<&str> = proofs.iter().map(|file| file.name()).collect();
+        files.sort_unstable();
+        for file in &files {
+            prove(dir.path(), file, Limits { time, ..PROOF_LIMITS })?;
         }
-        let files: Vec<String> =
-            proofs.iter().map(|module| format!("{module}_formal.sv")).collect();
         Ok(Finding::new(
             CheckVerdict::Proved,
             "all inputs, any state, any number of clocks",
@@ -457,20 +450,17 @@ pub const COCOTB: Check = Check {
             return Ok(Finding::without(CheckVerdict::NotRun, why));
         }
         let dir = written(subject)?;
-        let name = &subject.core.config.name;
-        let benches = TOPS.map(|top| format!("testbench/{name}/test_{name}{top}.py"));
-        let benches: Vec<&String> =
-            benches.iter().filter(|bench| dir.path().join(bench).exists()).collect();
+        let benches = subject.files()?.of(&[FileKind::CocotbBench]);
         let (mut verdicts, mut failures) = (Vec::new(), Vec::new());
         for bench in &benches {
-            let run = python.run([bench], dir.path(), limit)?;
+            let run = python.run([&bench.path], dir.path(), limit)?;
             let verdict = run.output.lines().rev().find(|line| line.starts_with("PASS "));
             match verdict.filter(|_| run.status.success()) {
                 Some(verdict) => verdicts.push(verdict.to_owned()),
                 None => failures.push(run.output.trim().to_owned()),
             }
         }
-        let benches: Vec<&str> = benches.into_iter().map(String::as_str).collect();
+        let benches: Vec<&str> = benches.iter().map(|file| file.path.as_str()).collect();
         Ok(Finding::new(
             CheckVerdict::Passed,
             format!("{}, with cocotb {}", benches.join(", "), version.output.trim()),
@@ -511,7 +501,10 @@ pub const GATES: Check = Check {
         let (name, limit) = (&subject.core.config.name, subject.effort.time_limit);
         let vectors = subject.core.vectors(GATE_POINTS, BENCH_SEED)?;
         let clocks = vectors.inputs.len() as u64;
-        let sources = package::sources(subject.core.files(subject.path, vectors)?);
+        let emitted = subject.core.files(subject.path, vectors)?;
+        let sources = emitted.sources(FileKind::SIMULATED);
+        let benches = emitted.modules(&[FileKind::Bench]);
+        let bench = benches.first().context("the core has no bench")?;
         let families: Vec<_> = simulated().collect();
         let failures: Vec<Option<String>> = families
             .par_iter()
@@ -520,8 +513,7 @@ pub const GATES: Check = Check {
                 let names: Vec<String> = rtl.iter().map(|(name, _)| name.clone()).collect();
                 let netlist = gates::netlist(&tools[0], &rtl, name, family, limit)?;
                 let files = gates::bench(&tools[0], sources.clone(), &names, netlist, family)?;
-                let outcome =
-                    run_bench(VerilogSimulator::Icarus, &files, &format!("{name}_tb"), limit)?;
+                let outcome = run_bench(VerilogSimulator::Icarus, &files, bench, limit)?;
                 progress(1);
                 let failure = || format!("{}: {}", family.title, outcome.transcript.trim());
                 Ok((!outcome.passed).then(failure))
@@ -537,8 +529,7 @@ pub const GATES: Check = Check {
             for &start in Start::of(subject.core.design.pipeline.is_some()) {
                 let models = gates::cells::models(start)?;
                 let files = gates::around(sources.clone(), &names, netlist.clone(), models);
-                let outcome =
-                    run_bench(VerilogSimulator::Icarus, &files, &format!("{name}_tb"), limit)?;
+                let outcome = run_bench(VerilogSimulator::Icarus, &files, bench, limit)?;
                 if !outcome.passed {
                     failures.push(format!("cells, {start:?}: {}", outcome.transcript.trim()));
                 }

@@ -11,7 +11,7 @@ use crate::common::tools::{assert_lint_clean, yosys};
 use build::{Call, build, calls};
 use glint::hdl::netlist::Design;
 use glint::hdl::sim::Simulator;
-use glint::package::{EmitInputs, emit, sources};
+use glint::package::{EmitInputs, FileKind, emit};
 use proptest::prelude::*;
 use proptest::strategy::ValueTree;
 use proptest::test_runner::TestRunner;
@@ -33,7 +33,7 @@ fn answer(design: &Design) -> Result<Files, TestCaseError> {
         let settles = simulator.clock();
         prop_assert!(settles.is_ok(), "{design}");
     }
-    Ok(sources(files))
+    Ok(files.sources(FileKind::DESIGN_SOURCES))
 }
 
 proptest! {

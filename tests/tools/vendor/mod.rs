@@ -12,6 +12,7 @@ use crate::common::tools::{
     LIMIT, assert_bench_passes, assert_files_are_clean, benched, ran, tool, yosys,
 };
 use glint::core::Core;
+use glint::package::FileKind;
 use glint::tools::VerilogSimulator;
 use rayon::prelude::*;
 
@@ -25,7 +26,7 @@ const INLINE: &str = "\n[package]\nmemories = \"inline\"\n";
 
 /// Returns the files in `rtl_out` of a configuration, in a directory.
 fn emitted(core: &Core) -> tempfile::TempDir {
-    Emitted::new(core, 1, 1).beside("rtl_out/")
+    Emitted::new(core, 1, 1).beside("rtl_out")
 }
 
 fn cosine_power() -> tempfile::TempDir {
@@ -174,15 +175,15 @@ fn rom_contents_in_the_verilog_are_those_of_the_files() {
         let core = configuration_with(&path, INLINE);
         let emitted = Emitted::new(&core, 300, 1);
         let rtl = emitted.rtl();
-        assert!(rtl.iter().all(|(name, text)| name.ends_with(".v") && !text.contains("$readmem")));
+        assert!(emitted.files.of(&[FileKind::Memory]).is_empty());
+        assert!(rtl.iter().all(|(_, text)| !text.contains("$readmem")));
         for (file, text) in &rtl {
             let long = text.lines().find(|line| line.len() > 100);
             assert_eq!(long, None, "{file}");
         }
         // The bench of the configuration with files, word for word.
         let with_files = Emitted::new(&configuration_with(&path, ""), 300, 1);
-        let mut bench = with_files.simulated();
-        bench.retain(|(name, _)| with_files.rtl().iter().all(|(other, _)| other != name));
+        let bench = with_files.files.sources(FileKind::BENCH_SOURCES);
         for simulator in [VerilogSimulator::Icarus, VerilogSimulator::Verilator] {
             let files: Vec<_> = rtl.iter().chain(&bench).cloned().collect();
             assert_bench_passes(simulator, &files, &with_files.bench());

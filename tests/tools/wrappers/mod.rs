@@ -10,7 +10,7 @@ use crate::common::files::read;
 use crate::common::tools::{LIMIT, assert_bench_passes, assert_lint_clean, ran, tool};
 use crate::faults::{Fault, faults};
 use glint::core::Core;
-use glint::package::driver;
+use glint::package::FileKind;
 use glint::tools::{VerilogSimulator, prove};
 use rayon::prelude::*;
 
@@ -70,9 +70,10 @@ fn slower(clocks: u32, keys: &str) -> Core {
 fn streams_are_clean_verilog() {
     with_streams().par_iter().for_each(|(path, core)| {
         let emitted = Emitted::new(core, 1, 1);
-        let dir = emitted.beside("rtl_out/");
+        let dir = emitted.beside("rtl_out");
         assert_lint_clean(dir.path(), &format!("{}_axis", emitted.name));
-        for file in emitted.files.iter().filter(|file| file.path.contains("_axis")) {
+        let kinds = [FileKind::StreamWrapper, FileKind::WrapperProof, FileKind::Bench];
+        for file in emitted.files.of(&kinds) {
             let long = file.contents.lines().find(|line| line.len() > 100);
             assert_eq!(long, None, "{path}: {}", file.path);
         }
@@ -83,11 +84,12 @@ fn streams_are_clean_verilog() {
 fn streams_are_proved() {
     PROVED.par_iter().for_each(|(name, keys)| {
         let dir = proof(name, keys);
-        prove(dir.path(), &format!("{name}_axis"), LIMIT).sure_of(format_args!("{name}, {keys}"));
+        prove(dir.path(), &format!("{name}_axis_formal.sv"), LIMIT)
+            .sure_of(format_args!("{name}, {keys}"));
     });
     for clocks in [2, 4] {
-        let dir = Emitted::new(&slower(clocks, STREAM), 1, 1).beside("");
-        prove(dir.path(), "cosine_power_pipelined_axis", LIMIT)
+        let dir = Emitted::new(&slower(clocks, STREAM), 1, 1).all_beside();
+        prove(dir.path(), "cosine_power_pipelined_axis_formal.sv", LIMIT)
             .sure_of(format_args!("every {clocks} clocks"));
     }
 }
@@ -109,7 +111,7 @@ fn breaks_the_proof(fault: &Fault, name: &str, keys: &str, wrapper: &str) {
 /// Returns the wrapper of a configuration, and what is proved of it, in a directory of their own.
 fn proof(name: &str, keys: &str) -> tempfile::TempDir {
     let core = configuration_between(&format!("configs/{name}.toml"), keys);
-    Emitted::new(&core, 1, 1).beside("")
+    Emitted::new(&core, 1, 1).all_beside()
 }
 
 /// Source and sink of cocotbext-axi.
@@ -139,8 +141,6 @@ fn shipped_benches_pass_on_padded_streams() {
             assert_bench_passes(simulator, &emitted.simulated(), &format!("{name}_axis_tb"));
         }
         let dir = emitted.tree();
-        fs::write(dir.path().join("testbench/glint_cocotb.py"), driver().contents)
-            .expect("written");
         let script = format!("testbench/{name}/test_{name}_axis.py");
         ran("python", [script], dir.path());
     });
@@ -169,12 +169,11 @@ fn on_buses() -> Vec<(String, Core, &'static str)> {
 fn registers_are_clean_verilog() {
     on_buses().par_iter().for_each(|(path, core, bus)| {
         let emitted = Emitted::new(core, 1, 1);
-        let dir = emitted.beside("rtl_out/");
+        let dir = emitted.beside("rtl_out");
         assert_lint_clean(dir.path(), &format!("{}_{bus}", emitted.name));
-        let of_registers = |path: &str| {
-            ["_axil", "_wb", "_registers", ".rdl"].iter().any(|part| path.contains(part))
-        };
-        for file in emitted.files.iter().filter(|file| of_registers(&file.path)) {
+        let kinds =
+            [FileKind::BusWrapper, FileKind::WrapperProof, FileKind::Bench, FileKind::Software];
+        for file in emitted.files.of(&kinds) {
             assert!(file.contents.is_ascii(), "{path}: {} is not ASCII", file.path);
             let long = file.contents.lines().find(|line| line.len() > 120);
             assert_eq!(long, None, "{path}: {}", file.path);
@@ -190,7 +189,7 @@ fn registers_are_proved() {
         for (keys, bus) in BUSES {
             let dir = proof(name, keys);
             for wrapper in [bus, "registers"] {
-                prove(dir.path(), &format!("{name}_{wrapper}"), LIMIT)
+                prove(dir.path(), &format!("{name}_{wrapper}_formal.sv"), LIMIT)
                     .sure_of(format_args!("{name}_{wrapper}"));
             }
         }

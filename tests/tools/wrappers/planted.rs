@@ -1,15 +1,15 @@
 //! Faults in the text of wrappers: lint, a shipped bench or a proof notices all but those that change nothing.
 
-use std::fs;
-use std::path::Path;
 use std::time::Duration;
 
 use super::{BUSES, STREAM};
 use crate::common::Sure;
-use crate::common::cores::{Files, configuration_between, write};
+use crate::common::cores::{Files, configuration_between};
+use crate::common::files::put;
 use crate::common::sample::sampled;
-use crate::common::tools::{LIMIT, tool, verilog_files};
+use crate::common::tools::{LIMIT, tool};
 use glint::mutate::{TextFault, VerilogText};
+use glint::package::{FileKind, OutputFile};
 use glint::tools::{VerilogSimulator, lint, prove, run_bench};
 use rayon::prelude::*;
 
@@ -41,7 +41,7 @@ fn planted_faults_are_noticed() {
         assert!(!faults.is_empty(), "{name}: no faults");
         let missed: Vec<&str> = faults
             .par_iter()
-            .filter(|fault| !is_noticed(name, &text.planted(fault)))
+            .filter(|fault| !is_noticed(&text.planted(fault)))
             .map(|fault| fault.id.as_str())
             .collect();
         assert!(missed.is_empty(), "{name}: nothing notices {missed:?}");
@@ -49,37 +49,60 @@ fn planted_faults_are_noticed() {
 }
 
 /// Returns whether lint, a bench or a proof notices what is wrong with some files.
-fn is_noticed(name: &str, files: &Files) -> bool {
+fn is_noticed(files: &[OutputFile]) -> bool {
     let dir = tempfile::tempdir().expect("a directory");
     let dir = dir.path();
-    write(dir, files);
-    let sources: Vec<String> =
-        verilog_files(dir).into_iter().filter(|file| !file.ends_with("_tb.v")).collect();
-    let tops = ["_axis", "_axil", "_wb"].map(|top| format!("{name}{top}"));
-    let tops = || tops.iter().filter(|top| dir.join(format!("{top}.v")).exists());
-    let simulated: Files =
-        files.iter().filter(|(file, _)| !file.ends_with(".sv")).cloned().collect();
-    let warns = |top: &String| {
+    for file in files {
+        put(dir.join(file.name()), &file.contents);
+    }
+    let simulated = simulated(files);
+    let mut sources = Vec::new();
+    for file in files {
+        if file.kind.is_verilog() && file.kind != FileKind::Bench {
+            sources.push(file.name().to_owned());
+        }
+    }
+    let warns = |top: &&str| {
         let told = lint(&tool("verilator"), dir, &sources, top, LIMIT);
         told.map_or(true, |told| !told.is_empty())
     };
-    let fails = |top: &String| {
-        let outcome =
-            run_bench(VerilogSimulator::Icarus, &simulated, &format!("{top}_tb"), PATIENCE);
+    let fails = |bench: &&str| {
+        let outcome = run_bench(VerilogSimulator::Icarus, &simulated, bench, PATIENCE);
         !outcome.is_ok_and(|outcome| outcome.passed)
     };
-    tops().any(warns)
-        || tops().any(fails)
-        || proofs(dir, name).any(|it| prove(dir, &it, LIMIT).is_err())
+    let is_broken = |file: &OutputFile| {
+        file.kind == FileKind::WrapperProof && prove(dir, file.name(), LIMIT).is_err()
+    };
+    wrappers(files).iter().any(warns)
+        || wrapper_benches(files).iter().any(fails)
+        || files.iter().any(is_broken)
 }
 
-/// Returns the wrappers whose proofs are in a directory.
-fn proofs(dir: &Path, core: &str) -> impl Iterator<Item = String> + use<> {
-    let core = core.to_owned();
-    let files = fs::read_dir(dir).expect("a directory");
-    let names = files.map(|file| file.expect("a file").file_name().to_string_lossy().into_owned());
-    let modules = names.filter_map(|file| Some(file.strip_suffix("_formal.sv")?.to_owned()));
-    modules.filter(move |module| *module != core)
+/// Returns the files that a simulator reads, pairs of a plain name and its text.
+fn simulated(files: &[OutputFile]) -> Files {
+    let mut simulated = Files::new();
+    for file in files {
+        if FileKind::SIMULATED.contains(&file.kind) {
+            let (name, text) = file.source();
+            simulated.push((name.to_owned(), text.to_owned()));
+        }
+    }
+    simulated
+}
+
+/// Returns the main module of each wrapper.
+fn wrappers(files: &[OutputFile]) -> Vec<&str> {
+    let mut tops = Vec::new();
+    for kind in [FileKind::StreamWrapper, FileKind::BusWrapper] {
+        tops.extend(files.iter().find(|file| file.kind == kind).map(OutputFile::main_module));
+    }
+    tops
+}
+
+/// Returns the modules of the benches of wrappers. The bench of the core comes before them.
+fn wrapper_benches(files: &[OutputFile]) -> Vec<&str> {
+    let benches = files.iter().filter(|file| file.kind == FileKind::Bench);
+    benches.map(OutputFile::main_module).skip(1).collect()
 }
 
 #[test]
@@ -95,14 +118,10 @@ fn benches_pass_without_a_fault() {
     ] {
         let core = configuration_between(&format!("configs/{name}.toml"), &keys);
         let text = VerilogText::of_wrappers(&core).sure_of(name);
-        let files: Files =
-            text.files().iter().filter(|(file, _)| !file.ends_with(".sv")).cloned().collect();
-        for top in ["_axis", "_axil", "_wb"] {
-            let top = format!("{name}{top}_tb");
-            if files.iter().any(|(file, _)| *file == format!("{top}.v")) {
-                for simulator in [VerilogSimulator::Icarus, VerilogSimulator::Verilator] {
-                    crate::common::tools::assert_bench_passes(simulator, &files, &top);
-                }
+        let files = simulated(text.files());
+        for bench in wrapper_benches(text.files()) {
+            for simulator in [VerilogSimulator::Icarus, VerilogSimulator::Verilator] {
+                crate::common::tools::assert_bench_passes(simulator, &files, bench);
             }
         }
     }

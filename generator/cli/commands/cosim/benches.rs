@@ -10,7 +10,7 @@ use crate::commands::mismatch::{first_clock, waveform_of};
 use crate::failure;
 use crate::{OutputOptions, destination, progress, say, tables, wrong_usage};
 use glint_base::program::Program;
-use glint_core::package;
+use glint_core::package::FileKind;
 use glint_tools::{BenchDifference, BenchOutcome, VerilogSimulator, bench_waveform, run_bench};
 
 /// Points when an external simulator runs.
@@ -83,14 +83,16 @@ fn bench(
 ) -> Result<BenchRun> {
     let vectors = one.core.vectors(points, arguments.seed)?;
     let clocks = vectors.inputs.len();
-    let files = package::sources(one.files(vectors)?);
-    let top = format!("{}_tb", one.core.config.name);
-    let outcome = run_bench(which, &files, &top, arguments.time_limit.get())?;
+    let emitted = one.files(vectors)?;
+    let files = emitted.sources(FileKind::SIMULATED);
+    let benches = emitted.modules(&[FileKind::Bench]);
+    let top = benches.first().context("the core has no bench")?;
+    let outcome = run_bench(which, &files, top, arguments.time_limit.get())?;
     let mismatch = BenchDifference::first(&outcome.transcript).map(|difference| {
         let from = first_clock(difference.clock);
         let clocks = (from, difference.clock);
         let path = waveform_of(one);
-        let written = bench_waveform(which, &files, &top, clocks, arguments.time_limit.get())
+        let written = bench_waveform(which, &files, top, clocks, arguments.time_limit.get())
             .and_then(|waveform| destination::replace(&path, &waveform));
         if let Err(error) = &written {
             // The difference is worth more than its waveform.

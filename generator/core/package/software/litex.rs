@@ -3,8 +3,10 @@
 use anyhow::{Result, bail};
 use glint_base::fill;
 
-use crate::package::artifact::{ArtifactKind, Artifacts, EmitJob};
 use crate::package::bus::Bus;
+use crate::package::emit_job::EmitJob;
+use crate::package::file_kind::FileKind;
+use crate::package::output_files::OutputFiles;
 use crate::package::tops::{Face, Top, TopPort};
 use glint_base::key_error::KeyError;
 use glint_rtl::netlist::{Design, Role};
@@ -39,7 +41,7 @@ struct LitexStream<'a> {
 ///
 /// # Errors
 /// Fails if CSRs cannot drive the core and it has no stream.
-pub fn file(job: &EmitJob, tops: &[Top], files: &mut Artifacts) -> Result<()> {
+pub fn file(job: &EmitJob, tops: &[Top], files: &mut OutputFiles) -> Result<()> {
     let (name, design, is_line) = (job.name(), job.design, job.is_line());
     let find = |face: fn(Face) -> bool| tops.iter().find(|top| face(top.face));
     let stream = find(|face| face == Face::Stream).map(streamed);
@@ -72,7 +74,7 @@ pub fn file(job: &EmitJob, tops: &[Top], files: &mut Artifacts) -> Result<()> {
         stream: Option<LitexStream<'a>>,
         registers: Option<(&'a Top, &'a Bus)>,
     })?;
-    files.add(ArtifactKind::Software, format!("{name}_litex.py"), text);
+    files.add(FileKind::Software, format!("{name}_litex.py"), text);
     Ok(())
 }
 

@@ -13,7 +13,8 @@ mod stream;
 
 use anyhow::Result;
 
-use super::artifact::{Artifacts, EmitJob};
+use super::emit_job::EmitJob;
+use super::output_files::OutputFiles;
 use super::tops::Top;
 pub use recompute::check as check_recomputation;
 
@@ -21,7 +22,7 @@ pub use recompute::check as check_recomputation;
 ///
 /// # Errors
 /// Fails if the core does not fit.
-pub fn files(job: &EmitJob, tops: &[Top], files: &mut Artifacts) -> Result<()> {
+pub fn files(job: &EmitJob, tops: &[Top], files: &mut OutputFiles) -> Result<()> {
     if job.inputs.around.software {
         let read = model::files(job, files)?;
         if job.inputs.around.recomputation {

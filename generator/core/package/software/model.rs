@@ -7,7 +7,9 @@ use anyhow::{Context, Result};
 
 use super::print::{CStatement, Printer, comment, field, literal, pattern_type, taken};
 use crate::observation::WorkedExample;
-use crate::package::artifact::{ArtifactKind, Artifacts, EmitJob};
+use crate::package::emit_job::EmitJob;
+use crate::package::file_kind::FileKind;
+use crate::package::output_files::OutputFiles;
 use glint_base::fixed::{Format, mask};
 use glint_base::key_error::KeyError;
 use glint_rtl::netlist::{Design, Port, Role, RomId};
@@ -116,7 +118,7 @@ impl CField {
 /// # Errors
 /// Fails if the core cannot become a function. It must not wait for `start` in the middle, have a loop without a bound, or have
 /// results that depend on an earlier computation.
-pub fn files(job: &EmitJob, files: &mut Artifacts) -> Result<Vec<RomId>> {
+pub fn files(job: &EmitJob, files: &mut OutputFiles) -> Result<Vec<RomId>> {
     let (name, inputs, line) = (job.name(), job.inputs, job.is_line());
     let design = inputs.sequential.as_ref().unwrap_or(job.design);
     let about = &design.about;
@@ -158,8 +160,8 @@ pub fn files(job: &EmitJob, files: &mut Artifacts) -> Result<Vec<RomId>> {
         body: Vec<String>,
         line: bool,
     })?;
-    files.add(ArtifactKind::Software, format!("{name}_model.h"), header);
-    files.add(ArtifactKind::Software, format!("{name}_model.c"), source);
+    files.add(FileKind::Software, format!("{name}_model.h"), header);
+    files.add(FileKind::Software, format!("{name}_model.c"), source);
     if let Some(example) = &inputs.example {
         let python = fill!("model.py" {
             name: &'a str,
@@ -169,7 +171,7 @@ pub fn files(job: &EmitJob, files: &mut Artifacts) -> Result<Vec<RomId>> {
             values: Vec<String> = example_values(design, example),
             line: bool,
         })?;
-        files.add(ArtifactKind::Software, format!("{name}_model.py"), python);
+        files.add(FileKind::Software, format!("{name}_model.py"), python);
     }
     Ok(read)
 }

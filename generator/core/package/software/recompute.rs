@@ -6,7 +6,9 @@ use anyhow::Result;
 
 use super::model::{CField, table_names};
 use crate::observation::ContractFacts;
-use crate::package::artifact::{ArtifactKind, Artifacts, EmitJob};
+use crate::package::emit_job::EmitJob;
+use crate::package::file_kind::FileKind;
+use crate::package::output_files::OutputFiles;
 use glint_base::fill;
 use glint_base::key_error::KeyError;
 use glint_formula::parse;
@@ -57,7 +59,7 @@ pub fn check(name: &str, facts: &ContractFacts) -> Result<(), KeyError> {
 ///
 /// # Errors
 /// Fails as [`check`] does.
-pub fn file(job: &EmitJob, read: &[RomId], files: &mut Artifacts) -> Result<()> {
+pub fn file(job: &EmitJob, read: &[RomId], files: &mut OutputFiles) -> Result<()> {
     let (name, inputs) = (job.name(), job.inputs);
     let design = inputs.sequential.as_ref().unwrap_or(job.design);
     let facts =
@@ -75,7 +77,7 @@ pub fn file(job: &EmitJob, read: &[RomId], files: &mut Artifacts) -> Result<()> 
     };
     let (operand, result) = (field(operand)?, field(result)?);
     let (naming, tables) = (Naming::new(design), table_names(design));
-    let written = files.names(&[ArtifactKind::Memory]);
+    let written = files.local_paths(&[FileKind::Memory]);
     let memory = |id: &RomId| {
         let (file, table) = (naming.files[id.index()].clone(), tables[id.index()].clone());
         written.contains(&file).then(|| (file, table, design.rom(*id).words.len()))
@@ -100,6 +102,6 @@ pub fn file(job: &EmitJob, read: &[RomId], files: &mut Artifacts) -> Result<()> 
         last: i64,
         bound: String = format!("{:?}", facts.bound),
     })?;
-    files.add(ArtifactKind::Software, format!("{name}_recompute.c"), program);
+    files.add(FileKind::Recomputation, format!("{name}_recompute.c"), program);
     Ok(())
 }

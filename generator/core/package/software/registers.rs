@@ -3,9 +3,11 @@
 use anyhow::Result;
 use glint_base::fill;
 
-use crate::package::artifact::{ArtifactKind, Artifacts, EmitJob};
 use crate::package::bus::Bus;
+use crate::package::emit_job::EmitJob;
+use crate::package::file_kind::FileKind;
 use crate::package::map::{Access, BusRegister, Map, RegisterBits};
+use crate::package::output_files::OutputFiles;
 use glint_base::fixed::Format;
 use glint_rtl::verilog::text::{ascii, constant_name};
 
@@ -77,7 +79,7 @@ impl OperandConversion {
 ///
 /// # Errors
 /// Fails if a template fails.
-pub fn files(job: &EmitJob, bus: &Bus, map: &Map, files: &mut Artifacts) -> Result<()> {
+pub fn files(job: &EmitJob, bus: &Bus, map: &Map, files: &mut OutputFiles) -> Result<()> {
     let (name, regenerate, bus) = (job.name(), job.regenerate(), bus.title);
     let title = ascii(&job.design.about.title).replace("*/", "* /").replace('"', "'");
     let title = title.as_str();
@@ -105,9 +107,9 @@ pub fn files(job: &EmitJob, bus: &Bus, map: &Map, files: &mut Artifacts) -> Resu
     let rdl = fill!("registers.rdl" {
         name: &'a str, title: &'a str, regenerate: &'a str, registers: &'a [Printed<'a>] = &registers,
     })?;
-    files.add(ArtifactKind::Software, format!("{name}_registers.h"), header);
-    files.add(ArtifactKind::Software, format!("{name}_registers.rs"), module);
-    files.add(ArtifactKind::Software, format!("{name}.rdl"), rdl);
+    files.add(FileKind::Software, format!("{name}_registers.h"), header);
+    files.add(FileKind::Software, format!("{name}_registers.rs"), module);
+    files.add(FileKind::Software, format!("{name}.rdl"), rdl);
     Ok(())
 }
 

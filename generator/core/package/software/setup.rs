@@ -5,7 +5,9 @@ use anyhow::Result;
 use glint_base::fill;
 
 use super::model::CField;
-use crate::package::artifact::{ArtifactKind, Artifacts, EmitJob};
+use crate::package::emit_job::EmitJob;
+use crate::package::file_kind::FileKind;
+use crate::package::output_files::OutputFiles;
 use glint_base::fixed::exp2;
 use glint_rtl::netlist::Role;
 use glint_rtl::verilog::text::constant_name;
@@ -43,7 +45,7 @@ impl LineSetup<'_> {
 ///
 /// # Errors
 /// Fails if a template fails.
-pub fn files(job: &EmitJob, files: &mut Artifacts) -> Result<()> {
+pub fn files(job: &EmitJob, files: &mut OutputFiles) -> Result<()> {
     let (name, inputs) = (job.name(), job.inputs);
     let design = inputs.sequential.as_ref().unwrap_or(job.design);
     let ports = design.inputs().filter(|port| matches!(port.role, Role::Operand { .. }));
@@ -81,7 +83,7 @@ pub fn files(job: &EmitJob, files: &mut Artifacts) -> Result<()> {
         ("c", fill!("setup.c" { line: &'a LineSetup<'a> })?),
         ("py", fill!("setup.py" { line: &'a LineSetup<'a> })?),
     ] {
-        files.add(ArtifactKind::Software, format!("{name}_setup.{ending}"), text);
+        files.add(FileKind::Software, format!("{name}_setup.{ending}"), text);
     }
     Ok(())
 }

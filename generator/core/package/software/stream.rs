@@ -4,7 +4,9 @@ use anyhow::Result;
 use glint_base::fill;
 
 use super::model::CField;
-use crate::package::artifact::{ArtifactKind, Artifacts, EmitJob};
+use crate::package::emit_job::EmitJob;
+use crate::package::file_kind::FileKind;
+use crate::package::output_files::OutputFiles;
 use crate::package::wrap::fields::Transfer;
 use glint_rtl::verilog::text::constant_name;
 
@@ -93,7 +95,7 @@ impl Bytes {
 ///
 /// # Errors
 /// Fails if a template fails.
-pub fn files(job: &EmitJob, files: &mut Artifacts) -> Result<()> {
+pub fn files(job: &EmitJob, files: &mut OutputFiles) -> Result<()> {
     let (name, regenerate) = (job.name(), job.regenerate());
     let (sent, received) = (Transfer::sent(job)?, Transfer::received(job)?);
     let (sent, received) = (Bytes::new(job, &sent), Bytes::new(job, &received));
@@ -108,7 +110,7 @@ pub fn files(job: &EmitJob, files: &mut Artifacts) -> Result<()> {
         sent: &'a Bytes = &sent,
         received: &'a Bytes = &received,
     })?;
-    files.add(ArtifactKind::Software, format!("{name}_stream.h"), header);
-    files.add(ArtifactKind::Software, format!("{name}_stream.py"), python);
+    files.add(FileKind::Software, format!("{name}_stream.h"), header);
+    files.add(FileKind::Software, format!("{name}_stream.py"), python);
     Ok(())
 }

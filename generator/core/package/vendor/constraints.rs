@@ -4,14 +4,16 @@
 use anyhow::Result;
 use glint_base::fill;
 
-use crate::package::artifact::{ArtifactKind, Artifacts, EmitJob};
+use crate::package::emit_job::EmitJob;
+use crate::package::file_kind::FileKind;
+use crate::package::output_files::OutputFiles;
 use crate::package::tops::Top;
 
 /// Adds both files of each module.
 ///
 /// # Errors
 /// Fails if a template fails.
-pub fn files(job: &EmitJob, tops: &[Top], clock_mhz: f64, files: &mut Artifacts) -> Result<()> {
+pub fn files(job: &EmitJob, tops: &[Top], clock_mhz: f64, files: &mut OutputFiles) -> Result<()> {
     for top in tops {
         for (ending, reader) in [
             ("sdc", "For Quartus, nextpnr, OpenSTA and all that read SDC."),
@@ -24,7 +26,7 @@ pub fn files(job: &EmitJob, tops: &[Top], clock_mhz: f64, files: &mut Artifacts)
                 // Who reads the file, and how.
                 reader: &'a str,
             })?;
-            files.add(ArtifactKind::Constraint, format!("{}.{ending}", top.module), text);
+            files.add(FileKind::Constraint, format!("{}.{ending}", top.module), text);
         }
     }
     Ok(())

@@ -2,8 +2,10 @@
 
 use anyhow::Result;
 
-use crate::package::artifact::{ArtifactKind, Artifacts, EmitJob};
+use crate::package::emit_job::EmitJob;
+use crate::package::file_kind::FileKind;
 use crate::package::map::{Access, BusRegister, RegisterBits};
+use crate::package::output_files::OutputFiles;
 use crate::package::tops::{Face, Top};
 use glint_base::template::render;
 use glint_rtl::verilog::text::ascii;
@@ -82,7 +84,7 @@ impl RegisterBits {
 ///
 /// # Errors
 /// Fails if a template fails.
-pub fn files(job: &EmitJob, tops: &[Top], files: &mut Artifacts) -> Result<()> {
+pub fn files(job: &EmitJob, tops: &[Top], files: &mut OutputFiles) -> Result<()> {
     for top in tops {
         let registers: &[BusRegister] = match (top.face, &job.registers) {
             (Face::Registers(_), Some((_, map))) => &map.registers,
@@ -97,10 +99,10 @@ pub fn files(job: &EmitJob, tops: &[Top], files: &mut Artifacts) -> Result<()> {
             buses: buses(top),
             registers,
             range: 4 * registers.len(),
-            memories: files.names(&[ArtifactKind::Memory]),
+            memories: files.local_paths(&[FileKind::Memory]),
         };
         let text = render(&component)?;
-        files.add(ArtifactKind::Script, format!("{}.xml", top.module), text);
+        files.add(FileKind::VendorScript, format!("{}.xml", top.module), text);
     }
     Ok(())
 }

@@ -6,14 +6,15 @@ mod tcl;
 
 use anyhow::Result;
 
-use super::artifact::{Artifacts, EmitJob};
+use super::emit_job::EmitJob;
+use super::output_files::OutputFiles;
 use super::tops::Top;
 
 /// Adds the files that the configuration asks for.
 ///
 /// # Errors
 /// Fails if a template fails.
-pub fn files(job: &EmitJob, tops: &[Top], files: &mut Artifacts) -> Result<()> {
+pub fn files(job: &EmitJob, tops: &[Top], files: &mut OutputFiles) -> Result<()> {
     let around = &job.inputs.around;
     if let Some(clock_mhz) = around.clock_mhz {
         constraints::files(job, tops, clock_mhz, files)?;

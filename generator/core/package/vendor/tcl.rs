@@ -3,8 +3,10 @@
 use anyhow::Result;
 use glint_base::fill;
 
-use crate::package::artifact::{ArtifactKind, Artifacts, EmitJob};
 use crate::package::bus::Protocol;
+use crate::package::emit_job::EmitJob;
+use crate::package::file_kind::FileKind;
+use crate::package::output_files::OutputFiles;
 use crate::package::tops::{Top, TopPort};
 use glint_rtl::verilog::text::ascii;
 
@@ -33,10 +35,10 @@ impl TopPort {
 ///
 /// # Errors
 /// Fails if a template fails.
-pub fn vivado(job: &EmitJob, tops: &[Top], files: &mut Artifacts) -> Result<()> {
+pub fn vivado(job: &EmitJob, tops: &[Top], files: &mut OutputFiles) -> Result<()> {
     let (name, around) = (job.name(), &job.inputs.around);
     let version = around.version.as_str();
-    let memories = files.names(&[ArtifactKind::Memory]);
+    let memories = files.local_paths(&[FileKind::Memory]);
     let build = fill!("vivado.tcl" {
         name: &'a str,
         part: &'a str = VIVADO_PART,
@@ -55,8 +57,8 @@ pub fn vivado(job: &EmitJob, tops: &[Top], files: &mut Artifacts) -> Result<()> 
         tops: &'a [Top],
         memories: &'a [String] = &memories,
     })?;
-    files.add(ArtifactKind::Script, format!("{name}_vivado.tcl"), build);
-    files.add(ArtifactKind::Script, format!("{name}_vivado_ip.tcl"), ip);
+    files.add(FileKind::VendorScript, format!("{name}_vivado.tcl"), build);
+    files.add(FileKind::VendorScript, format!("{name}_vivado_ip.tcl"), ip);
     Ok(())
 }
 
@@ -64,7 +66,7 @@ pub fn vivado(job: &EmitJob, tops: &[Top], files: &mut Artifacts) -> Result<()> 
 ///
 /// # Errors
 /// Fails if a template fails.
-pub fn quartus(job: &EmitJob, tops: &[Top], files: &mut Artifacts) -> Result<()> {
+pub fn quartus(job: &EmitJob, tops: &[Top], files: &mut OutputFiles) -> Result<()> {
     let (name, around) = (job.name(), &job.inputs.around);
     let build = fill!("quartus.tcl" {
         name: &'a str,
@@ -73,7 +75,7 @@ pub fn quartus(job: &EmitJob, tops: &[Top], files: &mut Artifacts) -> Result<()>
         regenerate: &'a str = job.regenerate(),
         tops: &'a [Top],
     })?;
-    files.add(ArtifactKind::Script, format!("{name}_quartus.tcl"), build);
+    files.add(FileKind::VendorScript, format!("{name}_quartus.tcl"), build);
     for top in tops {
         let text = fill!("hw.tcl" {
             top: &'a Top,
@@ -81,10 +83,10 @@ pub fn quartus(job: &EmitJob, tops: &[Top], files: &mut Artifacts) -> Result<()>
             regenerate: &'a str = job.regenerate(),
             vendor: &'a str = &around.vendor,
             version: &'a str = &around.version,
-            memories: Vec<String> = files.names(&[ArtifactKind::Memory]),
+            memories: Vec<String> = files.local_paths(&[FileKind::Memory]),
             interfaces: Vec<PlatformInterface<'a>> = interfaces(top),
         })?;
-        files.add(ArtifactKind::Script, format!("{}_hw.tcl", top.module), text);
+        files.add(FileKind::VendorScript, format!("{}_hw.tcl", top.module), text);
     }
     Ok(())
 }

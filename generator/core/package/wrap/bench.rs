@@ -7,8 +7,10 @@ use glint_base::fill;
 use super::fields::{StreamField, Transfer};
 use super::points::{points, received, sent};
 use crate::observation::Vectors;
-use crate::package::artifact::{ArtifactKind, Artifacts, EmitJob};
+use crate::package::emit_job::EmitJob;
+use crate::package::file_kind::FileKind;
 use crate::package::map::{BusRegister, INTERRUPT_PENDING, Map, PortBits, PortPlacement};
+use crate::package::output_files::OutputFiles;
 use glint_base::fixed::mask;
 
 /// Points that a bench writes to registers, at most: those between are left out.
@@ -25,7 +27,7 @@ struct BenchRegister {
 ///
 /// # Errors
 /// Fails if the core lacks its handshake.
-pub fn files(job: &EmitJob, vectors: &Vectors, files: &mut Artifacts) -> Result<()> {
+pub fn files(job: &EmitJob, vectors: &Vectors, files: &mut OutputFiles) -> Result<()> {
     let (design, name) = (job.design, job.name());
     let points = points(design, vectors)?;
     if points.is_empty() {
@@ -57,7 +59,7 @@ pub fn files(job: &EmitJob, vectors: &Vectors, files: &mut Artifacts) -> Result<
             user_words: u32 = user_bits.div_ceil(32),
             offer_high: u32 = out_high + 1 + user_bits,
         })?;
-        files.add(ArtifactKind::Bench, format!("{name}_axis_tb.v"), text);
+        files.add_verilog(FileKind::Bench, vec![format!("{name}_axis_tb")], text);
         add_python(job, "axis", &["streams_carry_every_point"], files)?;
     }
     if let Some((bus, map)) = &job.registers {
@@ -83,24 +85,24 @@ pub fn files(job: &EmitJob, vectors: &Vectors, files: &mut Artifacts) -> Result<
             constants: Vec<(String, String)>,
             read_only: Vec<String>,
         })?;
-        files.add(ArtifactKind::Bench, format!("{top}_tb.v"), text);
+        files.add_verilog(FileKind::Bench, vec![format!("{top}_tb")], text);
         let tests = &["registers_compute_every_point", "registers_keep_what_is_written"];
         add_python(job, bus.suffix, tests, files)?;
     }
-    files.add(ArtifactKind::Bench, format!("{name}_sent.mem"), sent(&points, &operands));
+    files.add(FileKind::BenchVectors, format!("{name}_sent.mem"), sent(&points, &operands));
     let received = received(&points, &results, job.is_line());
-    files.add(ArtifactKind::Bench, format!("{name}_received.mem"), received);
+    files.add(FileKind::BenchVectors, format!("{name}_received.mem"), received);
     Ok(())
 }
 
 /// Adds the bench of a wrapper in Python, where the core has one.
-fn add_python(job: &EmitJob, wrapper: &str, tests: &[&str], files: &mut Artifacts) -> Result<()> {
+fn add_python(job: &EmitJob, wrapper: &str, tests: &[&str], files: &mut OutputFiles) -> Result<()> {
     if job.inputs.example.is_some() && job.inputs.accuracy.is_some() {
         let name = job.name();
         let text = fill!("test_wrapper.py" {
             name: &'a str, wrapper: &'a str, tests: &'a [&'a str],
         })?;
-        files.add(ArtifactKind::Python, format!("test_{name}_{wrapper}.py"), text);
+        files.add(FileKind::CocotbBench, format!("test_{name}_{wrapper}.py"), text);
     }
     Ok(())
 }

@@ -3,7 +3,7 @@
 
 use anyhow::{Context, Result};
 
-use crate::package::artifact::EmitJob;
+use crate::package::emit_job::EmitJob;
 use glint_rtl::netlist::{Design, Port, Role};
 use glint_rtl::verilog::text::{ascii, literal, statement};
 

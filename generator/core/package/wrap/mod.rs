@@ -11,7 +11,9 @@ mod words;
 use anyhow::Result;
 use glint_base::fill;
 
-use super::artifact::{ArtifactKind, Artifacts, EmitJob};
+use super::emit_job::EmitJob;
+use super::file_kind::FileKind;
+use super::output_files::OutputFiles;
 use glint_rtl::netlist::{Design, Port, Role};
 use glint_rtl::verilog::rows::separated;
 use glint_rtl::verilog::text::range;
@@ -20,7 +22,7 @@ use glint_rtl::verilog::text::range;
 ///
 /// # Errors
 /// Fails if a wrapper does not fit the core.
-pub fn files(job: &EmitJob, files: &mut Artifacts) -> Result<()> {
+pub fn files(job: &EmitJob, files: &mut OutputFiles) -> Result<()> {
     let streams = job.inputs.around.stream;
     if streams {
         match &job.design.pipeline {
@@ -38,12 +40,21 @@ pub fn files(job: &EmitJob, files: &mut Artifacts) -> Result<()> {
     bench::files(job, vectors, files)
 }
 
-/// Adds the properties of a wrapper, and the Yosys commands that make the problem, if there is a bench.
-fn add_proof(job: &EmitJob, wrapper: &str, text: String, files: &mut Artifacts) -> Result<()> {
+/// Adds the properties of a wrapper, and the Yosys commands that make the problem, if there is a bench. `stubs` are the
+/// modules that `text` defines in place of the modules below the wrapper.
+fn add_proof(
+    job: &EmitJob,
+    wrapper: &str,
+    stubs: Vec<String>,
+    text: String,
+    files: &mut OutputFiles,
+) -> Result<()> {
     if job.inputs.vectors.is_some() {
         let script = fill!("wrapper_formal.ys" { name: &'a str = wrapper })?;
-        files.add(ArtifactKind::WrapperProof, format!("{wrapper}_formal.sv"), text);
-        files.add(ArtifactKind::WrapperProof, format!("{wrapper}_formal.ys"), script);
+        let mut modules = vec![format!("{wrapper}_formal")];
+        modules.extend(stubs);
+        files.add_system_verilog(FileKind::WrapperProof, modules, text);
+        files.add(FileKind::WrapperProofScript, format!("{wrapper}_formal.ys"), script);
     }
     Ok(())
 }

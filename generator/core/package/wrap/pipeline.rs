@@ -6,7 +6,9 @@ use glint_base::fill;
 
 use super::fields::{StreamField, Transfer, sink};
 use super::{add_proof, connected, seen_inside, stub_ports};
-use crate::package::artifact::{ArtifactKind, Artifacts, EmitJob};
+use crate::package::emit_job::EmitJob;
+use crate::package::file_kind::FileKind;
+use crate::package::output_files::OutputFiles;
 use glint_rtl::netlist::{Pipeline, Role};
 use glint_rtl::verilog::rows::separated;
 use glint_rtl::verilog::text::literal;
@@ -28,7 +30,7 @@ struct ResultBits<'a> {
 ///
 /// # Errors
 /// Fails if the pipeline cannot be held back, or has no operands or results.
-pub fn modules(job: &EmitJob, pipeline: &Pipeline, files: &mut Artifacts) -> Result<()> {
+pub fn modules(job: &EmitJob, pipeline: &Pipeline, files: &mut OutputFiles) -> Result<()> {
     let (name, design) = (job.name(), job.design);
     ensure!(
         pipeline.stall,
@@ -82,7 +84,7 @@ pub fn modules(job: &EmitJob, pipeline: &Pipeline, files: &mut Artifacts) -> Res
         connections: Vec<String>,
         unused: Vec<String> = sink(&unused),
     })?;
-    files.add(ArtifactKind::Wrapper, format!("{name}_axis.v"), text);
+    files.add_verilog(FileKind::StreamWrapper, vec![format!("{name}_axis")], text);
 
     let side = user_bits + 1;
     let mut raw_bits = 0;
@@ -128,5 +130,9 @@ pub fn modules(job: &EmitJob, pipeline: &Pipeline, files: &mut Artifacts) -> Res
             .map(|stage| SideBits { low: stage * side, high: stage * side + user_bits })
             .collect(),
     })?;
-    add_proof(job, &format!("{name}_axis"), text, files)
+    let mut stubs = vec![name.to_owned()];
+    if memory.is_some() {
+        stubs.push(format!("{name}_delay"));
+    }
+    add_proof(job, &format!("{name}_axis"), stubs, text, files)
 }

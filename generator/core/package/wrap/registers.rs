@@ -7,9 +7,11 @@ use glint_base::fill;
 use super::fields::sink;
 use super::words::{Word, constants, select, within, words};
 use super::{add_proof, connected, core_wire, seen_inside, stub_free, stub_ports};
-use crate::package::artifact::{ArtifactKind, Artifacts, EmitJob};
 use crate::package::bus::Bus;
+use crate::package::emit_job::EmitJob;
+use crate::package::file_kind::FileKind;
 use crate::package::map::{self, BusRegister, Map, PortBits, PortPlacement, RegisterBits};
+use crate::package::output_files::OutputFiles;
 use glint_rtl::netlist::Role;
 use glint_rtl::verilog::text::{comment, literal, range, statement};
 
@@ -36,15 +38,17 @@ struct ByteLane {
 ///
 /// # Errors
 /// Fails if a template fails.
-pub fn modules(job: &EmitJob, bus: &Bus, map: &Map, files: &mut Artifacts) -> Result<()> {
+pub fn modules(job: &EmitJob, bus: &Bus, map: &Map, files: &mut OutputFiles) -> Result<()> {
     let [module, module_proof] =
         (bus.module)(job.name(), job.regenerate(), map.address_bits() - 1)?;
-    let registers = format!("{}_registers", job.name());
-    let bus = format!("{}_{}", job.name(), bus.suffix);
-    files.add(ArtifactKind::Wrapper, format!("{bus}.v"), module);
-    files.add(ArtifactKind::Wrapper, format!("{registers}.v"), block(job, map)?);
-    add_proof(job, &bus, module_proof, files)?;
-    add_proof(job, &registers, proof(job, map)?, files)
+    let core = job.name().to_owned();
+    let registers = format!("{core}_registers");
+    let bus = format!("{core}_{}", bus.suffix);
+    files.add_verilog(FileKind::BusWrapper, vec![bus.clone()], module);
+    files.add_verilog(FileKind::BusWrapper, vec![registers.clone()], block(job, map)?);
+    // The proof of the bus has a stub in place of the registers, and the proof of the registers in place of the core.
+    add_proof(job, &bus, vec![registers.clone()], module_proof, files)?;
+    add_proof(job, &registers, vec![core], proof(job, map)?, files)
 }
 
 fn block(job: &EmitJob, map: &Map) -> Result<String> {

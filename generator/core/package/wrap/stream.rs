@@ -5,7 +5,9 @@ use glint_base::fill;
 
 use super::fields::{StreamField, Transfer, sink};
 use super::{add_proof, connected, core_wire, seen_inside, stub_free, stub_ports};
-use crate::package::artifact::{ArtifactKind, Artifacts, EmitJob};
+use crate::package::emit_job::EmitJob;
+use crate::package::file_kind::FileKind;
+use crate::package::output_files::OutputFiles;
 use glint_rtl::netlist::Role;
 use glint_rtl::verilog::rows::separated;
 use glint_rtl::verilog::text::literal;
@@ -48,7 +50,7 @@ impl LineStream {
 ///
 /// # Errors
 /// Fails if the core lacks the handshake of a microprogram, operands or results.
-pub fn modules(job: &EmitJob, files: &mut Artifacts) -> Result<()> {
+pub fn modules(job: &EmitJob, files: &mut OutputFiles) -> Result<()> {
     let (name, design, regenerate) = (job.name(), job.design, job.regenerate());
     design.handshake()?;
     let (operands, results) = (Transfer::sent(job)?, Transfer::received(job)?);
@@ -103,12 +105,13 @@ pub fn modules(job: &EmitJob, files: &mut Artifacts) -> Result<()> {
         // The core hears `start` in the clock of `done` too.
         overlaps: bool,
     })?;
-    files.add(ArtifactKind::Wrapper, format!("{name}_axis.v"), text);
+    files.add_verilog(FileKind::StreamWrapper, vec![format!("{name}_axis")], text);
     if let Some(line) = &line {
         let buffer = fill!("axis_buffer.v" {
             name: &'a str, regenerate: &'a str, out_high: u32, user_bits: u32, line: &'a LineStream,
         })?;
-        files.add(ArtifactKind::Wrapper, format!("{name}_axis_buffer.v"), buffer);
+        let module = format!("{name}_axis_buffer");
+        files.add_verilog(FileKind::StreamWrapper, vec![module], buffer);
     }
     let check =
         |field: &StreamField| format!("dut.core.{} == its_operands{}", field.name, field.bits());
@@ -130,7 +133,11 @@ pub fn modules(job: &EmitJob, files: &mut Artifacts) -> Result<()> {
         line: Option<&'a LineStream> = line.as_ref(),
         overlaps: bool,
     })?;
-    add_proof(job, &format!("{name}_axis"), text, files)
+    let mut stubs = vec![name.to_owned()];
+    if line.is_some() {
+        stubs.push(format!("{name}_axis_buffer"));
+    }
+    add_proof(job, &format!("{name}_axis"), stubs, text, files)
 }
 
 /// Declares nets below the top, with their widths: with these Yosys finds them by their path.

@@ -1,0 +1,33 @@
+//! What all parts of emission read: a design, the inputs of its files, and the names in its Verilog.
+
+use super::bus::Bus;
+use super::inputs::EmitInputs;
+use super::map::Map;
+use glint_rtl::netlist::Design;
+use glint_rtl::verilog::naming::Naming;
+
+/// A design with everything that its files are made of.
+pub struct EmitJob<'a> {
+    pub design: &'a Design,
+    pub inputs: &'a EmitInputs,
+    pub naming: &'a Naming,
+    /// The bus that the configuration asks for, and the registers on it.
+    pub registers: Option<(&'static Bus, Map)>,
+}
+
+impl<'a> EmitJob<'a> {
+    /// Returns the name of the core.
+    pub fn name(&self) -> &'a str {
+        &self.design.name
+    }
+
+    /// Returns the command that makes the files again.
+    pub fn regenerate(&self) -> &'a str {
+        &self.inputs.regenerate
+    }
+
+    /// Returns whether the core computes lines of points.
+    pub fn is_line(&self) -> bool {
+        self.inputs.accuracy.as_ref().is_some_and(|accuracy| accuracy.length.is_some())
+    }
+}
