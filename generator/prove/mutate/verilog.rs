@@ -145,13 +145,18 @@ static OPERATORS: LazyLock<Vec<TextOperator>> = LazyLock::new(|| {
         operator("inversion dropped", r"[~!](\(|\w)", |it| it[1].to_owned()),
         operator("condition inverted", r"if \((\w+)\)", |it| format!("if (!{})", &it[1])),
         operator("part-select", r"(\w)\[(\d+)(?::(\d+))?\]", |it| {
-            let shift = |text: &str| (text.parse::<u64>().unwrap_or_default() + 1).to_string();
-            let low = it.get(3).map_or(String::new(), |low| format!(":{}", shift(low.as_str())));
-            format!("{}[{}{low}]", &it[1], shift(&it[2]))
+            let high = next_number(&it[2]);
+            match it.get(3) {
+                Some(low) => format!("{}[{high}:{}]", &it[1], next_number(low.as_str())),
+                None => format!("{}[{high}]", &it[1]),
+            }
         }),
         operator("width", r"\b(wire|reg)( +signed)? +\[(\d+):0\]", |it| {
             let high = it[3].parse::<u64>().unwrap_or_default().saturating_sub(1);
-            format!("{}{} [{high}:0]", &it[1], it.get(2).map_or("", |sign| sign.as_str()))
+            match it.get(2) {
+                Some(sign) => format!("{}{} [{high}:0]", &it[1], sign.as_str()),
+                None => format!("{} [{high}:0]", &it[1]),
+            }
         }),
         operator("constant", r"(\d+)'(d|h|b)([0-9a-f]+)", |it| {
             let radix = match &it[2] {
@@ -170,13 +175,20 @@ static OPERATORS: LazyLock<Vec<TextOperator>> = LazyLock::new(|| {
     ]
 });
 
+/// Returns the number after the one that a text has.
+fn next_number(text: &str) -> u64 {
+    text.parse::<u64>().unwrap_or_default() + 1
+}
+
 impl VerilogText {
     /// Collects the fault-free text of a configuration, with its shipped bench.
     ///
     /// # Errors
     /// Fails if a tool is missing, if golden model and simulation differ, or if the design cannot be written.
     pub fn of(core: &Core) -> Result<Self> {
-        TOOLS.iter().try_for_each(|tool| Tool::find(tool).map(drop))?;
+        for tool in TOOLS {
+            Tool::find(tool)?;
+        }
         let name = &core.config.name;
         let files = core.files(&format!("{name}.toml"), core.shipped_vectors()?)?;
         let vectors = Some(core.vectors(POINTS, TEST_SEED)?);
@@ -238,9 +250,12 @@ impl VerilogText {
     /// Returns all files, with a fault.
     pub fn planted(&self, fault: &TextFault) -> Vec<(String, String)> {
         let mut files = self.files.clone();
-        let lines = files[fault.file].1.lines().enumerate();
-        let lines = lines.map(|(at, line)| if at == fault.line { &fault.text } else { line });
-        files[fault.file].1 = lines.fold(String::new(), |text, line| text + line + "\n");
+        let mut text = String::new();
+        for (at, line) in files[fault.file].1.lines().enumerate() {
+            text += if at == fault.line { &fault.text } else { line };
+            text.push('\n');
+        }
+        files[fault.file].1 = text;
         files
     }
 
@@ -334,15 +349,10 @@ impl VerilogText {
         mutant: &[(String, String)],
         limit: Duration,
     ) -> Result<(ShippedBench, Option<BuiltBench>)> {
-        let build = |files: &[(String, String)]| {
-            BuiltBench::build(VerilogSimulator::Icarus, files, &self.top, Waveform::None, limit)
-        };
-        // A bench that does not end, or ends without a verdict, does not pass either.
-        let fails = |bench: &BuiltBench| !bench.run(limit).is_ok_and(|outcome| outcome.passed);
-        let Ok(shipped) = build(mutant) else {
+        let Ok(shipped) = self.build(mutant, limit) else {
             return Ok((ShippedBench::Refused, None));
         };
-        if fails(&shipped) {
+        if fails(&shipped, limit) {
             return Ok((ShippedBench::Noticed, None));
         }
         let mut longer = mutant.to_vec();
@@ -351,11 +361,15 @@ impl VerilogText {
                 file.1.clone_from(contents);
             }
         }
-        Ok(if fails(&build(&longer)?) {
+        Ok(if fails(&self.build(&longer, limit)?, limit) {
             (ShippedBench::Missed, None)
         } else {
             (ShippedBench::Silent, Some(shipped))
         })
+    }
+
+    fn build(&self, files: &[(String, String)], limit: Duration) -> Result<BuiltBench> {
+        BuiltBench::build(VerilogSimulator::Icarus, files, &self.top, Waveform::None, limit)
     }
 
     /// Returns whether the module in a file is proved to behave as without the fault, in a directory that holds all files; of
@@ -379,10 +393,22 @@ impl VerilogText {
         } else {
             vec![name]
         };
-        let gate = gold.iter().map(|file| if file == name { formal::MUTANT } else { file });
-        let gate: Vec<&str> = gate.collect();
+        let mut gate = gold.clone();
+        for file in &mut gate {
+            if file == name {
+                *file = formal::MUTANT;
+            }
+        }
         let module = gold[0].trim_end_matches(".v");
         formal::proves(dir, module, [&gold, &gate], limit.min(PROOF_LIMIT))
+    }
+}
+
+/// Returns whether a bench fails. A bench that does not end, or ends without a verdict, does not pass either.
+fn fails(bench: &BuiltBench, limit: Duration) -> bool {
+    match bench.run(limit) {
+        Ok(outcome) => !outcome.passed,
+        Err(_) => true,
     }
 }
 
@@ -395,12 +421,14 @@ fn in_line(
     code: &str,
     faults: &mut Vec<TextFault>,
 ) {
-    let is_memory = code.contains("_rom [") || code.contains("$readmem");
+    if code.contains("_rom [") || code.contains("$readmem") {
+        return;
+    }
     // An assignment on a clock is no comparison.
-    let assignment =
-        code.find(" <= ").filter(|_| !code.contains("wire") && !code.contains("assign"));
+    let is_on_clock = !code.contains("wire") && !code.contains("assign");
+    let assignment = if is_on_clock { code.find(" <= ") } else { None };
     let mut numbers = BTreeMap::<&str, usize>::new();
-    for operator in OPERATORS.iter().filter(|_| !is_memory) {
+    for operator in OPERATORS.iter() {
         for found in operator.pattern.captures_iter(code) {
             // Two operators of a kind number their faults on.
             let number = numbers.entry(operator.kind).or_default();
