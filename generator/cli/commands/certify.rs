@@ -8,7 +8,7 @@ use clap::Args;
 use rayon::prelude::*;
 use serde_json::json;
 
-use super::{cosim, load_sequential};
+use super::{Loaded, cosim, load_sequential};
 use crate::own_file::OwnFile;
 use crate::{Configs, OutputOptions, progress, say, tables};
 use glint_base::{input, text};
@@ -90,15 +90,6 @@ pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) ->
         }
         let out = arguments.out.as_ref().map(|out| out.join(&one.core.config.name));
         let record = OwnFile::record(arguments.out.as_deref(), &one.core.config.name)?;
-        let certificate = |bound, certified, stated: &[Statement]| Certificate {
-            glint: env!("CARGO_PKG_VERSION").to_owned(),
-            config: input::label(&one.path),
-            contract: one.core.contract_digest(),
-            bound,
-            certified,
-            statements: stated.len(),
-            scripts: certify::digest(stated),
-        };
         let stated = if is_stated {
             statements(design, contract, limit).map(|stated| (stated, contract.bound().units))
         } else {
@@ -109,28 +100,29 @@ pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) ->
             Err(step) => {
                 whole = false;
                 // Scripts of an earlier run with other keys would still say that they are accepted.
-                if let Some(directory) = out.filter(|directory| directory.exists()) {
+                if let Some(directory) = out
+                    && directory.exists()
+                {
                     write(&directory, &one.path, &[], &[])?;
                 }
                 if let Some(record) = record {
-                    record.write_json(&certificate(contract.bound().units, false, &[]))?;
+                    record.write_json(&certificate(one, contract.bound().units, false, &[]))?;
                 }
                 if !output.json {
                     say!("{}: not certified: {step}", one.path);
                     tell_terms(&contract.bound());
                 }
-                let terms = cosim::terms(&contract.bound());
                 list.push(json!({
                     "config": one.path,
                     "certified": false,
                     "step": step,
-                    "terms": terms,
+                    "terms": cosim::terms(&contract.bound()),
                 }));
                 continue;
             }
         };
         let bar = progress::bar(output, stated.len() as u64, "statements proved");
-        let checked: Vec<Result<ProofOutcome>> = stated
+        let results: Vec<Result<ProofOutcome>> = stated
             .par_iter()
             .map(|statement| {
                 let outcome = prove(&gappa, coq.as_ref(), statement, limit);
@@ -139,78 +131,31 @@ pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) ->
             })
             .collect();
         bar.finish_and_clear();
-        let checked = checked.into_iter().collect::<Result<Vec<_>>>()?;
+        let outcomes: Vec<ProofOutcome> = results.into_iter().collect::<Result<_>>()?;
         if let Some(directory) = out {
-            write(&directory, &one.path, &stated, &checked)?;
+            write(&directory, &one.path, &stated, &outcomes)?;
         }
-        let open: Vec<(&Statement, &str)> = stated
-            .iter()
-            .zip(&checked)
-            .filter_map(|(statement, outcome)| match outcome {
-                ProofOutcome::Open(why) => Some((statement, why.as_str())),
-                ProofOutcome::Proved(..) => None,
-            })
-            .collect();
-        let of = |subject: ProofSubject| {
-            let is =
-                |it: &&ProofOutcome| matches!(it, ProofOutcome::Proved(_, own) if *own == subject);
-            checked.iter().filter(is).count()
-        };
-        let (empty, unknown) = (of(ProofSubject::Nothing), of(ProofSubject::Unknown));
-        whole &= open.is_empty();
+        let report = CertificateReport::new(&stated, &outcomes);
+        let is_certified = report.open.is_empty();
+        whole &= is_certified;
         if let Some(record) = record {
-            record.write_json(&certificate(bound, open.is_empty(), &stated))?;
+            record.write_json(&certificate(one, bound, is_certified, &stated))?;
         }
         if !output.json {
-            let by = if arguments.coq {
-                "proved by Gappa and checked by Coq"
-            } else {
-                "proved by Gappa"
-            };
-            let proved = stated.len() - open.len() - empty;
-            let empty = match empty {
-                0 => String::new(),
-                empty => format!(", and {empty} whose hypotheses contradict each other"),
-            };
-            let unknown = match unknown {
-                0 => String::new(),
-                unknown => format!(", {unknown} of them without a witness"),
-            };
-            tables::print_line(&if open.is_empty() {
-                let origin = if is_stated {
-                    ""
-                } else {
-                    ", a bound that is found, as the contract states none"
-                };
-                format!(
-                    "{}: certified: |output - formula| <= {bound:.6} units over the whole domain{origin}; {proved} statements {by}{unknown}{empty}",
-                    one.path
-                )
-            } else {
-                format!(
-                    "{}: not certified: {proved} of {} statements {by}{unknown}{empty}, {} open",
-                    one.path,
-                    stated.len(),
-                    open.len()
-                )
-            });
-            for (statement, why) in open.iter().take(3) {
-                say!("  {} of {}: {why}", statement.number, statement.output);
-            }
+            report.print(one, bound, arguments.coq);
         }
-        let open = open.iter().map(|(statement, why)| {
-            let Statement { output, number, also, .. } = statement;
-            json!({ "number": number, "output": output, "also": also, "why": why })
-        });
-        let open: Vec<_> = open.collect();
+        let mut open = Vec::new();
+        for (Statement { output, number, also, .. }, why) in &report.open {
+            open.push(json!({ "number": number, "output": output, "also": also, "why": why }));
+        }
         list.push(json!({
             "config": one.path,
-            "certified": open.is_empty(),
+            "certified": is_certified,
             "bound": bound,
             "bound_found": !is_stated,
             "statements": stated.len(),
-            "contradictory": empty,
-            "without_witness": unknown,
+            "contradictory": report.contradictory,
+            "without_witness": report.without_witness,
             "open": open,
             "coq": arguments.coq,
         }));
@@ -223,6 +168,85 @@ pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) ->
         );
     }
     Ok(whole)
+}
+
+/// Returns the record of a configuration whose statements were proved, or not.
+fn certificate(one: &Loaded, bound: f64, certified: bool, stated: &[Statement]) -> Certificate {
+    Certificate {
+        glint: env!("CARGO_PKG_VERSION").to_owned(),
+        config: input::label(&one.path),
+        contract: one.core.contract_digest(),
+        bound,
+        certified,
+        statements: stated.len(),
+        scripts: certify::digest(stated),
+    }
+}
+
+/// The outcomes of the statements of one configuration.
+struct CertificateReport<'s> {
+    statements: usize,
+    /// The statements without a proof, and why each has none.
+    open: Vec<(&'s Statement, &'s str)>,
+    /// The number of statements whose hypotheses contradict each other.
+    contradictory: usize,
+    /// The number of proved statements for which no point is known at which the hypotheses hold.
+    without_witness: usize,
+}
+
+impl<'s> CertificateReport<'s> {
+    fn new(statements: &'s [Statement], outcomes: &'s [ProofOutcome]) -> Self {
+        let mut report = Self {
+            statements: statements.len(),
+            open: Vec::new(),
+            contradictory: 0,
+            without_witness: 0,
+        };
+        for (statement, outcome) in statements.iter().zip(outcomes) {
+            match outcome {
+                ProofOutcome::Open(why) => report.open.push((statement, why.as_str())),
+                ProofOutcome::Proved(_, ProofSubject::Nothing) => report.contradictory += 1,
+                ProofOutcome::Proved(_, ProofSubject::Unknown) => report.without_witness += 1,
+                ProofOutcome::Proved(_, ProofSubject::Point(_)) => {}
+            }
+        }
+        report
+    }
+
+    /// Prints the verdict on a configuration, and at most three of the open statements.
+    fn print(&self, one: &Loaded, bound: f64, coq: bool) {
+        let by = if coq { "proved by Gappa and checked by Coq" } else { "proved by Gappa" };
+        let proved = self.statements - self.open.len() - self.contradictory;
+        let mut remarks = String::new();
+        if self.without_witness > 0 {
+            remarks += &format!(", {} of them without a witness", self.without_witness);
+        }
+        if self.contradictory > 0 {
+            let number = self.contradictory;
+            remarks += &format!(", and {number} whose hypotheses contradict each other");
+        }
+        if self.open.is_empty() {
+            let origin = if one.core.contract.bound().is_stated() {
+                ""
+            } else {
+                ", a bound that is found, as the contract states none"
+            };
+            say!(
+                "{}: certified: |output - formula| <= {bound:.6} units over the whole domain{origin}; {proved} statements {by}{remarks}",
+                one.path
+            );
+        } else {
+            say!(
+                "{}: not certified: {proved} of {} statements {by}{remarks}, {} open",
+                one.path,
+                self.statements,
+                self.open.len()
+            );
+        }
+        for (statement, why) in self.open.iter().take(3) {
+            say!("  {} of {}: {why}", statement.number, statement.output);
+        }
+    }
 }
 
 /// Returns the statements of a contract without a bound, with the one that Gappa finds.

@@ -65,20 +65,16 @@ pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) ->
 /// Returns the operands that are outside the domain for which the contract is stated, in words. For example, `exponent
 /// = 300 is not in 1 to 255`.
 fn outside(operands: &[Operand], raw: &[i64]) -> Vec<String> {
-    let outside = operands.iter().zip(raw).filter_map(|(operand, raw)| {
+    let mut outside = Vec::new();
+    for (operand, &raw) in operands.iter().zip(raw) {
         let (low, high) = operand.domain;
-        let value = |raw: i64| operand.format.to_f64(i128::from(raw));
-        (!(low..=high).contains(raw)).then(|| {
-            format!(
-                "{} = {} is not in {} to {}",
-                operand.name,
-                value(*raw),
-                value(low),
-                value(high)
-            )
-        })
-    });
-    outside.collect()
+        if !(low..=high).contains(&raw) {
+            let [value, from, to] =
+                [raw, low, high].map(|raw| operand.format.to_f64(i128::from(raw)));
+            outside.push(format!("{} = {value} is not in {from} to {to}", operand.name));
+        }
+    }
+    outside
 }
 
 /// Returns one point, with every signal of the golden model.
@@ -94,38 +90,17 @@ fn point(
         true => (operands::typical(contract, given), Vec::new()),
         false => (operands::completed(contract, given), operands::missing(contract, given)),
     };
-    let model = one.core.device.golden(&one.core.config);
-    let mut signals = signals(model, operands, &raw)?;
+    let signals = signal_values(one, operands, &raw)?;
     let outside = outside(operands, &raw);
     let results = results(contract, &raw);
-    // The golden model of a pipeline is the model of its sequential core. Formats are the formats of the core's nets.
-    // The list cannot have signals that only the core has.
-    let pipeline = one.core.design.pipeline.as_ref();
-    let sequential = pipeline.map(|_| one.core.device.sequential(&one.core.config)).transpose()?;
-    if let Some(pipeline) = pipeline {
-        signals.retain(|(name, _)| {
-            let mut registers = pipeline.checkpoints.iter().map(|it| &it.register);
-            registers.any(|it| it == name) || one.core.design.find(name).is_some()
-        });
+    let mut operand_values: Vec<SignalValue> = Vec::new();
+    for (operand, &raw) in operands.iter().zip(&raw) {
+        operand_values.push(SignalValue::new(operand.name.clone(), operand.format, raw.into()));
     }
-    let design = sequential.as_ref().unwrap_or(&one.core.design);
-    let signals: Vec<SignalValue> = signals
-        .into_iter()
-        .map(|(name, bits)| match design.find(&name).map(|id| design.net(id).format) {
-            Some(format) => SignalValue::new(name, format, format.raw(bits)),
-            None => {
-                SignalValue { name, format: String::new(), raw: bits.into(), value: bits as f64 }
-            }
-        })
-        .collect();
-    let operands = operands.iter().zip(&raw);
-    let operands: Vec<SignalValue> = operands
-        .map(|(it, &raw)| SignalValue::new(it.name.clone(), it.format, raw.into()))
-        .collect();
     if output.json {
         tables::print_json(&json!({
             "config": one.path,
-            "operands": operands,
+            "operands": operand_values,
             "not_given": missing,
             "inside_the_domain": outside.is_empty(),
             "signals": signals,
@@ -139,13 +114,45 @@ fn point(
     if !outside.is_empty() {
         say!("Outside the domain for which the contract is stated: {}.", outside.join("; "));
     }
-    print_values("operand", operands);
+    print_values("operand", operand_values);
     print_values("golden, when valid", signals);
-    let rows = results.into_iter().map(|it| {
-        vec![it.name, it.value.to_string(), format!("{:.9}", it.exact), format!("{:.3}", it.error)]
-    });
+    let mut rows = Vec::new();
+    for ResultComparison { name, value, exact, error } in results {
+        rows.push(vec![name, value.to_string(), format!("{exact:.9}"), format!("{error:.3}")]);
+    }
     tables::print("result | value: | formula in f64: | error in last places:", rows);
     Ok(true)
+}
+
+/// Returns the signals of the golden model with their values. The golden model of a pipeline is the model of its
+/// sequential core. Formats are the formats of the core's nets. The list cannot have signals that only the core has.
+fn signal_values(one: &Loaded, operands: &[Operand], raw: &[i64]) -> Result<Vec<SignalValue>> {
+    let core = &one.core;
+    let mut signals = signals(core.device.golden(&core.config), operands, raw)?;
+    let sequential = match &core.design.pipeline {
+        Some(_) => Some(core.device.sequential(&core.config)?),
+        None => None,
+    };
+    if let Some(pipeline) = &core.design.pipeline {
+        signals.retain(|(name, _)| {
+            pipeline.checkpoints.iter().any(|checkpoint| checkpoint.register == *name)
+                || core.design.find(name).is_some()
+        });
+    }
+    let design = sequential.as_ref().unwrap_or(&core.design);
+    let mut values = Vec::new();
+    for (name, bits) in signals {
+        values.push(match design.find(&name) {
+            Some(net) => {
+                let format = design.net(net).format;
+                SignalValue::new(name, format, format.raw(bits))
+            }
+            None => {
+                SignalValue { name, format: String::new(), raw: bits.into(), value: bits as f64 }
+            }
+        });
+    }
+    Ok(values)
 }
 
 /// The results of a point, beside the formula: f of a highlight, and each output.
@@ -162,30 +169,46 @@ struct ResultComparison {
 const F: &str = "f";
 
 fn results(contract: &dyn Contract, raw: &[i64]) -> Vec<ResultComparison> {
-    let of = |name: &str, format: Format, raw: i64, exact: [f64; 2]| ResultComparison {
-        name: name.to_owned(),
-        value: format.to_f64(i128::from(raw)),
-        exact: exact[0],
-        error: golden::nearer(raw as f64, exact.map(|it| it / format.to_f64(1))),
-    };
-    let f = contract.highlight().map(|it| {
-        let point = it.point(&raw[..it.control()], 0);
-        of(F, it.f_format(), it.f(&point), [it.reference(&point); 2])
-    });
+    let mut results = Vec::new();
+    if let Some(highlight) = contract.highlight() {
+        let point = highlight.point(&raw[..highlight.control()], 0);
+        let (f, exact) = (highlight.f(&point), highlight.reference(&point));
+        results.push(ResultComparison::new(F, highlight.f_format(), f, [exact; 2]));
+    }
     let (mut bits, mut exact) = (Vec::new(), Vec::new());
     contract.results(raw, 0, &mut bits);
     contract.exact(raw, 0, &mut exact);
-    let outputs = contract.outputs().iter().zip(bits).zip(exact);
-    let outputs = outputs.map(|((it, raw), exact)| of(&it.name, it.format, raw, exact));
-    f.into_iter().chain(outputs).collect()
+    for ((output, raw), exact) in contract.outputs().iter().zip(bits).zip(exact) {
+        results.push(ResultComparison::new(&output.name, output.format, raw, exact));
+    }
+    results
+}
+
+impl ResultComparison {
+    /// Compares a raw result with the value of the formula, on both sides of a jump.
+    fn new(name: &str, format: Format, raw: i64, exact: [f64; 2]) -> Self {
+        let unit = format.to_f64(1);
+        Self {
+            name: name.to_owned(),
+            value: format.to_f64(i128::from(raw)),
+            exact: exact[0],
+            error: golden::nearer(raw as f64, exact.map(|side| side / unit)),
+        }
+    }
 }
 
 fn as_json(results: &[ResultComparison]) -> Value {
-    let (f, outputs): (Vec<&ResultComparison>, Vec<_>) =
-        results.iter().partition(|it| it.name == F);
-    let exact: Vec<f64> = outputs.iter().map(|it| it.exact).collect();
-    let errors: Vec<f64> = outputs.iter().map(|it| it.error).collect();
-    match f.first() {
+    let mut f = None;
+    let (mut exact, mut errors) = (Vec::new(), Vec::new());
+    for result in results {
+        if result.name == F {
+            f = f.or(Some(result));
+        } else {
+            exact.push(result.exact);
+            errors.push(result.error);
+        }
+    }
+    match f {
         Some(f) => {
             json!({ "f": f.exact, "f_error": f.error, "outputs": exact, "errors": errors })
         }
@@ -210,8 +233,11 @@ impl SignalValue {
 }
 
 fn print_values(what: &str, values: Vec<SignalValue>) {
-    let row = |it: SignalValue| vec![it.name, it.format, it.raw.to_string(), it.value.to_string()];
-    tables::print(&format!("{what} | format | raw: | value:"), values.into_iter().map(row));
+    let mut rows = Vec::new();
+    for SignalValue { name, raw, value, format } in values {
+        rows.push(vec![name, format, raw.to_string(), value.to_string()]);
+    }
+    tables::print(&format!("{what} | format | raw: | value:"), rows);
 }
 
 /// Returns all signals in the clock in which `valid` is high.

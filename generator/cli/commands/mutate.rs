@@ -16,8 +16,8 @@ use crate::{Configs, OutputOptions, TimeLimit, progress, say, tables, wrong_usag
 use glint_base::program::Program;
 use glint_core::registry::Registry;
 use glint_prove::mutate::{
-    self, Detector, FaultResult, Faults, GOAL_MEMORY, GOAL_TEXT, MutantVerdict, NetlistFault,
-    Score, Share, SignalDifference, TOLERATED, Tally, TextFault, TextScore, VerilogText,
+    self, Detector, FaultResult, Faults, GOAL_MEMORY, GOAL_TEXT, MutantVerdict, Score, Share,
+    SignalDifference, TOLERATED, Tally, TextFault, TextScore, VerilogText,
 };
 
 /// Plant faults one at a time, and show which of them the tests notice
@@ -70,11 +70,12 @@ struct Scored {
 impl Scored {
     /// Returns the share of undecided faults among all faults of the netlist and of the Verilog.
     fn share_undecided(&self) -> f64 {
-        let verilog = self.verilog.as_ref();
-        let (planted, undecided) =
-            verilog.map_or((0, 0), |text| (text.planted, text.undecided.len()));
-        let all = &self.netlist.all;
-        (all.undecided + undecided) as f64 / (all.planted + planted).max(1) as f64
+        let (mut planted, mut undecided) = (self.netlist.all.planted, self.netlist.all.undecided);
+        if let Some(text) = &self.verilog {
+            planted += text.planted;
+            undecided += text.undecided.len();
+        }
+        undecided as f64 / planted.max(1) as f64
     }
 
     fn holds(&self) -> bool {
@@ -97,21 +98,25 @@ pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) ->
     if arguments.list {
         return Ok(list(output, &loaded, &faults));
     }
-    let texts: Vec<Option<(VerilogText, Vec<TextFault>)>> = loaded
-        .iter()
-        .map(|one| {
-            let text = || VerilogText::of(&one.core).with_context(|| format!("`{}`", one.path));
-            let with_faults = |text: VerilogText| {
-                let faults = text.faults();
-                (text, faults)
-            };
-            arguments.full.then(text).transpose().map(|text| text.map(with_faults))
-        })
-        .collect::<Result<_>>()?;
-    let record = |one: &Loaded| OwnFile::record(arguments.out.as_deref(), &one.core.config.name);
-    let records: Vec<Option<OwnFile>> = loaded.iter().map(record).collect::<Result<_>>()?;
-    let total = faults.iter().map(Faults::len).sum::<usize>()
-        + texts.iter().flatten().map(|(_, faults)| faults.len()).sum::<usize>();
+    let mut total = 0;
+    for faults in &faults {
+        total += faults.len();
+    }
+    let mut texts: Vec<Option<(VerilogText, Vec<TextFault>)>> = Vec::new();
+    for one in &loaded {
+        if !arguments.full {
+            texts.push(None);
+            continue;
+        }
+        let text = VerilogText::of(&one.core).with_context(|| format!("`{}`", one.path))?;
+        let text_faults = text.faults();
+        total += text_faults.len();
+        texts.push(Some((text, text_faults)));
+    }
+    let mut records: Vec<Option<OwnFile>> = Vec::new();
+    for one in &loaded {
+        records.push(OwnFile::record(arguments.out.as_deref(), &one.core.config.name)?);
+    }
     let bar = progress::bar(output, total as u64, "faults planted");
     let mut scores = Vec::new();
     for (((one, faults), text), record) in loaded.iter().zip(&faults).zip(&texts).zip(records) {
@@ -119,9 +124,8 @@ pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) ->
         let netlist = Score::of(&found.with_context(|| format!("`{}`", one.path))?);
         let verilog = match text {
             Some((text, faults)) => {
-                let found = text.run(faults, arguments.time_limit.get(), &|| bar.inc(1));
-                let found = found.with_context(|| format!("`{}`", one.path))?;
-                Some(TextScore::of(faults, &found))
+                let results = text.run(faults, arguments.time_limit.get(), &|| bar.inc(1));
+                Some(TextScore::of(faults, &results.with_context(|| format!("`{}`", one.path))?))
             }
             None => None,
         };
@@ -150,9 +154,11 @@ fn list(output: OutputOptions, loaded: &[Loaded], faults: &[Faults]) -> bool {
     let mut list = Vec::new();
     for (one, faults) in loaded.iter().zip(faults) {
         if output.json {
-            let named = |fault: &NetlistFault| json!({ "id": fault.id, "kind": fault.kind });
-            let faults: Vec<Value> = faults.iter().map(named).collect();
-            list.push(json!({ "config": one.path, "faults": faults }));
+            let mut named: Vec<Value> = Vec::new();
+            for fault in faults.iter() {
+                named.push(json!({ "id": fault.id, "kind": fault.kind }));
+            }
+            list.push(json!({ "config": one.path, "faults": named }));
             continue;
         }
         say!("{}: {} faults", one.path, faults.len());
@@ -173,8 +179,8 @@ fn only(output: OutputOptions, one: &Loaded, id: &str) -> Result<bool> {
             one.path
         );
     };
-    let found = mutate::run(&one.core, [fault], &|| ())?;
-    let found = found.into_iter().next().context("a fault without a verdict")?;
+    let mut results = mutate::run(&one.core, [fault], &|| ())?;
+    let found = results.pop().context("a fault without a verdict")?;
     let verdict = &found.verdict;
     let mut waveform = None;
     if let MutantVerdict::Caught(_, SignalDifference { held, mismatch }) = verdict {
@@ -208,14 +214,14 @@ fn only(output: OutputOptions, one: &Loaded, id: &str) -> Result<bool> {
 /// Describes where and how a mutant differs. For example, the text begins with `seed 3, with exponent=#5, after clock
 /// 120`.
 fn shown_by(SignalDifference { held, mismatch }: &SignalDifference) -> String {
-    let operands: Vec<String> = held.iter().map(|(name, raw)| format!(" {name}=#{raw}")).collect();
-    let holding = if operands.is_empty() { "" } else { ", with" };
-    format!(
-        "seed {}{holding}{}, after clock {}, {mismatch}",
-        mismatch.seed,
-        operands.concat(),
-        mismatch.clock
-    )
+    let mut holding = String::new();
+    for (name, raw) in held {
+        if holding.is_empty() {
+            holding += ", with";
+        }
+        holding += &format!(" {name}=#{raw}");
+    }
+    format!("seed {}{holding}, after clock {}, {mismatch}", mismatch.seed, mismatch.clock)
 }
 
 fn found_as_json(one: &Loaded, found: &FaultResult) -> Value {
@@ -244,23 +250,14 @@ fn found_as_json(one: &Loaded, found: &FaultResult) -> Value {
 fn print(scored: &Scored) {
     let score = &scored.netlist;
     say!("{}:", scored.config);
-    let row = |name: String, tally: &Tally| {
-        let caught = |check| tally.caught.get(&check).copied().unwrap_or(0).to_string();
-        vec![
-            name,
-            tally.planted.to_string(),
-            caught(Detector::Cosim),
-            caught(Detector::Directed),
-            tally.all_equivalent().to_string(),
-            tally.undecided.to_string(),
-            tally.shipped.to_string(),
-        ]
-    };
-    let kinds = score.kinds.iter().map(|(kind, tally)| row(kind.to_string(), tally));
-    let all = row("all".to_owned(), &score.all);
+    let mut rows = Vec::new();
+    for (kind, tally) in &score.kinds {
+        rows.push(row(kind.to_string(), tally));
+    }
+    rows.push(row("all".to_owned(), &score.all));
     tables::print(
         "fault | planted: | caught: | directed:1 | equivalent: | undecided: | bench:",
-        kinds.chain([all]),
+        rows,
     );
     print_undecided(&score.undecided);
     print_shipped("faults in the netlist", score.all.of_shipped(), None);
@@ -290,6 +287,20 @@ fn print(scored: &Scored) {
     );
 }
 
+/// Returns the row of one kind of faults.
+fn row(name: String, tally: &Tally) -> Vec<String> {
+    let caught_by = |check| tally.caught.get(&check).copied().unwrap_or(0).to_string();
+    vec![
+        name,
+        tally.planted.to_string(),
+        caught_by(Detector::Cosim),
+        caught_by(Detector::Directed),
+        tally.all_equivalent().to_string(),
+        tally.undecided.to_string(),
+        tally.shipped.to_string(),
+    ]
+}
+
 fn print_undecided(ids: &[String]) {
     for id in ids {
         say!("  undecided: {id}");
@@ -299,11 +310,14 @@ fn print_undecided(ids: &[String]) {
 /// Prints the shipped bench's share of the faults that anything notices, beside its goal. For example, 96 of 100 upper
 /// bits of words in ROMs reach the goal of 95 %.
 fn print_shipped(faults: &str, share: Share, goal: Option<f64>) {
-    let goal = goal.map_or(String::new(), |goal| {
-        let reached = if share.value() >= goal { "reached" } else { "missed" };
-        format!(", goal of {:.0} % {reached}", 100.0 * goal)
-    });
+    let verdict = match goal {
+        Some(goal) => {
+            let reached = if share.value() >= goal { "reached" } else { "missed" };
+            format!(", goal of {:.0} % {reached}", 100.0 * goal)
+        }
+        None => String::new(),
+    };
     let Share { noticed, of } = share;
     let percent = 100.0 * share.value();
-    say!("  shipped bench: {noticed} of {of} {faults} ({percent:.1} %{goal})");
+    say!("  shipped bench: {noticed} of {of} {faults} ({percent:.1} %{verdict})");
 }

@@ -84,25 +84,31 @@ struct FigureRecord<'a> {
 pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) -> Result<bool> {
     let loaded = load(registry, &arguments.configs.paths)?;
     let (flows, notes) = flows(arguments, &loaded)?;
-    let record = |one: &Loaded| OwnFile::record(arguments.out.as_deref(), &one.core.config.name);
-    let records: Vec<Option<OwnFile>> = loaded.iter().map(record).collect::<Result<_>>()?;
-    let steps = flows.iter().map(|flow| Flow::steps(flow.target(), arguments.seeds));
-    let steps = steps.sum::<u64>() * loaded.len() as u64;
-    let bar = progress::bar(output, steps, "synthesis");
+    let mut records: Vec<Option<OwnFile>> = Vec::new();
+    for one in &loaded {
+        records.push(OwnFile::record(arguments.out.as_deref(), &one.core.config.name)?);
+    }
+    let mut steps_of_each = 0;
+    for flow in &flows {
+        steps_of_each += Flow::steps(flow.target(), arguments.seeds);
+    }
+    let bar = progress::bar(output, steps_of_each * loaded.len() as u64, "synthesis");
     bar.tick();
     let tell = |one: &Loaded, figures: &Figures| {
         if !output.json {
             bar.suspend(|| say!("{}: {}", one.path, show::in_a_line(figures)));
         }
     };
-    let jobs = rayon::ThreadPoolBuilder::new()
-        .num_threads(arguments.jobs.map_or_else(rayon::current_num_threads, usize::from));
-    let jobs = jobs.build().context("cannot start threads")?;
-    let measured: Vec<Result<Measurement>> = jobs.install(|| {
+    let threads = match arguments.jobs {
+        Some(jobs) => usize::from(jobs),
+        None => rayon::current_num_threads(),
+    };
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+    let results: Vec<Result<Measurement>> = pool.context("cannot start threads")?.install(|| {
         let all = loaded.par_iter();
         all.map(|one| measure(one, &flows, arguments, &|steps| bar.inc(steps), &tell)).collect()
     });
-    let measured: Vec<Measurement> = measured.into_iter().collect::<Result<_>>()?;
+    let measured: Vec<Measurement> = results.into_iter().collect::<Result<_>>()?;
     bar.finish_and_clear();
     let mut written = Vec::new();
     for (one, record) in measured.iter().zip(records) {
@@ -124,11 +130,15 @@ pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) ->
 /// Returns the targets that pipelines are scheduled for, if every configuration is a pipeline with such a target; else
 /// nothing. For example, one pipeline for ECP5 gives ECP5; a pipeline and a sequential core give nothing.
 fn targets_of_pipelines(loaded: &[Loaded]) -> Vec<Target> {
-    let target = |one: &Loaded| {
-        let pipeline = one.core.design.pipeline.as_ref()?;
-        TARGETS.into_iter().find(|target| target.name() == pipeline.target)
-    };
-    loaded.iter().map(target).collect::<Option<Vec<Target>>>().unwrap_or_default()
+    let mut targets = Vec::new();
+    for one in loaded {
+        let Some(pipeline) = &one.core.design.pipeline else { return Vec::new() };
+        match TARGETS.into_iter().find(|target| target.name() == pipeline.target) {
+            Some(target) => targets.push(target),
+            None => return Vec::new(),
+        }
+    }
+    targets
 }
 
 /// Returns the tools for each target, and a note about each target whose tools are missing. A target that the user
@@ -184,15 +194,15 @@ fn measure<'a>(
             limit: arguments.time_limit.get(),
         };
         let digest = flow.digest(&subject);
-        let cache = (!arguments.no_cache).then(|| Cache::beside(&one.path)).flatten();
-        if let Some(figures) =
-            cache.as_ref().and_then(|cache| cache.find(core, flow.target(), &digest))
+        if !arguments.no_cache
+            && let Some(cache) = Cache::beside(&one.path)
+            && let Some(figures) = cache.find(core, flow.target(), &digest)
         {
             done(Flow::steps(flow.target(), arguments.seeds));
             return Ok(figures);
         }
-        let figures = flow.measure(&subject, &|| done(1));
-        let figures = figures.with_context(|| format!("`{}`", one.path))?;
+        let measured = flow.measure(&subject, &|| done(1));
+        let figures = measured.with_context(|| format!("`{}`", one.path))?;
         if let Some(cache) = Cache::beside(&one.path) {
             cache.keep(core, &digest, &figures);
         }

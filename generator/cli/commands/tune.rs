@@ -2,7 +2,7 @@
 
 mod plot;
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use anyhow::{Result, bail};
 use clap::Args;
@@ -16,7 +16,7 @@ use crate::tables;
 use crate::{Force, OutputOptions, number, progress, say, wrong_usage};
 use glint_base::program::Program;
 use glint_base::text;
-use glint_config::{self as config, Config, Value};
+use glint_config::{self as config, Config};
 use glint_core::registry::{Device, Registry};
 use glint_prove::synth::Target;
 use glint_prove::tune::{self, Answer, Candidate, ErrorUnit, Objective, TuningGoal};
@@ -90,7 +90,9 @@ pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) ->
         wrong_usage!("--error {}: an error is a number above 0", arguments.error);
     }
     for (option, wanted) in [("--clock", arguments.clock), ("--rate", arguments.rate)] {
-        if let Some(wanted) = wanted.filter(|wanted| !(*wanted > 0.0 && wanted.is_finite())) {
+        let Some(wanted) = wanted else { continue };
+        let is_usable = wanted > 0.0 && wanted.is_finite();
+        if !is_usable {
             wrong_usage!("{option} {wanted}: a number above 0 is wanted");
         }
     }
@@ -106,9 +108,8 @@ pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) ->
         wrong_usage!("--out and --plot both name `{}`", out.display());
     }
     let (device, base, fixed) = base(registry, arguments)?;
-    let fresh = |path: &PathBuf| Destination::fresh(path, arguments.force.force);
-    let file = arguments.out.as_ref().map(fresh).transpose()?;
-    let drawing = arguments.plot.as_ref().map(fresh).transpose()?;
+    let file = fresh_file(arguments.out.as_deref(), arguments.force)?;
+    let drawing = fresh_file(arguments.plot.as_deref(), arguments.force)?;
     let goal = TuningGoal {
         error: arguments.error,
         unit: arguments.unit,
@@ -119,13 +120,13 @@ pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) ->
         most_dsps: arguments.max_multipliers,
     };
     let bar: ProgressBar = progress::bar(output, 0, "configurations");
-    let fixed: Vec<&str> = fixed.iter().map(String::as_str).collect();
-    let answer = tune::tune(&device, &base, &fixed, &goal, &|looked_at| {
+    let fixed_keys: Vec<&str> = fixed.iter().map(String::as_str).collect();
+    let found = tune::tune(&device, &base, &fixed_keys, &goal, &|looked_at| {
         bar.set_length(looked_at as u64);
         bar.set_position(looked_at as u64);
     });
     bar.finish_and_clear();
-    let answer = answer?;
+    let answer = found?;
     let text = toml(&device, &answer.best, arguments);
     if let Some(drawing) = drawing {
         drawing.write(plot::plot(&answer, arguments)?)?;
@@ -147,13 +148,23 @@ pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) ->
     Ok(true)
 }
 
+/// Opens the new file that an option names, if it names one.
+fn fresh_file(path: Option<&Path>, force: Force) -> Result<Option<Destination>> {
+    match path {
+        Some(path) => Ok(Some(Destination::fresh(path, force.force)?)),
+        None => Ok(None),
+    }
+}
+
 /// Returns the device, the configuration to start from, and the keys that are part of the goal.
 fn base(registry: &Registry, arguments: &Arguments) -> Result<(Device, Config, Vec<String>)> {
     let Some(device) = registry.device(&arguments.device) else {
         let names: Vec<&str> = registry.devices().iter().map(|device| device.name).collect();
-        let near = config::nearest(&arguments.device, names.iter().copied());
-        let near = near.map_or_else(String::new, |near| format!("did you mean `{near}`? "));
-        bail!("there is no device `{}`; {near}devices: {}", arguments.device, names.join(", "));
+        let hint = match config::nearest(&arguments.device, names.iter().copied()) {
+            Some(near) => format!("did you mean `{near}`? "),
+            None => String::new(),
+        };
+        bail!("there is no device `{}`; {hint}devices: {}", arguments.device, names.join(", "));
     };
     let name = arguments.name.clone().unwrap_or_else(|| (device.schema)().module());
     // The same reader as a file's, so that messages are the same.
@@ -177,10 +188,14 @@ fn origin(device: &Device) -> &'static str {
 /// Returns the configuration as a file, with the search's result in its head.
 fn toml(device: &Device, best: &Candidate, arguments: &Arguments) -> String {
     let cost = &best.cost;
+    let clocks = match best.clocks {
+        Some(clocks) => format!(", {clocks} clocks a point"),
+        None => String::new(),
+    };
     let head = format!(
         "# The smallest `{}` within {} {} that `{Program} tune` found for {}.\n\
          # Bound, {}: {} of f, {} output units. Estimate: {:.0} LUTs, {} DSP blocks, {} block RAMs,\n\
-         # {} bits of ROM, {:.0} MHz{}; `{Program} synth` measures.\n{}",
+         # {} bits of ROM, {:.0} MHz{clocks}; `{Program} synth` measures.\n{}",
         device.name,
         arguments.error,
         arguments.unit,
@@ -193,7 +208,6 @@ fn toml(device: &Device, best: &Candidate, arguments: &Arguments) -> String {
         cost.block_rams,
         cost.rom_bits,
         cost.mhz,
-        best.clocks.map_or_else(String::new, |clocks| format!(", {clocks} clocks a point")),
         match cost.excess(arguments.target).as_str() {
             "" => String::new(),
             excess => format!("# By the estimate {excess}.\n"),
@@ -204,17 +218,22 @@ fn toml(device: &Device, best: &Candidate, arguments: &Arguments) -> String {
 
 /// Returns the free keys of a candidate with their values. For example, `cosine.fraction = 16, exponent.bits = 8`.
 fn widths(answer: &Answer, candidate: &Candidate) -> String {
-    let shown = answer.free.iter().map(|key| {
-        let value: &Value = candidate.config.value(key);
-        format!("{key} = {}", value.toml())
-    });
-    shown.collect::<Vec<_>>().join(", ")
+    let mut shown = Vec::new();
+    for key in &answer.free {
+        shown.push(format!("{key} = {}", candidate.config.value(key).toml()));
+    }
+    shown.join(", ")
 }
 
 fn print(device: &Device, answer: &Answer, arguments: &Arguments, text: &str) {
-    let rows = answer.front.iter().map(|candidate| {
+    let mut rows = Vec::new();
+    for candidate in &answer.front {
         let cost = &candidate.cost;
-        vec![
+        let rate = match candidate.rate() {
+            Some(rate) => format!("{rate:.1}"),
+            None => "-".to_owned(),
+        };
+        rows.push(vec![
             text::rounded_up(candidate.bound.f, 6),
             candidate.bound.words(),
             format!("{:.0}", cost.luts),
@@ -222,10 +241,10 @@ fn print(device: &Device, answer: &Answer, arguments: &Arguments, text: &str) {
             cost.block_rams.to_string(),
             cost.rom_bits.to_string(),
             format!("{:.0}", cost.mhz),
-            candidate.rate().map_or_else(|| "-".to_owned(), |rate| format!("{rate:.1}")),
+            rate,
             widths(answer, candidate),
-        ]
-    });
+        ]);
+    }
     tables::print(
         "error of f: | output units: | LUT: | DSP: | RAM:1 | ROM bits:3 | MHz:2 | M points/s:4 | keys",
         rows,
@@ -242,40 +261,55 @@ fn print(device: &Device, answer: &Answer, arguments: &Arguments, text: &str) {
     }
 }
 
+fn candidate_json(answer: &Answer, target: Target, candidate: &Candidate) -> Json {
+    let mut keys = serde_json::Map::new();
+    for key in &answer.free {
+        keys.insert((*key).to_owned(), json!(candidate.config.value(key)));
+    }
+    json!({
+        "error_of_f": candidate.bound.f,
+        "output_units": candidate.bound.units,
+        "cost": candidate.cost,
+        "fits": candidate.cost.excess(target).is_empty(),
+        "clocks_per_point": candidate.clocks,
+        "million_points_per_second": candidate.rate(),
+        "keys": keys,
+    })
+}
+
 fn as_json(answer: &Answer, arguments: &Arguments, text: &str) -> Json {
-    let candidate = |candidate: &Candidate| {
-        let keys = answer.free.iter();
-        let keys = keys.map(|key| ((*key).to_owned(), json!(candidate.config.value(key))));
-        json!({
-            "error_of_f": candidate.bound.f,
-            "output_units": candidate.bound.units,
-            "cost": candidate.cost,
-            "fits": candidate.cost.excess(arguments.target).is_empty(),
-            "clocks_per_point": candidate.clocks,
-            "million_points_per_second": candidate.rate(),
-            "keys": keys.collect::<serde_json::Map<String, Json>>(),
-        })
-    };
+    let mut front = Vec::new();
+    for candidate in &answer.front {
+        front.push(candidate_json(answer, arguments.target, candidate));
+    }
     json!({
         "ok": true,
         "device": arguments.device,
         "target": arguments.target,
         "error": arguments.error,
         "unit": arguments.unit,
-        "best": candidate(&answer.best),
-        "front": answer.front.iter().map(candidate).collect::<Vec<_>>(),
+        "best": candidate_json(answer, arguments.target, &answer.best),
+        "front": front,
         "looked_at": answer.looked_at,
         "configuration": text,
     })
 }
 
 fn print_csv(answer: &Answer) -> Result<()> {
-    let head =
+    let figures =
         ["error_of_f", "output_units", "luts", "dsps", "block_rams", "rom_bits", "mhz", "mpoints"];
-    let head = head.iter().copied().chain(answer.free.iter().copied()).map(str::to_owned);
-    let row = |candidate: &Candidate| {
+    let mut heading: Vec<String> = figures.map(str::to_owned).to_vec();
+    for key in &answer.free {
+        heading.push((*key).to_owned());
+    }
+    let mut rows = vec![heading];
+    for candidate in &answer.front {
         let cost = &candidate.cost;
-        let figures = [
+        let rate = match candidate.rate() {
+            Some(rate) => format!("{rate:.2}"),
+            None => String::new(),
+        };
+        let mut row = vec![
             candidate.bound.f.to_string(),
             candidate.bound.units.to_string(),
             format!("{:.0}", cost.luts),
@@ -283,10 +317,12 @@ fn print_csv(answer: &Answer) -> Result<()> {
             cost.block_rams.to_string(),
             cost.rom_bits.to_string(),
             format!("{:.1}", cost.mhz),
-            candidate.rate().map_or_else(String::new, |rate| format!("{rate:.2}")),
+            rate,
         ];
-        let keys = answer.free.iter().map(|key| candidate.config.value(key).bare());
-        figures.into_iter().chain(keys).collect()
-    };
-    tables::print_csv(std::iter::once(head.collect()).chain(answer.front.iter().map(row)))
+        for key in &answer.free {
+            row.push(candidate.config.value(key).bare());
+        }
+        rows.push(row);
+    }
+    tables::print_csv(rows)
 }

@@ -108,11 +108,12 @@ type Taken = BTreeMap<NodeId, usize>;
 
 /// Returns the inverters whose bits are, through wiring, factors of products.
 fn inverted_factors(graph: &Graph, live: &[NodeId]) -> Vec<NodeId> {
-    let products = live.iter().filter_map(|&id| match graph.node(id).cell {
-        Cell::Op(NodeOp::Mul(a, b)) => Some([a, b]),
-        _ => None,
-    });
-    let mut open: Vec<NodeId> = products.flatten().collect();
+    let mut open: Vec<NodeId> = Vec::new();
+    for &id in live {
+        if let Cell::Op(NodeOp::Mul(a, b)) = graph.node(id).cell {
+            open.extend([a, b]);
+        }
+    }
     let mut inverters = Vec::new();
     while let Some(id) = open.pop() {
         match &graph.node(id).cell {
@@ -138,6 +139,40 @@ fn held(graph: &Graph, results: &[NodeId], mut id: NodeId) -> NodeId {
     id
 }
 
+/// Returns the delay of a node, and how the clock makes it, if it does. `shares` says that it is a product of a
+/// multiplier that several products share.
+fn node_timing(
+    graph: &Graph,
+    target: &Timing,
+    registered: Option<Registered>,
+    shares: bool,
+    interval: usize,
+    id: NodeId,
+) -> (f64, Option<ClockedNode>) {
+    let multiplier = match graph.node(id).cell {
+        Cell::Op(NodeOp::Mul(..)) => registered,
+        _ => None,
+    };
+    if shares {
+        let operands = delay::of_choice(target, interval);
+        let (delay, inside) = match multiplier {
+            Some(multiplier) => (multiplier.output, multiplier.product),
+            None => (0.0, target.product),
+        };
+        return (delay, Some(ClockedNode { operands, inside, apart: 2 }));
+    }
+    if let Some(multiplier) = multiplier {
+        let operands = multiplier.product;
+        return (multiplier.output, Some(ClockedNode { operands, inside: 0.0, apart: 1 }));
+    }
+    let delay = delay::node_delay(target, graph, id);
+    if delay::is_block(target, graph, id) {
+        let operands = target.address;
+        return (delay, Some(ClockedNode { operands, inside: 0.0, apart: 1 }));
+    }
+    (delay, None)
+}
+
 impl<'a> ScheduleProblem<'a> {
     /// Makes the problems of a schedule of the nodes that `results` need.
     pub fn new(
@@ -147,59 +182,46 @@ impl<'a> ScheduleProblem<'a> {
         interval: usize,
         results: &'a [NodeId],
     ) -> Self {
-        let live: Vec<NodeId> = graph
-            .cone(results.iter().copied())
-            .into_iter()
-            .filter(|&id| graph.constant_of(id).is_none())
-            .filter(|&id| results.contains(&id) || !is_extension(graph, id))
-            .collect();
+        let mut live = graph.cone(results.iter().copied());
+        live.retain(|id| {
+            graph.constant_of(*id).is_none() && (results.contains(id) || !is_extension(graph, *id))
+        });
         let mut users = vec![Vec::new(); graph.nodes.len()];
         for &id in &live {
-            let operands = graph.node(id).cell.operands();
-            let operands = operands.into_iter().map(|operand| held(graph, results, operand));
-            for operand in operands.collect::<BTreeSet<NodeId>>() {
+            let mut operands = BTreeSet::new();
+            for operand in graph.node(id).cell.operands() {
+                operands.insert(held(graph, results, operand));
+            }
+            for operand in operands {
                 if graph.constant_of(operand).is_none() {
                     users[operand.index()].push(id);
                 }
             }
         }
-        let nodes = || (0..graph.nodes.len()).map(|at| NodeId(at as u32));
-        let product = |id: NodeId| {
-            registered.filter(|_| matches!(graph.node(id).cell, Cell::Op(NodeOp::Mul(..))))
-        };
         let kinds = sharing::kinds(graph, target, &live, interval);
-        let shares = |id: &NodeId| kinds.iter().any(|kind| kind.products.contains(id));
-        let delay = nodes().map(|id| match product(id) {
-            Some(registered) => registered.output,
-            None if shares(&id) => 0.0,
-            None => delay::node_delay(target, graph, id),
-        });
-        let mut delay: Vec<f64> = delay.collect();
+        let (mut delay, mut clocked) = (Vec::new(), Vec::new());
+        let (mut setup, mut reset_by) = (Vec::new(), Vec::new());
+        for at in 0..graph.nodes.len() {
+            let id = NodeId(at as u32);
+            let shares = kinds.iter().any(|kind| kind.products.contains(&id));
+            let (after, clock) = node_timing(graph, target, registered, shares, interval, id);
+            delay.push(after);
+            clocked.push(clock);
+            setup.push(delay::setup(target, graph, id));
+            let select = delay::reset_by(graph, id);
+            reset_by.push(select.map(|select| held(graph, results, select)));
+        }
         // Look-up tables and sums take an inverter with them, a multiplier does not. Where its clock is short one that others
         // take too counts as well: it is not worth a second one.
         for id in inverted_factors(graph, &live) {
-            let alone = |user: &NodeId| {
+            let for_products_alone = users[id.index()].iter().all(|user| {
                 let cell = &graph.node(*user).cell;
                 cell.is_wiring() || matches!(cell, Cell::Op(NodeOp::Mul(..)))
-            };
-            if registered.is_some() || users[id.index()].iter().all(alone) {
+            });
+            if registered.is_some() || for_products_alone {
                 delay[id.index()] = target.logic;
             }
         }
-        let setup = nodes().map(|id| delay::setup(target, graph, id)).collect();
-        let reset_by = nodes().map(|id| delay::reset_by(graph, id));
-        let reset_by = reset_by.map(|it| it.map(|select| held(graph, results, select))).collect();
-        let by_clock = |operands| ClockedNode { operands, inside: 0.0, apart: 1 };
-        let clocked = nodes().map(|id| match product(id) {
-            _ if shares(&id) => {
-                let operands = delay::of_choice(target, interval);
-                let inside = product(id).map_or(target.product, |it| it.product);
-                Some(ClockedNode { operands, inside, apart: 2 })
-            }
-            Some(registered) => Some(by_clock(registered.product)),
-            None => delay::is_block(target, graph, id).then(|| by_clock(target.address)),
-        });
-        let clocked = clocked.collect();
         Self {
             graph,
             target,
@@ -217,27 +239,43 @@ impl<'a> ScheduleProblem<'a> {
 
     /// Returns the multipliers of the target that products take.
     pub fn multipliers(&self) -> usize {
-        let all = sharing::products(self.graph, self.target, &self.live).len();
-        all - self.kinds.iter().map(|kind| kind.products.len() - kind.units).sum::<usize>()
+        let mut multipliers = sharing::products(self.graph, self.target, &self.live).len();
+        for kind in &self.kinds {
+            multipliers -= kind.products.len() - kind.units;
+        }
+        multipliers
     }
 
     /// Returns the shortest period that one operation alone allows, and the operation. The time that the environment
     /// takes for an operand never makes a period unreachable.
     pub fn fastest(&self) -> Option<Unreachable> {
-        let delay = |id: &NodeId| {
-            let at = id.index();
-            let clocked = self.clocked[at].map_or(0.0, |it| it.operands.max(it.inside));
-            (self.delay[at] + self.setup[at]).max(clocked)
-        };
-        // Nor does a memory whose words are all the same: synthesis makes a constant of it.
-        let settled = |id: &&NodeId| match self.graph.node(**id) {
-            Node { cell: Cell::Operand(_), .. } => true,
-            Node { cell: Cell::Read { .. }, range, .. } => range.0 == range.1,
-            _ => false,
-        };
-        let operations = self.live.iter().filter(|id| !settled(id));
-        let limiting = *operations.max_by(|a, b| delay(a).total_cmp(&delay(b)))?;
-        Some(Unreachable { limiting, period: delay(&limiting) + self.target.register })
+        let mut limiting: Option<(NodeId, f64)> = None;
+        for &id in &self.live {
+            let is_settled = match self.graph.node(id) {
+                Node { cell: Cell::Operand(_), .. } => true,
+                // Nor does a memory whose words are all the same: synthesis makes a constant of it.
+                Node { cell: Cell::Read { .. }, range, .. } => range.0 == range.1,
+                _ => false,
+            };
+            if is_settled {
+                continue;
+            }
+            let alone = self.delay_alone(id);
+            if limiting.is_none_or(|(_, most)| alone.total_cmp(&most).is_ge()) {
+                limiting = Some((id, alone));
+            }
+        }
+        let (limiting, alone) = limiting?;
+        Some(Unreachable { limiting, period: alone + self.target.register })
+    }
+
+    /// Returns the nanoseconds that a node takes by itself between two registers.
+    fn delay_alone(&self, id: NodeId) -> f64 {
+        let logic = self.delay[id.index()] + self.setup[id.index()];
+        match self.clocked[id.index()] {
+            Some(clocked) => logic.max(clocked.operands.max(clocked.inside)),
+            None => logic.max(0.0),
+        }
     }
 
     /// Returns the schedule with the fewest register bits for a period in nanoseconds, in as few stages as it
@@ -246,7 +284,9 @@ impl<'a> ScheduleProblem<'a> {
     /// # Errors
     /// Fails if an operation takes longer than the period, or if the solver fails.
     pub fn for_period(&self, period: f64) -> Result<Schedule, ScheduleRefusal> {
-        if let Some(unreachable) = self.fastest().filter(|it| it.period > period + 1e-9) {
+        if let Some(unreachable) = self.fastest()
+            && unreachable.period > period + 1e-9
+        {
             return Err(ScheduleRefusal::Unreachable(unreachable));
         }
         self.solve(period, 0)
@@ -258,15 +298,17 @@ impl<'a> ScheduleProblem<'a> {
     /// # Errors
     /// Fails if the solver fails.
     pub fn for_stages(&self, stages: usize) -> Result<Schedule, ScheduleRefusal> {
-        let fastest = self.fastest().map_or(0.0, |it| it.period);
-        let fits = |period: f64| self.least_stages(period) <= stages;
+        let fastest = self.fastest_period();
         let all = self.delay.iter().chain(&self.setup).sum::<f64>();
         let mut low = fastest;
-        let mut high = if fits(fastest) { fastest } else { self.target.register + all + 1.0 };
+        let mut high = match self.least_stages(fastest) <= stages {
+            true => fastest,
+            false => self.target.register + all + 1.0,
+        };
         // To a picosecond.
         while high - low > 0.001 {
             let middle = f64::midpoint(low, high);
-            if fits(middle) {
+            if self.least_stages(middle) <= stages {
                 high = middle;
             } else {
                 low = middle;
@@ -277,7 +319,15 @@ impl<'a> ScheduleProblem<'a> {
 
     /// Returns the most stages that shorten the clock.
     pub fn most_stages(&self) -> usize {
-        self.least_stages(self.fastest().map_or(0.0, |it| it.period))
+        self.least_stages(self.fastest_period())
+    }
+
+    /// Returns the period of [`Self::fastest`]; 0 without any operation.
+    fn fastest_period(&self) -> f64 {
+        match self.fastest() {
+            Some(unreachable) => unreachable.period,
+            None => 0.0,
+        }
     }
 
     /// Returns the fewest stages for a period in nanoseconds.
@@ -288,7 +338,10 @@ impl<'a> ScheduleProblem<'a> {
 
     /// Returns how many boundaries lie between the operands of `user` and `user`.
     pub fn apart(&self, user: NodeId) -> usize {
-        self.clocked[user.index()].map_or(0, |it| it.apart)
+        match self.clocked[user.index()] {
+            Some(clocked) => clocked.apart,
+            None => 0,
+        }
     }
 
     /// Returns the number of registers between two nodes that are too far apart for one stage. Block memories and
@@ -357,15 +410,22 @@ impl<'a> ScheduleProblem<'a> {
     /// Returns the fewest boundaries: the longest chain of differences, and one behind the results.
     fn latency(&self, differences: &[StageDifference], taken: &Taken) -> usize {
         let earliest = self.earliest(differences, taken);
-        let results = self.results.iter().filter(|id| self.graph.constant_of(**id).is_none());
-        results.map(|id| earliest[id.index()] + 1).max().unwrap_or(1)
+        let mut latency = 1;
+        for &id in self.results {
+            if self.graph.constant_of(id).is_none() {
+                latency = latency.max(earliest[id.index()] + 1);
+            }
+        }
+        latency
     }
 
     /// Returns the earliest stage of each node. The differences must be sorted by their first node; a node comes
     /// after its operands.
     fn earliest(&self, differences: &[StageDifference], taken: &Taken) -> Vec<usize> {
         let mut earliest = vec![0; self.graph.nodes.len()];
-        taken.iter().for_each(|(id, stage)| earliest[id.index()] = *stage);
+        for (id, stage) in taken {
+            earliest[id.index()] = *stage;
+        }
         for &(from, to, apart) in differences {
             earliest[to.index()] = earliest[to.index()].max(earliest[from.index()] + apart);
         }
@@ -380,10 +440,13 @@ impl<'a> ScheduleProblem<'a> {
             after[from.index()] = after[from.index()].max(after[to.index()] + apart);
         }
         let mut taken = Taken::new();
-        let mut used: Vec<_> = self.kinds.iter().map(|_| vec![0; self.interval]).collect();
-        let kinds = self.kinds.iter().enumerate();
-        let mut open: Vec<_> =
-            kinds.flat_map(|(kind, it)| it.products.iter().map(move |id| (kind, *id))).collect();
+        let mut used = vec![vec![0; self.interval]; self.kinds.len()];
+        let mut open: Vec<(usize, NodeId)> = Vec::new();
+        for (kind, group) in self.kinds.iter().enumerate() {
+            for &id in &group.products {
+                open.push((kind, id));
+            }
+        }
         while !open.is_empty() {
             let earliest = self.earliest(differences, &taken);
             let next = (0..open.len()).min_by_key(|&at| {
@@ -437,11 +500,12 @@ impl<'a> ScheduleProblem<'a> {
             }
         }
         for kind in &self.kinds {
-            for (at, &id) in kind.products.iter().enumerate() {
-                let slot = |id: NodeId| stage[id.index()] % self.interval;
-                let others = kind.products[..at].iter().filter(|it| slot(**it) == slot(id));
-                if others.count() >= kind.units {
-                    let (slot, units) = (slot(id), kind.units);
+            let mut used = vec![0; self.interval];
+            for &id in &kind.products {
+                let slot = stage[id.index()] % self.interval;
+                used[slot] += 1;
+                if used[slot] > kind.units {
+                    let units = kind.units;
                     let message = format!(
                         "`{}` is one product too many for {units} in slot {slot}",
                         name(id)
@@ -460,18 +524,19 @@ impl<'a> ScheduleProblem<'a> {
         let latency = least.max(self.latency(&differences, &taken));
         let mut problem = Problem::new(OptimizationDirection::Minimize);
         let last = latency as f64;
-        let nodes = 0..self.graph.nodes.len();
-        let stages = nodes.map(|id| match taken.get(&NodeId(id as u32)) {
-            Some(&stage) => (stage as f64, stage as f64),
-            None => (0.0, self.last_stage(id, latency) as f64),
-        });
-        // Of schedules of as many register bits one whose products are late: their operands have registers of their own.
-        let late = |id: usize| match self.graph.node(NodeId(id as u32)).cell {
-            Cell::Op(NodeOp::Mul(..)) => -1e-3,
-            _ => 0.0,
-        };
-        let stage: Vec<_> =
-            stages.enumerate().map(|(id, it)| problem.add_var(late(id), it)).collect();
+        let mut stage = Vec::new();
+        for (at, node) in self.graph.nodes.iter().enumerate() {
+            let bounds = match taken.get(&NodeId(at as u32)) {
+                Some(&stage) => (stage as f64, stage as f64),
+                None => (0.0, self.last_stage(at, latency) as f64),
+            };
+            // Of schedules of as many register bits one whose products are late: their operands have registers of their own.
+            let weight = match node.cell {
+                Cell::Op(NodeOp::Mul(..)) => -1e-3,
+                _ => 0.0,
+            };
+            stage.push(problem.add_var(weight, bounds));
+        }
         for &(from, to, apart) in &differences {
             let (from, to) = (stage[from.index()], stage[to.index()]);
             problem.add_constraint([(to, 1.0), (from, -1.0)], ComparisonOp::Ge, apart as f64);
@@ -489,7 +554,10 @@ impl<'a> ScheduleProblem<'a> {
             }
         }
         // A reset is a look-up table a bit where anything takes it in its own stage.
-        for &id in self.live.iter().filter(|id| self.reset_by[id.index()].is_some()) {
+        for &id in &self.live {
+            if self.reset_by[id.index()].is_none() {
+                continue;
+            }
             let bits = f64::from(self.graph.width(id));
             let in_tables = problem.add_var(bits, (0.0, 1.0));
             let users = self.beyond_wiring(id);
@@ -509,11 +577,13 @@ impl<'a> ScheduleProblem<'a> {
             SolveOutcome::Solution(solution) => solution,
             _ => return Err(unsolved("the linear program has no solution".to_owned())),
         };
-        let stage = stage.into_iter().map(|it| solution.var_value(it).round() as usize);
-        let stage: Vec<usize> = stage.collect();
-        self.verify(&differences, &stage, latency)?;
-        let logic = self.logic(&stage, latency);
-        Ok(Schedule { stage, latency, period, logic })
+        let mut solved: Vec<usize> = Vec::new();
+        for variable in stage {
+            solved.push(solution.var_value(variable).round() as usize);
+        }
+        self.verify(&differences, &solved, latency)?;
+        let logic = self.logic(&solved, latency);
+        Ok(Schedule { stage: solved, latency, period, logic })
     }
 
     /// Returns the readers of a node, through wires.
@@ -537,27 +607,37 @@ impl<'a> ScheduleProblem<'a> {
         let mut longest = vec![0.0f64; latency];
         for &id in &self.live {
             let at = stage[id.index()];
-            let operands = self.graph.node(id).cell.operands();
-            let before = operands
-                .into_iter()
-                .map(|operand| held(self.graph, self.results, operand))
-                .filter(|operand| !self.is_clocked(id) && stage[operand.index()] == at)
-                .filter(|operand| self.graph.constant_of(*operand).is_none());
-            let before: Vec<NodeId> = before.collect();
-            let arrivals = before.iter().map(|operand| arrival[operand.index()]);
-            arrival[id.index()] = arrivals.fold(0.0, f64::max) + self.delay[id.index()];
-            let later = |user: &NodeId| stage[user.index()] - self.apart(*user) > at;
-            let is_held = self.users[id.index()].iter().any(later) || self.results.contains(&id);
-            if is_held {
-                let first = self.delay[id.index()] + self.setup[id.index()];
-                let ends =
-                    before.iter().map(|&it| self.until_register(it, id, arrival[it.index()]));
-                longest[at] = ends.fold(longest[at].max(first), f64::max);
+            // The operands of the same stage.
+            let mut before: Vec<NodeId> = Vec::new();
+            if !self.is_clocked(id) {
+                for operand in self.graph.node(id).cell.operands() {
+                    let operand = held(self.graph, self.results, operand);
+                    let is_constant = self.graph.constant_of(operand).is_some();
+                    if stage[operand.index()] == at && !is_constant {
+                        before.push(operand);
+                    }
+                }
             }
-            let users = self.users[id.index()].iter().filter(|user| !later(user));
-            let operand = users.filter_map(|user| self.clocked[user.index()]);
-            let operand = operand.map(|it| arrival[id.index()] + it.operands);
-            longest[at] = operand.fold(longest[at], f64::max);
+            let mut latest: f64 = 0.0;
+            for operand in &before {
+                latest = latest.max(arrival[operand.index()]);
+            }
+            arrival[id.index()] = latest + self.delay[id.index()];
+            let mut is_held = self.results.contains(&id);
+            for user in &self.users[id.index()] {
+                if stage[user.index()] - self.apart(*user) > at {
+                    is_held = true;
+                } else if let Some(clocked) = self.clocked[user.index()] {
+                    longest[at] = longest[at].max(arrival[id.index()] + clocked.operands);
+                }
+            }
+            if is_held {
+                longest[at] = longest[at].max(self.delay[id.index()] + self.setup[id.index()]);
+                for operand in before {
+                    let end = self.until_register(operand, id, arrival[operand.index()]);
+                    longest[at] = longest[at].max(end);
+                }
+            }
             if let Some(clocked) = self.clocked[id.index()] {
                 longest[at - 1] = longest[at - 1].max(clocked.inside);
             }
@@ -592,10 +672,12 @@ impl<'a> ScheduleProblem<'a> {
 
     /// Returns the multipliers that products share, with the products of each slot.
     pub fn units(&self, schedule: &Schedule) -> Vec<MultiplierUnit> {
-        let kinds = self.kinds.iter();
-        let of =
-            |kind| sharing::units(self.graph, self.target, kind, &schedule.stage, self.interval);
-        kinds.flat_map(of).collect()
+        let mut units = Vec::new();
+        for kind in &self.kinds {
+            let stage = &schedule.stage;
+            units.extend(sharing::units(self.graph, self.target, kind, stage, self.interval));
+        }
+        units
     }
 
     /// Returns whether the clock makes a node: a word of a block memory, or a product in a register.

@@ -43,10 +43,17 @@ fn factors(graph: &Graph, id: NodeId) -> Option<[NodeId; 2]> {
 /// Returns the products of a computation that take a multiplier of the target. It leaves out the narrow products that
 /// synthesis makes of look-up tables.
 pub fn products(graph: &Graph, target: &Timing, live: &[NodeId]) -> Vec<NodeId> {
-    let family = FAMILIES.iter().find(|family| family.name() == target.name);
-    let least = family.map_or(0, |family| family.estimate.least_product);
-    let products = live.iter().copied().filter(|&id| graph.width(id) >= least);
-    products.filter(|&id| factors(graph, id).is_some()).collect()
+    let least = match FAMILIES.iter().find(|family| family.name() == target.name) {
+        Some(family) => family.estimate.least_product,
+        None => 0,
+    };
+    let mut products = Vec::new();
+    for &id in live {
+        if graph.width(id) >= least && factors(graph, id).is_some() {
+            products.push(id);
+        }
+    }
+    products
 }
 
 /// Returns the products of a computation that share multipliers; empty with an interval of 1. Products without a sign are
@@ -58,27 +65,42 @@ pub fn kinds(
     live: &[NodeId],
     interval: usize,
 ) -> Vec<ProductGroup> {
-    let products = products(graph, target, live);
-    let signed = |id: &NodeId| graph.node(*id).format.signed;
-    let has_room = |id: &NodeId| {
-        let mut widths = factors(graph, *id).unwrap_or([*id; 2]).map(|it| graph.width(it));
-        widths.sort_unstable();
-        widths[1] < target.multiplier.0 && widths[0] < target.multiplier.1
-    };
-    let units = |products: usize| products.div_ceil(interval);
-    let split = |with_room: bool| -> [Vec<NodeId>; 2] {
-        let with_sign = |id: &NodeId| signed(id) || (with_room && has_room(id));
-        let (with, without) = products.iter().copied().partition(with_sign);
-        [with, without]
-    };
-    let count = |parts: &[Vec<NodeId>; 2]| parts.iter().map(|it| units(it.len())).sum::<usize>();
-    let [apart, joined] = [false, true].map(split);
-    let parts = if count(&joined) < count(&apart) { joined } else { apart };
-    let kinds = parts.into_iter().zip([true, false]).map(|(products, signed)| {
-        let units = units(products.len());
+    // Products with a sign and without; then also with products that have room for a sign among those with one.
+    let (mut signed, mut unsigned) = (Vec::new(), Vec::new());
+    let (mut with_room, mut without_room) = (Vec::new(), Vec::new());
+    for id in products(graph, target, live) {
+        let is_signed = graph.node(id).format.signed;
+        match is_signed {
+            true => signed.push(id),
+            false => unsigned.push(id),
+        }
+        match is_signed || has_room(graph, target, id) {
+            true => with_room.push(id),
+            false => without_room.push(id),
+        }
+    }
+    let apart = group(signed, unsigned, interval);
+    let joined = group(with_room, without_room, interval);
+    let count = |groups: &[ProductGroup; 2]| groups[0].units + groups[1].units;
+    let mut kinds = if count(&joined) < count(&apart) { joined } else { apart }.to_vec();
+    kinds.retain(|kind| kind.units < kind.products.len());
+    kinds
+}
+
+/// Returns whether a multiplier of the target has a bit to spare for a sign of each factor of a product.
+fn has_room(graph: &Graph, target: &Timing, product: NodeId) -> bool {
+    let mut widths =
+        factors(graph, product).unwrap_or([product; 2]).map(|factor| graph.width(factor));
+    widths.sort_unstable();
+    widths[1] < target.multiplier.0 && widths[0] < target.multiplier.1
+}
+
+/// Makes a group of the products that take a signed multiplier, and one of the others.
+fn group(signed: Vec<NodeId>, unsigned: Vec<NodeId>, interval: usize) -> [ProductGroup; 2] {
+    [(signed, true), (unsigned, false)].map(|(products, signed)| {
+        let units = products.len().div_ceil(interval);
         ProductGroup { products, units, signed }
-    });
-    kinds.filter(|kind| kind.units < kind.products.len()).collect()
+    })
 }
 
 /// Returns the units that serve the products of a `kind` in these stages. Among the units that are free in its slot,
@@ -106,20 +128,25 @@ pub fn units(
         let Some([a, b]) = factors(graph, id) else { continue };
         let slot = stage[id.index()] % interval;
         let mut best: Option<(u32, usize, [u32; 2], [NodeId; 2])> = None;
-        let free = units.iter().enumerate().filter(|(_, unit)| unit.serves[slot].is_none());
-        for (at, unit) in free {
+        for (at, unit) in units.iter().enumerate() {
+            if unit.serves[slot].is_some() {
+                continue;
+            }
             for order in [[a, b], [b, a]] {
                 let widths = [0, 1].map(|side| unit.widths[side].max(width(order[side])));
-                let inputs = (0..2).map(|side| {
-                    let has =
-                        unit.serves.iter().flatten().any(|(_, known)| known[side] == order[side]);
-                    if has { 0 } else { width(order[side]) }
-                });
-                let grown: u32 = (0..2).map(|side| widths[side] - unit.widths[side]).sum();
-                let cost = inputs.sum::<u32>() + grown * interval as u32;
-                let fits = widths.iter().max() <= Some(&target.multiplier.0)
-                    && widths.iter().min() <= Some(&target.multiplier.1);
-                let cost = if fits { cost } else { u32::MAX };
+                let mut cost = 0;
+                for side in 0..2 {
+                    let mut served = unit.serves.iter().flatten();
+                    if !served.any(|(_, known)| known[side] == order[side]) {
+                        cost += width(order[side]);
+                    }
+                    cost += (widths[side] - unit.widths[side]) * interval as u32;
+                }
+                let fits = widths[0].max(widths[1]) <= target.multiplier.0
+                    && widths[0].min(widths[1]) <= target.multiplier.1;
+                if !fits {
+                    cost = u32::MAX;
+                }
                 if best.is_none_or(|(least, ..)| cost < least) {
                     best = Some((cost, at, widths, order));
                 }

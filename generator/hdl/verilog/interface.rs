@@ -24,45 +24,69 @@ impl Interface {
             Partition::Control => Partition::Datapath,
             Partition::Datapath => Partition::Control,
         };
-        let reads = |partition: Partition, net: NetId| plan.reads.contains_key(&(partition, net));
-        let declared =
-            |net: &NetId| plan.forms[net.index()] == NetForm::Declared && !plan.is_input(*net);
-        let nets_read = |by: Partition, of: Partition| {
-            let ids = (0..design.nets.len() as u32).map(NetId);
-            ids.filter(declared).filter(move |net| plan.partition(*net) == of && reads(by, *net))
-        };
-        // An input that nothing reads still has to end somewhere: in its own unit.
-        let inputs = design.inputs().map(|port| port.net).filter(|net| {
-            reads(partition, *net) || (plan.partition(*net) == partition && !reads(other, *net))
-        });
-        let outputs =
-            design.outputs().map(|port| port.net).filter(|net| plan.partition(*net) == partition);
-        let roms = (0..design.roms.len() as u32).map(RomId);
-        let roms = roms.filter(|rom| plan.partition(design.rom(*rom).data) == partition);
-        let roms: Vec<RomId> = roms.collect();
-        let registers = design.registers.iter().any(|it| plan.partition(it.q) == partition);
-        Self {
-            clocked: registers || roms.iter().any(|rom| design.rom(*rom).synchronous),
-            inputs: inputs.chain(nets_read(partition, other)).collect(),
-            outputs: outputs
-                .chain(nets_read(other, partition).filter(|net| !plan.is_port(*net)))
-                .collect(),
-            roms,
+        let mut inputs = Vec::new();
+        for port in design.inputs() {
+            // An input that nothing reads still has to end somewhere: in its own unit.
+            let ends_here =
+                plan.partition(port.net) == partition && !is_read(plan, other, port.net);
+            if is_read(plan, partition, port.net) || ends_here {
+                inputs.push(port.net);
+            }
+        }
+        inputs.extend(crossing(plan, other, partition));
+        let mut outputs = Vec::new();
+        for port in design.outputs() {
+            if plan.partition(port.net) == partition {
+                outputs.push(port.net);
+            }
+        }
+        for net in crossing(plan, partition, other) {
+            if !plan.is_port(net) {
+                outputs.push(net);
+            }
+        }
+        let mut clocked = design.registers.iter().any(|it| plan.partition(it.q) == partition);
+        let mut roms = Vec::new();
+        for (id, rom) in (0..).map(RomId).zip(&design.roms) {
+            if plan.partition(rom.data) == partition {
+                clocked |= rom.synchronous;
+                roms.push(id);
+            }
+        }
+        Self { clocked, inputs, outputs, roms }
+    }
+}
+
+fn is_read(plan: &Plan, partition: Partition, net: NetId) -> bool {
+    plan.reads.contains_key(&(partition, net))
+}
+
+/// Returns the nets that are declared in the unit `from`, and that the unit `to` reads.
+fn crossing(plan: &Plan, from: Partition, to: Partition) -> Vec<NetId> {
+    let mut crossing = Vec::new();
+    for net in (0..plan.design.nets.len() as u32).map(NetId) {
+        let is_declared = plan.forms[net.index()] == NetForm::Declared && !plan.is_input(net);
+        if is_declared && plan.partition(net) == from && is_read(plan, to, net) {
+            crossing.push(net);
         }
     }
+    crossing
 }
 
 /// Returns the nets and the bits of them that are there in a partition and that nothing in it needs, as ranges
 /// `(net, low, width)`.
 pub fn unread(plan: &Plan, partition: Partition, interface: &Interface) -> Vec<(NetId, u32, u32)> {
     let design = plan.design;
-    let here = plan.live.iter().copied().filter(|net| {
-        plan.partition(*net) == partition
+    let mut nets = interface.inputs.clone();
+    for &net in &plan.live {
+        if plan.partition(net) == partition
             && plan.forms[net.index()] == NetForm::Declared
-            && design.net(*net).driver != Driver::Input
-            && !interface.outputs.contains(net)
-    });
-    let mut nets: Vec<_> = interface.inputs.iter().copied().chain(here).collect();
+            && design.net(net).driver != Driver::Input
+            && !interface.outputs.contains(&net)
+        {
+            nets.push(net);
+        }
+    }
     nets.sort_unstable();
     let mut ranges = Vec::new();
     for net in nets {

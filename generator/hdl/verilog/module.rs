@@ -108,32 +108,41 @@ impl<'a> Builder<'a> {
     /// Returns the registers here that are written as such.
     fn registers(&self) -> impl Iterator<Item = NetId> {
         let design = self.plan.design;
-        let registers = (0..).map(RegId).zip(&design.registers).filter(|(id, _)| {
-            design.multiplier(*id).is_none() && self.plan.delayed(*id) != Some(false)
+        let written = (0..).map(RegId).zip(&design.registers).filter(|(id, register)| {
+            design.multiplier(*id).is_none()
+                && self.plan.delayed(*id) != Some(false)
+                && self.plan.partition(register.q) == self.partition
         });
-        let registers = registers.map(|(_, register)| register.q);
-        registers.filter(|net| self.plan.partition(*net) == self.partition)
+        written.map(|(_, register)| register.q)
     }
 
     /// Returns the declarations of the `wanted` registers and words of synchronous ROMs, except ports.
     pub(super) fn state(&self, wanted: &dyn Fn(NetId) -> bool) -> Vec<Row> {
-        let roms = self.plan.design.roms.iter().filter(|rom| rom.synchronous).map(|rom| rom.data);
-        let roms = roms.filter(|net| self.plan.partition(*net) == self.partition);
-        let rows = self
-            .registers()
-            .chain(roms)
-            .filter(|net| wanted(*net) && !self.interface.outputs.contains(net))
-            .map(|net| Row::net(self.plan, "", self.kind(net), net));
-        rows.collect()
+        let mut nets: Vec<NetId> = self.registers().collect();
+        for rom in &self.plan.design.roms {
+            if rom.synchronous && self.plan.partition(rom.data) == self.partition {
+                nets.push(rom.data);
+            }
+        }
+        let mut rows = Vec::new();
+        for net in nets {
+            if wanted(net) && !self.interface.outputs.contains(&net) {
+                rows.push(Row::net(self.plan, "", self.kind(net), net));
+            }
+        }
+        rows
     }
 
     /// Writes the statements that make registers 0 before the first clock. Words of synchronous ROMs are known after
     /// that clock, and on some targets block memories have no initial values.
     fn initial(&self) -> Vec<String> {
         let design = self.plan.design;
-        let zero =
-            |net| format!("        {} = {};", design.net(net).name, literal(0, design.width(net)));
-        self.registers().map(zero).collect()
+        let mut lines = Vec::new();
+        for net in self.registers() {
+            let zero = literal(0, design.width(net));
+            lines.push(format!("        {} = {zero};", design.net(net).name));
+        }
+        lines
     }
 
     pub(super) fn constants(&self) -> Vec<String> {
@@ -213,18 +222,20 @@ impl<'a> Builder<'a> {
             return format!("assign {}", net.name);
         }
         let sign = if net.format.signed { "signed" } else { "" };
-        let words = ["wire", sign, &range(net.format.width()), &net.name];
-        words.into_iter().filter(|word| !word.is_empty()).collect::<Vec<_>>().join(" ")
+        let bits = range(net.format.width());
+        let mut words = vec!["wire", sign, &bits, &net.name];
+        words.retain(|word| !word.is_empty());
+        words.join(" ")
     }
 
     /// Returns a mux of more than two inputs.
     fn case(&mut self, id: NetId, select: NetId, inputs: &[NetId]) -> Vec<String> {
         let design = self.plan.design;
         let name = &design.net(id).name;
-        let labels = self.case_labels(select, inputs.len());
-        let labels = labels.iter().map(String::as_str).chain(["default"]);
+        let mut labels = self.case_labels(select, inputs.len());
+        labels.push("default".to_owned());
         let mut arms = Vec::new();
-        for (label, input) in labels.zip(inputs.iter().chain(inputs.last())) {
+        for (label, input) in labels.iter().zip(inputs.iter().chain(inputs.last())) {
             let value = self.expressions.whole(*input);
             arms.extend(statement(12, &format!("{label}: {name} = {value};")));
         }
@@ -248,18 +259,17 @@ impl<'a> Builder<'a> {
             design.control.fields.iter().position(|field| {
                 self.plan.bits[select.index()] == self.plan.bits[field.net.index()]
             });
-        (0..count)
-            .map(|value| {
-                let named = field.filter(|field| value < self.naming.choices[*field].len());
-                match named {
-                    Some(field) => {
-                        self.labels.insert((field, value));
-                        self.naming.choices[field][value].clone()
-                    }
-                    None => literal(value as u64, width),
+        let mut labels = Vec::new();
+        for value in 0..count {
+            labels.push(match field {
+                Some(field) if value < self.naming.choices[field].len() => {
+                    self.labels.insert((field, value));
+                    self.naming.choices[field][value].clone()
                 }
-            })
-            .collect()
+                _ => literal(value as u64, width),
+            });
+        }
+        labels
     }
 
     /// Returns a memory and its read port. It leaves out the memory if another read port has already declared it.
@@ -274,8 +284,10 @@ impl<'a> Builder<'a> {
             if case { format!("{memory}({address})") } else { format!("{memory}[{address}]") };
         let read = if rom.synchronous {
             let data = &self.plan.design.net(rom.data).name;
-            let when = rom.enable.map(|enable| self.expressions.whole(enable));
-            let when = when.map_or_else(String::new, |enable| format!("if ({enable}) "));
+            let when = match rom.enable {
+                Some(enable) => format!("if ({}) ", self.expressions.whole(enable)),
+                None => String::new(),
+            };
             format!("always @(posedge clk) {when}{data} <= {word};")
         } else {
             format!("{} = {word};", self.target(rom.data))
@@ -309,8 +321,10 @@ impl<'a> Builder<'a> {
             lines.extend(["        endcase", "    endfunction"].map(str::to_owned));
             return lines;
         }
-        let attribute = style.rom_style.filter(|_| rom.synchronous);
-        let attribute = attribute.map_or_else(String::new, |style| format!("(* {style} *) "));
+        let attribute = match style.rom_style {
+            Some(style) if rom.synchronous => format!("(* {style} *) "),
+            _ => String::new(),
+        };
         let (range, last) = (range(width), rom.words.len().saturating_sub(1));
         let declaration = format!("    {attribute}reg {range} {memory} [0:{last}];");
         if style.inline {
@@ -328,8 +342,10 @@ impl<'a> Builder<'a> {
         let design = self.plan.design;
         let Multiplier { product, factors } = multiplier;
         let [a, b] = factors.map(|factor| self.expressions.whole(factor));
-        let enable = register.enable.map(|enable| self.expressions.whole(enable));
-        let enable = enable.unwrap_or_else(|| literal(1, 1));
+        let enable = match register.enable {
+            Some(enable) => self.expressions.whole(enable),
+            None => literal(1, 1),
+        };
         let parameters = [
             format!(".A_WIDTH({})", design.width(factors[0])),
             format!(".B_WIDTH({})", design.width(factors[1])),
@@ -366,19 +382,27 @@ impl<'a> Builder<'a> {
                 None => groups.push((key, vec![member])),
             }
         }
-        groups.into_iter().map(|((enable, _), members)| self.group(enable, &members)).collect()
+        let mut blocks = Vec::new();
+        for ((enable, _), members) in groups {
+            blocks.push(self.group(enable, &members));
+        }
+        blocks
     }
 
     /// Returns the wanted registers here to which statements assign.
     fn written(&self, wanted: &dyn Fn(NetId) -> bool) -> Vec<RegId> {
         let design = self.plan.design;
-        let registers = (0..).map(RegId).zip(&design.registers).filter(|(id, register)| {
-            wanted(register.q)
+        let mut written = Vec::new();
+        for (id, register) in (0..).map(RegId).zip(&design.registers) {
+            if wanted(register.q)
                 && self.plan.partition(register.q) == self.partition
-                && design.multiplier(*id).is_none()
-                && self.plan.delayed(*id).is_none()
-        });
-        registers.map(|(id, _)| id).collect()
+                && design.multiplier(id).is_none()
+                && self.plan.delayed(id).is_none()
+            {
+                written.push(id);
+            }
+        }
+        written
     }
 
     /// Returns the statements by which registers load.
@@ -401,8 +425,10 @@ impl<'a> Builder<'a> {
         }
         let mut lines = Vec::new();
         for (enable, members) in groups {
-            let when = enable.map(|enable| format!("if ({}) ", self.expressions.whole(enable)));
-            let when = format!("always @(posedge clk) {}", when.unwrap_or_default());
+            let mut when = "always @(posedge clk) ".to_owned();
+            if let Some(enable) = enable {
+                when += &format!("if ({}) ", self.expressions.whole(enable));
+            }
             let takes = self.takes(&members, 8);
             match &takes[..] {
                 [only] if when.len() + only.len() < COLUMNS - 4 => {
@@ -420,12 +446,10 @@ impl<'a> Builder<'a> {
 
     fn group(&mut self, enable: Option<NetId>, members: &[RegId]) -> Vec<String> {
         let design = self.plan.design;
-        let reset = self
-            .plan
-            .reset
-            .filter(|_| members.iter().any(|member| design.register(*member).reset.is_some()));
-        let enable = enable.map(|enable| self.expressions.whole(enable));
-        let nested = reset.is_some() || enable.is_some();
+        let is_reset = members.iter().any(|member| design.register(*member).reset.is_some());
+        let reset = if is_reset { self.plan.reset } else { None };
+        let condition = enable.map(|enable| self.expressions.whole(enable));
+        let nested = reset.is_some() || condition.is_some();
         let takes = self.takes(members, if nested { 12 } else { 8 });
         let mut lines = Vec::new();
         if let Some(reset) = reset {
@@ -436,12 +460,14 @@ impl<'a> Builder<'a> {
                 lines.push(format!("            {} <= {value};", design.net(register.q).name));
             }
         }
-        match (reset, enable) {
-            (Some(_), Some(enable)) => {
-                lines.extend(statement(8, &format!("end else if ({enable}) begin")))
+        match (reset, condition) {
+            (Some(_), Some(condition)) => {
+                lines.extend(statement(8, &format!("end else if ({condition}) begin")))
             }
             (Some(_), None) => lines.push("        end else begin".to_owned()),
-            (None, Some(enable)) => lines.extend(statement(8, &format!("if ({enable}) begin"))),
+            (None, Some(condition)) => {
+                lines.extend(statement(8, &format!("if ({condition}) begin")))
+            }
             (None, None) => {}
         }
         lines.extend(takes);
@@ -479,32 +505,37 @@ fn words(
     let rom = design.rom(id);
     let width = design.width(rom.data);
     let bits = address_width(rom.words.len());
-    let word = |(address, word): (usize, &u64)| {
+    let mut lines = Vec::new();
+    for (address, &word) in rom.words.iter().enumerate() {
         let value = if is_control_rom(design, id) {
-            format!("{width}'b{}", in_fields(design, *word))
+            format!("{width}'b{}", in_fields(design, word))
         } else {
-            format!("{width}'h{}", in_hex(*word, width))
+            format!("{width}'h{}", in_hex(word, width))
         };
         let note = word_note(design, id, address).unwrap_or_default();
-        annotated(&format!("{}{value};", place(address, bits)), indent, &note)
-    };
-    rom.words.iter().enumerate().flat_map(word).collect()
+        lines.extend(annotated(&format!("{}{value};", place(address, bits)), indent, &note));
+    }
+    lines
 }
 
 /// Returns the file parameters of ROMs, with their commas. It is empty if the words are written in the Verilog.
 pub fn parameters(naming: &Naming, roms: &[RomId]) -> Vec<String> {
-    let roms = roms.iter().filter(|_| !naming.style.inline);
-    let texts = roms.filter(|rom| !naming.second.contains(rom)).map(|rom| {
+    let mut texts = Vec::new();
+    for rom in roms {
+        if naming.style.inline || naming.second.contains(rom) {
+            continue;
+        }
         let (name, file) = (&naming.parameters[rom.index()], &naming.files[rom.index()]);
         let text = format!("parameter {name} = \"{file}\"");
         // Beside its margin and a comma.
-        if text.len() + 5 > COLUMNS { text.replacen(" = ", " =\n            ", 1) } else { text }
-    });
-    separated(texts.collect())
+        let is_too_long = text.len() + 5 > COLUMNS;
+        texts.push(if is_too_long { text.replacen(" = ", " =\n            ", 1) } else { text });
+    }
+    separated(texts)
 }
 
 fn localparam(name: &str, value: u64, width: u32, note: &str) -> Vec<String> {
-    let range = range(width);
-    let space = if range.is_empty() { "" } else { " " };
-    annotated(&format!("localparam {range}{space}{name} = {};", literal(value, width)), 4, note)
+    let bits = range(width);
+    let space = if bits.is_empty() { "" } else { " " };
+    annotated(&format!("localparam {bits}{space}{name} = {};", literal(value, width)), 4, note)
 }

@@ -19,24 +19,13 @@ pub fn module(plan: &Plan, naming: &Naming, pipeline: &Pipeline, origin: &Origin
     let design = plan.design;
     let interface = Interface::new(plan, Partition::Datapath);
     let mut builder = Builder::new(plan, naming, &interface, Partition::Datapath);
-    let clocked = |net: NetId| match design.net(net).driver {
-        Driver::Register(_) => true,
-        Driver::Rom(rom) => design.rom(rom).synchronous,
-        _ => false,
-    };
     let is_word = |net: NetId| matches!(design.net(net).driver, Driver::Rom(_));
-    // A net that changes at the clock belongs to the stage that computes it.
-    let section = |net: NetId| pipeline.clock_of(net) - usize::from(clocked(net));
-    let shared = |net: NetId| pipeline.is_shared(net);
-    let here = |net: NetId, number: usize| {
-        !pipeline.handshake.contains(&net) && !shared(net) && section(net) == number
-    };
     let mut stages = handshake(plan, naming, pipeline);
     // Stages read the register behind a multiplier before the logic in front of it is written.
     let behind = |net: NetId| pipeline.units.iter().any(|unit| unit.nets.last() == Some(&net));
     stages.extend(Row::declarations(&builder.state(&behind)));
     for (number, stage) in pipeline.stages.iter().enumerate() {
-        let here = |net: NetId| here(net, number);
+        let here = |net: NetId| is_written_in(design, pipeline, net, number);
         let mut lines = Row::declarations(&builder.state(&|net| here(net) && is_word(net)));
         lines.extend(builder.items(&here).concat());
         let registers = Row::together(builder.state(&|net| here(net) && !is_word(net)));
@@ -50,7 +39,8 @@ pub fn module(plan: &Plan, naming: &Naming, pipeline: &Pipeline, origin: &Origin
         }
     }
     stages.extend(delays::section(&mut builder, naming));
-    let results = builder.items(&|net| here(net, pipeline.stages.len())).concat();
+    let last = pipeline.stages.len();
+    let results = builder.items(&|net| is_written_in(design, pipeline, net, last)).concat();
     stages.extend(writer::section("Results", results));
     for unit in &pipeline.units {
         let here = |net: NetId| unit.nets.contains(&net);
@@ -71,27 +61,50 @@ pub fn module(plan: &Plan, naming: &Naming, pipeline: &Pipeline, origin: &Origin
     writer::module(header, &design.name, &parameters, builder.ports(), body, &delay)
 }
 
+/// Returns whether a net is written in the section of a stage. A net that changes at the clock belongs to the stage
+/// that computes it. The handshake and shared multipliers have sections of their own.
+fn is_written_in(design: &Design, pipeline: &Pipeline, net: NetId, stage: usize) -> bool {
+    if pipeline.handshake.contains(&net) || pipeline.is_shared(net) {
+        return false;
+    }
+    let is_clocked = match design.net(net).driver {
+        Driver::Register(_) => true,
+        Driver::Rom(rom) => design.rom(rom).synchronous,
+        _ => false,
+    };
+    pipeline.clock_of(net) - usize::from(is_clocked) == stage
+}
+
 /// Writes `multiplier_1: in slots 0, 1, 2, 3 it takes the factors of base, -, red_product, green_product`: a slot before it
 /// computes them.
 fn reservations(unit: &Unit) -> Vec<String> {
     let slots = unit.serves.len();
-    let numbers: Vec<String> = (0..slots).map(|slot| slot.to_string()).collect();
-    let taken = (1..=slots).map(|slot| unit.serves[slot % slots].as_deref().unwrap_or("-"));
-    let taken: Vec<&str> = taken.collect();
-    let (slots, taken) = (numbers.join(", "), taken.join(", "));
-    let text = format!("{}: in slots {slots} it takes the factors of {taken}", unit.name);
+    let (mut numbers, mut products) = (Vec::new(), Vec::new());
+    for slot in 0..slots {
+        numbers.push(slot.to_string());
+        products.push(unit.serves[(slot + 1) % slots].as_deref().unwrap_or("-"));
+    }
+    let (numbers, products) = (numbers.join(", "), products.join(", "));
+    let text = format!("{}: in slots {numbers} it takes the factors of {products}", unit.name);
     comment(4, &ascii(&text))
+}
+
+/// Returns the name of the port with a role; empty without such a port.
+fn port_name(design: &Design, role: Role) -> &str {
+    match design.port(|it| it == role) {
+        Some(port) => &design.net(port.net).name,
+        None => "",
+    }
 }
 
 /// Returns the valid bits of the stages and their enables: a shift register in place of the bits of the netlist.
 fn handshake(plan: &Plan, naming: &Naming, pipeline: &Pipeline) -> Vec<String> {
     let design = plan.design;
-    let port = |role: Role| {
-        let port = design.port(|it| it == role);
-        port.map(|it| design.net(it.net).name.as_str())
-    };
-    let [offered, shown, reset] =
-        [Role::InValid, Role::Valid, Role::Reset].map(|role| port(role).unwrap_or_default());
+    let in_valid = port_name(design, Role::InValid);
+    let in_ready = port_name(design, Role::InReady);
+    let out_valid = port_name(design, Role::Valid);
+    let out_ready = port_name(design, Role::OutReady);
+    let reset = port_name(design, Role::Reset);
     let (valid, last) = (&naming.valid, pipeline.stages.len());
     let slot = pipeline.slot.map(|slot| (&design.net(slot).name, design.width(slot)));
     // The condition of a slot; `None` if there is one slot.
@@ -99,8 +112,8 @@ fn handshake(plan: &Plan, naming: &Naming, pipeline: &Pipeline) -> Vec<String> {
         slot.map(|(name, bits)| format!("({name} == {})", literal(number as u64, bits)))
     };
     let offered = match in_slot(0) {
-        Some(first) => format!("{offered} & {first}"),
-        None => offered.to_owned(),
+        Some(first) => format!("{in_valid} & {first}"),
+        None => in_valid.to_owned(),
     };
     let next = match last {
         1 => offered,
@@ -108,20 +121,29 @@ fn handshake(plan: &Plan, naming: &Naming, pipeline: &Pipeline) -> Vec<String> {
         _ => format!("{{{valid}[{}:1], {offered}}}", last - 1),
     };
     let mut lines =
-        vec![format!("reg  [{last}:1] {valid};"), format!("assign {shown} = {valid}[{last}];")];
+        vec![format!("reg  [{last}:1] {valid};"), format!("assign {out_valid} = {valid}[{last}];")];
     if let Some((name, bits)) = slot {
-        let bits = if bits == 1 { String::new() } else { format!("{} ", range(bits)) };
-        lines.insert(1, format!("reg  {bits}{name};"));
+        let width = if bits == 1 { String::new() } else { format!("{} ", range(bits)) };
+        lines.insert(1, format!("reg  {width}{name};"));
     }
-    let enable = enable(design, pipeline).map(|it| &design.net(it).name);
-    if let (Some(advance), Some(ready)) = (enable, port(Role::OutReady)) {
-        lines.push(format!("wire {advance} = {ready} | ~{valid}[{last}];"));
+    let enable = enable(design, pipeline).map(|it| design.net(it).name.as_str());
+    if let Some(advance) = enable
+        && !out_ready.is_empty()
+    {
+        lines.push(format!("wire {advance} = {out_ready} | ~{valid}[{last}];"));
     }
-    if let Some(taken) = port(Role::InReady) {
-        let when = enable.cloned().into_iter().chain(in_slot(0)).collect::<Vec<_>>().join(" & ");
-        lines.push(format!("assign {taken} = {when};"));
+    if !in_ready.is_empty() {
+        let taken = match (enable, in_slot(0)) {
+            (Some(advance), Some(first)) => format!("{advance} & {first}"),
+            (Some(advance), None) => advance.to_owned(),
+            (None, first) => first.unwrap_or_default(),
+        };
+        lines.push(format!("assign {in_ready} = {taken};"));
     }
-    let when = enable.map_or(String::new(), |it| format!("if ({it}) "));
+    let when = match enable {
+        Some(advance) => format!("if ({advance}) "),
+        None => String::new(),
+    };
     let empty = literal(0, last as u32);
     lines.push("always @(posedge clk) begin".to_owned());
     match slot {
@@ -130,12 +152,12 @@ fn handshake(plan: &Plan, naming: &Naming, pipeline: &Pipeline) -> Vec<String> {
             lines.push(format!("    else {when}{valid} <= {next};"));
         }
         Some((slot, bits)) => {
-            let [begin, one] = [0, 1].map(|number| literal(number, bits));
-            let end =
-                in_slot(pipeline.interval - 1).filter(|_| !pipeline.interval.is_power_of_two());
-            let after = match end {
-                Some(end) => format!("{end} ? {begin} : {slot} + {one}"),
-                None => format!("{slot} + {one}"),
+            let (begin, one) = (literal(0, bits), literal(1, bits));
+            let after = match in_slot(pipeline.interval - 1) {
+                Some(end) if !pipeline.interval.is_power_of_two() => {
+                    format!("{end} ? {begin} : {slot} + {one}")
+                }
+                _ => format!("{slot} + {one}"),
             };
             lines.push(format!("    if (!{reset}) begin"));
             lines.extend([
@@ -153,8 +175,10 @@ fn handshake(plan: &Plan, naming: &Naming, pipeline: &Pipeline) -> Vec<String> {
     lines.push("end".to_owned());
     for (&number, &load) in &pipeline.loads {
         let (name, here) = (&design.net(load).name, in_slot(number).unwrap_or_default());
-        let when = enable.map_or(String::new(), |it| format!("{it} & "));
-        lines.push(format!("wire {name} = {when}{here};"));
+        lines.push(match enable {
+            Some(advance) => format!("wire {name} = {advance} & {here};"),
+            None => format!("wire {name} = {here};"),
+        });
     }
     writer::section(
         match pipeline.slot {

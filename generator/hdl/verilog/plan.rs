@@ -10,9 +10,7 @@ use anyhow::{Result, ensure};
 
 use super::bits::{BitRun, Bits};
 use super::naming::remark;
-use crate::netlist::{
-    DelayLine, Delayed, Design, Driver, NetId, Op, Partition, RegId, Role, RomId,
-};
+use crate::netlist::{DelayLine, Design, Driver, NetId, Op, Partition, RegId, Role, RomId};
 use glint_base::diagnostic::Diagnostics;
 use glint_base::fixed::mask;
 
@@ -72,8 +70,10 @@ impl<'a> Plan<'a> {
         ensure!(mistakes.is_empty(), Diagnostics(mistakes));
         let order = design.levelise().unwrap_or_default();
         let resets = design.registers.iter().any(|register| register.reset.is_some());
-        let reset = design.port(|role| role == Role::Reset).map(|port| port.net);
-        let reset = reset.filter(|_| resets);
+        let reset = match design.port(|role| role == Role::Reset) {
+            Some(port) if resets => Some(port.net),
+            _ => None,
+        };
         let mut plan = Self {
             design,
             forms: vec![NetForm::Declared; design.nets.len()],
@@ -140,10 +140,13 @@ impl<'a> Plan<'a> {
                 _ => Vec::new(),
             },
             Reader::Register(register) => {
-                let factors = self.design.multiplier(register).map(|it| it.factors);
-                let register = self.design.register(register);
-                let data = factors.map_or(register.data.into_iter().collect(), Vec::from);
-                data.into_iter().chain(register.enable).collect()
+                let mut operands = Vec::new();
+                match self.design.multiplier(register) {
+                    Some(multiplier) => operands.extend(multiplier.factors),
+                    None => operands.extend(self.design.register(register).data),
+                }
+                operands.extend(self.design.register(register).enable);
+                operands
             }
             Reader::Rom(rom) => vec![self.design.rom(rom).address],
         }
@@ -187,14 +190,19 @@ impl<'a> Plan<'a> {
 
     /// Returns every reader that is written.
     pub fn readers(&self) -> Vec<Reader> {
-        let cells =
-            self.live.iter().copied().filter(|net| {
-                matches!(self.design.net(*net).driver, Driver::Op(_) | Driver::Field(_))
-            });
-        let registers =
-            (0..self.design.registers.len()).map(|at| Reader::Register(RegId(at as u32)));
-        let roms = (0..self.design.roms.len()).map(|at| Reader::Rom(RomId(at as u32)));
-        cells.map(Reader::Cell).chain(registers).chain(roms).collect()
+        let mut readers = Vec::new();
+        for &net in &self.live {
+            if matches!(self.design.net(net).driver, Driver::Op(_) | Driver::Field(_)) {
+                readers.push(Reader::Cell(net));
+            }
+        }
+        for at in 0..self.design.registers.len() {
+            readers.push(Reader::Register(RegId(at as u32)));
+        }
+        for at in 0..self.design.roms.len() {
+            readers.push(Reader::Rom(RomId(at as u32)));
+        }
+        readers
     }
 
     /// Returns a net as wiring, if it is nothing else, with `known` in place of each operand.
@@ -209,8 +217,11 @@ impl<'a> Plan<'a> {
             }
             Driver::Op(Op::Slice { of: a, low }) => Some(of(a).slice(*low, width)),
             Driver::Op(Op::Concat(parts)) => {
-                let all = parts.iter().map(of);
-                Some(all.fold(Bits::default(), |all, part| all.followed_by(part)))
+                let mut all = Bits::default();
+                for part in parts {
+                    all = all.followed_by(of(part));
+                }
+                Some(all)
             }
             _ => None,
         }
@@ -237,9 +248,10 @@ impl<'a> Plan<'a> {
                 _ => whole,
             };
         }
-        let registers = (0..self.design.registers.len()).map(|at| RegId(at as u32));
-        for multiplier in registers.filter_map(|register| self.design.multiplier(register)) {
-            self.forms[multiplier.product.index()] = NetForm::Inside;
+        for at in 0..self.design.registers.len() {
+            if let Some(multiplier) = self.design.multiplier(RegId(at as u32)) {
+                self.forms[multiplier.product.index()] = NetForm::Inside;
+            }
         }
     }
 
@@ -309,8 +321,10 @@ impl<'a> Plan<'a> {
             if (net.named && !carried) || self.is_port(id) {
                 continue;
             }
-            let mentioned: usize =
-                op.operands().iter().map(|operand| self.mentioned(*operand, &size)).sum();
+            let mut mentioned = 0;
+            for operand in op.operands() {
+                mentioned += self.mentioned(operand, &size);
+            }
             let short = carried || self.reads_well(op, *reader, mentioned);
             if self.home(*reader) == self.partition(id) && short {
                 self.forms[id.index()] = NetForm::Inline;
@@ -323,15 +337,18 @@ impl<'a> Plan<'a> {
     /// that.
     fn is_plain(&self, id: NetId, bits: &Bits) -> bool {
         const MOST_PIECES: usize = 3;
-        let is_held = || {
-            let mut registers = (0..self.design.registers.len()).map(|at| RegId(at as u32));
-            registers.any(|it| self.design.register(it).data == Some(id) && self.is_carried(id, it))
-        };
-        let undocumented = self.design.net(id).doc.is_empty();
-        self.design.pipeline.is_some()
-            && !self.is_port(id)
-            && bits.pieces().len() <= MOST_PIECES
-            && (undocumented || is_held())
+        if self.design.pipeline.is_none() || self.is_port(id) || bits.pieces().len() > MOST_PIECES {
+            return false;
+        }
+        if self.design.net(id).doc.is_empty() {
+            return true;
+        }
+        for (register, held) in (0..).map(RegId).zip(&self.design.registers) {
+            if held.data == Some(id) && self.is_carried(id, register) {
+                return true;
+            }
+        }
+        false
     }
 
     /// Returns whether a register holds the value that a net of a pipeline has in the stage before, under the same name.
@@ -346,20 +363,31 @@ impl<'a> Plan<'a> {
     /// Finds the nets whose value another net of an earlier place has.
     fn find_repeats(&mut self) {
         let Some(pipeline) = &self.design.pipeline else { return };
-        let passed = self.delays.iter().flat_map(|line| &line.values).flat_map(Delayed::passed);
-        let passed: HashSet<NetId> = passed.map(|&it| self.design.register(it).q).collect();
-        let written = |id: &NetId| {
-            self.forms[id.index()] == NetForm::Declared
-                && !passed.contains(id)
-                && !self.is_port(*id)
-        };
-        let mut nets: Vec<NetId> = self.live.iter().copied().filter(written).collect();
-        nets.sort_by_key(|id| pipeline.clock_of(*id));
-        let ports = self.design.ports.iter().map(|port| port.net);
-        let mut seen: HashSet<&str> =
-            ports.map(|id| pipeline.value_of[id.index()].as_str()).collect();
-        let repeated = |id: &NetId| !seen.insert(&pipeline.value_of[id.index()]);
-        self.repeats = nets.into_iter().filter(repeated).collect();
+        let mut passed: HashSet<NetId> = HashSet::new();
+        for value in self.delays.iter().flat_map(|line| &line.values) {
+            for &register in value.passed() {
+                passed.insert(self.design.register(register).q);
+            }
+        }
+        let mut written: Vec<NetId> = Vec::new();
+        for &id in &self.live {
+            let is_declared = self.forms[id.index()] == NetForm::Declared;
+            if is_declared && !passed.contains(&id) && !self.is_port(id) {
+                written.push(id);
+            }
+        }
+        written.sort_by_key(|id| pipeline.clock_of(*id));
+        let mut seen: HashSet<&str> = HashSet::new();
+        for port in &self.design.ports {
+            seen.insert(&pipeline.value_of[port.net.index()]);
+        }
+        let mut repeats = HashSet::new();
+        for id in written {
+            if !seen.insert(&pipeline.value_of[id.index()]) {
+                repeats.insert(id);
+            }
+        }
+        self.repeats = repeats;
     }
 
     /// Returns the comment of a net at its declaration.
@@ -368,11 +396,13 @@ impl<'a> Plan<'a> {
     }
 
     fn mentioned(&self, operand: NetId, size: &[usize]) -> usize {
-        let nets = self.bits[operand.index()].pieces().iter().map(|piece| match piece {
-            BitRun::Net { net, .. } => size[net.index()],
-            _ => 0,
-        });
-        nets.sum::<usize>().max(1)
+        let mut mentioned = 0;
+        for piece in self.bits[operand.index()].pieces() {
+            if let BitRun::Net { net, .. } = piece {
+                mentioned += size[net.index()];
+            }
+        }
+        mentioned.max(1)
     }
 
     /// Returns whether `op` may be written inside the expression of `reader`. Products never may, except as the whole

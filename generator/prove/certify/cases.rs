@@ -131,51 +131,23 @@ impl Case {
         let mut polynomials: BTreeMap<NodeId, RawPolynomial> = BTreeMap::new();
         for &id in cone {
             let node = graph.node(id);
-            let of = |id: &NodeId| self.ranges[id.index()];
-            let open = |id: &NodeId| of(id).0 != of(id).1;
-            let range = match &node.cell {
-                _ if view.quotients.contains_key(&id) => {
-                    let Quotient { dividend, divisor, bits } = view.quotients[&id];
-                    let (over, under) = (of(&dividend), of(&divisor));
-                    let part = |over: i128, under: i128| (over << bits) / under.max(1);
-                    let most = (1 << bits) - 1;
-                    (part(over.0, under.1).min(most), part(over.1, under.0).min(most))
-                }
-                Cell::Op(NodeOp::Mux { select, inputs }) => {
-                    if open(select) {
-                        let decider = decider(graph, *select, &of);
-                        return Decision::Splits(decider, of(&decider));
-                    }
-                    of(&inputs[(of(select).0 as usize).min(inputs.len() - 1)])
-                }
-                // A condition that is counted with.
-                Cell::Op(NodeOp::Add { carry: Some(carry), .. }) if open(carry) => {
-                    let decider = decider(graph, *carry, &of);
-                    return Decision::Splits(decider, of(&decider));
-                }
-                Cell::Op(NodeOp::All(a)) => {
-                    let format = graph.node(*a).format;
-                    let ones = if format.signed { -1 } else { format.max_raw() };
-                    let possible = common(of(a), (ones, ones)).is_some();
-                    (i128::from(of(a) == (ones, ones)), i128::from(possible))
-                }
-                Cell::Op(op) => {
-                    of_cell(op, node.format, &|id| graph.node(id).format, &|id| of(&id))
-                }
-                Cell::Read { rom, address } => {
-                    let (low, high) = of(address);
-                    let words = (low..=high).map(|at| (view.words)(*rom, at as u64));
-                    interval::of_values(words).unwrap_or(node.range)
-                }
-                _ => node.range,
-            };
-            let other = self.known.get(&id).copied().unwrap_or(node.range);
-            let possible = common(range, node.range).and_then(|range| common(range, other));
-            let Some(mut range) = possible else { return Decision::Never };
-            if let Some(polynomial) = polynomial(graph, id, &polynomials, &of) {
+            if let Some(selection) = selection(&node.cell)
+                && !view.quotients.contains_key(&id)
+                && is_open(&self.ranges, selection)
+            {
+                let decider = decider(graph, selection, &self.ranges);
+                return Decision::Splits(decider, self.ranges[decider.index()]);
+            }
+            let computed = self.computed(view, id);
+            let known = self.known.get(&id).copied().unwrap_or(node.range);
+            let Some(representable) = common(computed, node.range) else { return Decision::Never };
+            let Some(mut range) = common(representable, known) else { return Decision::Never };
+            if let Some(polynomial) = polynomial(graph, id, &polynomials, &self.ranges) {
                 polynomials.insert(id, polynomial);
-                let values = polynomial.of.and_then(|x| polynomial.range(of(&x)));
-                if let Some(values) = values.filter(|it| it.0 > range.0 || it.1 < range.1) {
+                if let Some(x) = polynomial.of
+                    && let Some(values) = polynomial.range(self.ranges[x.index()])
+                    && (values.0 > range.0 || values.1 < range.1)
+                {
                     let Some(both) = common(range, values) else { return Decision::Never };
                     range = both;
                     if polynomial.factors[2] != 0 {
@@ -187,19 +159,72 @@ impl Case {
         }
         Decision::Whole
     }
+
+    /// Returns the raw values of a node by the raw values of its operands. Its selection is decided.
+    fn computed(&self, view: UnrolledComputation, id: NodeId) -> Interval {
+        let graph = view.graph;
+        let node = graph.node(id);
+        let of = |id: NodeId| self.ranges[id.index()];
+        if let Some(&Quotient { dividend, divisor, bits }) = view.quotients.get(&id) {
+            let (over, under) = (of(dividend), of(divisor));
+            let most = (1 << bits) - 1;
+            let least_quotient = (over.0 << bits) / under.1.max(1);
+            let largest_quotient = (over.1 << bits) / under.0.max(1);
+            return (least_quotient.min(most), largest_quotient.min(most));
+        }
+        match &node.cell {
+            Cell::Op(NodeOp::Mux { select, inputs }) => of(selected(*select, inputs, &self.ranges)),
+            Cell::Op(NodeOp::All(a)) => {
+                let format = graph.node(*a).format;
+                let ones = if format.signed { -1 } else { format.max_raw() };
+                let possible = common(of(*a), (ones, ones)).is_some();
+                (i128::from(of(*a) == (ones, ones)), i128::from(possible))
+            }
+            Cell::Op(op) => of_cell(op, node.format, &|id| graph.node(id).format, &of),
+            Cell::Read { rom, address } => {
+                let (low, high) = of(*address);
+                let words = (low..=high).map(|at| (view.words)(*rom, at as u64));
+                interval::of_values(words).unwrap_or(node.range)
+            }
+            _ => node.range,
+        }
+    }
+}
+
+/// Returns the node that must be decided for a cell: the select of a mux, or the carry of a sum, which is a condition
+/// that is counted with.
+fn selection(cell: &Cell) -> Option<NodeId> {
+    match cell {
+        Cell::Op(NodeOp::Mux { select, .. }) => Some(*select),
+        Cell::Op(NodeOp::Add { carry, .. }) => *carry,
+        _ => None,
+    }
+}
+
+/// Returns whether a node has several values.
+fn is_open(ranges: &[Interval], id: NodeId) -> bool {
+    let (low, high) = ranges[id.index()];
+    low != high
+}
+
+/// Returns the input of a mux that a decided select chooses.
+fn selected(select: NodeId, inputs: &[NodeId], ranges: &[Interval]) -> NodeId {
+    let (number, _) = ranges[select.index()];
+    inputs[(number as usize).min(inputs.len() - 1)]
 }
 
 /// Returns a node as a polynomial in an operand, if no bits are dropped on the way.
 fn polynomial(
     graph: &Graph,
     id: NodeId,
-    known: &BTreeMap<NodeId, RawPolynomial>,
-    of: &dyn Fn(&NodeId) -> Interval,
+    polynomials: &BTreeMap<NodeId, RawPolynomial>,
+    ranges: &[Interval],
 ) -> Option<RawPolynomial> {
     let node = graph.node(id);
+    let of = |id: &NodeId| ranges[id.index()];
     let known = |id: &NodeId| match of(id) {
         (low, high) if low == high => Some(RawPolynomial::constant(low)),
-        _ => known.get(id).copied(),
+        _ => polynomials.get(id).copied(),
     };
     // All that comes to the node, with one multiple of the modulus added.
     let wrapped = |whole: Interval, polynomial: RawPolynomial| {
@@ -215,19 +240,22 @@ fn polynomial(
         }
         Cell::Op(NodeOp::Concat(parts)) => {
             let [a, zeros] = parts[..] else { return None };
-            let raised =
+            let is_raised =
                 graph.constant_of(zeros) == Some(0) && of(&a).0 >= 0 && !node.format.signed;
-            let factor = RawPolynomial::constant(1 << graph.width(zeros));
-            known(&a).filter(|_| raised)?.times(factor)
+            if !is_raised {
+                return None;
+            }
+            known(&a)?.times(RawPolynomial::constant(1 << graph.width(zeros)))
         }
-        Cell::Op(NodeOp::Mux { select, inputs }) => {
-            known(&inputs[(of(select).0 as usize).min(inputs.len() - 1)])
-        }
+        Cell::Op(NodeOp::Mux { select, inputs }) => known(&selected(*select, inputs, ranges)),
         Cell::Op(NodeOp::Add { a, b, carry }) => {
-            let one = carry.as_ref().map_or((0, 0), of);
-            let whole = (of(a).0 + of(b).0 + one.0, of(a).1 + of(b).1 + one.1);
-            let carry = RawPolynomial::constant(one.0);
-            wrapped(whole, known(a)?.plus(known(b)?, 1)?.plus(carry, 1)?)
+            let carried = match carry {
+                Some(carry) => of(carry),
+                None => (0, 0),
+            };
+            let whole = (of(a).0 + of(b).0 + carried.0, of(a).1 + of(b).1 + carried.1);
+            let constant = RawPolynomial::constant(carried.0);
+            wrapped(whole, known(a)?.plus(known(b)?, 1)?.plus(constant, 1)?)
         }
         Cell::Op(NodeOp::Sub(a, b)) => {
             wrapped((of(a).0 - of(b).1, of(a).1 - of(b).0), known(a)?.plus(known(b)?, -1)?)
@@ -239,7 +267,7 @@ fn polynomial(
 
 /// Returns the node to split first, so that this undecided selection becomes known: a condition on which the selection
 /// depends. For example, if the select is `a & b` of one bit, and only `b` is open, it is `b`.
-fn decider(graph: &Graph, id: NodeId, of: &dyn Fn(&NodeId) -> Interval) -> NodeId {
+fn decider(graph: &Graph, id: NodeId, ranges: &[Interval]) -> NodeId {
     let operands =
         match &graph.node(id).cell {
             Cell::Op(
@@ -247,8 +275,12 @@ fn decider(graph: &Graph, id: NodeId, of: &dyn Fn(&NodeId) -> Interval) -> NodeI
             ) if graph.width(id) == 1 => op.operands(),
             _ => return id,
         };
-    let open = operands.into_iter().find(|operand| of(operand).0 != of(operand).1);
-    open.map_or(id, |operand| decider(graph, operand, of))
+    for operand in operands {
+        if is_open(ranges, operand) {
+            return decider(graph, operand, ranges);
+        }
+    }
+    id
 }
 
 /// Limits a node to the values of `range`, and limits the nodes that it comes from accordingly. Returns false if that

@@ -36,12 +36,17 @@ enum Choice {
 impl Branch {
     /// Returns whether a condition of the branch is false for a number.
     pub fn is_never(&self, terms: &RealTerms) -> bool {
-        let is = |id: &RealTermId, wrong: fn(f64) -> bool| match terms.get(*id) {
-            RealTerm::Number(value) => wrong(*value),
-            _ => false,
-        };
-        self.at_least.iter().any(|id| is(id, |value| value < 0.0))
-            || self.at_most.iter().any(|id| is(id, |value| value > 0.0))
+        for &id in &self.at_least {
+            if matches!(terms.get(id), RealTerm::Number(value) if *value < 0.0) {
+                return true;
+            }
+        }
+        for &id in &self.at_most {
+            if matches!(terms.get(id), RealTerm::Number(value) if *value > 0.0) {
+                return true;
+            }
+        }
+        false
     }
 
     /// Returns the branch in which both formulas make their choices, with the term of `other`. Returns `None` if they
@@ -54,25 +59,29 @@ impl Branch {
                 return None;
             }
         }
-        let (least, most) = (&mut both.at_least, &mut both.at_most);
-        for (all, more) in [(least, &other.at_least), (most, &other.at_most)] {
-            let new: Vec<RealTermId> =
-                more.iter().copied().filter(|id| !all.contains(id)).collect();
-            all.extend(new);
+        for &id in &other.at_least {
+            if !self.at_least.contains(&id) {
+                both.at_least.push(id);
+            }
+        }
+        for &id in &other.at_most {
+            if !self.at_most.contains(&id) {
+                both.at_most.push(id);
+            }
         }
         Some(both)
     }
 
     /// Returns the way with a choice made about the sign of a term.
     fn choosing(&self, difference: RealTermId, choice: Choice, taken: bool) -> Option<Self> {
-        let mut own = Self { term: self.term, ..Self::default() };
-        own.chosen.insert((difference, choice), taken);
+        let mut condition = Self { term: self.term, ..Self::default() };
+        condition.chosen.insert((difference, choice), taken);
         if taken {
-            own.at_least.push(difference)
+            condition.at_least.push(difference);
         } else {
-            own.at_most.push(difference)
-        };
-        self.and(&own)
+            condition.at_most.push(difference);
+        }
+        self.and(&condition)
     }
 }
 
@@ -95,23 +104,28 @@ pub fn word_variable(rom: &str, variable: &str) -> String {
 }
 
 /// Notes by which power of two each operand is divided in the formula: the exponent if it is the same everywhere, or
-/// For example, `exponent` has 3 in `exponent / 8`, and 0 in `exponent / 8 + exponent`.
-/// 0.
+/// 0. For example, `exponent` has 3 in `exponent / 8`, and 0 in `exponent / 8 + exponent`.
 pub fn divisors(formula: &Expression, found: &mut HashMap<String, Option<i32>>) {
-    let mut note = |name: &str, power: i32| {
-        let all = found.entry(name.to_owned()).or_insert(Some(power));
-        if *all != Some(power) {
-            *all = Some(0);
-        }
-    };
     if let Some((name, power)) = quotient(formula) {
-        return note(name, power);
+        return note_divisor(name, power, found);
     }
     match &formula.kind {
-        Kind::Operand(name) => note(name, 0),
+        Kind::Operand(name) => note_divisor(name, 0, found),
         // The number of a word is no number of the formula.
         Kind::Word(..) => {}
-        _ => formula.parts().into_iter().for_each(|part| divisors(part, found)),
+        _ => {
+            for part in formula.parts() {
+                divisors(part, found);
+            }
+        }
+    }
+}
+
+/// Notes a power by which an operand is divided; 0 if another power was noted before.
+fn note_divisor(name: &str, power: i32, found: &mut HashMap<String, Option<i32>>) {
+    let noted = found.entry(name.to_owned()).or_insert(Some(power));
+    if *noted != Some(power) {
+        *noted = Some(0);
     }
 }
 
@@ -140,52 +154,31 @@ pub fn branches(
     setting: &FormulaContext,
     terms: &mut RealTerms,
 ) -> Result<Vec<Branch>, String> {
-    // For two expressions: every way that both can go together, with the term of each.
-    let pairs = |terms: &mut RealTerms,
-                 a: &Expression,
-                 b: &Expression|
-     -> Result<Vec<(Branch, RealTermId, RealTermId)>, String> {
-        let (first, second) = (branches(a, setting, terms)?, branches(b, setting, terms)?);
-        let all = first.iter().flat_map(|one| second.iter().map(move |other| (one, other)));
-        let pairs = all.filter_map(|(one, other)| Some((one.and(other)?, one.term, other.term)));
-        Ok(pairs.collect())
-    };
-    let operation = |terms: &mut RealTerms,
-                     a: &Expression,
-                     b: &Expression,
-                     make: fn(RealTermId, RealTermId) -> RealTerm| {
-        let made = pairs(terms, a, b)?.into_iter().map(|(branch, left, right)| {
-            let term = folded(terms, make(left, right));
-            Branch { term, ..branch }
-        });
-        Ok(made.collect())
-    };
-    let plain = |term: RealTermId| vec![Branch { term, ..Branch::default() }];
     if let Some((name, power @ 1..)) = quotient(formula)
         && let Some((variable, divisor)) = setting.variables.get(name)
         && *divisor == power
     {
-        return Ok(plain(variable_of(name, variable, power, setting, terms)));
+        return Ok(unconditional(variable_of(name, variable, power, setting, terms)));
     }
     match &formula.kind {
-        Kind::Number(literal) => Ok(plain(terms.number(literal.nearest()))),
-        Kind::Operand(name) => Ok(plain(operand(name, setting, terms)?)),
-        Kind::Word(rom, place) => Ok(plain(word(rom, place, setting, terms)?)),
+        Kind::Number(literal) => Ok(unconditional(terms.number(literal.nearest()))),
+        Kind::Operand(name) => Ok(unconditional(operand(name, setting, terms)?)),
+        Kind::Word(rom, place) => Ok(unconditional(word(rom, place, setting, terms)?)),
         Kind::Constant(name, _) => Err(format!("the constant `{name}` has no translation")),
         Kind::Unary(Function::Negate, a) => {
             let zero = Expression::new(Kind::Number(Literal::zero()), formula.span.clone());
-            operation(terms, &zero, a, RealTerm::Sub)
+            operation([&zero, a], RealTerm::Sub, setting, terms)
         }
         Kind::Unary(function, _) => Err(untranslated(*function)),
-        Kind::Binary(Operator::Add, a, b) => operation(terms, a, b, RealTerm::Add),
-        Kind::Binary(Operator::Sub, a, b) => operation(terms, a, b, RealTerm::Sub),
-        Kind::Binary(Operator::Mul, a, b) => operation(terms, a, b, RealTerm::Mul),
-        Kind::Binary(Operator::Div, a, b) => operation(terms, a, b, RealTerm::Div),
+        Kind::Binary(Operator::Add, a, b) => operation([a, b], RealTerm::Add, setting, terms),
+        Kind::Binary(Operator::Sub, a, b) => operation([a, b], RealTerm::Sub, setting, terms),
+        Kind::Binary(Operator::Mul, a, b) => operation([a, b], RealTerm::Mul, setting, terms),
+        Kind::Binary(Operator::Div, a, b) => operation([a, b], RealTerm::Div, setting, terms),
         Kind::Binary(Operator::Power, base, exponent) => {
             let exponent =
                 constant(exponent, setting).ok_or("a power with an exponent that varies")?;
             if let Some(base) = constant(base, setting) {
-                return Ok(plain(terms.number(libm::pow(base, exponent))));
+                return Ok(unconditional(terms.number(libm::pow(base, exponent))));
             }
             let mut found = branches(base, setting, terms)?;
             for branch in &mut found {
@@ -199,7 +192,7 @@ pub fn branches(
         }
         Kind::Binary(operator @ (Operator::Max | Operator::Min), a, b) => {
             let mut found = Vec::new();
-            for (branch, left, right) in pairs(terms, a, b)? {
+            for (branch, left, right) in pairs([a, b], setting, terms)? {
                 let difference = folded(terms, RealTerm::Sub(left, right));
                 let is_max = *operator == Operator::Max;
                 for (taken, term) in [(is_max, left), (!is_max, right)] {
@@ -211,7 +204,6 @@ pub fn branches(
         }
         Kind::If(comparison, yes, no) => {
             let decided = decided(comparison, setting);
-            let choice = if comparison.or_equal { Choice::NotNegative } else { Choice::Positive };
             let mut found = Vec::new();
             for (taken, side) in [(true, yes), (false, no)] {
                 if decided == Some(!taken) {
@@ -222,16 +214,67 @@ pub fn branches(
                     found.extend(sides);
                     continue;
                 }
-                for (condition, left, right) in pairs(terms, &comparison.left, &comparison.right)? {
-                    let difference = folded(terms, RealTerm::Sub(left, right));
-                    let condition = condition.choosing(difference, choice, taken);
-                    let both = |side: &Branch| condition.as_ref()?.and(side);
-                    found.extend(sides.iter().filter_map(both));
+                for condition in conditions(comparison, taken, setting, terms)? {
+                    found.extend(sides.iter().filter_map(|side| condition.and(side)));
                 }
             }
             Ok(found)
         }
     }
+}
+
+/// Returns the one branch of a formula without choices.
+fn unconditional(term: RealTermId) -> Vec<Branch> {
+    vec![Branch { term, ..Branch::default() }]
+}
+
+/// Returns every way that two formulas can go together, with the term of each.
+fn pairs(
+    [a, b]: [&Expression; 2],
+    setting: &FormulaContext,
+    terms: &mut RealTerms,
+) -> Result<Vec<(Branch, RealTermId, RealTermId)>, String> {
+    let (first, second) = (branches(a, setting, terms)?, branches(b, setting, terms)?);
+    let mut pairs = Vec::new();
+    for one in &first {
+        for other in &second {
+            if let Some(both) = one.and(other) {
+                pairs.push((both, one.term, other.term));
+            }
+        }
+    }
+    Ok(pairs)
+}
+
+/// Returns every way that an operation of two formulas can go. `make` returns the term of the operation.
+fn operation(
+    operands: [&Expression; 2],
+    make: fn(RealTermId, RealTermId) -> RealTerm,
+    setting: &FormulaContext,
+    terms: &mut RealTerms,
+) -> Result<Vec<Branch>, String> {
+    let mut found = Vec::new();
+    for (branch, left, right) in pairs(operands, setting, terms)? {
+        let term = folded(terms, make(left, right));
+        found.push(Branch { term, ..branch });
+    }
+    Ok(found)
+}
+
+/// Returns every way in which a comparison holds, or with `taken` false does not hold.
+fn conditions(
+    comparison: &Comparison,
+    taken: bool,
+    setting: &FormulaContext,
+    terms: &mut RealTerms,
+) -> Result<Vec<Branch>, String> {
+    let choice = if comparison.or_equal { Choice::NotNegative } else { Choice::Positive };
+    let mut conditions = Vec::new();
+    for (branch, left, right) in pairs([&comparison.left, &comparison.right], setting, terms)? {
+        let difference = folded(terms, RealTerm::Sub(left, right));
+        conditions.extend(branch.choosing(difference, choice, taken));
+    }
+    Ok(conditions)
 }
 
 /// Returns the word of a table: the number that it is wherever this case reads, or a variable.
@@ -251,12 +294,16 @@ fn word(
     if setting.operands.iter().any(|operand| operand.name == name && operand.format.frac != 0) {
         return Err(format!("`{rom}` is read at an operand with a fraction, `{name}`"));
     }
-    let read = words.get(low as usize..=high as usize);
-    let read = read.ok_or_else(|| format!("there is no word {high} in `{rom}`"))?;
+    let Some(read) = words.get(low as usize..=high as usize) else {
+        return Err(format!("there is no word {high} in `{rom}`"));
+    };
     if read.iter().all(|word| *word == read[0]) {
         return Ok(terms.number(read[0]));
     }
-    let operand = setting.variables.get(name).map_or("", |(variable, _)| variable.as_str());
+    let operand = match setting.variables.get(name) {
+        Some((variable, _)) => variable.as_str(),
+        None => "",
+    };
     let variable = word_variable(rom, operand);
     Ok(terms.insert(RealTerm::Variable(variable.clone()), &variable))
 }
@@ -266,14 +313,15 @@ fn operand(
     setting: &FormulaContext,
     terms: &mut RealTerms,
 ) -> Result<RealTermId, String> {
-    let (variable, divisor) =
-        setting.variables.get(name).ok_or_else(|| format!("there is no operand `{name}`"))?;
-    let own = variable_of(name, variable, *divisor, setting, terms);
+    let Some((variable, divisor)) = setting.variables.get(name) else {
+        return Err(format!("there is no operand `{name}`"));
+    };
+    let divided = variable_of(name, variable, *divisor, setting, terms);
     if *divisor == 0 {
-        return Ok(own);
+        return Ok(divided);
     }
     let factor = terms.number(exp2(*divisor));
-    Ok(folded(terms, RealTerm::Mul(own, factor)))
+    Ok(folded(terms, RealTerm::Mul(divided, factor)))
 }
 
 fn variable_of(
@@ -291,11 +339,15 @@ fn variable_of(
 
 /// Returns the value of a formula that does not vary in this case.
 fn constant(formula: &Expression, setting: &FormulaContext) -> Option<f64> {
+    let (low, high) = known_range(formula, setting)?;
+    if low == high { Some(low) } else { None }
+}
+
+/// Returns the lowest and the highest value of a number or an operand in this case.
+fn known_range(formula: &Expression, setting: &FormulaContext) -> Option<(f64, f64)> {
     match &formula.kind {
-        Kind::Number(literal) => Some(literal.nearest()),
-        Kind::Operand(name) => {
-            setting.ranges.get(name).filter(|(low, high)| low == high).map(|range| range.0)
-        }
+        Kind::Number(literal) => Some((literal.nearest(), literal.nearest())),
+        Kind::Operand(name) => setting.ranges.get(name).copied(),
         _ => None,
     }
 }
@@ -303,12 +355,8 @@ fn constant(formula: &Expression, setting: &FormulaContext) -> Option<f64> {
 /// Returns whether a comparison of an operand with a number holds for all values of this case, or for none. For
 /// example, `x < 4` holds if x is from 0 to 3, and is open if x is from 0 to 5.
 fn decided(comparison: &Comparison, setting: &FormulaContext) -> Option<bool> {
-    let range = |formula: &Expression| match &formula.kind {
-        Kind::Number(literal) => Some((literal.nearest(), literal.nearest())),
-        Kind::Operand(name) => setting.ranges.get(name).copied(),
-        _ => None,
-    };
-    let (left, right) = (range(&comparison.left)?, range(&comparison.right)?);
+    let left = known_range(&comparison.left, setting)?;
+    let right = known_range(&comparison.right, setting)?;
     if left.0 > right.1 || comparison.or_equal && left.0 >= right.1 {
         return Some(true);
     }
@@ -340,39 +388,52 @@ fn power(terms: &mut RealTerms, base: RealTermId, exponent: u32) -> RealTermId {
 /// Returns the id of a term, simplified by the rules of 0 and 1. If the term is a number and f64 holds it exactly, it
 /// is the id of that number. For example, `x + 0` is `x`, and 0.5 + 0.25 is the number 0.75.
 pub fn folded(terms: &mut RealTerms, term: RealTerm) -> RealTermId {
-    let value = |id: RealTermId| match terms.get(id) {
-        RealTerm::Number(value) => Some(*value),
-        _ => None,
-    };
-    let is = |id: RealTermId, number: f64| value(id) == Some(number);
     match term {
-        RealTerm::Add(a, b) | RealTerm::Sub(a, b) if is(b, 0.0) => return a,
-        RealTerm::Add(a, b) if is(a, 0.0) => return b,
-        RealTerm::Mul(a, b) if is(a, 0.0) || is(b, 0.0) => return terms.number(0.0),
-        RealTerm::Mul(a, b) if is(a, 1.0) => return b,
-        RealTerm::Mul(a, b) | RealTerm::Div(a, b) if is(b, 1.0) => return a,
+        RealTerm::Add(a, b) | RealTerm::Sub(a, b) if is_number(terms, b, 0.0) => return a,
+        RealTerm::Add(a, b) if is_number(terms, a, 0.0) => return b,
+        RealTerm::Mul(a, b) if is_number(terms, a, 0.0) || is_number(terms, b, 0.0) => {
+            return terms.number(0.0);
+        }
+        RealTerm::Mul(a, b) if is_number(terms, a, 1.0) => return b,
+        RealTerm::Mul(a, b) | RealTerm::Div(a, b) if is_number(terms, b, 1.0) => return a,
         _ => {}
     }
-    let exact = match term {
-        RealTerm::Add(a, b) => value(a).zip(value(b)).and_then(|(a, b)| exact_sum(a, b)),
-        RealTerm::Sub(a, b) => value(a).zip(value(b)).and_then(|(a, b)| exact_sum(a, -b)),
-        RealTerm::Mul(a, b) => value(a).zip(value(b)).and_then(|(a, b)| {
-            let product = a * b;
-            (a.mul_add(b, -product) == 0.0).then_some(product)
-        }),
-        RealTerm::Div(a, b) => value(a).zip(value(b)).and_then(|(a, b)| {
-            let quotient = a / b;
-            (quotient.mul_add(b, -a) == 0.0).then_some(quotient)
-        }),
-        _ => None,
-    };
-    match exact {
+    match exact_value(terms, &term) {
         Some(value) => terms.number(value),
         None => terms.insert(term, "exact"),
     }
 }
 
-fn exact_sum(a: f64, b: f64) -> Option<f64> {
+/// Returns the value of a term that is a number.
+fn number_of(terms: &RealTerms, id: RealTermId) -> Option<f64> {
+    match terms.get(id) {
+        RealTerm::Number(value) => Some(*value),
+        _ => None,
+    }
+}
+
+fn is_number(terms: &RealTerms, id: RealTermId, value: f64) -> bool {
+    number_of(terms, id) == Some(value)
+}
+
+/// Returns the value of an operation on numbers, if f64 holds it exactly.
+fn exact_value(terms: &RealTerms, term: &RealTerm) -> Option<f64> {
+    let (RealTerm::Add(a, b) | RealTerm::Sub(a, b) | RealTerm::Mul(a, b) | RealTerm::Div(a, b)) =
+        *term
+    else {
+        return None;
+    };
+    let (a, b) = (number_of(terms, a)?, number_of(terms, b)?);
+    let (value, is_exact) = match term {
+        RealTerm::Add(..) => (a + b, is_exact_sum(a, b)),
+        RealTerm::Sub(..) => (a - b, is_exact_sum(a, -b)),
+        RealTerm::Mul(..) => (a * b, a.mul_add(b, -(a * b)) == 0.0),
+        _ => (a / b, (a / b).mul_add(b, -a) == 0.0),
+    };
+    if is_exact { Some(value) } else { None }
+}
+
+fn is_exact_sum(a: f64, b: f64) -> bool {
     let sum = a + b;
-    (sum - a == b && sum - b == a).then_some(sum)
+    sum - a == b && sum - b == a
 }

@@ -9,7 +9,7 @@ use super::terms::{RealTerm, RealTermId, RealTerms, RoundingDirection};
 use glint_base::fixed::exp2;
 use glint_base::interval::{Interval, wrap};
 use glint_rtl::netlist::RomId;
-use glint_rtl::pipeline::{Cell, Graph, NodeId, NodeOp};
+use glint_rtl::pipeline::{Cell, Graph, Node, NodeId, NodeOp};
 
 /// A node's raw value.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -70,8 +70,8 @@ impl<'a> Hardware<'a> {
     ) -> NodeValue {
         let id = terms.insert(RealTerm::Variable(variable.clone()), &variable);
         let (low, high) = self.range(node);
-        let value = |raw: i128| raw as f64 * exp2(-scale);
-        self.facts.insert(id, (value(low), value(high)));
+        let unit = exp2(-scale);
+        self.facts.insert(id, (low as f64 * unit, high as f64 * unit));
         if !self.variables.iter().any(|(name, _)| *name == variable) {
             self.variables.push((variable, scale));
         }
@@ -125,16 +125,23 @@ impl<'a> Hardware<'a> {
     ) -> Option<(RealTermId, (f64, f64))> {
         let ((a_low, a_high), (b_low, b_high)) = (self.range(a), self.range(b));
         let (a, b) = (self.value(terms, a).ok()?, self.value(terms, b).ok()?);
-        // Both at one point: they are compared as raw values.
-        let (NodeValue::Term { scale, .. }, NodeValue::Term { scale: other, .. }) = (a, b) else {
+        let (NodeValue::Term { scale, .. }, NodeValue::Term { scale: other_scale, .. }) = (a, b)
+        else {
             return None;
         };
         let difference = add(terms, a, b, RealTerm::Sub, "compared");
         let NodeValue::Term { id, .. } = difference else { return None };
-        let value = |raw: i128| raw as f64 * exp2(-scale);
-        let range =
-            if less { (value(a_low - b_high), value(-1)) } else { (0.0, value(a_high - b_low)) };
-        (scale == other).then_some((id, range))
+        // Both have their points at one place: they are compared as raw values.
+        if scale != other_scale {
+            return None;
+        }
+        let unit = exp2(-scale);
+        let range = if less {
+            ((a_low - b_high) as f64 * unit, -unit)
+        } else {
+            (0.0, (a_high - b_low) as f64 * unit)
+        };
+        Some((id, range))
     }
 
     /// Returns dividend and divisor as terms, with the points at one place.
@@ -144,11 +151,12 @@ impl<'a> Hardware<'a> {
         of: Quotient,
     ) -> Result<(RealTermId, RealTermId), String> {
         let (dividend, divisor) = (self.value(terms, of.dividend)?, self.value(terms, of.divisor)?);
-        let scale = [dividend, divisor].into_iter().filter_map(|value| match value {
-            NodeValue::Term { scale, .. } => Some(scale),
-            NodeValue::Constant(_) => None,
-        });
-        let scale = scale.max().unwrap_or(0);
+        let scale = match (dividend, divisor) {
+            (NodeValue::Term { scale: a, .. }, NodeValue::Term { scale: b, .. }) => a.max(b),
+            (NodeValue::Term { scale, .. }, NodeValue::Constant(_))
+            | (NodeValue::Constant(_), NodeValue::Term { scale, .. }) => scale,
+            (NodeValue::Constant(_), NodeValue::Constant(_)) => 0,
+        };
         Ok((pointed(terms, dividend, scale, "dividend"), pointed(terms, divisor, scale, "divisor")))
     }
 
@@ -176,7 +184,7 @@ impl<'a> Hardware<'a> {
         if low != high {
             return self.value(terms, id).ok();
         }
-        (!is_cut).then(|| self.translated(terms, id).ok())?
+        if is_cut { None } else { self.translated(terms, id).ok() }
     }
 
     fn translated(&mut self, terms: &mut RealTerms, id: NodeId) -> Result<NodeValue, String> {
@@ -196,18 +204,11 @@ impl<'a> Hardware<'a> {
             Cell::Read { rom, address } => return Ok(self.read(terms, id, *rom, *address)),
             _ => return Err(format!("`{name}` is nothing that the operands determine")),
         };
-        // The amount to add if bits above the format are dropped.
-        let wrap_of = |range: Interval| {
-            wrap(range, node.format).ok_or_else(|| {
-                let ((low, high), format) = (range, node.format);
-                format!("`{name}` is {format}, and {low} to {high} ulp come to it as far as intervals tell")
-            })
-        };
         let case = self.case;
         let range = |id: &NodeId| case.ranges[id.index()];
         match op {
             NodeOp::Relabel(a) | NodeOp::Extend(a) => {
-                let wrap = wrap_of(range(a))?;
+                let wrap = wrap_of(node, range(a))?;
                 let a = self.value(terms, *a)?;
                 Ok(add(terms, a, NodeValue::Constant(wrap), RealTerm::Add, &name))
             }
@@ -216,15 +217,15 @@ impl<'a> Hardware<'a> {
                 self.value(terms, inputs[chosen.min(inputs.len() - 1)])
             }
             NodeOp::Slice { of, low } => {
-                let wrap = wrap_of((range(of).0 >> low, range(of).1 >> low))?;
                 let (from, to) = range(of);
-                let of = self.value(terms, *of)?;
+                let wrap = wrap_of(node, (from >> low, to >> low))?;
+                let whole = self.value(terms, *of)?;
                 if graph.width(id) == 1 && *low > 0 && from >= 0 && to < 2 << low {
                     // The top bit of a fraction is the fraction to the nearest.
-                    return Ok(cut(terms, of, low + 1, RoundingDirection::Nearest, &name));
+                    return Ok(cut(terms, whole, low + 1, RoundingDirection::Nearest, &name));
                 }
-                let cut = cut(terms, of, *low, RoundingDirection::Down, &name);
-                Ok(add(terms, cut, NodeValue::Constant(wrap), RealTerm::Add, &name))
+                let upper = cut(terms, whole, *low, RoundingDirection::Down, &name);
+                Ok(add(terms, upper, NodeValue::Constant(wrap), RealTerm::Add, &name))
             }
             NodeOp::Concat(parts) => {
                 let mut sum = NodeValue::Constant(0);
@@ -242,9 +243,9 @@ impl<'a> Hardware<'a> {
             }
             NodeOp::Not(a) => {
                 let most = if node.format.signed { -1 } else { node.format.range().1 };
-                let a = self.value(terms, *a)?;
+                let value = self.value(terms, *a)?;
                 // The inverse of an unsigned number is 1.0 minus the number, with the point at its top.
-                let a = match (a, node.format.signed) {
+                let inverted = match (value, node.format.signed) {
                     (NodeValue::Term { id, scale }, false) => {
                         let wanted = node.format.width() as i32;
                         NodeValue::Term {
@@ -252,22 +253,32 @@ impl<'a> Hardware<'a> {
                             scale: wanted,
                         }
                     }
-                    _ => a,
+                    _ => value,
                 };
-                Ok(add(terms, NodeValue::Constant(most), a, RealTerm::Sub, &name))
+                Ok(add(terms, NodeValue::Constant(most), inverted, RealTerm::Sub, &name))
             }
             NodeOp::Add { a, b, carry } => {
                 if let Some((of, low)) = self.rounded(*a, *b) {
                     let half = 1 << (low - 1);
-                    let wrap =
-                        wrap_of(((range(&of).0 + half) >> low, (range(&of).1 + half) >> low))?;
-                    let of = self.value(terms, of)?;
-                    let cut = cut(terms, of, low, RoundingDirection::Nearest, &name);
-                    return Ok(add(terms, cut, NodeValue::Constant(wrap), RealTerm::Add, &name));
+                    let (from, to) = range(&of);
+                    let wrap = wrap_of(node, ((from + half) >> low, (to + half) >> low))?;
+                    let whole = self.value(terms, of)?;
+                    let rounded = cut(terms, whole, low, RoundingDirection::Nearest, &name);
+                    return Ok(add(
+                        terms,
+                        rounded,
+                        NodeValue::Constant(wrap),
+                        RealTerm::Add,
+                        &name,
+                    ));
                 }
-                let one = carry.as_ref().map_or((0, 0), range);
-                let wrap =
-                    wrap_of((range(a).0 + range(b).0 + one.0, range(a).1 + range(b).1 + one.1))?;
+                let carried = match carry {
+                    Some(carry) => range(carry),
+                    None => (0, 0),
+                };
+                let least = range(a).0 + range(b).0 + carried.0;
+                let most = range(a).1 + range(b).1 + carried.1;
+                let wrap = wrap_of(node, (least, most))?;
                 let (a, b) = (self.value(terms, *a)?, self.value(terms, *b)?);
                 let (a, b) = match (a, b) {
                     (NodeValue::Constant(a), b) => (NodeValue::Constant(a + wrap), b),
@@ -284,17 +295,16 @@ impl<'a> Hardware<'a> {
                 }
             }
             NodeOp::Sub(a, b) => {
-                let wrap = wrap_of((range(a).0 - range(b).1, range(a).1 - range(b).0))?;
+                let wrap = wrap_of(node, (range(a).0 - range(b).1, range(a).1 - range(b).0))?;
                 let (a, b) = (self.value(terms, *a)?, self.value(terms, *b)?);
                 let difference = add(terms, a, b, RealTerm::Sub, &name);
                 Ok(add(terms, difference, NodeValue::Constant(wrap), RealTerm::Add, &name))
             }
             NodeOp::Mul(a, b) => {
-                let frac = |id: &NodeId| graph.node(*id).format.frac;
-                let (of_a, of_b) = (self.value(terms, *a)?, self.value(terms, *b)?);
-                let (a, a_scale) = placed(terms, of_a, frac(a));
-                let (b, b_scale) = placed(terms, of_b, frac(b));
-                let id = terms.insert(RealTerm::Mul(a, b), &name);
+                let (a_value, b_value) = (self.value(terms, *a)?, self.value(terms, *b)?);
+                let (a_term, a_scale) = placed(terms, a_value, graph.node(*a).format.frac);
+                let (b_term, b_scale) = placed(terms, b_value, graph.node(*b).format.frac);
+                let id = terms.insert(RealTerm::Mul(a_term, b_term), &name);
                 Ok(NodeValue::Term { id, scale: a_scale + b_scale })
             }
             NodeOp::And(..)
@@ -312,24 +322,49 @@ impl<'a> Hardware<'a> {
     /// Returns the number y for which `a` holds the bits from `low` up and `b` the bit below: their sum is y rounded
     /// to the nearest, halves up, for ⌊y⌋ + (⌊2y⌋ − 2⌊y⌋) = ⌊y + 1/2⌋. Returns `None` if y may be negative.
     fn rounded(&self, a: NodeId, b: NodeId) -> Option<(NodeId, u32)> {
-        let inner = |id: NodeId| match &self.graph.node(id).cell {
-            Cell::Op(NodeOp::Extend(of) | NodeOp::Relabel(of)) => *of,
-            _ => id,
-        };
-        let slice = |id: NodeId| match &self.graph.node(inner(id)).cell {
-            Cell::Op(NodeOp::Slice { of, low }) => Some((widened(self.graph, *of), *low)),
-            _ => None,
-        };
-        let one = |a: NodeId, b: NodeId| {
-            let ((of, low), (below, bit)) = (slice(a)?, slice(b)?);
-            let is = of == below
-                && bit + 1 == low
-                && self.graph.width(inner(b)) == 1
-                && self.range(of).0 >= 0
-                && self.range(of).1 >> (low + self.graph.width(inner(a))) == 0;
-            is.then_some((of, low))
-        };
-        one(a, b).or_else(|| one(b, a))
+        self.upper_and_half(a, b).or_else(|| self.upper_and_half(b, a))
+    }
+
+    /// Returns y and `low`, if `upper` holds the bits of y from `low` up, and `half` the bit below.
+    fn upper_and_half(&self, upper: NodeId, half: NodeId) -> Option<(NodeId, u32)> {
+        let (upper, half) = (unextended(self.graph, upper), unextended(self.graph, half));
+        let (of, low) = sliced(self.graph, upper)?;
+        let (below, bit) = sliced(self.graph, half)?;
+        let (least, most) = self.range(of);
+        let is_rounding = of == below
+            && bit + 1 == low
+            && self.graph.width(half) == 1
+            && least >= 0
+            && most >> (low + self.graph.width(upper)) == 0;
+        if is_rounding { Some((of, low)) } else { None }
+    }
+}
+
+/// Returns the amount to add to a node's value if bits above the format are dropped. Fails if it is not the same for
+/// the whole range.
+fn wrap_of(node: &Node, range: Interval) -> Result<i128, String> {
+    let Some(amount) = wrap(range, node.format) else {
+        let ((low, high), format, name) = (range, node.format, &node.label.name);
+        return Err(format!(
+            "`{name}` is {format}, and {low} to {high} ulp come to it as far as intervals tell"
+        ));
+    };
+    Ok(amount)
+}
+
+/// Returns the node that an extension or another name stands for, or the node itself.
+fn unextended(graph: &Graph, id: NodeId) -> NodeId {
+    match &graph.node(id).cell {
+        Cell::Op(NodeOp::Extend(of) | NodeOp::Relabel(of)) => *of,
+        _ => id,
+    }
+}
+
+/// Returns the number that a slice is cut from, and the lowest bit of the slice.
+fn sliced(graph: &Graph, id: NodeId) -> Option<(NodeId, u32)> {
+    match &graph.node(id).cell {
+        Cell::Op(NodeOp::Slice { of, low }) => Some((widened(graph, *of), *low)),
+        _ => None,
     }
 }
 

@@ -21,16 +21,31 @@ impl Task<'_> {
     /// the variable `exponent_over_8` and the divisor 3.
     fn variables(&self) -> HashMap<String, (String, i32)> {
         let mut divisors = HashMap::new();
-        self.formulas.iter().for_each(|formula| exact::divisors(formula, &mut divisors));
-        let operands = self.contract.operands().iter().map(|operand| {
-            let divisor = divisors.get(&operand.name).copied().flatten().unwrap_or(0);
-            let name = match divisor {
-                0 => operand.name.clone(),
-                _ => format!("{}_over_{}", operand.name, 1 << divisor),
+        for formula in self.formulas {
+            exact::divisors(formula, &mut divisors);
+        }
+        let mut variables = HashMap::new();
+        for operand in self.contract.operands() {
+            let variable = match divisors.get(&operand.name) {
+                Some(Some(divisor)) if *divisor != 0 => {
+                    (format!("{}_over_{}", operand.name, 1 << divisor), *divisor)
+                }
+                _ => (operand.name.clone(), 0),
             };
-            (operand.name.clone(), (name, divisor))
-        });
-        operands.collect()
+            variables.insert(operand.name.clone(), variable);
+        }
+        variables
+    }
+
+    /// Returns the words of the ROMs as values, by the name of the ROM.
+    fn word_values(&self) -> HashMap<String, Vec<f64>> {
+        let mut words = HashMap::new();
+        for rom in &self.design.roms {
+            let format = self.design.net(rom.data).format;
+            let values = rom.words.iter().map(|&word| format.to_f64(format.raw(word)));
+            words.insert(rom.name.clone(), values.collect());
+        }
+        words
     }
 
     /// Adds the statements of one case.
@@ -41,28 +56,24 @@ impl Task<'_> {
         let mut operands = Vec::new();
         for port in &self.unrolled.operands {
             let name = &self.design.net(*port).name;
-            let operand = self.contract.operands().iter().find(|operand| operand.name == *name);
-            let operand = operand.ok_or_else(|| format!("the contract has no operand `{name}`"))?;
+            let mut known_operands = self.contract.operands().iter();
+            let Some(operand) = known_operands.find(|operand| operand.name == *name) else {
+                return Err(format!("the contract has no operand `{name}`"));
+            };
             let (variable, divisor) = &variables[name];
             placed.push((variable.clone(), operand.format.frac + divisor));
-            let domain = (operand.domain.0.into(), operand.domain.1.into());
-            let known = self.operand(name).and_then(|node| case.known.get(&node).copied());
-            let (low, high): (i128, i128) = known.unwrap_or(domain);
-            let value = |raw: i128| raw as f64 * exp2(-operand.format.frac);
-            ranges.insert(name.clone(), (value(low), value(high)));
-            let quotient = |raw: i128| value(raw) * exp2(-divisor);
-            operands.push((variable.clone(), (quotient(low), quotient(high))));
+            let known = self.operand(name).and_then(|node| case.known.get(&node));
+            let (low, high) = match known {
+                Some(range) => *range,
+                None => (i128::from(operand.domain.0), i128::from(operand.domain.1)),
+            };
+            let unit = exp2(-operand.format.frac);
+            let (low, high) = (low as f64 * unit, high as f64 * unit);
+            ranges.insert(name.clone(), (low, high));
+            let factor = exp2(-divisor);
+            operands.push((variable.clone(), (low * factor, high * factor)));
         }
-        let words: HashMap<String, Vec<f64>> = self
-            .design
-            .roms
-            .iter()
-            .map(|rom| {
-                let format = self.design.net(rom.data).format;
-                let words = rom.words.iter().map(|&word| format.to_f64(format.raw(word)));
-                (rom.name.clone(), words.collect())
-            })
-            .collect();
+        let words = self.word_values();
         let setting = FormulaContext {
             variables: &variables,
             ranges: &ranges,
@@ -78,10 +89,10 @@ impl Task<'_> {
         for (at, (output, node)) in self.outputs()?.into_iter().enumerate() {
             let mut terms = RealTerms::default();
             let mut hardware = hardware.clone();
-            let out = hardware.value(&mut terms, node)?;
+            let out_value = hardware.value(&mut terms, node)?;
             let presupposed = self.presupposed(case, &mut hardware, &mut terms, &operands);
-            let (out, scale) = hardware::placed(&mut terms, out, 0);
-            let out = hardware::scaled(&mut terms, out, scale, "out");
+            let (unscaled, scale) = hardware::placed(&mut terms, out_value, 0);
+            let out = hardware::scaled(&mut terms, unscaled, scale, "out");
             // The formula is multiplied by this factor: the colour, or the number of output units in 1.0.
             let (factor, formulas) = match self.contract.highlight() {
                 Some(_) => (real_operand(&colours[at].name, &setting, &mut terms)?, self.formulas),
@@ -106,8 +117,10 @@ impl Task<'_> {
                     presupposed: &presupposed,
                     ways: &chosen,
                 };
-                let text = |way: &Branch| script.text(out, factor, way.term, self.bound);
-                let mut scripts: Vec<String> = chosen.iter().map(text).collect();
+                let mut scripts: Vec<String> = Vec::new();
+                for way in &chosen {
+                    scripts.push(script.text(out, factor, way.term, self.bound));
+                }
                 scripts.dedup();
                 statements.push(&output, scripts);
             }
@@ -135,11 +148,11 @@ impl Task<'_> {
         }
         for (&node, &(low, high)) in &case.known {
             if let Some(NodeValue::Term { id, scale }) = hardware.expression(terms, node) {
-                let value = |raw: i128| raw as f64 * exp2(-scale);
-                presupposed.insert(id, (value(low), value(high)));
+                let unit = exp2(-scale);
+                presupposed.insert(id, (low as f64 * unit, high as f64 * unit));
             }
-            if let (Cell::Op(NodeOp::Less(a, b)), true) =
-                (&self.graph().node(node).cell, low == high)
+            if low == high
+                && let Cell::Op(NodeOp::Less(a, b)) = &self.graph().node(node).cell
             {
                 presupposed.extend(hardware.compared(terms, (*a, *b), low == 1));
             }
@@ -148,7 +161,7 @@ impl Task<'_> {
             let id = terms.insert(RealTerm::Variable(name.clone()), name);
             presupposed.insert(id, *range);
         }
-        presupposed.extend(hardware.facts.iter().map(|(&id, &range)| (id, range)));
+        presupposed.extend(&hardware.facts);
         presupposed
     }
 }
@@ -165,14 +178,20 @@ fn real_operand(
 /// Returns every way that the expressions can go together. For example, two expressions of two branches each have four
 /// ways, without the ways whose choices contradict each other.
 fn together(ways: &[Vec<Branch>]) -> Vec<Vec<Branch>> {
-    let all = ways.iter().fold(vec![(Branch::default(), Vec::new())], |chosen, ways| {
-        let longer = chosen.iter().flat_map(|(all, before)| {
-            ways.iter().filter_map(|way| {
-                let chosen: Vec<Branch> = before.iter().chain([way]).cloned().collect();
-                Some((all.and(way)?, chosen))
-            })
-        });
-        longer.collect()
-    });
-    all.into_iter().map(|(_, chosen)| chosen).collect()
+    // The choices that are made together, and the branch of each expression.
+    let mut combinations: Vec<(Branch, Vec<Branch>)> = vec![(Branch::default(), Vec::new())];
+    for ways_of_expression in ways {
+        let mut longer = Vec::new();
+        for (together, before) in &combinations {
+            for way in ways_of_expression {
+                if let Some(together) = together.and(way) {
+                    let mut chosen = before.clone();
+                    chosen.push(way.clone());
+                    longer.push((together, chosen));
+                }
+            }
+        }
+        combinations = longer;
+    }
+    combinations.into_iter().map(|(_, chosen)| chosen).collect()
 }

@@ -59,38 +59,15 @@ impl GappaScript<'_> {
         for way in self.ways {
             roots.extend(way.at_least.iter().chain(&way.at_most));
         }
-        let values = self.presupposed.keys().copied();
-        roots.extend(values.filter(|&id| !matches!(self.terms.get(id), RealTerm::Variable(_))));
+        for &id in self.presupposed.keys() {
+            if !is_variable(self.terms, id) {
+                roots.push(id);
+            }
+        }
         let (equal, near) = self.hints(&mut terms, about, &mut roots);
         let needed = terms.needed(&roots);
-        let is_variable = |id: RealTermId| matches!(terms.get(id), RealTerm::Variable(_));
-        let mut hypotheses = Vec::new();
-        for (name, scale) in self.placed {
-            if (0..terms.count()).any(|id| needed[id] && is_variable(id) && terms.name(id) == *name)
-            {
-                hypotheses.push(format!("@FIX({name},{})", -scale));
-            }
-        }
-        for (&id, &(low, high)) in self.presupposed {
-            // A variable of one value, which the program puts in its place, is a premise all the same.
-            let is_given = is_variable(id) && low == high;
-            if !matches!(terms.get(id), RealTerm::Number(_)) && (needed[id] || is_given) {
-                let name = terms.name(id);
-                hypotheses.push(format!("{name} in [{},{}]", number(low), number(high)));
-            }
-        }
-        for way in self.ways {
-            let sides = way.at_least.iter().map(|&id| (id, ">="));
-            for (id, sign) in sides.chain(way.at_most.iter().map(|&id| (id, "<="))) {
-                let hypothesis = format!("{} {sign} 0", terms.name(id));
-                let is_new = !hypotheses.contains(&hypothesis);
-                if is_new && !matches!(terms.get(id), RealTerm::Number(_)) {
-                    hypotheses.push(hypothesis);
-                }
-            }
-        }
         let mut text = terms.definitions(&needed);
-        let statement = match hypotheses.join("\n  /\\ ").as_str() {
+        let statement = match self.hypotheses(&terms, &needed).join("\n  /\\ ").as_str() {
             "" => goal.to_owned(),
             hypotheses => format!("{hypotheses}\n  -> {goal}"),
         };
@@ -99,6 +76,37 @@ impl GappaScript<'_> {
             let _ = writeln!(text, "{line}");
         }
         text
+    }
+
+    /// Writes the hypotheses: the formats of variables, the values of terms, and the signs of differences.
+    fn hypotheses(&self, terms: &RealTerms, needed: &[bool]) -> Vec<String> {
+        let mut hypotheses = Vec::new();
+        for (name, scale) in self.placed {
+            let is_needed = (0..terms.count())
+                .any(|id| needed[id] && is_variable(terms, id) && terms.name(id) == *name);
+            if is_needed {
+                hypotheses.push(format!("@FIX({name},{})", -scale));
+            }
+        }
+        for (&id, &(low, high)) in self.presupposed {
+            // A variable of one value, which the program puts in its place, is a premise all the same.
+            let is_given = is_variable(terms, id) && low == high;
+            if !is_number(terms, id) && (needed[id] || is_given) {
+                let name = terms.name(id);
+                hypotheses.push(format!("{name} in [{},{}]", number(low), number(high)));
+            }
+        }
+        for way in self.ways {
+            for (ids, sign) in [(&way.at_least, ">="), (&way.at_most, "<=")] {
+                for &id in ids {
+                    let hypothesis = format!("{} {sign} 0", terms.name(id));
+                    if !is_number(terms, id) && !hypotheses.contains(&hypothesis) {
+                        hypotheses.push(hypothesis);
+                    }
+                }
+            }
+        }
+        hypotheses
     }
 
     /// Writes hints, of four kinds. A value between a and 1 gets a form that shows its range (`blend`). A term of the
@@ -112,48 +120,51 @@ impl GappaScript<'_> {
         roots: &mut Vec<RealTermId>,
     ) -> (Vec<String>, Vec<String>) {
         let needed = terms.needed(roots);
-        let formula = self.hardware_terms..about.max(self.hardware_terms);
         let mut unrounded = HashMap::new();
         for id in (0..self.hardware_terms).filter(|&id| needed[id]) {
             terms.unrounded(id, &mut unrounded);
         }
         let samples = self.samples(terms);
-        let blends = (0..about).filter(|&id| needed[id]).filter_map(|id| blend(terms, id));
-        let (mut equal, mut near): (Vec<String>, Vec<String>) = (blends.collect(), Vec::new());
-        let column = |id: RealTermId| samples.iter().map(|values| values[id]).collect::<Vec<f64>>();
-        let varies = |values: &[f64]| values.iter().any(|value| *value != values[0]);
-        let compound =
-            |id: RealTermId| !matches!(terms.get(id), RealTerm::Number(_) | RealTerm::Variable(_));
-        let own: Vec<(RealTermId, Vec<f64>)> = (0..self.hardware_terms)
-            .filter(|&id| needed[id] && compound(id))
-            .map(|id| (id, column(id)))
-            .filter(|(_, values)| varies(values))
-            .collect();
+        let mut equal: Vec<String> = Vec::new();
+        for id in (0..about).filter(|&id| needed[id]) {
+            equal.extend(blend(terms, id));
+        }
+        let mut hardware: Vec<(RealTermId, Vec<f64>)> = Vec::new();
+        for id in (0..self.hardware_terms).filter(|&id| needed[id]) {
+            let values = column(&samples, id);
+            if is_compound(terms, id) && varies(&values) {
+                hardware.push((id, values));
+            }
+        }
+        let mut near: Vec<String> = Vec::new();
+        let formula = self.hardware_terms..about.max(self.hardware_terms);
         for other in formula.filter(|&id| needed[id]) {
-            let values = column(other);
-            if !compound(other) || !varies(&values) {
+            let values = column(&samples, other);
+            if !is_compound(terms, other) || !varies(&values) {
                 continue;
             }
             let before = equal.len();
-            for (id, column) in own.iter().filter(|(id, _)| terms.is_exact(*id)) {
-                if let Some(line) = line_through(column, &values) {
+            for (id, column) in &hardware {
+                if terms.is_exact(*id)
+                    && let Some(line) = line_through(column, &values)
+                {
                     equal.push(rewriting(terms, other, *id, line));
                 }
             }
             if before == equal.len() {
-                let same = own.iter().find_map(|(id, _)| {
-                    let twin = *unrounded.get(id).filter(|twin| **twin != other)?;
-                    is_same(&column(twin), &values).then_some(twin)
-                });
-                if let Some(twin) = same {
-                    equal.push(rewriting(terms, other, twin, (1.0, 0.0)));
-                    roots.push(twin);
+                for (id, _) in &hardware {
+                    if let Some(&twin) = unrounded.get(id)
+                        && twin != other
+                        && is_same(&column(&samples, twin), &values)
+                    {
+                        equal.push(rewriting(terms, other, twin, (1.0, 0.0)));
+                        roots.push(twin);
+                        break;
+                    }
                 }
             }
-            for (id, column) in own.iter().filter(|(id, _)| !terms.is_exact(*id)) {
-                let largest = column.iter().fold(0.0, |most: f64, value| most.max(value.abs()));
-                let apart = column.iter().zip(&values).map(|(a, b)| (a - b).abs());
-                if apart.fold(0.0, f64::max) <= largest / 64.0 {
+            for (id, column) in &hardware {
+                if !terms.is_exact(*id) && is_near(column, &values) {
                     near.push(format!("{} ~ {};", terms.name(*id), terms.name(other)));
                 }
             }
@@ -167,31 +178,8 @@ impl GappaScript<'_> {
         let mut random = ChaCha8Rng::seed_from_u64(1);
         let (mut samples, mut others) = (Vec::new(), Vec::new());
         for _ in 0..TRIES {
-            let mut variables = HashMap::new();
-            for (&id, &(low, high)) in self.presupposed {
-                if let RealTerm::Variable(name) = self.terms.get(id) {
-                    let scale = self.placed.iter().find(|(other, _)| other == name);
-                    let unit = exp2(scale.map_or(0, |(_, scale)| *scale));
-                    let unit_share = (random.next_u32() as f64) / f64::from(u32::MAX);
-                    // More near the lower end, and near the upper, than between.
-                    let share = match random.next_u32() % 3 {
-                        0 => unit_share,
-                        1 => unit_share.powi(8),
-                        _ => 1.0 - unit_share.powi(8),
-                    };
-                    let step = libm::floor(((high - low) * unit + 1.0) * share);
-                    variables.insert(name.clone(), (low + step / unit).min(high));
-                }
-            }
-            let values = terms.evaluate(&variables);
-            let within = |(&id, &(low, high)): (&RealTermId, &(f64, f64))| {
-                (low..=high).contains(&values[id])
-            };
-            let ways = self.ways.iter().all(|way| {
-                way.at_least.iter().all(|&id| values[id] >= 0.0)
-                    && way.at_most.iter().all(|&id| values[id] <= 0.0)
-            });
-            if ways && self.presupposed.iter().all(within) {
+            let values = terms.evaluate(&self.random_variables(&mut random));
+            if self.is_of_case(&values) {
                 samples.push(values);
                 if samples.len() == SAMPLES {
                     break;
@@ -203,6 +191,63 @@ impl GappaScript<'_> {
         samples.extend(others);
         samples
     }
+
+    /// Returns a random value of each variable, in the variable's format.
+    fn random_variables(&self, random: &mut ChaCha8Rng) -> HashMap<String, f64> {
+        let mut variables = HashMap::new();
+        for (&id, &(low, high)) in self.presupposed {
+            let RealTerm::Variable(name) = self.terms.get(id) else { continue };
+            let unit = match self.placed.iter().find(|(other, _)| other == name) {
+                Some((_, scale)) => exp2(*scale),
+                None => 1.0,
+            };
+            let unit_share = (random.next_u32() as f64) / f64::from(u32::MAX);
+            // More near the lower end, and near the upper, than between.
+            let share = match random.next_u32() % 3 {
+                0 => unit_share,
+                1 => unit_share.powi(8),
+                _ => 1.0 - unit_share.powi(8),
+            };
+            let step = libm::floor(((high - low) * unit + 1.0) * share);
+            variables.insert(name.clone(), (low + step / unit).min(high));
+        }
+        variables
+    }
+
+    /// Returns whether these values of all terms belong to the case: the formula goes its way, and every value is in
+    /// the interval that is presupposed.
+    fn is_of_case(&self, values: &[f64]) -> bool {
+        for way in self.ways {
+            let is_way = way.at_least.iter().all(|&id| values[id] >= 0.0)
+                && way.at_most.iter().all(|&id| values[id] <= 0.0);
+            if !is_way {
+                return false;
+            }
+        }
+        self.presupposed.iter().all(|(&id, &(low, high))| (low..=high).contains(&values[id]))
+    }
+}
+
+fn is_variable(terms: &RealTerms, id: RealTermId) -> bool {
+    matches!(terms.get(id), RealTerm::Variable(_))
+}
+
+fn is_number(terms: &RealTerms, id: RealTermId) -> bool {
+    matches!(terms.get(id), RealTerm::Number(_))
+}
+
+/// Returns whether a term is an operation.
+fn is_compound(terms: &RealTerms, id: RealTermId) -> bool {
+    !is_number(terms, id) && !is_variable(terms, id)
+}
+
+/// Returns the value of one term in each sample.
+fn column(samples: &[Vec<f64>], id: RealTermId) -> Vec<f64> {
+    samples.iter().map(|values| values[id]).collect()
+}
+
+fn varies(values: &[f64]) -> bool {
+    values.iter().any(|value| *value != values[0])
 }
 
 /// Writes a value between a and 1, a + (1 − a)·x, as 1 − (1 − a)·(1 − x), which shows its range. For example, `f_9 -> 1
@@ -214,13 +259,20 @@ fn blend(terms: &RealTerms, id: RealTermId) -> Option<String> {
         _ => (first, second),
     };
     let RealTerm::Mul(b, c) = *terms.get(product) else { return None };
-    let is_rest = |id: RealTermId| match *terms.get(id) {
+    let (rest, x) = if is_rest(terms, b, a) { (b, c) } else { (c, b) };
+    if !is_rest(terms, rest, a) {
+        return None;
+    }
+    let [name, rest_name, x_name] = [id, rest, x].map(|id| terms.name(id));
+    Some(format!("{name} -> 1 - {rest_name} * (1 - {x_name});"))
+}
+
+/// Returns whether a term is 1 − a.
+fn is_rest(terms: &RealTerms, id: RealTermId, a: RealTermId) -> bool {
+    match *terms.get(id) {
         RealTerm::Sub(one, other) => *terms.get(one) == RealTerm::Number(1.0) && other == a,
         _ => false,
-    };
-    let (rest, x) = if is_rest(b) { (b, c) } else { (c, b) };
-    let [name, rest_name, x] = [id, rest, x].map(|id| terms.name(id));
-    is_rest(rest).then(|| format!("{name} -> 1 - {rest_name} * (1 - {x});"))
+    }
 }
 
 /// Writes the hint that one term is factor times another and an offset. For example, the factor −1 and the offset 0.5
@@ -231,37 +283,61 @@ fn rewriting(
     right: RealTermId,
     (factor, offset): (f64, f64),
 ) -> String {
-    let right = terms.name(right);
+    let name = terms.name(right);
     // Gappa sees through a plain difference, and not through a product by -1.
-    let right = match (offset, factor) {
-        (0.0, 1.0) => right,
-        (_, 1.0) => format!("{} + {right}", number(offset)),
-        (_, -1.0) => format!("{} - {right}", number(offset)),
-        (0.0, _) => format!("({}) * {right}", number(factor)),
-        _ => format!("{} + ({}) * {right}", number(offset), number(factor)),
+    let line = match (offset, factor) {
+        (0.0, 1.0) => name,
+        (_, 1.0) => format!("{} + {name}", number(offset)),
+        (_, -1.0) => format!("{} - {name}", number(offset)),
+        (0.0, _) => format!("({}) * {name}", number(factor)),
+        _ => format!("{} + ({}) * {name}", number(offset), number(factor)),
     };
-    format!("{} -> {right};", terms.name(left))
+    format!("{} -> {line};", terms.name(left))
+}
+
+/// Returns the largest size of the values.
+fn largest_size(values: &[f64]) -> f64 {
+    values.iter().fold(0.0, |most, value| most.max(value.abs()))
+}
+
+/// Returns whether two columns differ by at most a 64th of the largest value of the first.
+fn is_near(x: &[f64], y: &[f64]) -> bool {
+    let limit = largest_size(x) / 64.0;
+    let mut apart: f64 = 0.0;
+    for (x, y) in x.iter().zip(y) {
+        apart = apart.max((x - y).abs());
+    }
+    apart <= limit
 }
 
 /// Returns whether two columns are equal except for the rounding of f64.
 fn is_same(x: &[f64], y: &[f64]) -> bool {
-    let largest = y.iter().fold(0.0, |most: f64, value| most.max(value.abs()));
-    x.iter().zip(y).all(|(x, y)| (x - y).abs() <= largest * exp2(-44))
+    let limit = largest_size(y) * exp2(-44);
+    x.iter().zip(y).all(|(x, y)| (x - y).abs() <= limit)
 }
 
 /// Finds the line on which the values of `y` follow the values of `x`. Returns its factor and offset, both short
 /// numbers. For example, 0, 1, 2 and 1, 3, 5 give the factor 2 and the offset 1.
 fn line_through(x: &[f64], y: &[f64]) -> Option<(f64, f64)> {
     let other = x.iter().position(|value| *value != x[0])?;
-    let factor = (y[other] - y[0]) / (x[other] - x[0]);
-    let short = |value: f64, bits: i32| libm::round(value * exp2(bits)) / exp2(bits);
-    let factor = short(factor, 16);
-    let offset = short(y[0] - factor * x[0], 44);
-    let fits = |(x, y): (&f64, &f64)| {
+    let factor = rounded((y[other] - y[0]) / (x[other] - x[0]), 16);
+    let offset = rounded(y[0] - factor * x[0], 44);
+    if factor == 0.0 {
+        return None;
+    }
+    for (x, y) in x.iter().zip(y) {
         let size = (factor * x).abs() + offset.abs() + y.abs();
-        (factor * x + offset - y).abs() <= size * exp2(-46)
-    };
-    (factor != 0.0 && x.iter().zip(y).all(fits)).then_some((factor, offset))
+        let fits = (factor * x + offset - y).abs() <= size * exp2(-46);
+        if !fits {
+            return None;
+        }
+    }
+    Some((factor, offset))
+}
+
+/// Returns a value rounded to a number of fraction bits.
+fn rounded(value: f64, bits: i32) -> f64 {
+    libm::round(value * exp2(bits)) / exp2(bits)
 }
 
 /// Returns the goal of a script. With a bound, it says that the difference is within the bound. Without one, it asks

@@ -24,11 +24,10 @@ use super::hardware::{self, Hardware, NodeValue, Variables};
 use super::script::{GappaScript, goal};
 use super::statement::{Statement, Statements};
 use super::task::Task;
-use super::terms::{RealTerm, RealTermId, RealTerms, number};
+use super::terms::{RealTerm, RealTerms, number};
 use glint_base::fixed::exp2;
 use glint_formula::{Enclosure, Expression, Function, Kind, Operator, parse};
-use glint_rtl::netlist::NetId;
-use glint_rtl::pipeline::{Cell, NodeId, NodeOp, WalkRegister};
+use glint_rtl::pipeline::{Cell, Graph, NodeId, NodeOp, WalkRegister};
 
 /// The number of words in a script: Gappa's time grows with its square.
 const WORDS: usize = 8;
@@ -95,7 +94,10 @@ fn lobe(formula: &Expression) -> Option<(&Expression, u32)> {
     let Kind::Binary(Operator::Mul, right, angle) = &angle.kind else { return None };
     let power = literal.nearest();
     let is_whole = literal.is_exact() && (1.0..=64.0).contains(&power) && power.fract() == 0.0;
-    (is_whole && **right == parse("pi / 2").ok()?).then_some((&**angle, power as u32))
+    if !is_whole || **right != parse("pi / 2").ok()? {
+        return None;
+    }
+    Some((angle, power as u32))
 }
 
 /// An angle that is walked along, by names of operands.
@@ -111,27 +113,26 @@ impl AngleWalk {
     /// Returns the walk whose only register begins with an operand, to which another is added modulo its format.
     fn new(task: &Task, walk: &[WalkRegister]) -> Result<Self, String> {
         let graph = task.graph();
-        let other = || "its points walk on by more than a sum".to_owned();
-        let operand = |id: NodeId| match graph.node(id).cell {
-            Cell::Operand(at) => Some(task.design.net(task.unrolled.operands[at]).name.clone()),
-            _ => None,
+        let is_more_than_a_sum = "its points walk on by more than a sum";
+        let [WalkRegister { first, before, next }] = *walk else {
+            return Err(is_more_than_a_sum.to_owned());
         };
-        let [WalkRegister { first, before, next }] = *walk else { return Err(other()) };
         let Cell::Op(NodeOp::Add { a, b, carry: None }) = graph.node(next).cell else {
-            return Err(other());
+            return Err(is_more_than_a_sum.to_owned());
         };
         let step = if a == before { b } else { a };
-        let (start, added) = operand(first).zip(operand(step)).ok_or_else(other)?;
+        let start = operand_name(task, first).ok_or(is_more_than_a_sum)?;
+        let added = operand_name(task, step).ok_or(is_more_than_a_sum)?;
         let format = graph.node(first).format;
-        let same = [before, next, step].iter().all(|&id| graph.node(id).format == format);
-        if !(same && format.signed && [a, b].contains(&before)) {
-            return Err(other());
+        let is_one_format = [before, next, step].iter().all(|&id| graph.node(id).format == format);
+        if !(is_one_format && format.signed && [a, b].contains(&before)) {
+            return Err(is_more_than_a_sum.to_owned());
         }
         let turn = exp2(format.width() as i32 - format.frac);
         let half = turn / 2.0;
-        let wrapped = format!("({start} + index * {added} + {half}) % {turn} - {half}");
-        let wrapped = parse(&wrapped).map_err(|fault| fault.under(&wrapped))?;
-        Ok(Self { start, wrapped })
+        let text = format!("({start} + index * {added} + {half}) % {turn} - {half}");
+        let wrapped = parse(&text).map_err(|fault| fault.under(&text))?;
+        Ok(Self { start: start.to_owned(), wrapped })
     }
 
     /// Returns the expression with [`POINT`] in place of the angle of a point, start + index·step, wrapped around. By
@@ -141,32 +142,42 @@ impl AngleWalk {
     }
 }
 
+/// Returns the name of the operand that a node is, if it is one.
+fn operand_name<'t>(task: &'t Task, id: NodeId) -> Option<&'t str> {
+    match task.graph().node(id).cell {
+        Cell::Operand(at) => Some(&task.design.net(task.unrolled.operands[at]).name),
+        _ => None,
+    }
+}
+
 /// The colour operand of each output, the one word that all are made of, and the outputs.
 type ProductsByColour = (Vec<String>, NodeId, Vec<(String, NodeId)>);
 
 fn table(task: &Task) -> Result<ProductsByColour, String> {
     let graph = task.graph();
     let outputs = task.outputs()?;
-    let operands = task.contract.operands().iter();
-    let colours: Vec<String> =
-        operands.filter(|operand| operand.colour).map(|operand| operand.name.clone()).collect();
-    let cone = graph.cone(outputs.iter().map(|(_, node)| *node));
-    let reads = cone.iter().filter(|&&id| matches!(graph.node(id).cell, Cell::Read { .. }));
-    let [table] = reads.copied().collect::<Vec<_>>()[..] else {
+    let mut colours: Vec<String> = Vec::new();
+    for operand in task.contract.operands() {
+        if operand.colour {
+            colours.push(operand.name.clone());
+        }
+    }
+    let mut pending: Vec<NodeId> = outputs.iter().map(|(_, node)| *node).collect();
+    let mut reads = graph.cone(pending.iter().copied());
+    reads.retain(|&id| matches!(graph.node(id).cell, Cell::Read { .. }));
+    let [table] = reads[..] else {
         return Err("its outputs are made of several words of tables".to_owned());
     };
     // Behind the word nothing is selected, and there is nothing but colours.
     let before = graph.cone([table]);
-    let mut pending: Vec<NodeId> = outputs.iter().map(|(_, node)| *node).collect();
     while let Some(id) = pending.pop() {
         if id == table {
             continue;
         }
         let node = graph.node(id);
-        let is_open = |id: &NodeId| graph.node(*id).range.0 != graph.node(*id).range.1;
         let selects = match &node.cell {
-            Cell::Op(NodeOp::Mux { select, .. }) => is_open(select),
-            Cell::Op(NodeOp::Add { carry: Some(carry), .. }) => is_open(carry),
+            Cell::Op(NodeOp::Mux { select, .. }) => is_open(graph, *select),
+            Cell::Op(NodeOp::Add { carry: Some(carry), .. }) => is_open(graph, *carry),
             Cell::Operand(at) => {
                 let name = &task.design.net(task.unrolled.operands[*at]).name;
                 before.binary_search(&id).is_ok() || !colours.contains(name)
@@ -184,6 +195,12 @@ fn table(task: &Task) -> Result<ProductsByColour, String> {
     Ok((colours, table, outputs))
 }
 
+/// Returns whether a node has several values.
+fn is_open(graph: &Graph, id: NodeId) -> bool {
+    let (low, high) = graph.node(id).range;
+    low != high
+}
+
 /// Returns the words of the table with the angles that read them, by address.
 fn words(
     task: &Task,
@@ -196,10 +213,10 @@ fn words(
         return Err("there is no table".to_owned());
     };
     let operand = task.operand(&walk.start).ok_or("its words do not depend on the walk")?;
-    let leaves = graph.cone([address]).into_iter();
-    if leaves.filter(|&id| id != operand).any(|id| matches!(graph.node(id).cell, Cell::Operand(_)))
-    {
-        return Err(format!("its words are read at more than `{}`", walk.start));
+    for id in graph.cone([address]) {
+        if id != operand && matches!(graph.node(id).cell, Cell::Operand(_)) {
+            return Err(format!("its words are read at more than `{}`", walk.start));
+        }
     }
     let start = task.contract.operands().iter().find(|operand| operand.name == walk.start);
     let (low, high) = start.ok_or("its contract has no angle")?.domain;
@@ -212,29 +229,40 @@ fn words(
     let mut found: BTreeMap<i128, WordSegment> = BTreeMap::new();
     let mut pending = vec![format.range()];
     while let Some((low, high)) = pending.pop() {
-        let mut known = cases::NodeIntervals::new();
-        let value = |raw: i128| raw as f64 * exp2(-format.frac);
-        let at = if task.learn(&mut known, operand, (low, high)) {
-            cases::range(task.view, address, &known).filter(|at| at.0 == at.1)
-        } else {
-            None
-        };
-        let Some((at, _)) = at else {
+        let start_angle = low as f64 * exp2(-format.frac);
+        let end_angle = high as f64 * exp2(-format.frac);
+        let Some(at) = decided_address(task, (operand, (low, high)), address) else {
             if low == high {
-                return Err(format!("at {} it is not decided which word is read", value(low)));
+                return Err(format!("at {start_angle} it is not decided which word is read"));
             }
             let middle = (low + high).div_euclid(2);
             pending.extend([(middle + 1, high), (low, middle)]);
             continue;
         };
-        let Enclosure { low: from, high: to } = enclosed(angle, (value(low), value(high)))
-            .filter(|angle| angle.low >= 0.0 && angle.high <= 1.0)
-            .ok_or("its angle does not lie between 0 and a right angle")?;
-        let word = data.to_f64((task.view.words)(rom, at as u64));
-        let known = found.entry(at).or_insert(WordSegment { value: word, from, to });
-        (known.from, known.to) = (known.from.min(from), known.to.max(to));
+        let (from, to) = match enclosed(angle, (start_angle, end_angle)) {
+            Some(Enclosure { low, high }) if low >= 0.0 && high <= 1.0 => (low, high),
+            _ => return Err("its angle does not lie between 0 and a right angle".to_owned()),
+        };
+        let value = data.to_f64((task.view.words)(rom, at as u64));
+        let segment = found.entry(at).or_insert(WordSegment { value, from, to });
+        segment.from = segment.from.min(from);
+        segment.to = segment.to.max(to);
     }
     Ok(found.into_values().collect())
+}
+
+/// Returns the address that is read for all values of the operand in this range, if there is one such address.
+fn decided_address(
+    task: &Task,
+    (operand, range): (NodeId, (i128, i128)),
+    address: NodeId,
+) -> Option<i128> {
+    let mut known = cases::NodeIntervals::new();
+    if !task.learn(&mut known, operand, range) {
+        return None;
+    }
+    let (low, high) = cases::range(task.view, address, &known)?;
+    if low == high { Some(low) } else { None }
 }
 
 /// Returns the enclosure of an angle if the angle of the point is in this range. Returns `None` if the angle depends
@@ -249,20 +277,19 @@ fn about_words(words: &[WordSegment], first: usize, power: u32, bound: f64) -> S
     let mut text = format!(
         "# By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^{degree}/{degree}! with |rest| <= 1.\n"
     );
-    let (mut ends, mut goals): (Vec<f64>, Vec<String>) = (Vec::new(), Vec::new());
-    for (at, word) in words.iter().enumerate() {
-        let at = first + at;
-        let mut end = |angle: f64, text: &mut String| {
+    let mut ends: Vec<f64> = Vec::new();
+    let mut goals: Vec<String> = Vec::new();
+    for (at, word) in (first..).zip(words) {
+        // The names of both ends: a word and its neighbour share the angle between them.
+        let [high, low] = [word.from, word.to].map(|angle| {
             let known = ends.iter().position(|other| *other == angle);
-            let place = known.unwrap_or(ends.len());
-            let name = format!("{}", first + place);
+            let name = first + known.unwrap_or(ends.len());
             if known.is_none() {
                 ends.push(angle);
-                text.push_str(&cosine(&name, angle, power));
+                text.push_str(&cosine(&name.to_string(), angle, power));
             }
-            format!("f_{name}")
-        };
-        let (high, low) = (end(word.from, &mut text), end(word.to, &mut text));
+            name
+        });
         let _ = writeln!(
             text,
             "# Word {at} is {}, for angles from {} to {} right angles.",
@@ -270,20 +297,21 @@ fn about_words(words: &[WordSegment], first: usize, power: u32, bound: f64) -> S
             number(word.from),
             number(word.to)
         );
-        goals.push(format!("{high} <= {}", number(word.value + bound)));
-        goals.push(format!("{low} >= {}", number(word.value - bound)));
+        goals.push(format!("f_{high} <= {}", number(word.value + bound)));
+        goals.push(format!("f_{low} >= {}", number(word.value - bound)));
     }
-    let goals = goals.join("\n  /\\ ");
+    let all_goals = goals.join("\n  /\\ ");
     let (low, high) = RIGHT;
-    let _ = write!(text, "\n{{ right in [{low},{high}]\n  /\\ rest in [-1,1]\n  -> {goals} }}\n\n");
+    let _ =
+        write!(text, "\n{{ right in [{low},{high}]\n  /\\ rest in [-1,1]\n  -> {all_goals} }}\n\n");
     text
 }
 
 /// Writes the definitions of a power of the cosine of an angle, in right angles. For example, the last line for the
 /// name `x` and the power 2 is `f_x = c_x_0 * c_x_0;`.
 fn cosine(name: &str, angle: f64, power: u32) -> String {
-    let angle = number(angle);
-    let mut text = format!("y_{name} = right * {angle};\nsquare_{name} = y_{name} * y_{name};\n");
+    let mut text =
+        format!("y_{name} = right * {};\nsquare_{name} = y_{name} * y_{name};\n", number(angle));
     let mut inner = "rest".to_owned();
     for term in (0..=TERMS).rev() {
         let divisor = (2 * term + 2) * (2 * term + 1);
@@ -305,17 +333,16 @@ fn about_output(
     let graph = task.graph();
     let ranges = graph.nodes.iter().map(|node| node.range).collect();
     let case = Case { known: cases::NodeIntervals::new(), ranges, parabolas: BTreeMap::new() };
-    let format =
-        |port: NetId| (task.design.net(port).name.clone(), task.design.net(port).format.frac);
-    let placed: Variables = task.unrolled.operands.iter().map(|&port| format(port)).collect();
+    let mut placed = Variables::new();
+    for &port in &task.unrolled.operands {
+        let net = task.design.net(port);
+        placed.push((net.name.clone(), net.format.frac));
+    }
     let mut hardware = Hardware::new(task.view, &case, placed, task.tables);
     let mut terms = RealTerms::default();
-    let mut real = |terms: &mut RealTerms, node: NodeId| -> Result<RealTermId, String> {
-        let value = hardware.value(terms, node)?;
-        let (id, scale) = hardware::placed(terms, value, 0);
-        Ok(hardware::scaled(terms, id, scale, "out"))
-    };
-    let out = real(&mut terms, out)?;
+    let out_value = hardware.value(&mut terms, out)?;
+    let (unscaled, out_scale) = hardware::placed(&mut terms, out_value, 0);
+    let real_out = hardware::scaled(&mut terms, unscaled, out_scale, "out");
     let NodeValue::Term { id: word, scale } = hardware.value(&mut terms, table)? else {
         return Err("its table has a single word".to_owned());
     };
@@ -323,21 +350,27 @@ fn about_output(
         return Err("the point of its words has moved".to_owned());
     }
     let mut presupposed = hardware.facts.clone();
-    let operand = task.contract.operands().iter().find(|operand| operand.name == *colour);
-    let operand = operand.ok_or("its contract lacks a colour")?;
-    let of_colour = |raw: i64| raw as f64 * exp2(-operand.format.frac);
+    let found = task.contract.operands().iter().find(|operand| operand.name == *colour);
+    let operand = found.ok_or("its contract lacks a colour")?;
+    let (low, high) = operand.domain;
+    let unit = exp2(-operand.format.frac);
     let factor = terms.insert(RealTerm::Variable(colour.to_owned()), colour);
-    presupposed.insert(factor, (of_colour(operand.domain.0), of_colour(operand.domain.1)));
+    presupposed.insert(factor, (low as f64 * unit, high as f64 * unit));
     let f = terms.insert(RealTerm::Variable("f".to_owned()), "f");
     let apart = terms.insert(RealTerm::Sub(word, f), "apart");
     presupposed.insert(apart, (-of_f, of_f));
-    let unrounded = terms.unrounded(out, &mut std::collections::HashMap::new());
+    let unrounded = terms.unrounded(real_out, &mut std::collections::HashMap::new());
     let hardware_terms = terms.count();
     let exact = terms.insert(RealTerm::Mul(f, factor), "exact");
-    let difference = terms.insert(RealTerm::Sub(out, exact), "difference");
-    let [product, exact, colour, word, f] =
-        [unrounded, exact, factor, word, f].map(|id| terms.name(id));
-    let hint = format!("{product} - {exact} -> {colour} * ({word} - {f});");
+    let difference = terms.insert(RealTerm::Sub(real_out, exact), "difference");
+    let hint = format!(
+        "{} - {} -> {} * ({} - {});",
+        terms.name(unrounded),
+        terms.name(exact),
+        terms.name(factor),
+        terms.name(word),
+        terms.name(f)
+    );
     let script = GappaScript {
         terms: &terms,
         hardware_terms,

@@ -46,11 +46,11 @@ impl Task<'_> {
 
     /// Returns the node of the operand, if anything depends on it, by its name.
     pub(super) fn operand(&self, name: &str) -> Option<NodeId> {
-        let at =
-            self.unrolled.operands.iter().position(|&port| self.design.net(port).name == name)?;
-        let nodes = self.graph().nodes.iter();
-        let found = nodes.enumerate().find(|(_, node)| node.cell == Cell::Operand(at));
-        found.map(|(id, _)| NodeId(id as u32))
+        let mut ports = self.unrolled.operands.iter();
+        let at = ports.position(|&port| self.design.net(port).name == name)?;
+        let mut nodes = self.graph().nodes.iter();
+        let id = nodes.position(|node| node.cell == Cell::Operand(at))?;
+        Some(NodeId(id as u32))
     }
 
     /// Returns the values that operands have in the contract's domain.
@@ -69,13 +69,16 @@ impl Task<'_> {
 
     /// Returns each output with the net that it takes from the last clock.
     pub(super) fn outputs(&self) -> Result<Vec<(String, NodeId)>, String> {
-        let outputs = self.contract.outputs().iter().map(|output| {
+        let mut outputs = Vec::new();
+        for output in self.contract.outputs() {
             let mut results = self.unrolled.results.iter();
             let found = results.find(|(port, _)| self.design.net(*port).name == output.name);
-            let (_, node) = found.ok_or_else(|| format!("no port is `{}`", output.name))?;
-            Ok((output.name.clone(), *node))
-        });
-        outputs.collect()
+            let Some((_, node)) = found else {
+                return Err(format!("no port is `{}`", output.name));
+            };
+            outputs.push((output.name.clone(), *node));
+        }
+        Ok(outputs)
     }
 
     /// Returns the domain in parts. An operand in an exponent makes a part for each of its values. An operand that
@@ -86,50 +89,71 @@ impl Task<'_> {
         let mut split = vec![known.clone()];
         for operand in self.contract.operands() {
             let (low, high) = operand.domain;
-            let Some(node) = self.operand(&operand.name).filter(|_| high - low < SPLIT) else {
+            let Some(node) = self.operand(&operand.name) else { continue };
+            if high - low >= SPLIT {
                 continue;
-            };
+            }
             let tables: Vec<RomId> = self.tables_read_at(node);
-            let is_exponent = |part: &Kind| matches!(part, Kind::Binary(Operator::Power, _, exponent) if **exponent == Expression::operand(&operand.name));
-            let single = self.formulas.iter().any(|formula| formula.has(&is_exponent));
-            let words = |at: i64| -> Vec<i128> {
-                tables.iter().map(|&rom| (self.view.words)(rom, at as u64)).collect()
-            };
+            let single = self.is_exponent(&operand.name);
             let mut runs: Vec<(i64, i64)> = Vec::new();
             for value in low..=high {
                 match runs.last_mut() {
-                    Some(run) if !single && words(run.1) == words(value) => run.1 = value,
+                    Some(run) if !single && self.have_same_words(&tables, run.1, value) => {
+                        run.1 = value;
+                    }
                     _ => runs.push((value, value)),
                 }
             }
-            let is_variable = |rom: &RomId| {
-                let name = &self.tables[rom.index()];
-                let reads = |part: &Kind| matches!(part, Kind::Word(rom, _) if rom == name);
-                runs.len() > RUNS && self.formulas.iter().any(|formula| formula.has(&reads))
-            };
-            if !single && (tables.is_empty() || tables.len() == 1 && tables.iter().all(is_variable))
-            {
-                continue;
+            if !single {
+                match tables[..] {
+                    [] => continue,
+                    [table] if runs.len() > RUNS && self.formulas_read(table) => continue,
+                    _ => {}
+                }
             }
-            let learnt = |known: &NodeIntervals, (from, to): (i64, i64)| {
-                let mut known = known.clone();
-                self.learn(&mut known, node, (from.into(), to.into())).then_some(known)
-            };
-            split = split
-                .iter()
-                .flat_map(|known| runs.iter().filter_map(|&run| learnt(known, run)))
-                .collect();
+            let mut parts = Vec::new();
+            for before in &split {
+                for &(from, to) in &runs {
+                    let mut known = before.clone();
+                    if self.learn(&mut known, node, (from.into(), to.into())) {
+                        parts.push(known);
+                    }
+                }
+            }
+            split = parts;
         }
         split
     }
 
+    /// Returns whether an operand is the exponent of a power in a formula.
+    fn is_exponent(&self, operand: &str) -> bool {
+        let exponent = Expression::operand(operand);
+        let is_power = |part: &Kind| matches!(part, Kind::Binary(Operator::Power, _, other) if **other == exponent);
+        self.formulas.iter().any(|formula| formula.has(&is_power))
+    }
+
+    /// Returns whether a formula reads a table too.
+    fn formulas_read(&self, table: RomId) -> bool {
+        let name = &self.tables[table.index()];
+        let reads = |part: &Kind| matches!(part, Kind::Word(rom, _) if rom == name);
+        self.formulas.iter().any(|formula| formula.has(&reads))
+    }
+
+    /// Returns whether each of these tables has the same word at two addresses.
+    fn have_same_words(&self, tables: &[RomId], one: i64, other: i64) -> bool {
+        let words = self.view.words;
+        tables.iter().all(|&rom| words(rom, one as u64) == words(rom, other as u64))
+    }
+
     /// Returns the tables that this node numbers the words of.
     fn tables_read_at(&self, node: NodeId) -> Vec<RomId> {
-        let reads = self.graph().nodes.iter().filter_map(|it| match it.cell {
-            Cell::Read { rom, address } if address == node => Some(rom),
-            _ => None,
-        });
-        let mut tables: Vec<RomId> = reads.collect();
+        let mut tables: Vec<RomId> = Vec::new();
+        for reader in &self.graph().nodes {
+            match reader.cell {
+                Cell::Read { rom, address } if address == node => tables.push(rom),
+                _ => {}
+            }
+        }
         tables.sort_by_key(|rom| rom.index());
         tables.dedup();
         tables

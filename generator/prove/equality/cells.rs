@@ -38,7 +38,11 @@ impl WireValues {
 
     /// Returns the terms of some bits, each of at most 64.
     pub fn columns(&self, terms: &mut VectorTerms, bits: &Connection) -> Vec<VectorTermId> {
-        bits.chunks(MAX_WIDTH as usize).map(|bits| self.word(terms, bits)).collect()
+        let mut columns = Vec::new();
+        for column in bits.chunks(MAX_WIDTH as usize) {
+            columns.push(self.word(terms, column));
+        }
+        columns
     }
 
     /// Returns the term of at most 64 bits. Copies of a highest bit are an extension by a sign. For example, the wires
@@ -46,8 +50,8 @@ impl WireValues {
     pub fn word(&self, terms: &mut VectorTerms, bits: &[Bit]) -> VectorTermId {
         let copies = bits.iter().rev().take_while(|bit| Some(*bit) == bits.last()).count();
         if copies > 1 && matches!(bits.last(), Some(Bit::Wire(_))) {
-            let own = self.word(terms, &bits[..=bits.len() - copies]);
-            return terms.sign_extended(own, bits.len() as u32);
+            let narrow = self.word(terms, &bits[..=bits.len() - copies]);
+            return terms.sign_extended(narrow, bits.len() as u32);
         }
         let mut word = None;
         let mut at = 0;
@@ -64,25 +68,37 @@ impl WireValues {
 
     /// Returns the lowest bits that lie side by side in one term, and their number.
     fn run(&self, terms: &mut VectorTerms, bits: &[Bit]) -> (VectorTermId, usize) {
-        let source = |bit: Bit| if let Bit::Wire(wire) = bit { self.0[wire] } else { None };
-        let first = source(bits[0]);
-        let follows = |&(at, bit): &(usize, &Bit)| match (bits[0], first) {
-            (_, Some((id, low))) => source(*bit) == Some((id, low + at as u32)),
-            (Bit::Known(_), _) => matches!(bit, Bit::Known(_)),
-            _ => source(*bit).is_none() && !matches!(bit, Bit::Known(_)),
-        };
-        let width = bits.iter().enumerate().take_while(follows).count();
-        let id = match (bits[0], first) {
-            (_, Some((id, low))) => terms.slice(id, low, width as u32),
-            (Bit::Known(_), _) => {
-                let ones = bits[..width].iter().enumerate();
-                let ones = ones.filter(|(_, bit)| **bit == Bit::Known(true));
-                let pattern = ones.fold(0, |pattern, (at, _)| pattern | 1 << at);
-                terms.constant(pattern, width as u32)
+        let first = self.source(bits[0]);
+        let mut width = 0;
+        let mut pattern = 0;
+        for &bit in bits {
+            let follows = match (bits[0], first) {
+                (_, Some((id, low))) => self.source(bit) == Some((id, low + width)),
+                (Bit::Known(_), _) => matches!(bit, Bit::Known(_)),
+                _ => self.source(bit).is_none() && !matches!(bit, Bit::Known(_)),
+            };
+            if !follows {
+                break;
             }
-            _ => terms.unknown(width as u32),
+            if bit == Bit::Known(true) {
+                pattern |= 1 << width;
+            }
+            width += 1;
+        }
+        let id = match (bits[0], first) {
+            (_, Some((id, low))) => terms.slice(id, low, width),
+            (Bit::Known(_), _) => terms.constant(pattern, width),
+            _ => terms.unknown(width),
         };
-        (id, width)
+        (id, width as usize)
+    }
+
+    /// Returns the term and the place in it that a bit is.
+    fn source(&self, bit: Bit) -> Option<(VectorTermId, u32)> {
+        match bit {
+            Bit::Wire(wire) => self.0[wire],
+            Bit::Known(_) | Bit::Any => None,
+        }
     }
 
     /// Returns a word of a memory that is never written.
@@ -93,8 +109,8 @@ impl WireValues {
         words: &[u64],
         width: u32,
     ) -> VectorTermId {
-        let address = self.word(terms, at);
-        let address = terms.resized(address, ADDRESS);
+        let narrow_address = self.word(terms, at);
+        let address = terms.resized(narrow_address, ADDRESS);
         let memory = terms.memory(words);
         let word = terms.make(VectorTerm::Word { memory, address }, width);
         if at.len() < 32 && words.len() >= 1 << at.len() {
@@ -118,37 +134,17 @@ impl WireValues {
         [a, b, s]: &[Connection; 3],
         width: usize,
     ) -> Result<Vec<VectorTermId>> {
-        let extended = |terms: &mut VectorTerms, bits: &Connection, signed: bool, width: usize| {
-            ensure!(bits.len().max(width) <= MAX_WIDTH as usize, "it has more than 64 bits");
-            let word = self.word(terms, bits);
-            Ok(match signed && width > bits.len() {
-                true => terms.sign_extended(word, width as u32),
-                false => terms.resized(word, width as u32),
-            })
-        };
         let both = signed == [true; 2];
-        let of = |terms: &mut VectorTerms, width: usize| -> Result<[VectorTermId; 2]> {
-            Ok([extended(terms, a, both, width)?, extended(terms, b, both, width)?])
-        };
-        let truth = |terms: &mut VectorTerms, bits: &Connection| {
-            let columns = self.columns(terms, bits);
-            let any = columns.into_iter().map(|column| {
-                let zero = terms.constant(0, terms.width(column));
-                let none = terms.equal(column, zero);
-                terms.not(none)
-            });
-            let any: Vec<VectorTermId> = any.collect();
-            let or = |terms: &mut VectorTerms, a, b| terms.make(VectorTerm::Or(a, b), 1);
-            any.into_iter().reduce(|a, b| or(terms, a, b)).context("it has no input")
-        };
         let widest = a.len().max(b.len());
         let bit = match kind {
             "$mux" => {
                 let condition = self.word(terms, s);
-                let [a, b] = [a, b].map(|bits| self.columns(terms, bits));
-                return Ok((a.into_iter().zip(b))
-                    .map(|(a, b)| terms.choice(condition, b, a))
-                    .collect());
+                let (a_columns, b_columns) = (self.columns(terms, a), self.columns(terms, b));
+                let mut chosen = Vec::new();
+                for (a, b) in a_columns.into_iter().zip(b_columns) {
+                    chosen.push(terms.choice(condition, b, a));
+                }
+                return Ok(chosen);
             }
             "$pmux" => {
                 let mut chosen = self.columns(terms, a);
@@ -162,17 +158,17 @@ impl WireValues {
                 return Ok(chosen);
             }
             "$not" => {
-                let a = extended(terms, a, signed[0], width)?;
+                let a = self.extended(terms, a, signed[0], width)?;
                 return Ok(vec![terms.not(a)]);
             }
-            "$pos" => return Ok(vec![extended(terms, a, signed[0], width)?]),
+            "$pos" => return Ok(vec![self.extended(terms, a, signed[0], width)?]),
             "$neg" => {
-                let (a, zero) =
-                    (extended(terms, a, signed[0], width)?, terms.constant(0, width as u32));
+                let a = self.extended(terms, a, signed[0], width)?;
+                let zero = terms.constant(0, width as u32);
                 return Ok(vec![terms.make(VectorTerm::Sub(zero, a), width as u32)]);
             }
             "$and" | "$or" | "$xor" | "$xnor" | "$add" | "$sub" => {
-                let [a, b] = of(terms, width)?;
+                let (a, b) = self.both_extended(terms, [a, b], both, width)?;
                 let op = match kind {
                     "$and" => VectorTerm::And,
                     "$or" => VectorTerm::Or,
@@ -185,29 +181,30 @@ impl WireValues {
             }
             "$mul" => {
                 ensure!(width <= MAX_WIDTH as usize, "it has more than 64 bits");
-                let [a, b] = of(terms, MAX_WIDTH as usize)?;
+                let (a, b) = self.both_extended(terms, [a, b], both, MAX_WIDTH as usize)?;
                 let product = terms.make(VectorTerm::Product(a, b), MAX_WIDTH);
                 return Ok(vec![terms.slice(product, 0, width as u32)]);
             }
             "$eq" | "$ne" => {
-                let [a, b] = of(terms, widest)?;
+                let (a, b) = self.both_extended(terms, [a, b], both, widest)?;
                 let equal = terms.equal(a, b);
                 if kind == "$eq" { equal } else { terms.not(equal) }
             }
             "$lt" | "$le" | "$gt" | "$ge" => {
-                let [a, b] = of(terms, widest)?;
-                let [a, b] = if matches!(kind, "$lt" | "$ge") { [a, b] } else { [b, a] };
-                let less = if both { VectorTerm::SignedLess(a, b) } else { VectorTerm::Less(a, b) };
-                let less = terms.make(less, 1);
+                let (a, b) = self.both_extended(terms, [a, b], both, widest)?;
+                let (x, y) = if matches!(kind, "$lt" | "$ge") { (a, b) } else { (b, a) };
+                let comparison =
+                    if both { VectorTerm::SignedLess(x, y) } else { VectorTerm::Less(x, y) };
+                let less = terms.make(comparison, 1);
                 if matches!(kind, "$lt" | "$gt") { less } else { terms.not(less) }
             }
-            "$reduce_or" | "$reduce_bool" => truth(terms, a)?,
+            "$reduce_or" | "$reduce_bool" => self.any_one(terms, a)?,
             "$logic_not" => {
-                let any = truth(terms, a)?;
+                let any = self.any_one(terms, a)?;
                 terms.not(any)
             }
             "$logic_and" | "$logic_or" => {
-                let (a, b) = (truth(terms, a)?, truth(terms, b)?);
+                let (a, b) = (self.any_one(terms, a)?, self.any_one(terms, b)?);
                 let op = if kind == "$logic_and" { VectorTerm::And } else { VectorTerm::Or };
                 terms.make(op(a, b), 1)
             }
@@ -224,5 +221,46 @@ impl WireValues {
         };
         ensure!(width <= MAX_WIDTH as usize, "it has more than 64 bits");
         Ok(vec![terms.resized(bit, width as u32)])
+    }
+
+    /// Returns the term of some bits with `width` bits, extended by the sign or by zeros.
+    fn extended(
+        &self,
+        terms: &mut VectorTerms,
+        bits: &Connection,
+        signed: bool,
+        width: usize,
+    ) -> Result<VectorTermId> {
+        ensure!(bits.len().max(width) <= MAX_WIDTH as usize, "it has more than 64 bits");
+        let word = self.word(terms, bits);
+        Ok(match signed && width > bits.len() {
+            true => terms.sign_extended(word, width as u32),
+            false => terms.resized(word, width as u32),
+        })
+    }
+
+    /// Returns two operands with `width` bits each, as [`Self::extended`] does.
+    fn both_extended(
+        &self,
+        terms: &mut VectorTerms,
+        [a, b]: [&Connection; 2],
+        signed: bool,
+        width: usize,
+    ) -> Result<(VectorTermId, VectorTermId)> {
+        let a = self.extended(terms, a, signed, width)?;
+        let b = self.extended(terms, b, signed, width)?;
+        Ok((a, b))
+    }
+
+    /// Returns a bit that is 1 if any of these bits is 1. Fails if there are no bits.
+    fn any_one(&self, terms: &mut VectorTerms, bits: &Connection) -> Result<VectorTermId> {
+        let mut any = Vec::new();
+        for column in self.columns(terms, bits) {
+            let zero = terms.constant(0, terms.width(column));
+            let none = terms.equal(column, zero);
+            any.push(terms.not(none));
+        }
+        let joined = any.into_iter().reduce(|a, b| terms.make(VectorTerm::Or(a, b), 1));
+        joined.context("it has no input")
     }
 }

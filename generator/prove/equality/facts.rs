@@ -38,9 +38,10 @@ pub fn about(
             match *terms.term(id) {
                 VectorTerm::Product(a, b) => {
                     if parts {
-                        let parts = [(a, b), (b, a)].map(|(a, b)| in_parts(terms, a, b));
-                        let equal = |it: &ProductSum| terms.equal(it.product, it.sum);
-                        facts.extend(parts.iter().flatten().map(equal));
+                        let of_both = [in_parts(terms, a, b), in_parts(terms, b, a)];
+                        for ProductSum { product, sum, .. } in of_both.into_iter().flatten() {
+                            facts.push(terms.equal(product, sum));
+                        }
                     }
                     for (factor, other) in [(a, b), (b, a)] {
                         facts.extend(by_one_or_none(terms, id, factor, other));
@@ -85,17 +86,16 @@ pub fn divided(
     terms: &mut VectorTerms,
     roots: impl IntoIterator<Item = VectorTermId>,
 ) -> HashMap<VectorTermId, VectorTermId> {
-    let is_product =
-        |terms: &VectorTerms, id: VectorTermId| matches!(terms.term(id), VectorTerm::Product(..));
     let mut pending = terms.cone(roots);
-    pending.retain(|&id| is_product(terms, id));
+    pending.retain(|&id| matches!(terms.term(id), VectorTerm::Product(..)));
     let mut divided = HashMap::new();
     while let Some(part) = pending.pop() {
         let VectorTerm::Product(a, b) = *terms.term(part) else { continue };
         for (factor, other) in [(a, b), (b, a)] {
-            let parts = in_parts(terms, factor, other);
-            let Some(parts) = parts.filter(|parts| parts.there) else { continue };
-            if divided.insert(parts.product, parts.sum).is_none() {
+            if let Some(parts) = in_parts(terms, factor, other)
+                && parts.there
+                && divided.insert(parts.product, parts.sum).is_none()
+            {
                 pending.push(parts.product);
             }
         }
@@ -224,12 +224,14 @@ fn has_row(terms: &mut VectorTerms, bits: VectorTermId, other: VectorTermId) -> 
 /// Returns the product of a few bits with 64.
 fn rows(terms: &mut VectorTerms, bits: VectorTermId, other: VectorTermId) -> VectorTermId {
     let zero = terms.constant(0, MAX_WIDTH);
-    (0..terms.width(bits)).fold(zero, |sum, row| {
+    let mut sum = zero;
+    for row in 0..terms.width(bits) {
         let bit = terms.slice(bits, row, 1);
-        let taken = shifted(terms, other, row);
-        let taken = terms.choice(bit, taken, zero);
-        terms.make(VectorTerm::Add(sum, taken), MAX_WIDTH)
-    })
+        let addend = shifted(terms, other, row);
+        let taken = terms.choice(bit, addend, zero);
+        sum = terms.make(VectorTerm::Add(sum, taken), MAX_WIDTH);
+    }
+    sum
 }
 
 /// Shifts a term up by `by` bits, with zeros below; the result has 64 bits.
@@ -280,31 +282,42 @@ fn contents(
     let words = terms.memories[memory].clone();
     let width = terms.width(word);
     if words.len() <= WORDS {
-        let exact = words.iter().enumerate().map(|(at, &bits)| {
+        let mut exact = Vec::new();
+        for (at, &bits) in words.iter().enumerate() {
             let at = terms.constant(at as u64, terms.width(address));
             let (here, bits) = (terms.equal(address, at), terms.constant(bits, width));
             let (elsewhere, right) = (terms.not(here), terms.equal(word, bits));
-            terms.make(VectorTerm::Or(elsewhere, right), 1)
-        });
-        return exact.collect();
+            exact.push(terms.make(VectorTerm::Or(elsewhere, right), 1));
+        }
+        return exact;
     }
-    let used = words.iter().fold(0, |used, word| used | word);
+    let mut used = 0;
+    // Beyond the contents there is 0.
+    let (mut largest, mut least, mut greatest) = (0, 0, 0);
+    let signed = |word: u64| (word << (MAX_WIDTH - width)) as i64;
+    for &word in &words {
+        used |= word;
+        largest = largest.max(word);
+        if signed(word) < signed(least) {
+            least = word;
+        }
+        if signed(word) > signed(greatest) {
+            greatest = word;
+        }
+    }
     let unused = terms.constant(!used & mask(width), width);
     let masked = terms.make(VectorTerm::And(word, unused), width);
     let zero = terms.constant(0, width);
-    let bits = terms.equal(masked, zero);
-    // Beyond the contents there is 0.
-    let all = || words.iter().copied().chain([0]);
-    let most = terms.constant(all().max().unwrap_or(0), width);
+    let lacks_unused = terms.equal(masked, zero);
+    let most = terms.constant(largest, width);
     let above = terms.make(VectorTerm::Less(most, word), 1);
-    let sign = |word: u64| (word << (MAX_WIDTH - width)) as i64;
-    let least = all().min_by_key(|&word| sign(word)).unwrap_or(0);
-    let greatest = all().max_by_key(|&word| sign(word)).unwrap_or(0);
-    let (least, greatest) = (terms.constant(least, width), terms.constant(greatest, width));
+    let (lowest, highest) = (terms.constant(least, width), terms.constant(greatest, width));
     let outside = [
         above,
-        terms.make(VectorTerm::SignedLess(word, least), 1),
-        terms.make(VectorTerm::SignedLess(greatest, word), 1),
+        terms.make(VectorTerm::SignedLess(word, lowest), 1),
+        terms.make(VectorTerm::SignedLess(highest, word), 1),
     ];
-    outside.map(|outside| terms.not(outside)).into_iter().chain([bits]).collect()
+    let mut facts = outside.map(|outside| terms.not(outside)).to_vec();
+    facts.push(lacks_unused);
+    facts
 }

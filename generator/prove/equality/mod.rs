@@ -28,7 +28,7 @@ use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{RngCore, SeedableRng};
 
 use glint_base::fixed::mask;
-use glint_rtl::netlist::{Checkpoint, Design, NetId, Role};
+use glint_rtl::netlist::{Design, Role};
 use glint_tools::Tool;
 use random_precheck::DesignPair;
 use solver::{Solver, SolverAnswer};
@@ -100,7 +100,10 @@ impl fmt::Display for OutputDifference {
             f,
             "`{output}` is {pipeline:#x} in the pipeline and {sequential:#x} in the sequential core for"
         )?;
-        self.operands.iter().try_for_each(|(name, bits)| write!(f, " {name}={bits:#x}"))
+        for (name, bits) in &self.operands {
+            write!(f, " {name}={bits:#x}")?;
+        }
+        Ok(())
     }
 }
 
@@ -125,12 +128,13 @@ pub fn compare(
 fn tried(pair: &DesignPair<'_>, near: Option<&[u64]>) -> Result<Option<OutputDifference>> {
     let mut random = ChaCha8Rng::seed_from_u64(1);
     for _ in 0..TRIALS {
-        let operands: Vec<u64> = (0..pair.operands.len())
-            .map(|at| match near {
+        let mut operands: Vec<u64> = Vec::new();
+        for at in 0..pair.operands.len() {
+            operands.push(match near {
                 Some(near) if random.next_u32().is_multiple_of(2) => near[at],
                 _ => drawn(&mut random),
-            })
-            .collect();
+            });
+        }
         if let Some(difference) = differs(pair, &operands)? {
             return Ok(Some(difference));
         }
@@ -152,20 +156,26 @@ fn drawn(random: &mut ChaCha8Rng) -> u64 {
 
 /// Returns how the cores differ at a point, if they do.
 fn differs(pair: &DesignPair<'_>, operands: &[u64]) -> Result<Option<OutputDifference>> {
-    let widths = pair.operands.iter().map(|name| {
-        let net = pair.pipeline.find(name);
-        net.map_or(1, |net| pair.pipeline.width(net))
-    });
-    let operands: Vec<u64> =
-        operands.iter().zip(widths).map(|(bits, width)| bits & mask(width)).collect();
-    let [sequential, pipeline] = pair.outputs(&operands)?;
-    let at = sequential.iter().zip(&pipeline).position(|(one, other)| one != other);
-    Ok(at.map(|at| OutputDifference {
-        operands: pair.operands.iter().cloned().zip(operands).collect(),
-        output: pair.outputs[at].0.clone(),
-        sequential: sequential[at],
-        pipeline: pipeline[at],
-    }))
+    let mut masked: Vec<u64> = Vec::new();
+    for (name, bits) in pair.operands.iter().zip(operands) {
+        let width = match pair.pipeline.find(name) {
+            Some(net) => pair.pipeline.width(net),
+            None => 1,
+        };
+        masked.push(bits & mask(width));
+    }
+    let [sequential, pipeline] = pair.outputs(&masked)?;
+    for (at, (output, ..)) in pair.outputs.iter().enumerate() {
+        if sequential[at] != pipeline[at] {
+            return Ok(Some(OutputDifference {
+                operands: pair.operands.iter().cloned().zip(masked).collect(),
+                output: output.clone(),
+                sequential: sequential[at],
+                pipeline: pipeline[at],
+            }));
+        }
+    }
+    Ok(None)
 }
 
 /// A way through the microprogram.
@@ -202,11 +212,11 @@ enum EqualityAnswer {
 impl<'p> PipelineComparison<'p> {
     fn new(pair: &'p DesignPair<'p>, solver: &'p Tool, limit: Duration) -> Result<Self> {
         let mut terms = VectorTerms::default();
-        let operands = pair.operands.iter().map(|name| {
+        let mut operands = Vec::new();
+        for name in &pair.operands {
             let net = pair.pipeline.find(name).context("an operand is a port")?;
-            Ok(terms.unknown(pair.pipeline.width(net)))
-        });
-        let operands = operands.collect::<Result<_>>()?;
+            operands.push(terms.unknown(pair.pipeline.width(net)));
+        }
         Ok(Self {
             pair,
             terms,
@@ -231,10 +241,11 @@ impl<'p> PipelineComparison<'p> {
                 EqualityAnswer::Open(open) => return Ok(Verdict::Open(open)),
             }
         }
-        let cone = self.terms.cone(self.results_of(&stages));
-        let is_product =
-            |id: &&VectorTermId| matches!(self.terms.term(**id), VectorTerm::Product(..));
-        self.proof.products = cone.iter().filter(is_product).count();
+        for id in self.terms.cone(self.results_of(&stages)) {
+            if matches!(self.terms.term(id), VectorTerm::Product(..)) {
+                self.proof.products += 1;
+            }
+        }
         self.proof.outputs = self.pair.outputs.len();
         self.proof.questions = self.solver.asked;
         Ok(Verdict::Equal(self.proof))
@@ -285,19 +296,22 @@ impl<'p> PipelineComparison<'p> {
         point: bool,
     ) -> Vec<VectorTermId> {
         let (pair, operands) = (self.pair, &self.operands);
-        let input = |terms: &mut VectorTerms, net: NetId, role: Role| {
-            let width = execution.design.width(net);
-            if let Some(bits) = known(role) {
-                return terms.constant(bits, width);
-            }
-            let name = &execution.design.net(net).name;
-            let at = pair.operands.iter().position(|operand| operand == name);
-            match at.filter(|_| point) {
-                Some(at) => operands[at],
-                None => terms.unknown(width),
-            }
-        };
-        execution.settle(&mut self.terms, state, input, &mut self.products)
+        execution.settle(
+            &mut self.terms,
+            state,
+            |terms, net, role| {
+                let width = execution.design.width(net);
+                if let Some(bits) = known(role) {
+                    return terms.constant(bits, width);
+                }
+                let name = &execution.design.net(net).name;
+                match pair.operands.iter().position(|operand| operand == name) {
+                    Some(at) if point => operands[at],
+                    _ => terms.unknown(width),
+                }
+            },
+            &mut self.products,
+        )
     }
 
     /// Returns the core's branch after the clock that takes `start`, with all operands.
@@ -334,15 +348,14 @@ impl<'p> PipelineComparison<'p> {
         let sequencer = [control.address.index(), control.run.index()];
         let valid = core.design.handshake()?.valid;
         while way.clocks < MOST_CLOCKS {
-            let undecided = sequencer
-                .iter()
-                .map(|&register| way.state.registers[register])
-                .find(|&it| self.terms.constant_of(it).is_none());
-            if let Some(undecided) = undecided {
-                return self.fork(way, undecided, ways);
+            for register in sequencer {
+                let held = way.state.registers[register];
+                if self.terms.constant_of(held).is_none() {
+                    return self.fork(way, held, ways);
+                }
             }
-            let address = self.terms.constant_of(way.state.registers[sequencer[0]]);
-            let address = address.unwrap_or_default() as usize;
+            let decided = self.terms.constant_of(way.state.registers[control.address.index()]);
+            let address = decided.unwrap_or_default() as usize;
             if let EqualityAnswer::Different(difference) =
                 self.lemmas(core, &mut way, address, stages)?
             {
@@ -395,8 +408,11 @@ impl<'p> PipelineComparison<'p> {
 
     /// Returns terms that are 1 if the conditions hold.
     fn holding(&mut self, conditions: &[(VectorTermId, bool)]) -> Vec<VectorTermId> {
-        let terms = &mut self.terms;
-        conditions.iter().map(|&(it, value)| if value { it } else { terms.not(it) }).collect()
+        let mut holding = Vec::new();
+        for &(condition, value) in conditions {
+            holding.push(if value { condition } else { self.terms.not(condition) });
+        }
+        holding
     }
 
     /// Puts values of the pipeline in the place of registers that are equal to them, at the beginning of a
@@ -410,15 +426,17 @@ impl<'p> PipelineComparison<'p> {
     ) -> Result<EqualityAnswer> {
         let Some(pipeline) = &self.pair.pipeline.pipeline else { return Ok(EqualityAnswer::Equal) };
         let visit = way.visits.get(address).copied().unwrap_or(0);
-        let due = |it: &&Checkpoint| it.address == address && it.visit == visit;
-        for checkpoint in pipeline.checkpoints.iter().filter(due) {
-            let registers = &core.design.registers;
+        for checkpoint in &pipeline.checkpoints {
+            if checkpoint.address != address || checkpoint.visit != visit {
+                continue;
+            }
+            let mut registers = core.design.registers.iter();
             let register =
-                registers.iter().position(|it| core.design.net(it.q).name == checkpoint.register);
+                registers.position(|it| core.design.net(it.q).name == checkpoint.register);
             let Some(register) = register else { continue };
             let held = way.state.registers[register];
-            let staged = stages[pipeline.clock_of(checkpoint.net)][checkpoint.net.index()];
-            let staged = self.terms.resized(staged, self.terms.width(held));
+            let unsized_value = stages[pipeline.clock_of(checkpoint.net)][checkpoint.net.index()];
+            let staged = self.terms.resized(unsized_value, self.terms.width(held));
             match self.equal(&way.conditions, held, staged)? {
                 EqualityAnswer::Equal => {
                     way.state.registers[register] = staged;
@@ -441,10 +459,9 @@ impl<'p> PipelineComparison<'p> {
         stages: &[Vec<VectorTermId>],
     ) -> Result<EqualityAnswer> {
         self.proof.ways += 1;
-        for (_, staged, own) in &self.pair.outputs {
-            let staged = stages[self.pair.latency][staged.index()];
-            let own = values[own.index()];
-            match self.equal(&way.conditions, own, staged)? {
+        for (_, of_pipeline, of_core) in &self.pair.outputs {
+            let staged = stages[self.pair.latency][of_pipeline.index()];
+            match self.equal(&way.conditions, values[of_core.index()], staged)? {
                 EqualityAnswer::Equal => {}
                 other => return Ok(other),
             }
@@ -460,11 +477,14 @@ impl<'p> PipelineComparison<'p> {
 
     /// Notes how the pipeline divides products: as sums of their parts, or where it has the whole in turn, as that.
     fn divide(&mut self, stages: &[Vec<VectorTermId>]) -> Result<()> {
-        let checkpoints = self.pair.pipeline.pipeline.iter().flat_map(|it| {
-            it.checkpoints.iter().map(|at| stages[it.clock_of(at.net)][at.net.index()])
-        });
-        let results = self.results_of(stages);
-        let nets = self.terms.cone(checkpoints.chain(results));
+        let mut roots = self.results_of(stages);
+        if let Some(pipeline) = &self.pair.pipeline.pipeline {
+            for checkpoint in &pipeline.checkpoints {
+                let net = checkpoint.net;
+                roots.push(stages[pipeline.clock_of(net)][net.index()]);
+            }
+        }
+        let nets = self.terms.cone(roots);
         let divided = facts::divided(&mut self.terms, nets.iter().copied());
         self.parts = nets.iter().chain(divided.keys()).copied().collect();
         self.parts.retain(|&it| matches!(self.terms.term(it), VectorTerm::Product(..)));
@@ -474,22 +494,23 @@ impl<'p> PipelineComparison<'p> {
         let mut pending: Vec<VectorTermId> = divided.keys().copied().collect();
         pending.sort();
         while let Some(&product) = pending.last() {
+            if self.divided.contains_key(&product) {
+                pending.pop();
+                continue;
+            }
             let sum = divided[&product];
             let cone = self.terms.cone([sum]);
-            let is_open =
-                |it: &&VectorTermId| divided.contains_key(it) && !self.divided.contains_key(it);
-            let part = cone.iter().find(is_open);
-            if let Some(&part) = part.filter(|_| !self.divided.contains_key(&product)) {
+            let mut parts = cone.iter().copied();
+            if let Some(part) =
+                parts.find(|it| divided.contains_key(it) && !self.divided.contains_key(it))
+            {
                 pending.push(part);
                 continue;
             }
             pending.pop();
-            if self.divided.contains_key(&product) {
-                continue;
-            }
-            let mut whole = [sum];
-            self.terms.replace(&self.divided, &mut whole);
-            let [mut whole] = whole;
+            let mut replaced = [sum];
+            self.terms.replace(&self.divided, &mut replaced);
+            let [mut whole] = replaced;
             if let Some(net) = wholes.of(sum) {
                 // This says nothing about the bits above, which bounds on the factors decide.
                 let width = self.terms.width(net);
@@ -535,17 +556,22 @@ impl<'p> PipelineComparison<'p> {
             SolverAnswer::Unsatisfiable => Ok(EqualityAnswer::Equal),
             SolverAnswer::Undecided(open) => Ok(EqualityAnswer::Open(open)),
             SolverAnswer::Satisfiable(values) => {
-                let of = |operand: &VectorTermId| {
-                    values.iter().find(|(id, _)| id == operand).map_or(0, |&(_, bits)| bits)
-                };
-                let operands: Vec<u64> = self.operands.iter().map(of).collect();
+                let mut operands: Vec<u64> = Vec::new();
+                for operand in &self.operands {
+                    operands.push(match values.iter().find(|(id, _)| id == operand) {
+                        Some((_, bits)) => *bits,
+                        None => 0,
+                    });
+                }
                 // The solver's products may be made up. Its operands may show a difference all the same.
                 let difference = match differs(self.pair, &operands)? {
                     None => tried(self.pair, Some(&operands))?,
                     found => found,
                 };
-                Ok(difference
-                    .map_or(EqualityAnswer::Open(Open::Unknown), EqualityAnswer::Different))
+                match difference {
+                    Some(difference) => Ok(EqualityAnswer::Different(difference)),
+                    None => Ok(EqualityAnswer::Open(Open::Unknown)),
+                }
             }
         }
     }

@@ -24,8 +24,7 @@ pub struct SymbolicState {
 impl SymbolicState {
     /// Replaces a condition, one bit, by `value` in the terms of the state.
     pub fn assume(&mut self, terms: &mut VectorTerms, condition: VectorTermId, value: bool) {
-        let mut all: Vec<VectorTermId> =
-            self.registers.iter().chain(&self.words).copied().collect();
+        let mut all = [self.registers.as_slice(), &self.words].concat();
         terms.assuming(condition, value, &mut all);
         self.words = all.split_off(self.registers.len());
         self.registers = all;
@@ -53,11 +52,14 @@ impl<'a> Execution<'a> {
 
     /// Returns the state at power-up: every register may have any value.
     pub fn power_up(&self, terms: &mut VectorTerms) -> SymbolicState {
-        let design = self.design;
-        let registers = design.registers.iter().map(|it| terms.unknown(design.width(it.q)));
-        let registers = registers.collect();
-        let words = design.roms.iter().map(|rom| terms.unknown(design.width(rom.data))).collect();
-        SymbolicState { registers, words }
+        let mut state = SymbolicState { registers: Vec::new(), words: Vec::new() };
+        for register in &self.design.registers {
+            state.registers.push(terms.unknown(self.design.width(register.q)));
+        }
+        for rom in &self.design.roms {
+            state.words.push(terms.unknown(self.design.width(rom.data)));
+        }
+        state
     }
 
     /// Returns the term of every net, with these inputs. It adds the products among them to `products`.
@@ -100,27 +102,29 @@ impl<'a> Execution<'a> {
         values: &[VectorTermId],
     ) -> SymbolicState {
         let design = self.design;
-        let of = |net: NetId| values[net.index()];
-        let reset = design.port(|role| role == Role::Reset).map(|port| of(port.net));
+        let reset = design.port(|role| role == Role::Reset);
         let mut next = state.clone();
         for (register, held) in design.registers.iter().zip(&mut next.registers) {
-            let width = design.width(register.q);
-            if let Some(data) = register.data.map(of) {
-                *held = match register.enable.map(of) {
-                    None => data,
-                    Some(enable) => terms.choice(enable, data, *held),
+            if let Some(data) = register.data {
+                let offered = values[data.index()];
+                *held = match register.enable {
+                    None => offered,
+                    Some(enable) => terms.choice(values[enable.index()], offered, *held),
                 };
             }
-            if let Some((rst_n, bits)) = reset.zip(register.reset) {
-                let bits = terms.constant(bits, width);
-                *held = terms.choice(rst_n, *held, bits);
+            if let (Some(rst_n), Some(bits)) = (reset, register.reset) {
+                let reset_value = terms.constant(bits, design.width(register.q));
+                *held = terms.choice(values[rst_n.net.index()], *held, reset_value);
             }
         }
-        for (at, rom) in design.roms.iter().enumerate().filter(|(_, rom)| rom.synchronous) {
+        for (at, rom) in design.roms.iter().enumerate() {
+            if !rom.synchronous {
+                continue;
+            }
             let word = self.word(terms, at, values);
-            next.words[at] = match rom.enable.map(of) {
+            next.words[at] = match rom.enable {
                 None => word,
-                Some(enable) => terms.choice(enable, word, next.words[at]),
+                Some(enable) => terms.choice(values[enable.index()], word, next.words[at]),
             };
         }
         next
@@ -128,8 +132,8 @@ impl<'a> Execution<'a> {
 
     fn word(&self, terms: &mut VectorTerms, rom: usize, values: &[VectorTermId]) -> VectorTermId {
         let width = self.design.width(self.design.roms[rom].data);
-        let address = values[self.design.roms[rom].address.index()];
-        let address = terms.resized(address, ADDRESS);
+        let unsized_address = values[self.design.roms[rom].address.index()];
+        let address = terms.resized(unsized_address, ADDRESS);
         terms.make(VectorTerm::Word { memory: self.memories[rom], address }, width)
     }
 
@@ -143,24 +147,20 @@ impl<'a> Execution<'a> {
         products: &mut Vec<Product>,
     ) -> VectorTermId {
         let of = |net: &NetId| values[net.index()];
-        let is_signed = |net: &NetId| self.design.net(*net).format.signed;
-        let extended = |terms: &mut VectorTerms, net: &NetId, width: u32| {
-            if is_signed(net) {
-                terms.sign_extended(of(net), width)
-            } else {
-                terms.resized(of(net), width)
-            }
-        };
         match op {
             Op::Relabel(a) => of(a),
-            Op::Extend(a) => extended(terms, a, width),
+            Op::Extend(a) => self.extended(terms, *a, width, values),
             Op::Slice { of: a, low } => terms.slice(of(a), *low, width),
             Op::Concat(parts) => {
-                let joined = parts.iter().map(of).reduce(|upper, lower| {
-                    let width = terms.width(upper) + terms.width(lower);
-                    terms.make(VectorTerm::Join(upper, lower), width)
-                });
-                joined.unwrap_or_else(|| terms.constant(0, width))
+                let Some((first, others)) = parts.split_first() else {
+                    return terms.constant(0, width);
+                };
+                let mut joined = of(first);
+                for lower in others.iter().map(of) {
+                    let width = terms.width(joined) + terms.width(lower);
+                    joined = terms.make(VectorTerm::Join(joined, lower), width);
+                }
+                joined
             }
             Op::Not(a) => terms.not(of(a)),
             Op::And(a, b) => terms.make(VectorTerm::And(of(a), of(b)), width),
@@ -171,24 +171,26 @@ impl<'a> Execution<'a> {
                 match carry {
                     None => sum,
                     Some(carry) => {
-                        let carry = terms.resized(of(carry), width);
-                        terms.make(VectorTerm::Add(sum, carry), width)
+                        let wide_carry = terms.resized(of(carry), width);
+                        terms.make(VectorTerm::Add(sum, wide_carry), width)
                     }
                 }
             }
             Op::Sub(a, b) => terms.make(VectorTerm::Sub(of(a), of(b)), width),
             Op::Mul(a, b) => {
-                let factors = [a, b].map(|net| extended(terms, net, MAX_WIDTH));
-                let ranges = [a, b].map(|net| self.design.net(*net).range);
+                let factors = [*a, *b].map(|net| self.extended(terms, net, MAX_WIDTH, values));
+                let ranges = [*a, *b].map(|net| self.design.net(net).range);
                 let product = Product { factors, ranges };
                 if !products.contains(&product) {
                     products.push(product);
                 }
-                let product = terms.make(VectorTerm::Product(factors[0], factors[1]), MAX_WIDTH);
-                terms.slice(product, 0, width)
+                let whole = terms.make(VectorTerm::Product(factors[0], factors[1]), MAX_WIDTH);
+                terms.slice(whole, 0, width)
             }
             Op::Equal(a, b) => terms.equal(of(a), of(b)),
-            Op::Less(a, b) if is_signed(a) => terms.make(VectorTerm::SignedLess(of(a), of(b)), 1),
+            Op::Less(a, b) if self.design.net(*a).format.signed => {
+                terms.make(VectorTerm::SignedLess(of(a), of(b)), 1)
+            }
             Op::Less(a, b) => terms.make(VectorTerm::Less(of(a), of(b)), 1),
             Op::Any(a) => {
                 let zero = terms.constant(0, terms.width(of(a)));
@@ -200,20 +202,33 @@ impl<'a> Execution<'a> {
                 terms.equal(of(a), ones)
             }
             Op::Mux { select, inputs } => {
+                let Some((last, others)) = inputs.split_last() else {
+                    return terms.constant(0, width);
+                };
                 let select = of(select);
-                let mut chosen = None;
-                for (number, input) in inputs.iter().enumerate().rev() {
-                    chosen = Some(match chosen {
-                        None => of(input),
-                        Some(rest) => {
-                            let number = terms.constant(number as u64, terms.width(select));
-                            let this = terms.equal(select, number);
-                            terms.choice(this, of(input), rest)
-                        }
-                    });
+                let mut chosen = of(last);
+                for (number, input) in others.iter().enumerate().rev() {
+                    let number = terms.constant(number as u64, terms.width(select));
+                    let is_selected = terms.equal(select, number);
+                    chosen = terms.choice(is_selected, of(input), chosen);
                 }
-                chosen.unwrap_or_else(|| terms.constant(0, width))
+                chosen
             }
+        }
+    }
+
+    /// Returns a net extended to `width` bits: by its sign if its format is signed, and otherwise by zeros.
+    fn extended(
+        &self,
+        terms: &mut VectorTerms,
+        net: NetId,
+        width: u32,
+        values: &[VectorTermId],
+    ) -> VectorTermId {
+        if self.design.net(net).format.signed {
+            terms.sign_extended(values[net.index()], width)
+        } else {
+            terms.resized(values[net.index()], width)
         }
     }
 }

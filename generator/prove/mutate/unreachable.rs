@@ -35,26 +35,36 @@ impl BitWatch<'_> {
 pub fn unreached<'f>(core: &Core, faults: &[&'f NetlistFault]) -> Result<Vec<&'f NetlistFault>> {
     let lockstep = core.lockstep(TEST_SEED)?;
     // A register's value is seen after the edge; values that other nets show in between are not.
-    let registers = core.design.registers.iter().map(|register| register.q);
-    let nets: Vec<NetId> = registers.collect();
-    let begin = |_| BitWatch { nets: &nets, seen: vec![[0; 2]; nets.len()] };
-    let streams = lockstep.watch(TEST_POINTS, begin, BitWatch::note)?;
-    let had = |net: NetId, value: usize, bit: u32| {
-        let Some(at) = nets.iter().position(|&other| other == net) else {
-            return true;
-        };
-        streams.iter().any(|stream| stream.seen[at][value] >> bit & 1 == 1)
-    };
+    let nets: Vec<NetId> = core.design.registers.iter().map(|register| register.q).collect();
+    let streams = lockstep.watch(
+        TEST_POINTS,
+        |_| BitWatch { nets: &nets, seen: vec![[0; 2]; nets.len()] },
+        BitWatch::note,
+    )?;
     let reads_words = faults.iter().any(|fault| matches!(fault.site, Site::Words(..)));
     let coverage =
         if reads_words { Some(Coverage::of(&core.design, &lockstep, TEST_POINTS)?) } else { None };
-    let is_unreached = |fault: &NetlistFault| match &fault.site {
-        Site::Bit(net, bit, BitChange::Stuck0) => !had(*net, 1, *bit),
-        Site::Bit(net, bit, BitChange::Stuck1) => !had(*net, 0, *bit),
-        Site::Words(rom, words) => coverage
-            .as_ref()
-            .is_some_and(|it| words.iter().all(|(word, _)| it.places(*rom, *word).is_empty())),
-        _ => false,
+    let mut unreached = Vec::new();
+    for &fault in faults {
+        let is_unreached = match (&fault.site, &coverage) {
+            (Site::Bit(net, bit, BitChange::Stuck0), _) => !has_had(&nets, &streams, *net, 1, *bit),
+            (Site::Bit(net, bit, BitChange::Stuck1), _) => !has_had(&nets, &streams, *net, 0, *bit),
+            (Site::Words(rom, words), Some(coverage)) => {
+                words.iter().all(|(word, _)| coverage.places(*rom, *word).is_empty())
+            }
+            _ => false,
+        };
+        if is_unreached {
+            unreached.push(fault);
+        }
+    }
+    Ok(unreached)
+}
+
+/// Returns whether a bit of a net has had the value 0 or 1. It is true for a net that was not watched.
+fn has_had(nets: &[NetId], streams: &[BitWatch], net: NetId, value: usize, bit: u32) -> bool {
+    let Some(at) = nets.iter().position(|&other| other == net) else {
+        return true;
     };
-    Ok(faults.iter().copied().filter(|fault| is_unreached(fault)).collect())
+    streams.iter().any(|stream| stream.seen[at][value] >> bit & 1 == 1)
 }

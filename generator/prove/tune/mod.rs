@@ -10,7 +10,6 @@ mod search;
 mod space;
 
 use std::fmt;
-use std::sync::atomic::{AtomicUsize, Ordering};
 
 use anyhow::{Context, Result};
 use clap::ValueEnum;
@@ -109,41 +108,45 @@ pub fn tune(
     goal: &TuningGoal,
     progress: &(dyn Fn(usize) + Sync),
 ) -> Result<Answer> {
-    let before = AtomicUsize::new(0);
-    let of = |config: &Config| {
-        let shown = |looked_at: usize| progress(before.load(Ordering::Relaxed) + looked_at);
-        let answer = of_architecture(device, config, fixed, goal, &shown);
-        before.fetch_add(answer.as_ref().map_or(0, |it| it.looked_at), Ordering::Relaxed);
-        answer
-    };
-    let mut pipeline = pipelines(base, fixed, goal).iter().find_map(|config| of(config).ok());
-    if let Some(pipeline) = &mut pipeline {
-        pipeline.free.splice(0..0, ARCHITECTURE);
+    // The configurations that were looked at in the architectures before.
+    let mut looked_at_before = 0;
+    let mut best_pipeline = None;
+    for config in pipelines(base, fixed, goal) {
+        let shown = |looked_at: usize| progress(looked_at_before + looked_at);
+        if let Ok(mut answer) = of_architecture(device, &config, fixed, goal, &shown) {
+            looked_at_before += answer.looked_at;
+            answer.free.splice(0..0, ARCHITECTURE);
+            best_pipeline = Some(answer);
+            break;
+        }
     }
     if Shared::of(base).architecture == "pipelined"
-        && let Some(pipeline) = pipeline
+        && let Some(pipeline) = best_pipeline
     {
         return Ok(pipeline);
     }
-    let own = of(base);
-    let Some(pipeline) = pipeline else { return own };
-    let Ok(mut own) = own else { return Ok(pipeline) };
-    own.free.splice(0..0, ARCHITECTURE);
-    let smaller = goal.order(&pipeline.best) < goal.order(&own.best);
-    let best = if smaller { pipeline.best } else { own.best };
-    let free = if smaller { pipeline.free } else { own.free };
-    let looked_at = own.looked_at + pipeline.looked_at;
-    Ok(Answer { best, front: goal.front([own.front, pipeline.front].concat()), free, looked_at })
+    let shown = |looked_at: usize| progress(looked_at_before + looked_at);
+    let of_base = of_architecture(device, base, fixed, goal, &shown);
+    let Some(pipeline) = best_pipeline else { return of_base };
+    let Ok(mut sequential) = of_base else { return Ok(pipeline) };
+    sequential.free.splice(0..0, ARCHITECTURE);
+    let front = goal.front([sequential.front, pipeline.front].concat());
+    let looked_at = sequential.looked_at + pipeline.looked_at;
+    let is_pipeline_smaller = goal.order(&pipeline.best) < goal.order(&sequential.best);
+    let (best, free) = match is_pipeline_smaller {
+        true => (pipeline.best, pipeline.free),
+        false => (sequential.best, sequential.free),
+    };
+    Ok(Answer { best, front, free, looked_at })
 }
 
 /// Returns the pipelines that could have the rate, and no more multipliers than are allowed, the longest interval
 /// first. For example, a clock of 50 MHz and a rate of 10 million points a second allow the intervals 5, 4, 3, 2 and 1.
 fn pipelines(base: &Config, fixed: &[&str], goal: &TuningGoal) -> Vec<Config> {
-    let Some(family) =
-        goal.target.family().filter(|_| goal.rate.is_some() || goal.most_dsps.is_some())
-    else {
+    let Some(family) = goal.target.family() else { return Vec::new() };
+    if goal.rate.is_none() && goal.most_dsps.is_none() {
         return Vec::new();
-    };
+    }
     let is_pipelined = Shared::of(base).architecture == "pipelined";
     if fixed.contains(&"pipeline.interval") || fixed.contains(&"architecture") && !is_pipelined {
         return Vec::new();
@@ -153,17 +156,23 @@ fn pipelines(base: &Config, fixed: &[&str], goal: &TuningGoal) -> Vec<Config> {
     if !fixed.contains(&"pipeline.target") {
         pipeline.set("pipeline.target", Value::Text(family.name().to_owned()));
     }
-    if let Some(clock) = goal.clock.filter(|_| !fixed.contains(&"pipeline.clock_mhz")) {
+    if let Some(clock) = goal.clock
+        && !fixed.contains(&"pipeline.clock_mhz")
+    {
         pipeline.set("pipeline.clock_mhz", Value::Number(clock));
     }
     let clock = Shared::of(&pipeline).pipeline_clock_mhz;
-    let longest = goal.rate.map_or(LONGEST, |rate| ((clock / rate) as i64).clamp(0, LONGEST));
-    let of = |interval: i64| {
+    let longest = match goal.rate {
+        Some(rate) => ((clock / rate) as i64).clamp(0, LONGEST),
+        None => LONGEST,
+    };
+    let mut pipelines = Vec::new();
+    for interval in (1..=longest).rev() {
         let mut config = pipeline.clone();
         config.set("pipeline.interval", Value::Text(interval.to_string()));
-        config
-    };
-    (1..=longest).rev().map(of).collect()
+        pipelines.push(config);
+    }
+    pipelines
 }
 
 /// Does what [`tune`] does, for one architecture.

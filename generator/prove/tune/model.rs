@@ -56,15 +56,20 @@ impl Cost {
         let features = Features::new(design, target);
         let Features { adder, mux, logic, rom, product } = features;
         let parts = [adder, mux, logic, rom, product, 1.0];
-        let luts = parts
-            .iter()
-            .zip(family.estimate.weights)
-            .map(|(part, weight)| part * weight)
-            .sum::<f64>();
+        let mut luts = 0.0;
+        for (part, weight) in parts.iter().zip(family.estimate.weights) {
+            luts += part * weight;
+        }
+        let mut dsps = 0;
+        for net in &design.nets {
+            if let Driver::Op(Op::Mul(a, b)) = net.driver {
+                dsps += dsps_of_product(design, family, a, b);
+            }
+        }
         Self {
             // A tenth of a look-up table is more than an estimate is worth.
             luts: (luts * 10.0).round() / 10.0,
-            dsps: products(design).map(|(a, b)| dsps(design, family, a, b)).sum(),
+            dsps,
             block_rams: block_rams(design, family),
             rom_bits: design.rom_bits(),
             mhz: (10_000.0 / (family.estimate.scale * period(design, family))).round() / 10.0,
@@ -84,14 +89,15 @@ impl Cost {
     pub fn excess(&self, target: Target) -> String {
         let chip = &family(target).chips[0];
         let wanted = [self.luts.ceil() as u64, self.dsps, self.block_rams];
-        let short = chip.lack(wanted).into_iter().map(|(at, wanted, has)| {
-            format!("{wanted} of {has} {}", ["look-up tables", "DSP blocks", "block RAMs"][at])
-        });
-        let short: Vec<String> = short.collect();
-        if short.is_empty() {
+        let names = ["look-up tables", "DSP blocks", "block RAMs"];
+        let mut lacking: Vec<String> = Vec::new();
+        for (at, wanted, has) in chip.lack(wanted) {
+            lacking.push(format!("{wanted} of {has} {}", names[at]));
+        }
+        if lacking.is_empty() {
             return String::new();
         }
-        format!("it does not fit the {}: it takes {}", chip.name, short.join(", "))
+        format!("it does not fit the {}: it takes {}", chip.name, lacking.join(", "))
     }
 }
 
@@ -128,62 +134,79 @@ impl Features {
     }
 }
 
-fn products(design: &Design) -> impl Iterator<Item = (NetId, NetId)> {
-    design.nets.iter().filter_map(|net| match net.driver {
-        Driver::Op(Op::Mul(a, b)) => Some((a, b)),
-        _ => None,
-    })
-}
-
-/// Returns the DSP blocks for a product, the better way round. As Yosys cuts operands: whole slices, and a rest, of
-/// which a single bit is a row of gates.
-fn dsps(design: &Design, family: &Family, a: NetId, b: NetId) -> u64 {
+/// Returns the number of DSP blocks for a product, the better way round.
+fn dsps_of_product(design: &Design, family: &Family, a: NetId, b: NetId) -> u64 {
     let [a, b] = [a, b].map(|net| {
         let sign = if design.net(net).format.signed { family.estimate.sign } else { 0 };
         design.width(net) - sign
     });
+    dsps_one_way(family, a, b).min(dsps_one_way(family, b, a))
+}
+
+/// Returns the number of DSP blocks if the first operand is at the wider input of the blocks.
+fn dsps_one_way(family: &Family, first: u32, second: u32) -> u64 {
     let (wide, narrow) = family.timing.multiplier;
-    let slices = |operand: u32, block: u32| {
-        let whole = std::iter::repeat_n(block, (operand / block) as usize);
-        let rest = Some(operand % block).filter(|rest| *rest > 1 || operand < block);
-        whole.chain(rest).collect::<Vec<u32>>()
-    };
-    let either = |a: u32, b: u32| {
-        let others = slices(b, narrow);
-        let pairs = slices(a, wide).into_iter().flat_map(|a| others.iter().map(move |b| a + b));
-        pairs.filter(|bits| *bits >= family.estimate.least_product).count() as u64
-    };
-    either(a, b).min(either(b, a))
+    let second_slices = slices(second, narrow);
+    let mut blocks = 0;
+    for first_slice in slices(first, wide) {
+        for second_slice in &second_slices {
+            if first_slice + second_slice >= family.estimate.least_product {
+                blocks += 1;
+            }
+        }
+    }
+    blocks
+}
+
+/// Cuts an operand into slices of the width of a block, as Yosys does: whole slices and a rest. A rest of a single bit
+/// is a row of gates. For example, 35 bits for blocks of 16 are 16, 16 and 3, and 33 bits are 16 and 16.
+fn slices(operand: u32, block: u32) -> Vec<u32> {
+    let mut slices = vec![block; (operand / block) as usize];
+    let rest = operand % block;
+    if rest > 1 || operand < block {
+        slices.push(rest);
+    }
+    slices
 }
 
 /// Returns the number of partial products of a product, the better way round. For example, on iCE40, whose blocks
 /// multiply 16 by 16 bits, a product of 20 by 12 bits has 2.
 fn blocks(family: &Family, a: u32, b: u32) -> u64 {
     let (wide, narrow) = family.timing.multiplier;
-    let slices = |operand: u32, block: u32| {
-        if operand <= block { 1 } else { u64::from(operand.div_ceil(block)) }
-    };
-    let either = |a: u32, b: u32| slices(a, wide) * slices(b, narrow);
-    either(a, b).min(either(b, a))
+    let one_way = count_slices(a, wide) * count_slices(b, narrow);
+    let other_way = count_slices(b, wide) * count_slices(a, narrow);
+    one_way.min(other_way)
+}
+
+/// Returns the number of slices of an operand; an operand without bits has one slice.
+fn count_slices(operand: u32, block: u32) -> u64 {
+    u64::from(operand.div_ceil(block).max(1))
 }
 
 fn block_rams(design: &Design, family: &Family) -> u64 {
+    let mut blocks = 0;
+    for rom in &design.roms {
+        let (words, width) = (rom.words.len() as u64, u64::from(design.width(rom.data)));
+        let is_own_block = rom.synchronous && rom.shares.is_none();
+        if is_own_block && words * width >= family.estimate.least_block {
+            blocks += block_rams_of_rom(family, words, width);
+        }
+    }
+    blocks
+}
+
+/// Returns the number of block RAMs for a ROM. The word of a block shrinks as the number of words grows, by powers of
+/// two.
+fn block_rams_of_rom(family: &Family, words: u64, width: u64) -> u64 {
     let (capacity, widest) = family.estimate.block;
-    design
-        .roms
-        .iter()
-        .filter(|rom| rom.synchronous && rom.shares.is_none())
-        .map(|rom| (rom.words.len() as u64, u64::from(design.width(rom.data))))
-        .filter(|(words, width)| words * width >= family.estimate.least_block)
-        .map(|(words, width)| {
-            // The word of a block shrinks as the number of words grows, by powers of two.
-            let mut shapes =
-                std::iter::successors(Some(widest), |wide| (*wide > 1).then_some(wide / 2));
-            let fits = |wide: &u64| capacity / wide >= words;
-            let wide = shapes.find(fits);
-            wide.map_or((words * width).div_ceil(capacity), |wide| width.div_ceil(wide))
-        })
-        .sum()
+    let mut block_width = widest;
+    while block_width > 0 {
+        if capacity / block_width >= words {
+            return width.div_ceil(block_width);
+        }
+        block_width /= 2;
+    }
+    (words * width).div_ceil(capacity)
 }
 
 /// Returns the longest path between registers in nanoseconds, by the delays of the pipelines' target.
@@ -191,41 +214,55 @@ fn period(design: &Design, family: &Family) -> f64 {
     let delays = &family.timing;
     let order = design.levelise().unwrap_or_default();
     let mut arrival = vec![0.0_f64; design.nets.len()];
-    let levels = |inputs: u32| delays.logic * f64::from(inputs.max(2).ilog2().div_ceil(2).max(1));
     let mut longest = 0.0_f64;
-    let registers = (0..design.registers.len()).map(|at| RegId(at as u32));
-    let inside = registers.filter_map(|register| design.multiplier(register));
-    let inside: BTreeSet<NetId> = inside.map(|multiplier| multiplier.product).collect();
+    // The products inside of multipliers with registers.
+    let mut registered: BTreeSet<NetId> = BTreeSet::new();
+    for at in 0..design.registers.len() {
+        if let Some(multiplier) = design.multiplier(RegId(at as u32)) {
+            registered.insert(multiplier.product);
+        }
+    }
     for id in order {
-        let net = design.net(id);
-        let before = design.combinational_inputs(id);
-        let before = before.iter().map(|input| arrival[input.index()]).fold(0.0, f64::max);
-        let own = match &net.driver {
-            Driver::Op(Op::Mul(..)) if inside.contains(&id) => {
-                delays.registered.map_or(delays.product, |it| it.product)
+        let mut before = 0.0_f64;
+        for input in design.combinational_inputs(id) {
+            before = before.max(arrival[input.index()]);
+        }
+        let delay = match (&design.net(id).driver, delays.registered) {
+            (Driver::Op(Op::Mul(..)), Some(multiplier)) if registered.contains(&id) => {
+                multiplier.product
             }
-            Driver::Op(Op::Mul(a, b)) if blocks(family, design.width(*a), design.width(*b)) > 1 => {
-                delays.product + delays.chain(design.width(id) / 2)
-            }
-            // As at the last fit: fewer levels than the schedules of pipelines count.
-            Driver::Op(Op::Equal(a, _)) => levels(2 * design.width(*a)),
-            Driver::Op(Op::Any(a) | Op::All(a)) => levels(design.width(*a)),
-            Driver::Op(Op::Mux { inputs, .. }) => levels(inputs.len() as u32),
-            Driver::Op(Op::Less(a, _)) => delays.chain(design.width(*a)),
-            Driver::Op(op) => delay_of(delays, op, &|operand| design.width(operand)),
-            Driver::Rom(rom) => {
-                let rom = design.rom(*rom);
-                let address = design.width(rom.address).saturating_sub(2).max(1);
-                if rom.synchronous { delays.block } else { levels(2 * address) }
-            }
-            Driver::Undriven
-            | Driver::Input
-            | Driver::Constant(_)
-            | Driver::Register(_)
-            | Driver::Field(_) => 0.0,
+            (Driver::Op(Op::Mul(..)), None) if registered.contains(&id) => delays.product,
+            (driver, _) => cell_delay(design, family, id, driver),
         };
-        arrival[id.index()] = before + own;
-        longest = longest.max(before + own);
+        arrival[id.index()] = before + delay;
+        longest = longest.max(before + delay);
     }
     longest + delays.register
+}
+
+/// Returns the delay of the cell that drives a net, in nanoseconds.
+fn cell_delay(design: &Design, family: &Family, id: NetId, driver: &Driver) -> f64 {
+    let delays = &family.timing;
+    let levels = |inputs: u32| delays.logic * f64::from(inputs.max(2).ilog2().div_ceil(2).max(1));
+    match driver {
+        Driver::Op(Op::Mul(a, b)) if blocks(family, design.width(*a), design.width(*b)) > 1 => {
+            delays.product + delays.chain(design.width(id) / 2)
+        }
+        // As at the last fit: fewer levels than the schedules of pipelines count.
+        Driver::Op(Op::Equal(a, _)) => levels(2 * design.width(*a)),
+        Driver::Op(Op::Any(a) | Op::All(a)) => levels(design.width(*a)),
+        Driver::Op(Op::Mux { inputs, .. }) => levels(inputs.len() as u32),
+        Driver::Op(Op::Less(a, _)) => delays.chain(design.width(*a)),
+        Driver::Op(op) => delay_of(delays, op, &|operand| design.width(operand)),
+        Driver::Rom(rom) => {
+            let rom = design.rom(*rom);
+            let address = design.width(rom.address).saturating_sub(2).max(1);
+            if rom.synchronous { delays.block } else { levels(2 * address) }
+        }
+        Driver::Undriven
+        | Driver::Input
+        | Driver::Constant(_)
+        | Driver::Register(_)
+        | Driver::Field(_) => 0.0,
+    }
 }

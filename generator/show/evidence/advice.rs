@@ -30,10 +30,11 @@ pub struct Advice {
 
 impl fmt::Display for Advice {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let changes = self.changes.iter();
-        let changes = changes.map(|(key, from, to)| format!("`{key} = {to}` in place of {from}"));
-        let changes = changes.collect::<Vec<_>>().join(" and ");
-        write!(f, "{changes} would bring the bound to {} units", rounded_up(self.units, 3))
+        for (at, (key, from, to)) in self.changes.iter().enumerate() {
+            let and = if at > 0 { " and " } else { "" };
+            write!(f, "{and}`{key} = {to}` in place of {from}")?;
+        }
+        write!(f, " would bring the bound to {} units", rounded_up(self.units, 3))
     }
 }
 
@@ -52,53 +53,72 @@ pub fn of(core: &Core) -> Option<Advice> {
     if bound.keeps() {
         return Some(single);
     }
-    let next = |it: &Better| better(device, &it.config, &it.bound);
-    let mut walk = std::iter::successors(Some(first), next).take(MOST);
-    let kept = walk.find(|it| it.bound.keeps());
-    Some(kept.map_or(single, |it| advice(device, &core.config, &needed(device, &core.config, it))))
+    let mut here = first;
+    for _ in 0..MOST {
+        if here.bound.keeps() {
+            return Some(advice(device, &core.config, &needed(device, &core.config, here)));
+        }
+        match better(device, &here.config, &here.bound) {
+            Some(next) => here = next,
+            None => break,
+        }
+    }
+    Some(single)
 }
 
 /// Returns the change of one key that the bound depends on, by as little as helps, that brings the bound down most.
 /// Returns `None` if no change does. Domains stay as they are: to narrow a domain is to ask for less.
 fn better(device: &Device, config: &Config, bound: &Bound) -> Option<Better> {
     let schema = (device.schema)();
-    STEPS.into_iter().find_map(|step| {
-        let tried = candidates(&schema, config, bound, step).into_iter();
-        let better = tried.filter_map(|(key, value)| {
-            let changed = with(&schema, config, key, &value)?;
-            has_same_units(device, config, &changed).then(|| {
-                let bound = (device.contract)(&changed).bound();
-                Better { config: changed, bound }
-            })
-        });
-        let best = better.min_by(|a, b| a.bound.units.total_cmp(&b.bound.units))?;
-        (best.bound.units < bound.units - GAIN).then_some(best)
-    })
+    for step in STEPS {
+        let mut best: Option<Better> = None;
+        for (key, value) in candidates(&schema, config, bound, step) {
+            let Some(changed) = with(&schema, config, key, &value) else { continue };
+            if !has_same_units(device, config, &changed) {
+                continue;
+            }
+            let bound = (device.contract)(&changed).bound();
+            let is_best = match &best {
+                Some(best) => bound.units.total_cmp(&best.bound.units).is_lt(),
+                None => true,
+            };
+            if is_best {
+                best = Some(Better { config: changed, bound });
+            }
+        }
+        if let Some(best) = best
+            && best.bound.units < bound.units - GAIN
+        {
+            return Some(best);
+        }
+    }
+    None
 }
 
 /// Returns whether the outputs of two configurations have the same formats. Otherwise their bounds are in different units, and a
 /// smaller number need not be a smaller error.
 fn has_same_units(device: &Device, config: &Config, other: &Config) -> bool {
-    let [one, other] = [config, other].map(|config| (device.contract)(config));
-    let formats = |contract: &dyn Contract| -> Vec<Format> {
-        contract.outputs().iter().map(|output| output.format).collect()
-    };
-    formats(one.as_ref()) == formats(other.as_ref())
+    output_formats((device.contract)(config).as_ref())
+        == output_formats((device.contract)(other).as_ref())
+}
+
+fn output_formats(contract: &dyn Contract) -> Vec<Format> {
+    contract.outputs().iter().map(|output| output.format).collect()
 }
 
 /// Leaves out the changes without which the contract is kept too. For example, of two changes it keeps one, if that one
 /// is enough.
-fn needed(device: &Device, config: &Config, kept: Better) -> Better {
+fn needed(device: &Device, config: &Config, mut kept: Better) -> Better {
     let schema = (device.schema)();
-    let changed = changes(device, config, &kept.config);
-    changed.into_iter().fold(kept, |kept, (key, ..)| {
-        let without = with(&schema, &kept.config, key, config.value(key));
-        let bound = without.map(|config| ((device.contract)(&config).bound(), config));
-        match bound.filter(|(bound, _)| bound.keeps()) {
-            Some((bound, config)) => Better { config, bound },
-            None => kept,
+    for (key, ..) in changes(device, config, &kept.config) {
+        if let Some(without) = with(&schema, &kept.config, key, config.value(key)) {
+            let bound = (device.contract)(&without).bound();
+            if bound.keeps() {
+                kept = Better { config: without, bound };
+            }
         }
-    })
+    }
+    kept
 }
 
 fn advice(device: &Device, config: &Config, better: &Better) -> Advice {
@@ -110,12 +130,14 @@ fn changes(
     config: &Config,
     other: &Config,
 ) -> Vec<(&'static str, String, String)> {
-    let keys = (device.schema)()
-        .keys
-        .into_iter()
-        .map(|key| (key.name, config.value(key.name), other.value(key.name)));
-    let changed = keys.filter(|(_, from, to)| from != to);
-    changed.map(|(key, from, to)| (key, from.toml(), to.toml())).collect()
+    let mut changes = Vec::new();
+    for key in (device.schema)().keys {
+        let (from, to) = (config.value(key.name), other.value(key.name));
+        if from != to {
+            changes.push((key.name, from.toml(), to.toml()));
+        }
+    }
+    changes
 }
 
 /// Returns the keys that the bound's terms name and the choices beside them, each with the values next to its own.
@@ -125,21 +147,28 @@ fn candidates(
     bound: &Bound,
     step: i64,
 ) -> Vec<(&'static str, Value)> {
-    let table = |key: &'static str| key.split_once('.').map_or("", |(table, _)| table);
-    let governs = |key: &'static str| bound.terms.iter().any(|term| term.key == key);
-    let is_beside = |key: &'static str| {
-        !table(key).is_empty() && bound.terms.iter().any(|term| table(term.key) == table(key))
-    };
     let mut candidates = Vec::new();
     for key in &schema.keys {
+        let table = table_of(key.name);
         let is_choice = matches!(key.kind, KeyKind::Choice(_) | KeyKind::Flag);
-        let is_asked = governs(key.name) || is_choice && is_beside(key.name);
-        if is_asked && table(key.name) != "domain" && config.applies(schema, key.name) {
-            let values = neighbours(&key.kind, config.value(key.name), step);
-            candidates.extend(values.into_iter().map(|value| (key.name, value)));
+        let is_governing = bound.terms.iter().any(|term| {
+            term.key == key.name || is_choice && !table.is_empty() && table_of(term.key) == table
+        });
+        if is_governing && table != "domain" && config.applies(schema, key.name) {
+            for value in neighbours(&key.kind, config.value(key.name), step) {
+                candidates.push((key.name, value));
+            }
         }
     }
     candidates
+}
+
+/// Returns the table of a key. For example, `exponent.bits` is in the table `exponent`; `name` is in none.
+fn table_of(key: &str) -> &str {
+    match key.split_once('.') {
+        Some((table, _)) => table,
+        None => "",
+    }
 }
 
 /// Returns the values that differ from `value` by `step`. For example, the integer 8 and the step 2 give 6 and 10.
@@ -152,12 +181,15 @@ fn neighbours(kind: &KeyKind, value: &Value, step: i64) -> Vec<Value> {
         }
         (_, Value::Flag(flag)) => vec![Value::Flag(!flag)],
         (_, Value::Integers(values)) => {
-            let changed = |at: usize, by: i64| {
-                let mut values = values.clone();
-                values[at] += by;
-                Value::Integers(values)
-            };
-            (0..values.len()).flat_map(|at| [changed(at, -step), changed(at, step)]).collect()
+            let mut neighbours = Vec::new();
+            for at in 0..values.len() {
+                for by in [-step, step] {
+                    let mut changed = values.clone();
+                    changed[at] += by;
+                    neighbours.push(Value::Integers(changed));
+                }
+            }
+            neighbours
         }
         _ => Vec::new(),
     }
@@ -165,10 +197,12 @@ fn neighbours(kind: &KeyKind, value: &Value, step: i64) -> Vec<Value> {
 
 /// Returns the configuration with another value for a key; `None` if the device does not accept it.
 fn with(schema: &Schema, config: &Config, key: &str, value: &Value) -> Option<Config> {
-    let given = config.values().filter(|(name, _)| config.applies(schema, name));
-    let given = given.map(|(name, own)| {
-        let value = if name == key { value } else { own };
-        (name.to_owned(), value.clone())
-    });
-    Config::from_values(schema, &config.name, given.collect()).ok()
+    let mut given = Vec::new();
+    for (name, before) in config.values() {
+        if config.applies(schema, name) {
+            let chosen = if name == key { value } else { before };
+            given.push((name.to_owned(), chosen.clone()));
+        }
+    }
+    Config::from_values(schema, &config.name, given).ok()
 }

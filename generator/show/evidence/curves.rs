@@ -1,13 +1,14 @@
 //! Measures the error curves of a configuration: its formula against `cosⁿγ`, and its fixed point against its formula,
 //! over the exponent and over the angle.
 
+use std::f64::consts::FRAC_PI_2;
+
 use serde::Serialize;
 
 use super::chart::{Chart, ChartAxis, Mark, Series, even};
 use super::comparison;
 use glint_core::registry::Device;
-use glint_golden::Contract;
-use glint_golden::formulas;
+use glint_golden::{Contract, Highlight, formulas};
 
 /// The exponents at which a device is measured.
 pub const EXPONENTS: [u32; 20] =
@@ -104,12 +105,13 @@ pub fn configuration(
             (n, line)
         })
         .collect();
-    let largest_colour = contract
-        .operands()
-        .iter()
-        .filter(|operand| operand.colour)
-        .map(|operand| operand.format.to_f64(i128::from(operand.domain.1)))
-        .fold(0.0, f64::max);
+    let mut largest_colour: f64 = 0.0;
+    for operand in contract.operands() {
+        if operand.colour {
+            let (_, high) = operand.domain;
+            largest_colour = largest_colour.max(operand.format.to_f64(i128::from(high)));
+        }
+    }
     let charts = if exponents.is_empty() {
         Vec::new()
     } else {
@@ -135,34 +137,37 @@ fn places() -> Vec<f64> {
 /// operands cannot denote `n`.
 fn over_angle(contract: &dyn Contract, n: f64) -> Option<Vec<AtAngle>> {
     let highlight = contract.highlight()?;
-    let format = highlight.f_format();
-    let right = std::f64::consts::FRAC_PI_2;
-    let measure = |x: f64| {
-        let gamma = (x / n.sqrt()).clamp(0.0, right);
-        let control = highlight.at(gamma, n)?;
-        let cosine = highlight.cosine(&control);
-        let cosine = cosine.unwrap_or_else(|| libm::cos(gamma));
-        let f = format.to_f64(i128::from(highlight.f(&control)));
-        let formula = comparison::formula(highlight, &control, f);
-        Some(AtAngle {
-            formula: formula - formulas::blinn(cosine, n),
-            fixed_point: (f - formula).abs(),
-        })
-    };
     let half = REACH / f64::from(PLACES) / 2.0;
-    places()
-        .into_iter()
-        .map(|x| {
-            if x > right * n.sqrt() {
-                return Some(AtAngle { formula: f64::NAN, fixed_point: f64::NAN });
-            }
-            let mut found = measure(x)?;
-            for near in even(x - half, x + half, ANGLES) {
-                found.fixed_point = found.fixed_point.max(measure(near)?.fixed_point);
-            }
-            Some(found)
-        })
-        .collect()
+    let mut curve = Vec::new();
+    for x in places() {
+        if x > FRAC_PI_2 * n.sqrt() {
+            curve.push(AtAngle { formula: f64::NAN, fixed_point: f64::NAN });
+            continue;
+        }
+        let mut errors = at_angle(highlight, x, n)?;
+        for near in even(x - half, x + half, ANGLES) {
+            let errors_near = at_angle(highlight, near, n)?;
+            errors.fixed_point = errors.fixed_point.max(errors_near.fixed_point);
+        }
+        curve.push(errors);
+    }
+    Some(curve)
+}
+
+/// Returns the errors at the angle x/√n. Returns `None` if the operands cannot denote the angle and `n`.
+fn at_angle(highlight: &Highlight, x: f64, n: f64) -> Option<AtAngle> {
+    let gamma = (x / n.sqrt()).clamp(0.0, FRAC_PI_2);
+    let control = highlight.at(gamma, n)?;
+    let cosine = match highlight.cosine(&control) {
+        Some(cosine) => cosine,
+        None => libm::cos(gamma),
+    };
+    let f = highlight.f_format().to_f64(i128::from(highlight.f(&control)));
+    let formula = comparison::formula(highlight, &control, f);
+    Some(AtAngle {
+        formula: formula - formulas::blinn(cosine, n),
+        fixed_point: (f - formula).abs(),
+    })
 }
 
 fn charts(
@@ -171,10 +176,6 @@ fn charts(
     lines: &[(u32, Option<Vec<AtAngle>>)],
     largest_colour: f64,
 ) -> Vec<Chart> {
-    let column = |name: &str, value: fn(&AtExponent) -> f64| Series {
-        name: name.to_owned(),
-        values: exponents.iter().map(|at| value(at).max(FLOOR)).collect(),
-    };
     let unit = 1.0 / largest_colour;
     let over_n = Chart {
         id: format!("{name}-over-n"),
@@ -187,22 +188,29 @@ fn charts(
         y: ChartAxis::logarithmic("absolute error of f", FLOOR, 1.0),
         places: exponents.iter().map(|at| f64::from(at.n)).collect(),
         series: vec![
-            column("formula", |at| at.formula),
-            column("fixed point", |at| at.fixed_point),
+            Series {
+                name: "formula".to_owned(),
+                values: exponents.iter().map(|at| at.formula.max(FLOOR)).collect(),
+            },
+            Series {
+                name: "fixed point".to_owned(),
+                values: exponents.iter().map(|at| at.fixed_point.max(FLOOR)).collect(),
+            },
         ],
         marks: vec![Mark { label: "one output unit".to_owned(), at: unit }],
     };
-    let shown = || lines.iter().filter_map(|(n, line)| Some((n, line.as_ref()?)));
-    let lines = |value: fn(&AtAngle) -> f64| -> Vec<Series> {
-        shown()
-            .map(|(n, line)| Series {
-                name: format!("n = {n}"),
-                values: line.iter().map(value).collect(),
-            })
-            .collect()
-    };
     let scaled = || ChartAxis::linear("\u{221a}n\u{b7}\u{3b3}, \u{3b3} in radians", 0.0, REACH);
-    let formula = lines(|at| at.formula);
+    let (mut formula, mut fixed) = (Vec::new(), Vec::new());
+    for (n, line) in lines {
+        let Some(line) = line else { continue };
+        let name = format!("n = {n}");
+        formula.push(Series {
+            name: name.clone(),
+            values: line.iter().map(|at| at.formula).collect(),
+        });
+        fixed
+            .push(Series { name, values: line.iter().map(|at| floored(at.fixed_point)).collect() });
+    }
     let reach = reach(&formula);
     let over_gamma = Chart {
         id: format!("{name}-formula"),
@@ -228,7 +236,7 @@ fn charts(
         x: scaled(),
         y: ChartAxis::logarithmic("absolute error of f", FLOOR, 0.1),
         places: places(),
-        series: lines(|at| if at.fixed_point.is_nan() { f64::NAN } else { at.fixed_point.max(FLOOR) }),
+        series: fixed,
         marks: vec![Mark {
             label: "one output unit".to_owned(),
             at: unit,
@@ -239,15 +247,23 @@ fn charts(
 
 /// Returns a round number that no value exceeds. For example, values up to 0.013 give 0.02.
 fn reach(series: &[Series]) -> f64 {
-    let largest = series
-        .iter()
-        .flat_map(|series| &series.values)
-        .filter(|value| value.is_finite())
-        .fold(0.0, |largest: f64, value| largest.max(value.abs()));
-    [0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5]
-        .into_iter()
-        .find(|reach| *reach >= largest)
-        .unwrap_or(1.0)
+    let mut largest: f64 = 0.0;
+    for value in series.iter().flat_map(|series| &series.values) {
+        if value.is_finite() {
+            largest = largest.max(value.abs());
+        }
+    }
+    for reach in [0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5] {
+        if reach >= largest {
+            return reach;
+        }
+    }
+    1.0
+}
+
+/// Returns an error as the logarithmic axis shows it: at least [`FLOOR`]; NaN stays NaN.
+fn floored(error: f64) -> f64 {
+    if error.is_nan() { f64::NAN } else { error.max(FLOOR) }
 }
 
 #[cfg(test)]

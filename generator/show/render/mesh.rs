@@ -76,12 +76,13 @@ impl Mesh {
     ) -> Result<Self> {
         finite("vertex", &positions)?;
         finite("normal", &normals)?;
-        let far = |position: &Vector| position.0.iter().any(|x| x.abs() > FARTHEST);
-        if let Some(at) = positions.iter().position(far) {
-            bail!("vertex {} is farther away than {FARTHEST:e}", at + 1);
+        for (at, position) in positions.iter().enumerate() {
+            let is_far = position.0.iter().any(|x| x.abs() > FARTHEST);
+            ensure!(!is_far, "vertex {} is farther away than {FARTHEST:e}", at + 1);
         }
-        if let Some(at) = textures.iter().position(|at| !at.iter().all(|x| x.is_finite())) {
-            bail!("texture coordinate {} is not finite", at + 1);
+        for (at, [u, v]) in textures.iter().enumerate() {
+            let is_finite = u.is_finite() && v.is_finite();
+            ensure!(is_finite, "texture coordinate {} is not finite", at + 1);
         }
         ensure!(
             triangles.len() <= MOST_TRIANGLES,
@@ -89,43 +90,36 @@ impl Mesh {
             triangles.len()
         );
         let all = triangles.len();
-        let area = |corners: &[RawCorner; 3]| {
-            let [a, b, c] = corners.map(|corner| positions[corner.position as usize]);
-            (b - a).cross(c - a)
-        };
-        let triangles: Vec<[RawCorner; 3]> =
-            triangles.into_iter().filter(|corners| area(corners).unit().is_some()).collect();
+        let mut kept = triangles;
+        kept.retain(|corners| area_vector(&positions, corners).unit().is_some());
         ensure!(all > 0, "there is no triangle");
-        ensure!(!triangles.is_empty(), "all {all} triangles are without area");
+        ensure!(!kept.is_empty(), "all {all} triangles are without area");
+        // The normals that are given, without those of length 0.
         let given: Vec<Option<Vector>> = normals.iter().map(|normal| normal.unit()).collect();
-        let complete = |corner: &RawCorner| {
-            corner.normal.is_some_and(|normal| given[normal as usize].is_some())
-        };
-        let computed = if triangles.iter().flatten().all(complete) {
+        let is_complete =
+            kept.iter().flatten().all(|corner| usable_normal(corner, &given).is_some());
+        let computed = if is_complete {
             Vec::new()
         } else {
-            let areas: Vec<Vector> = triangles.iter().map(area).collect();
-            creased_normals(&positions, &triangles, &areas, crease, &mut normals)
+            let areas: Vec<Vector> =
+                kept.iter().map(|corners| area_vector(&positions, corners)).collect();
+            creased_normals(&positions, &kept, &areas, crease, &mut normals)
         };
         for (normal, given) in normals.iter_mut().zip(&given) {
             *normal = given.unwrap_or_default();
         }
-        let corner = |triangle: usize, at: usize| {
-            let corner: RawCorner = triangles[triangle][at];
-            let usable = corner.normal.filter(|&at| given[at as usize].is_some());
-            Corner {
-                position: corner.position,
-                normal: usable.unwrap_or_else(|| computed[3 * triangle + at]),
-                texture: corner.texture,
-            }
-        };
-        Ok(Self {
-            degenerate: all - triangles.len(),
-            triangles: (0..triangles.len()).map(|it| [0, 1, 2].map(|at| corner(it, at))).collect(),
-            positions,
-            normals,
-            textures,
-        })
+        let mut triangles = Vec::with_capacity(kept.len());
+        for (triangle, corners) in kept.iter().enumerate() {
+            triangles.push([0, 1, 2].map(|at| Corner {
+                position: corners[at].position,
+                normal: match usable_normal(&corners[at], &given) {
+                    Some(normal) => normal,
+                    None => computed[3 * triangle + at],
+                },
+                texture: corners[at].texture,
+            }));
+        }
+        Ok(Self { degenerate: all - kept.len(), triangles, positions, normals, textures })
     }
 
     /// Returns the position of each corner of a triangle.
@@ -147,6 +141,17 @@ impl Mesh {
     }
 }
 
+/// Returns the normal of a triangle, as long as twice the triangle's area.
+fn area_vector(positions: &[Vector], corners: &[RawCorner; 3]) -> Vector {
+    let [a, b, c] = corners.map(|corner| positions[corner.position as usize]);
+    (b - a).cross(c - a)
+}
+
+/// Returns the index of a corner's normal, if the corner has one that is not of length 0.
+fn usable_normal(corner: &RawCorner, given: &[Option<Vector>]) -> Option<u32> {
+    corner.normal.filter(|&normal| given[normal as usize].is_some())
+}
+
 fn finite(what: &str, vectors: &[Vector]) -> Result<()> {
     match vectors.iter().position(|vector| !vector.finite()) {
         Some(at) => bail!("{what} {} is not finite", at + 1),
@@ -157,14 +162,13 @@ fn finite(what: &str, vectors: &[Vector]) -> Result<()> {
 /// Returns the first of the positions with the same coordinates, for each position.
 fn first_of_same(positions: &[Vector]) -> Vec<u32> {
     let mut first = HashMap::with_capacity(positions.len());
-    let positions = positions.iter().enumerate();
-    positions
-        .map(|(at, position)| {
-            // −0.0 is 0.0.
-            let key = position.0.map(|component| (component + 0.0).to_bits());
-            *first.entry(key).or_insert(at as u32)
-        })
-        .collect()
+    let mut same = Vec::with_capacity(positions.len());
+    for (at, position) in positions.iter().enumerate() {
+        // −0.0 is 0.0.
+        let key = position.0.map(|component| (component + 0.0).to_bits());
+        same.push(*first.entry(key).or_insert(at as u32));
+    }
+    same
 }
 
 /// Appends the normals of all corners to `normals`, three for each triangle, and returns the index of each. `areas`
@@ -182,10 +186,11 @@ fn creased_normals(
     let mut corners: Vec<u32> = (0..3 * triangles.len() as u32).collect();
     corners.sort_by_key(|&corner| point(corner as usize));
     let flat = libm::cos(crease.to_radians());
-    let smooth = |a: u32, b: u32| {
-        let [a, b] = [a, b].map(|corner| areas[corner as usize / 3].unit().unwrap_or_default());
+    let is_smooth = |a: u32, b: u32| {
+        let a_normal = areas[a as usize / 3].unit().unwrap_or_default();
+        let b_normal = areas[b as usize / 3].unit().unwrap_or_default();
         // To the last bit of a right angle, or of whatever the edge was meant to be.
-        a.dot(b) >= flat - 1e-12
+        a_normal.dot(b_normal) >= flat - 1e-12
     };
     let mut found = vec![0; corners.len()];
     let (mut edges, mut group) = (Vec::new(), Vec::new());
@@ -194,14 +199,16 @@ fn creased_normals(
         edges.clear();
         for (at, &corner) in around.iter().enumerate() {
             let (triangle, own) = (corner as usize / 3 * 3, corner as usize % 3);
-            edges.extend([1, 2].map(|step| (point(triangle + (own + step) % 3), at)));
+            for step in [1, 2] {
+                edges.push((point(triangle + (own + step) % 3), at));
+            }
         }
         edges.sort_unstable();
         group.clear();
         group.extend(0..around.len());
         for pair in edges.windows(2) {
             let [(to, a), (other, b)] = [pair[0], pair[1]];
-            if to == other && smooth(around[a], around[b]) {
+            if to == other && is_smooth(around[a], around[b]) {
                 let (a, b) = (root(&mut group, a), root(&mut group, b));
                 group[a.max(b)] = a.min(b);
             }
@@ -220,10 +227,11 @@ fn creased_normals(
             }
             found[corner as usize] = (normals.len() + place[at]) as u32;
         }
-        // Where areas cancel, the first triangle's direction is as good as another.
-        normals.extend(sums.iter().map(|(triangle, sum)| {
-            sum.unit().or_else(|| areas[*triangle].unit()).unwrap_or_default()
-        }));
+        for (triangle, sum) in &sums {
+            // Where areas cancel, the first triangle's direction is as good as another.
+            let direction = sum.unit().or_else(|| areas[*triangle].unit());
+            normals.push(direction.unwrap_or_default());
+        }
     }
     found
 }

@@ -73,14 +73,15 @@ pub const BACKGROUND: Vector = Vector::new(0.05, 0.06, 0.08);
 impl Light {
     /// Returns the lights by default: a white one from the upper left, a weaker one from behind on the right.
     pub fn usual() -> Vec<Self> {
-        let light = |direction: Vector, colour| Self {
-            direction: direction.unit().unwrap_or_default(),
-            colour,
+        let white = Self {
+            direction: Vector::new(-0.6, 0.8, 0.9).unit().unwrap_or_default(),
+            colour: Vector::new(1.0, 1.0, 1.0),
         };
-        vec![
-            light(Vector::new(-0.6, 0.8, 0.9), Vector::new(1.0, 1.0, 1.0)),
-            light(Vector::new(1.0, 0.35, -0.3), Vector::new(0.55, 0.47, 0.38)),
-        ]
+        let weaker = Self {
+            direction: Vector::new(1.0, 0.35, -0.3).unit().unwrap_or_default(),
+            colour: Vector::new(0.55, 0.47, 0.38),
+        };
+        vec![white, weaker]
     }
 }
 
@@ -91,38 +92,27 @@ impl Scene {
     /// # Errors
     /// Fails only through a bug, not through anything that a user gives.
     pub fn built_in(which: BuiltIn, colour: Option<Vector>, coarse: bool) -> Result<Vec<Object>> {
-        let ball = |middle, radius| {
-            if coarse {
-                shapes::ball(middle, radius, [64, 32]).map(Shape::Mesh)
-            } else {
-                Ok(Shape::Ball { middle, radius })
-            }
-        };
-        let steps = |fine: [u32; 2]| if coarse { fine.map(|steps| steps / 8) } else { fine };
-        let ring = || shapes::torus(0.72, 0.28, steps([384, 160]));
-        let vase = || shapes::vase(steps([384, 480]));
-        let of = |shape, own| Object { shape, colour: colour.unwrap_or(own) };
-        let moved =
-            |mesh: Mesh, size: f64, tilt: f64, to: Vector| Shape::Mesh(place(mesh, size, tilt, to));
         let origin = Vector::default();
-        Ok(match which {
-            BuiltIn::Sphere => vec![of(ball(origin, 1.0)?, COLOUR)],
-            BuiltIn::Torus => vec![of(moved(ring()?, 1.0, 0.9, origin), COLOUR)],
-            BuiltIn::Vase => vec![of(Shape::Mesh(vase()?), COLOUR)],
+        let shapes_and_colours = match which {
+            BuiltIn::Sphere => vec![(ball(origin, 1.0, coarse)?, COLOUR)],
+            BuiltIn::Torus => vec![(place(ring(coarse)?, 1.0, 0.9, origin), COLOUR)],
+            BuiltIn::Vase => vec![(Shape::Mesh(vase(coarse)?), COLOUR)],
             BuiltIn::Group => {
+                let to_the_left = Vector::new(-1.12, 0.2, -0.45);
+                let to_the_right = Vector::new(1.22, 0.12, -0.35);
+                let in_front = Vector::new(0.0, -0.2, 0.4);
                 vec![
-                    of(
-                        moved(vase()?, 1.0, 0.0, Vector::new(-1.12, 0.2, -0.45)),
-                        Vector::new(0.60, 0.08, 0.07),
-                    ),
-                    of(ball(Vector::new(0.0, -0.2, 0.4), 0.74)?, COLOUR),
-                    of(
-                        moved(ring()?, 0.85, 1.05, Vector::new(1.22, 0.12, -0.35)),
-                        Vector::new(0.62, 0.38, 0.06),
-                    ),
+                    (place(vase(coarse)?, 1.0, 0.0, to_the_left), Vector::new(0.60, 0.08, 0.07)),
+                    (ball(in_front, 0.74, coarse)?, COLOUR),
+                    (place(ring(coarse)?, 0.85, 1.05, to_the_right), Vector::new(0.62, 0.38, 0.06)),
                 ]
             }
-        })
+        };
+        let mut objects = Vec::new();
+        for (shape, usual_colour) in shapes_and_colours {
+            objects.push(Object { shape, colour: colour.unwrap_or(usual_colour) });
+        }
+        Ok(objects)
     }
 
     /// Returns the middle and half the diagonal of the box around everything. For example, a ball of radius 1 around
@@ -153,18 +143,37 @@ impl Scene {
     }
 }
 
-/// Returns a mesh scaled, tilted about the x axis by an angle, and moved.
-fn place(mut mesh: Mesh, size: f64, tilt: f64, to: Vector) -> Mesh {
+/// Returns a ball, or the triangles of a `coarse` one.
+fn ball(middle: Vector, radius: f64, coarse: bool) -> Result<Shape> {
+    if coarse {
+        Ok(Shape::Mesh(shapes::ball(middle, radius, [64, 32])?))
+    } else {
+        Ok(Shape::Ball { middle, radius })
+    }
+}
+
+fn ring(coarse: bool) -> Result<Mesh> {
+    shapes::torus(0.72, 0.28, if coarse { [48, 20] } else { [384, 160] })
+}
+
+fn vase(coarse: bool) -> Result<Mesh> {
+    shapes::vase(if coarse { [48, 60] } else { [384, 480] })
+}
+
+/// Returns the shape of a mesh scaled, tilted about the x axis by an angle, and moved.
+fn place(mut mesh: Mesh, size: f64, tilt: f64, to: Vector) -> Shape {
     let (sin, cos) = (libm::sin(tilt), libm::cos(tilt));
-    let turn = |vector: Vector| {
-        let [x, y, z] = vector.0;
-        Vector::new(x, y * cos - z * sin, y * sin + z * cos)
-    };
     for position in &mut mesh.positions {
-        *position = turn(*position) * size + to;
+        *position = tilted(*position, sin, cos) * size + to;
     }
     for normal in &mut mesh.normals {
-        *normal = turn(*normal);
+        *normal = tilted(*normal, sin, cos);
     }
-    mesh
+    Shape::Mesh(mesh)
+}
+
+/// Returns a vector turned about the x axis by the angle with this sine and cosine.
+fn tilted(vector: Vector, sin: f64, cos: f64) -> Vector {
+    let [x, y, z] = vector.0;
+    Vector::new(x, y * cos - z * sin, y * sin + z * cos)
 }

@@ -62,11 +62,12 @@ impl Raster {
 
     /// Returns the samples whose middles may lie between two slopes, `x/−z` or −`y/−z`: one more on each side.
     fn span(&self, low: f64, high: f64, half: f64, count: usize) -> (u32, u32) {
-        let at = |slope: f64| (slope / half + 1.0) / 2.0 * count as f64 - 0.5;
         let last = count as f64;
+        let lowest = (low / half + 1.0) / 2.0 * last - 0.5;
+        let highest = (high / half + 1.0) / 2.0 * last - 0.5;
         // Saturating conversions.
-        let first = (at(low) - 1.0).clamp(0.0, last) as u32;
-        let end = (at(high) + 2.0).clamp(0.0, last) as u32;
+        let first = (lowest - 1.0).clamp(0.0, last) as u32;
+        let end = (highest + 2.0).clamp(0.0, last) as u32;
         (first, end)
     }
 }
@@ -155,31 +156,27 @@ impl<'a> Visibility<'a> {
         }
         let Raster { columns: width, rows: height, half } = self.raster;
         let (columns, rows) = if distances.iter().all(|&distance| distance > self.near) {
-            let slopes = corners.map(|corner| {
+            let mut low = [f64::INFINITY; 2];
+            let mut high = [f64::NEG_INFINITY; 2];
+            for corner in corners {
                 let [x, y, z] = corner.0;
-                (x / -z, y / z)
-            });
-            let least = |pick: fn((f64, f64)) -> f64| {
-                slopes.map(pick).into_iter().fold(f64::INFINITY, f64::min)
-            };
-            let most = |pick: fn((f64, f64)) -> f64| {
-                slopes.map(pick).into_iter().fold(f64::NEG_INFINITY, f64::max)
-            };
-            let (x, y) = (|slope: (f64, f64)| slope.0, |slope: (f64, f64)| slope.1);
+                for (axis, slope) in [x / -z, y / z].into_iter().enumerate() {
+                    low[axis] = low[axis].min(slope);
+                    high[axis] = high[axis].max(slope);
+                }
+            }
             (
-                self.raster.span(least(x), most(x), half.0, width),
-                self.raster.span(least(y), most(y), half.1, height),
+                self.raster.span(low[0], high[0], half.0, width),
+                self.raster.span(low[1], high[1], half.1, height),
             )
         } else {
             // It reaches behind the eye: it may be seen anywhere.
             ((0, width as u32), (0, height as u32))
         };
-        (columns.0 < columns.1 && rows.0 < rows.1).then_some(CandidateSurface {
-            object,
-            triangle,
-            columns,
-            rows,
-        })
+        if columns.0 >= columns.1 || rows.0 >= rows.1 {
+            return None;
+        }
+        Some(CandidateSurface { object, triangle, columns, rows })
     }
 
     /// Returns the surfaces of some rows, row by row.
@@ -267,7 +264,7 @@ impl Planes {
         }
         let sum = a + b + c;
         let depth = self.volume / sum;
-        depth.is_finite().then(|| (depth, [b / sum, c / sum]))
+        if depth.is_finite() { Some((depth, [b / sum, c / sum])) } else { None }
     }
 }
 

@@ -37,7 +37,7 @@ pub fn batch(
     let (mut text, mut json) = (headings(contract), Vec::new());
     let mut row = PointResult::default();
     let mut missing = Vec::new();
-    let mut shown = |row: &PointResult| match output.json {
+    let mut show = |row: &PointResult| match output.json {
         true => json.push(as_json(contract, row)),
         false => append(contract, row, &mut text),
     };
@@ -48,7 +48,7 @@ pub fn batch(
             missing = missing_columns(contract, given, &columns);
             Ok(columns)
         },
-        |columns, record| points(contract, given, columns, record, &mut row, &mut shown),
+        |columns, record| points(contract, given, columns, record, &mut row, &mut show),
     )?;
     match output.json {
         true => {
@@ -95,53 +95,59 @@ fn missing_columns(
     given: &[Option<i64>],
     columns: &[Option<usize>],
 ) -> Vec<String> {
-    let mut given = given.to_vec();
+    let mut with_columns = given.to_vec();
     for at in columns.iter().flatten() {
-        given[*at] = Some(0);
+        with_columns[*at] = Some(0);
     }
-    operands::missing(contract, &given)
+    operands::missing(contract, &with_columns)
 }
 
-/// Hands the points of a row to `shown`: all points of a line, or one point.
+/// Hands the points of a row to `show`: all points of a line, or one point.
 fn points(
     contract: &dyn Contract,
     given: &[Option<i64>],
     columns: &[Option<usize>],
     record: &csv::StringRecord,
     row: &mut PointResult,
-    shown: &mut impl FnMut(&PointResult),
+    show: &mut impl FnMut(&PointResult),
 ) -> Result<(), String> {
     let known = contract.operands();
-    let mut given = given.to_vec();
+    let mut of_row = given.to_vec();
     for (at, text) in columns.iter().zip(record) {
         // An empty cell does not give the operand.
         if let (Some(at), false) = (*at, text.is_empty()) {
-            given[at] = Some(operands::named_value(&known[at], text)?);
+            of_row[at] = Some(operands::named_value(&known[at], text)?);
         }
     }
     row.operands.clear();
-    row.operands.extend(given.iter().flatten());
+    row.operands.extend(of_row.iter().flatten());
     if row.operands.len() < known.len() {
-        row.operands = operands::completed(contract, &given);
+        row.operands = operands::completed(contract, &of_row);
     }
-    let raw = &row.operands;
     let length = known.iter().position(|operand| Some(operand.name.as_str()) == contract.length());
-    let last = length.map_or(0, |at| raw[at].max(0) as u64);
-    let domains = known.iter().map(|operand| operand.domain);
-    row.inside = domains.zip(raw).all(|((low, high), raw)| (low..=high).contains(raw));
+    let last = match length {
+        Some(at) => row.operands[at].max(0) as u64,
+        None => 0,
+    };
+    row.inside = true;
+    for (operand, raw) in known.iter().zip(&row.operands) {
+        let (low, high) = operand.domain;
+        row.inside &= (low..=high).contains(raw);
+    }
     for index in 0..=last {
         let raw = &row.operands;
-        let of = contract.highlight().map(|it| {
-            let point = it.point(&raw[..it.control()], index);
-            (it.f(&point), it.reference(&point))
-        });
-        (row.f, row.exact_f) = of.unzip();
+        (row.f, row.exact_f) = (None, None);
+        if let Some(highlight) = contract.highlight() {
+            let point = highlight.point(&raw[..highlight.control()], index);
+            row.f = Some(highlight.f(&point));
+            row.exact_f = Some(highlight.reference(&point));
+        }
         row.outputs.clear();
         row.exact.clear();
         contract.results(raw, index, &mut row.outputs);
         contract.exact(raw, index, &mut row.exact);
         row.point = length.map(|_| index);
-        shown(row);
+        show(row);
     }
     Ok(())
 }
@@ -152,16 +158,25 @@ fn points(
 fn headings(contract: &dyn Contract) -> String {
     let mut headings: Vec<String> =
         contract.operands().iter().map(|operand| operand.name.clone()).collect();
-    let highlight = contract.highlight();
-    let outputs = || contract.outputs().iter().map(|output| &output.name);
-    headings.extend(contract.length().map(|_| "point".to_owned()));
-    headings.extend(highlight.map(|_| "f".to_owned()));
-    headings.extend(contract.outputs().iter().map(|output| match output.format.frac {
-        0 => output.name.clone(),
-        _ => format!("raw_{}", output.name),
-    }));
-    headings.extend(highlight.map(|_| "formula_f".to_owned()));
-    headings.extend(outputs().map(|name| format!("formula_{name}")));
+    let has_f = contract.highlight().is_some();
+    if contract.length().is_some() {
+        headings.push("point".to_owned());
+    }
+    if has_f {
+        headings.push("f".to_owned());
+    }
+    for output in contract.outputs() {
+        headings.push(match output.format.frac {
+            0 => output.name.clone(),
+            _ => format!("raw_{}", output.name),
+        });
+    }
+    if has_f {
+        headings.push("formula_f".to_owned());
+    }
+    for output in contract.outputs() {
+        headings.push(format!("formula_{}", output.name));
+    }
     headings.push("inside_the_domain".to_owned());
     headings.join(",") + "\n"
 }
@@ -174,12 +189,18 @@ fn append(contract: &dyn Contract, row: &PointResult, text: &mut String) {
     if let Some(index) = row.point {
         integer(index as i64, text);
     }
-    if let Some((highlight, f)) = contract.highlight().zip(row.f) {
+    if let (Some(highlight), Some(f)) = (contract.highlight(), row.f) {
         decimal(highlight.f_format().to_f64(f.into()), text);
     }
-    row.outputs.iter().for_each(|&raw| integer(raw, text));
-    row.exact_f.iter().for_each(|&f| decimal(f, text));
-    row.exact.iter().for_each(|&[value, _]| decimal(value, text));
+    for &raw in &row.outputs {
+        integer(raw, text);
+    }
+    if let Some(f) = row.exact_f {
+        decimal(f, text);
+    }
+    for &[value, _] in &row.exact {
+        decimal(value, text);
+    }
     text.push_str(if row.inside { "true\n" } else { "false\n" });
 }
 
@@ -199,13 +220,15 @@ fn decimal(value: f64, text: &mut String) {
 }
 
 fn as_json(contract: &dyn Contract, row: &PointResult) -> Value {
-    let operands = contract.operands().iter().zip(&row.operands);
-    let operands: Map<String, Value> =
-        operands.map(|(operand, raw)| (operand.name.clone(), json!(raw))).collect();
-    let outputs = contract.outputs().iter().zip(&row.outputs);
-    let outputs: Map<String, Value> =
-        outputs.map(|(output, raw)| (output.name.clone(), json!(raw))).collect();
-    let exact: Vec<f64> = row.exact.iter().map(|it| it[0]).collect();
+    let mut operands = Map::new();
+    for (operand, raw) in contract.operands().iter().zip(&row.operands) {
+        operands.insert(operand.name.clone(), json!(raw));
+    }
+    let mut outputs = Map::new();
+    for (output, raw) in contract.outputs().iter().zip(&row.outputs) {
+        outputs.insert(output.name.clone(), json!(raw));
+    }
+    let exact: Vec<f64> = row.exact.iter().map(|sides| sides[0]).collect();
     let mut point = json!({
         "operands": operands,
         "inside_the_domain": row.inside,

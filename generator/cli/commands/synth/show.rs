@@ -6,14 +6,18 @@ use serde_json::{Value, json};
 use super::{FigureRecord, Measurement};
 use crate::say;
 use crate::tables;
-use glint_prove::synth::{Figures, Rate, tools};
+use glint_prove::synth::{Figures, Frequency, Rate, tools};
 
 /// The cell without a figure.
 const NONE: &str = "–";
 
 pub fn print(measured: &[Measurement], notes: &[String]) {
-    let rows =
-        measured.iter().flat_map(|one| one.figures.iter().map(move |figures| row(one, figures)));
+    let mut rows = Vec::new();
+    for one in measured {
+        for figures in &one.figures {
+            rows.push(row(one, figures));
+        }
+    }
     tables::print(
         "configuration | target | LUT: | DSP: | RAM: | FF:3 | gates:2 | µm²:5 | MHz: | spread:4 | clocks/point:1 | \
          M points/s: | k/s per LUT:6 | M/s per DSP:6",
@@ -40,22 +44,49 @@ pub fn print(measured: &[Measurement], notes: &[String]) {
 /// Returns the figures of a target in a line. For example, `ECP5: 367 LUT, 1 DSP, 0 RAM, 112.30 MHz`.
 pub fn in_a_line(figures: &Figures) -> String {
     let area = &figures.area;
-    let counts = [("LUT", area.luts), ("DSP", area.dsps), ("RAM", area.block_rams)];
-    let counts = counts.into_iter().filter_map(|(unit, count)| Some(format!("{} {unit}", count?)));
-    let gates = area.gates.map(|gates| format!("{gates:.0} gates"));
-    let clock = figures.frequency.map(|frequency| format!("{:.2} MHz", frequency.median));
-    let parts: Vec<String> = counts.chain(gates).chain(clock).collect();
+    let mut parts: Vec<String> = Vec::new();
+    for (unit, count) in [("LUT", area.luts), ("DSP", area.dsps), ("RAM", area.block_rams)] {
+        if let Some(count) = count {
+            parts.push(format!("{count} {unit}"));
+        }
+    }
+    if let Some(gates) = area.gates {
+        parts.push(format!("{gates:.0} gates"));
+    }
+    if let Some(frequency) = figures.frequency {
+        parts.push(format!("{:.2} MHz", frequency.median));
+    }
     format!("{}: {}", figures.target.title(), parts.join(", "))
 }
 
+/// Returns the text of a count, or [`NONE`].
+fn count(number: Option<u64>) -> String {
+    match number {
+        Some(number) => number.to_string(),
+        None => NONE.to_owned(),
+    }
+}
+
+/// Returns the text of a number with this number of digits behind the point, or [`NONE`].
+fn decimal(number: Option<f64>, digits: usize) -> String {
+    match number {
+        Some(number) => format!("{number:.digits$}"),
+        None => NONE.to_owned(),
+    }
+}
+
 fn row(one: &Measurement, figures: &Figures) -> Vec<String> {
-    let (area, frequency) = (&figures.area, figures.frequency);
-    let known = |text: Option<String>| text.unwrap_or_else(|| NONE.to_owned());
-    let count = |number: Option<u64>| known(number.map(|it| it.to_string()));
-    let whole = |number: Option<f64>| known(number.map(|it| format!("{it:.0}")));
-    let decimal = |number: Option<f64>| known(number.map(|it| format!("{it:.2}")));
-    let spread = frequency.filter(|it| it.runs > 1);
-    let rate = one.rate(figures);
+    let area = &figures.area;
+    let spread = match figures.frequency {
+        Some(Frequency { runs: 2.., lowest, highest, .. }) => format!("{lowest:.1}–{highest:.1}"),
+        _ => NONE.to_owned(),
+    };
+    let (mut points, mut per_lut, mut per_dsp) = (None, None, None);
+    if let Some(rate) = one.rate(figures) {
+        points = Some(rate.points);
+        per_lut = rate.per_lut.map(|millions| millions * 1000.0);
+        per_dsp = rate.per_dsp;
+    }
     vec![
         one.one.core.config.name.clone(),
         figures.target.to_string(),
@@ -63,17 +94,17 @@ fn row(one: &Measurement, figures: &Figures) -> Vec<String> {
         count(area.dsps),
         count(area.block_rams),
         area.flip_flops.to_string(),
-        whole(area.gates),
-        whole(area.square_micrometres),
-        decimal(frequency.map(|it| it.median)),
-        known(spread.map(|it| format!("{:.1}–{:.1}", it.lowest, it.highest))),
+        decimal(area.gates, 0),
+        decimal(area.square_micrometres, 0),
+        decimal(figures.frequency.map(|frequency| frequency.median), 2),
+        spread,
         format!("{:.3}", one.clocks_per_point)
             .trim_end_matches('0')
             .trim_end_matches('.')
             .to_owned(),
-        decimal(rate.map(|it| it.points)),
-        decimal(rate.and_then(|it| it.per_lut).map(|it| it * 1000.0)),
-        decimal(rate.and_then(|it| it.per_dsp)),
+        decimal(points, 2),
+        decimal(per_lut, 2),
+        decimal(per_dsp, 2),
     ]
 }
 
@@ -86,18 +117,19 @@ struct Told<'a> {
 }
 
 pub fn as_json(measured: &[Measurement], notes: &[String]) {
-    let all = measured.iter().map(|one| {
-        let targets = one.figures.iter().map(|figures| {
-            json!(Told { recorded: one.recorded(figures), rate: one.rate(figures) })
-        });
-        json!({
+    let mut all: Vec<Value> = Vec::new();
+    for one in measured {
+        let mut targets: Vec<Value> = Vec::new();
+        for figures in &one.figures {
+            targets.push(json!(Told { recorded: one.recorded(figures), rate: one.rate(figures) }));
+        }
+        all.push(json!({
             "config": one.one.path,
             "name": one.one.core.config.name,
             "device": one.one.core.device.name,
             "clocks_per_point": one.clocks_per_point,
-            "targets": targets.collect::<Vec<Value>>(),
-        })
-    });
-    let all: Vec<Value> = all.collect();
+            "targets": targets,
+        }));
+    }
     tables::print_json(&json!({ "ok": true, "synthesis": all, "notes": notes }));
 }

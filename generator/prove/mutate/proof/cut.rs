@@ -17,67 +17,88 @@ pub(super) fn smallest_cut(
     bits: &impl Fn(NetId) -> u32,
     most: u32,
 ) -> Option<BTreeSet<NetId>> {
-    let operands = |net: NetId| match &design.net(net).driver {
-        Driver::Op(op) => op.operands(),
-        _ => Vec::new(),
-    };
-    let source =
-        |net: NetId| !matches!(design.net(net).driver, Driver::Op(_) | Driver::Constant(_));
-    if affected.iter().any(|net| source(*net)) {
+    if affected.iter().any(|net| is_source(design, *net)) {
         return None;
     }
     // The flow goes back from the wanted nets: freely through affected nets, and through others limited by their
     // bits. The amounts are by where they flow to first.
     let mut flow: BTreeMap<(Vertex, Vertex), u32> = BTreeMap::new();
-    let at = |(net, through): Vertex| 2 * net.index() + usize::from(through);
     for _ in 0..=most {
         // Whence each vertex was reached; itself where the way begins.
         let mut came: Vec<Option<Vertex>> = vec![None; 2 * design.nets.len()];
         let mut todo: Vec<Vertex> = wanted.iter().map(|net| (*net, false)).collect();
-        todo.iter().for_each(|&vertex| came[at(vertex)] = Some(vertex));
+        for &vertex in &todo {
+            came[place(vertex)] = Some(vertex);
+        }
         let mut seen = todo.clone();
         let mut end = None;
         while let Some(vertex) = todo.pop() {
             let (net, through) = vertex;
-            if through && source(net) {
+            if through && is_source(design, net) {
                 end = Some(vertex);
                 break;
             }
-            let mut visit = |next: Vertex, room: bool| {
-                if room && came[at(next)].is_none() {
-                    came[at(next)] = Some(vertex);
+            let (near, far) = ((net, false), (net, true));
+            let used = flow.get(&(far, near)).copied().unwrap_or(0);
+            let mut reached: Vec<Vertex> = Vec::new();
+            if through {
+                if let Driver::Op(op) = &design.net(net).driver {
+                    reached.extend(op.operands().into_iter().map(|operand| (operand, false)));
+                }
+                if used > 0 {
+                    reached.push(near);
+                }
+            } else {
+                let free = affected.contains(&net);
+                if free || used < bits(net) {
+                    reached.push(far);
+                }
+                // Back along the flow that is already there.
+                let (first, last) = ((NetId(0), false), (NetId(u32::MAX), true));
+                for ((_, from), amount) in flow.range((near, first)..=(near, last)) {
+                    if *amount > 0 {
+                        reached.push(*from);
+                    }
+                }
+            }
+            for next in reached {
+                if came[place(next)].is_none() {
+                    came[place(next)] = Some(vertex);
                     todo.push(next);
                     seen.push(next);
                 }
-            };
-            let used = |from, to| flow.get(&(to, from)).copied().unwrap_or(0);
-            let (near, far) = ((net, false), (net, true));
-            if through {
-                operands(net).into_iter().for_each(|operand| visit((operand, false), true));
-                visit(near, used(near, far) > 0);
-            } else {
-                let free = affected.contains(&net);
-                visit(far, free || used(near, far) < bits(net));
-                // Back along the flow that is already there.
-                let (first, last) = ((NetId(0), false), (NetId(u32::MAX), true));
-                let here = flow.range((near, first)..=(near, last));
-                here.for_each(|((_, from), amount)| visit(*from, *amount > 0));
             }
         }
         let Some(mut end) = end else {
             // The cut is the nets that were seen on this side only.
-            let cut = seen
-                .into_iter()
-                .filter(|&(net, through)| !through && came[at((net, true))].is_none());
-            return Some(cut.map(|(net, _)| net).collect());
+            let mut cut = BTreeSet::new();
+            for (net, through) in seen {
+                if !through && came[place((net, true))].is_none() {
+                    cut.insert(net);
+                }
+            }
+            return Some(cut);
         };
-        while let Some(from) = came[at(end)].filter(|from| *from != end) {
-            match flow.get_mut(&(from, end)).filter(|against| **against > 0) {
-                Some(against) => *against -= 1,
-                None => *flow.entry((end, from)).or_default() += 1,
+        while let Some(from) = came[place(end)] {
+            if from == end {
+                break;
+            }
+            match flow.get_mut(&(from, end)) {
+                Some(against) if *against > 0 => *against -= 1,
+                _ => *flow.entry((end, from)).or_default() += 1,
             }
             end = from;
         }
     }
     None
+}
+
+/// Returns whether a net is neither a constant nor the result of a cell.
+fn is_source(design: &Design, net: NetId) -> bool {
+    !matches!(design.net(net).driver, Driver::Op(_) | Driver::Constant(_))
+}
+
+/// Returns the index of a vertex: each net has two.
+fn place((net, through): Vertex) -> usize {
+    2 * net.index() + usize::from(through)
 }

@@ -51,25 +51,27 @@ pub(super) fn of(
             of_values(raws.chain([0])).unwrap_or(all)
         }
         Driver::Op(Op::Mux { select, inputs }) => {
-            let reached = pairs::choices(known(*select), design.width(*select), inputs);
-            let two = inputs.len() == 2 && inputs[0] != inputs[1];
-            let sign = sign(design, *select).filter(|_| two);
-            let signed = |net: NetId| design.net(net).format.signed;
-            let taken = |input: NetId| match sign {
-                // Where its own sign chooses it, it has one sign.
-                Some((of_it, negative))
-                    if signed(input) && pairs::named(design, input) == of_it =>
-                {
-                    let (low, high) = of(input);
-                    if negative == (input == inputs[1]) {
-                        (low.min(-1), high.min(-1))
-                    } else {
-                        (low.max(0), high.max(0))
+            let is_of_two = inputs.len() == 2 && inputs[0] != inputs[1];
+            let sign = if is_of_two { sign(design, *select) } else { None };
+            let mut taken = Vec::new();
+            for input in pairs::choices(known(*select), design.width(*select), inputs) {
+                let (low, high) = of(input);
+                taken.push(match sign {
+                    // Where its own sign chooses it, it has one sign.
+                    Some((signed_net, negative))
+                        if design.net(input).format.signed
+                            && pairs::named(design, input) == signed_net =>
+                    {
+                        if negative == (input == inputs[1]) {
+                            (low.min(-1), high.min(-1))
+                        } else {
+                            (low.max(0), high.max(0))
+                        }
                     }
-                }
-                _ => of(input),
-            };
-            hull(reached.map(taken)).map_or(all, within)
+                    _ => (low, high),
+                });
+            }
+            hull(taken).map_or(all, within)
         }
         // The same net under another name too.
         Driver::Op(Op::Mul(a, b)) if pairs::square(design, *a, *b) => cell(&Op::Mul(*a, *a)),
@@ -81,10 +83,14 @@ pub(super) fn of(
 /// Returns the net whose sign is `bit`, and whether the bit is 1 for a negative value.
 fn sign(design: &Design, bit: NetId) -> Option<(NetId, bool)> {
     match &design.net(pairs::named(design, bit)).driver {
-        Driver::Op(Op::Not(a)) => sign(design, *a).map(|(of, negative)| (of, !negative)),
-        Driver::Op(Op::Slice { of, low }) => {
-            let is_sign = design.net(*of).format.signed && low + 1 == design.width(*of);
-            is_sign.then(|| (pairs::named(design, *of), true))
+        Driver::Op(Op::Not(a)) => {
+            let (signed_net, negative) = sign(design, *a)?;
+            Some((signed_net, !negative))
+        }
+        Driver::Op(Op::Slice { of, low })
+            if design.net(*of).format.signed && low + 1 == design.width(*of) =>
+        {
+            Some((pairs::named(design, *of), true))
         }
         _ => None,
     }

@@ -3,7 +3,7 @@
 use std::array::from_fn;
 
 use crate::mutate::fault::BitChange;
-use glint_base::fixed::mask;
+use glint_base::fixed::{Format, mask};
 use glint_base::interval::Interval;
 use glint_rtl::netlist::{Design, Driver, NetId, Op};
 
@@ -95,7 +95,8 @@ impl Pairs {
 
     /// Returns the pattern, if it is one, in both.
     fn whole(self, width: u32) -> Option<u64> {
-        (self.differ() == 0 && self.0[0] ^ self.0[3] == mask(width)).then_some(self.0[3])
+        let is_one_pattern = self.differ() == 0 && self.0[0] ^ self.0[3] == mask(width);
+        if is_one_pattern { Some(self.0[3]) } else { None }
     }
 
     /// Returns the bits from `low` up that the mask `all` selects.
@@ -182,19 +183,29 @@ pub(super) fn cell(
     match op {
         Op::Relabel(a) => of(a),
         Op::Extend(a) => {
-            let (from, above) = (width_of(a), mask(width) & !mask(width_of(a)));
-            let signed = design.net(*a).format.signed;
-            let sign = |pair: usize| match signed {
-                true => of(a).0[pair] >> (from - 1) & 1 == 1,
-                false => pair == 0,
-            };
-            Pairs(from_fn(|pair| of(a).0[pair] | if sign(pair) { above } else { 0 }))
+            let above = mask(width) & !mask(width_of(a));
+            let mut extended = of(a).0;
+            for (pair, bits) in extended.iter_mut().enumerate() {
+                let reaches_above = match design.net(*a).format.signed {
+                    true => *bits >> (width_of(a) - 1) & 1 == 1,
+                    false => pair == 0,
+                };
+                if reaches_above {
+                    *bits |= above;
+                }
+            }
+            Pairs(extended)
         }
         Op::Slice { of: a, low } => of(a).cut(*low, mask(width)),
-        Op::Concat(parts) => parts.iter().fold(Pairs([0; 4]), |sum, part| {
-            let (part, width) = (of(part), width_of(part));
-            Pairs(from_fn(|pair| sum.0[pair].checked_shl(width).unwrap_or(0) | part.0[pair]))
-        }),
+        Op::Concat(parts) => {
+            let mut joined = [0_u64; 4];
+            for part in parts {
+                for (bits, lower) in joined.iter_mut().zip(of(part).0) {
+                    *bits = bits.checked_shl(width_of(part)).unwrap_or(0) | lower;
+                }
+            }
+            Pairs(joined)
+        }
         Op::Not(a) => of(a).inverted(mask(width)),
         Op::And(a, b) => of(a).bitwise(of(b), |a, b| a & b),
         Op::Or(a, b) => of(a).bitwise(of(b), |a, b| a | b),
@@ -212,8 +223,8 @@ pub(super) fn cell(
         Op::Any(a) => of(a).folded(of(a), width_of(a), 0, |a, _, c| a | c),
         Op::All(a) => of(a).folded(of(a), width_of(a), 1, |a, _, c| a & c),
         Op::Mux { select, inputs } => {
-            let inputs: Vec<_> = inputs.iter().map(|it| (of(it), same[it.index()])).collect();
-            chosen(of(select), width_of(select), &inputs)
+            let offered: Vec<_> = inputs.iter().map(|it| (of(it), same[it.index()])).collect();
+            chosen(of(select), width_of(select), &offered)
         }
     }
 }
@@ -262,30 +273,40 @@ fn product(
 ) -> Pairs {
     let (x, y) = (value(a), value(b));
     let (width_a, width_b) = (design.width(a), design.width(b));
+    let (format_a, format_b) = (design.net(a).format, design.net(b).format);
     if let (Some(x), Some(y)) = (x.whole(width_a), y.whole(width_b)) {
-        let raw = |net: NetId, bits| design.net(net).format.raw(bits);
-        return Pairs::constant(raw(a, x).wrapping_mul(raw(b, y)) as u64, width);
+        let raw = format_a.raw(x).wrapping_mul(format_b.raw(y));
+        return Pairs::constant(raw as u64, width);
     }
-    let most = |net: NetId, of: Pairs| {
-        let format = design.net(net).format;
-        let [_, most] = of.mutant();
-        let negative = format.signed && most >> (format.width() - 1) & 1 == 1;
-        (!negative).then_some(u128::from(most))
+    let bits = match (largest_unsigned(format_a, x), largest_unsigned(format_b, y)) {
+        (Some(a), Some(b)) => 128 - (a * b).leading_zeros(),
+        _ => width,
     };
-    let bits = most(a, x).zip(most(b, y)).map_or(width, |(a, b)| 128 - (a * b).leading_zeros());
-    let trailing = |of: Pairs, width: u32| of.mutant()[1].trailing_zeros().min(width);
     let low = match square(design, a, b) {
         // k² is 0 or 1 modulo 4, and (2^t·k)² has 2t more zeros below.
         true => {
-            let zeros = 2 * trailing(x, width_a);
+            let zeros = 2 * trailing_zeros(x, width_a);
             mask(zeros) | 2u64.checked_shl(zeros).unwrap_or(0)
         }
-        false => mask(trailing(x, width_a) + trailing(y, width_b)),
+        false => mask(trailing_zeros(x, width_a) + trailing_zeros(y, width_b)),
     };
     let ones = mask(bits.min(width)) & !low;
     let lowest = (x.differ() | y.differ()).trailing_zeros();
     let differ = u64::MAX.checked_shl(lowest).unwrap_or(0) & mask(width);
     Pairs([mask(width), differ, differ & ones, ones])
+}
+
+/// Returns a number that no value of the mutant exceeds. Returns `None` if a value may be negative.
+fn largest_unsigned(format: Format, pairs: Pairs) -> Option<u128> {
+    let [_, most] = pairs.mutant();
+    let may_be_negative = format.signed && most >> (format.width() - 1) & 1 == 1;
+    if may_be_negative { None } else { Some(u128::from(most)) }
+}
+
+/// Returns the number of lowest bits that are 0 in every value of the mutant.
+fn trailing_zeros(pairs: Pairs, width: u32) -> u32 {
+    let [_, ones] = pairs.mutant();
+    ones.trailing_zeros().min(width)
 }
 
 /// Returns whether both are the same net, under whatever names.

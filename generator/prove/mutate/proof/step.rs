@@ -45,17 +45,17 @@ impl<'a> Order<'a> {
         }
         let counter = match &design.pipeline {
             None => Some(design.control.address),
-            Some(pipeline) => pipeline.slot.and_then(|slot| match design.net(slot).driver {
-                Driver::Register(id) => Some(id),
+            Some(pipeline) => match pipeline.slot.map(|slot| &design.net(slot).driver) {
+                Some(Driver::Register(id)) => Some(*id),
                 _ => None,
-            }),
+            },
         };
-        let words = design.roms.iter().map(|rom| {
+        let mut words = Vec::new();
+        for rom in &design.roms {
             let width = design.width(rom.data);
-            let words = rom.words.iter().map(|&word| Pairs::constant(word, width));
-            words.reduce(Pairs::or).unwrap_or(Pairs::same(width))
-        });
-        let words = words.collect();
+            let each = rom.words.iter().map(|&word| Pairs::constant(word, width));
+            words.push(each.reduce(Pairs::or).unwrap_or(Pairs::same(width)));
+        }
         Some(Self { design, same: same(design, &order), order, counter, in_all_slots, words })
     }
 
@@ -113,17 +113,18 @@ impl<'a> Order<'a> {
             };
             nets[id.index()] = match fault {
                 None => {
-                    let of = |net: NetId| intervals[net.index()];
                     let interval = match (&net.driver, self.in_all_slots.get(id.index())) {
                         // The register has the value that was made in the slot before.
                         (Driver::Register(_), Some(interval)) => *interval,
-                        _ => interval::of(design, id, &of, &|net| nets[net.index()]),
+                        _ => interval::of(design, id, &|net| intervals[net.index()], &|net| {
+                            nets[net.index()]
+                        }),
                     };
                     intervals[id.index()] = interval;
                     value.and(Pairs::of_interval(interval, width))
                 }
                 Some((site, sound)) => {
-                    let value = match (site, &net.driver) {
+                    let of_mutant = match (site, &net.driver) {
                         // The fault is in the value that the register takes.
                         (_, Driver::Register(_)) => value,
                         (Site::Bit(at_fault, bit, how), _) if *at_fault == id => {
@@ -131,7 +132,7 @@ impl<'a> Order<'a> {
                         }
                         _ => value,
                     };
-                    value.within(sound[id.index()])
+                    of_mutant.within(sound[id.index()])
                 }
             };
         }
@@ -150,8 +151,8 @@ impl<'a> Order<'a> {
         };
         let before = taken(design, &design.net(id).driver, &|net| sound[net.index()]);
         let after = taken(design, driver, &value);
-        match before.zip(after) {
-            Some((a, b)) if self.same[a.index()] == self.same[b.index()] => value(b),
+        match (before, after) {
+            (Some(a), Some(b)) if self.same[a.index()] == self.same[b.index()] => value(b),
             _ => sound[id.index()].across(new),
         }
     }
@@ -170,32 +171,44 @@ impl<'a> Order<'a> {
             0 => 0,
             // No more than the words do, where every address has one.
             _ if rom.words.len() == 1 << self.design.width(rom.address) => {
-                rom.words.iter().fold(0, |differ, word| differ | (word ^ rom.words[0]))
+                let mut between_words = 0;
+                for word in &rom.words {
+                    between_words |= word ^ rom.words[0];
+                }
+                between_words
             }
             _ => u64::MAX,
         };
         if let Site::Words(at_fault, words) = site
             && *at_fault == id
         {
-            for &(at, word) in words.iter().filter(|(at, _)| address.may_be(*at as u64)) {
-                differ |= word ^ rom.words[at];
+            for &(at, word) in words {
+                if address.may_be(at as u64) {
+                    differ |= word ^ rom.words[at];
+                }
             }
         }
         // A synchronous ROM shows the word in the next clock.
-        let sound = if rom.synchronous { words } else { sound[rom.data.index()] };
-        sound.across(Pairs::same(width)).and(Pairs::same(width).or_any(differ))
+        let sound_word = if rom.synchronous { words } else { sound[rom.data.index()] };
+        sound_word.across(Pairs::same(width)).and(Pairs::same(width).or_any(differ))
     }
 
     /// Returns the state after the clock.
     pub(super) fn next(&self, nets: &[Pairs], fault: Option<Injected>) -> PairState {
         let design = self.design;
-        let of = |net: NetId| nets[net.index()];
         let one = Pairs::constant(1, 1);
-        let registers = design.registers.iter().enumerate().map(|(at, register)| {
-            let held = (of(register.q), self.same[register.q.index()]);
-            let Some(data) = register.data else { return held.0 };
-            let mut offered = (of(data), self.same[data.index()]);
-            let mut enable = register.enable.map_or(one, of);
+        let mut state = PairState::new();
+        for (at, register) in design.registers.iter().enumerate() {
+            let held = (nets[register.q.index()], self.same[register.q.index()]);
+            let Some(data) = register.data else {
+                state.push(held.0);
+                continue;
+            };
+            let mut offered = (nets[data.index()], self.same[data.index()]);
+            let mut enable = match register.enable {
+                Some(enable) => nets[enable.index()],
+                None => one,
+            };
             match fault {
                 Some((Site::Bit(net, bit, how), _)) if *net == register.q => {
                     offered.0 = offered.0.at_fault(*bit, *how);
@@ -207,20 +220,25 @@ impl<'a> Order<'a> {
             }
             // If nothing differs, the fault-free design already has the answer.
             if fault.is_some() && [enable, held.0, offered.0].iter().all(|it| it.differ() == 0) {
-                return held.0;
+                state.push(held.0);
+                continue;
             }
             let next = pairs::chosen(enable, 1, &[held, offered]);
-            match (register.reset, fault) {
+            state.push(match (register.reset, fault) {
                 (Some(bits), None) => next.or(Pairs::constant(bits, design.width(register.q))),
                 _ => next,
-            }
-        });
-        let roms = design.roms.iter().enumerate().map(|(at, rom)| {
-            let held = (of(rom.data), rom.data);
+            });
+        }
+        for (at, rom) in design.roms.iter().enumerate() {
+            let held = (nets[rom.data.index()], rom.data);
             let word = (self.read(RomId(at as u32), nets, fault), rom.address);
-            pairs::chosen(rom.enable.map_or(one, of), 1, &[held, word])
-        });
-        registers.chain(roms).collect()
+            let enable = match rom.enable {
+                Some(enable) => nets[enable.index()],
+                None => one,
+            };
+            state.push(pairs::chosen(enable, 1, &[held, word]));
+        }
+        state
     }
 }
 
@@ -231,7 +249,7 @@ fn taken(design: &Design, driver: &Driver, value: &impl Fn(NetId) -> Pairs) -> O
         Driver::Op(Op::Mux { select, inputs }) => {
             let mut possible = pairs::choices(value(*select), design.width(*select), inputs);
             let first = possible.next()?;
-            possible.all(|input| input == first).then_some(first)
+            if possible.all(|input| input == first) { Some(first) } else { None }
         }
         _ => None,
     }

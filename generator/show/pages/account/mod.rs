@@ -12,9 +12,7 @@ use glint_base::text::{counted, rounded_up};
 use glint_config::{Config, Key, Schema, shared_keys};
 use glint_core::cosim::exhaustive::Backing;
 use glint_core::package::facts::{self, SequenceFacts};
-use glint_core::package::{
-    HandshakeTiming, LineClocks, Linear, Quantity, Surroundings, WorkedExample,
-};
+use glint_core::package::{HandshakeTiming, LineClocks, Linear, Surroundings, WorkedExample};
 use glint_golden::{Bound, Contract, Values};
 use glint_rtl::netlist::{Design, Pipeline};
 use glint_rtl::verilog::naming::Naming;
@@ -68,10 +66,10 @@ pub fn format_text(format: Format) -> String {
 
 /// Returns the key that would bring the bound down most, in a sentence; empty if there is no such key.
 pub fn limit(inputs: &PageInputs) -> String {
-    inputs
-        .advice
-        .as_ref()
-        .map_or_else(String::new, |advice| format!("The key that helps most: {advice}."))
+    match &inputs.advice {
+        Some(advice) => format!("The key that helps most: {advice}."),
+        None => String::new(),
+    }
 }
 
 /// Returns the bound, in sentences.
@@ -104,22 +102,21 @@ pub fn accuracy(contract: &dyn Contract, backing: &Backing) -> String {
 /// Returns the sentence on the domain of an exhaustive check.
 pub fn proof(inputs: &PageInputs) -> String {
     let sweep = inputs.contract.sweep();
-    let axes: Vec<String> = sweep
-        .axes
-        .iter()
-        .map(|axis| match &axis.values {
+    let mut ranges: Vec<String> = Vec::new();
+    for axis in &sweep.axes {
+        ranges.push(match &axis.values {
             Values::Range(low, high) => format!("{} = {low} … {high}", code(&axis.name)),
             Values::List(values) => {
                 format!("{} of {}", counted(values.len(), "value"), code(&axis.name))
             }
-        })
-        .collect();
+        });
+    }
+    let axes = ranges.join(", ");
     let omits = match sweep.omits.as_str() {
         "" => String::new(),
         omits => format!(" Not covered: {omits}."),
     };
-    let (axes, checked) =
-        (axes.join(", "), format!("`{Program} cosim {} --exhaustive`", inputs.path));
+    let checked = format!("`{Program} cosim {} --exhaustive`", inputs.path);
     if inputs.contract.highlight().is_none() {
         return format!("{checked} checks it: the outputs at every {axes} (integers).{omits}");
     }
@@ -129,8 +126,12 @@ pub fn proof(inputs: &PageInputs) -> String {
     )
 }
 
+/// Returns a number of the source as text; empty for none.
 fn number(number: Option<u16>) -> String {
-    number.map_or_else(String::new, |number| number.to_string())
+    match number {
+        Some(number) => number.to_string(),
+        None => String::new(),
+    }
 }
 
 /// Returns the ports; a strobe is in the row of its operand. For example, the row of `exponent` has `exponent_write` in
@@ -140,12 +141,16 @@ pub fn ports(design: &Design) -> TextTable {
         TextTable::of("port | no.: | direction | role | format | written by | what it is");
     let ports = facts::ports(design);
     // A strobe is in the row of its operand.
-    for port in ports.iter().filter(|port| port.role != "strobe") {
+    for port in &ports {
+        if port.role == "strobe" {
+            continue;
+        }
         let strobe = ports.iter().find(|strobe| port.strobe == Some(strobe.name));
-        let written = strobe.map_or_else(String::new, |strobe| match strobe.block {
-            None => code(strobe.name),
-            Some(number) => format!("{} ({number})", code(strobe.name)),
-        });
+        let written = match strobe.map(|strobe| (strobe.name, strobe.block)) {
+            None => String::new(),
+            Some((name, None)) => code(name),
+            Some((name, Some(number))) => format!("{} ({number})", code(name)),
+        };
         let format = match (port.width, &port.format) {
             (1, _) => "1 bit".to_owned(),
             (_, Some(format)) => format.clone(),
@@ -174,13 +179,17 @@ pub fn roms(design: &Design, config: &Config) -> TextTable {
     let mut table = TextTable::of("ROM | no.: | words × bits: | bits: | reads | file | an entry");
     for rom in facts::roms(design, &naming) {
         let reads = if rom.synchronous { "on the clock" } else { "at once" };
+        let file = match rom.file {
+            Some(file) => code(file),
+            None => "in the Verilog".to_owned(),
+        };
         table.row([
             code(rom.name),
             number(rom.block),
             format!("{} × {}", rom.depth, rom.width),
             rom.bits.to_string(),
             reads.to_owned(),
-            rom.file.map_or_else(|| "in the Verilog".to_owned(), code),
+            file,
             rom.doc.join(" "),
         ]);
     }
@@ -189,8 +198,8 @@ pub fn roms(design: &Design, config: &Config) -> TextTable {
 
 /// Returns the lines of a field as the source numbers them. For example, `30 31`.
 fn lines(lines: &[u16]) -> String {
-    let lines: Vec<String> = lines.iter().map(u16::to_string).collect();
-    lines.join(" ")
+    let numbers: Vec<String> = lines.iter().map(u16::to_string).collect();
+    numbers.join(" ")
 }
 
 /// Returns the fields of the control word. For example, the bits of a field of three bits from bit 2 on are `4:2`.
@@ -200,10 +209,10 @@ pub fn fields(design: &Design) -> TextTable {
         let width = field.width as usize;
         let controls = match field.kind {
             "select" => {
-                let choices: Vec<String> = (0..)
-                    .zip(field.choices)
-                    .map(|(value, choice): (u64, _)| format!("{value:0width$b} {}", code(choice)))
-                    .collect();
+                let mut choices: Vec<String> = Vec::new();
+                for (value, choice) in field.choices.iter().enumerate() {
+                    choices.push(format!("{value:0width$b} {}", code(choice)));
+                }
                 format!("selects: {}", choices.join(", "))
             }
             "enable" => "loads a register or moves a counter".to_owned(),
@@ -222,11 +231,14 @@ pub fn fields(design: &Design) -> TextTable {
 /// Returns the microprogram as the patents print theirs: a row for each microinstruction, a column for each line.
 pub fn microprogram(design: &Design) -> TextTable {
     let fields = facts::fields(design);
-    let heading = |field: &facts::FieldFacts| match field.lines {
-        [] => code(field.name),
-        numbers => lines(numbers),
-    };
-    let headings: String = fields.iter().map(|field| heading(field) + " | ").collect();
+    let mut headings = String::new();
+    for field in &fields {
+        headings += &match field.lines {
+            [] => code(field.name),
+            numbers => lines(numbers),
+        };
+        headings += " | ";
+    }
     let mut table = TextTable::of(&format!("address: | {headings}what it does | then"));
     for microinstruction in facts::microprogram(design) {
         let mut cells = vec![microinstruction.address.to_string()];
@@ -253,19 +265,23 @@ pub fn microprogram(design: &Design) -> TextTable {
 
 /// Tabulates in which clock after `start` each event of the handshake is.
 pub fn clocks(timing: &HandshakeTiming, line: Option<&LineClocks>) -> TextTable {
-    let mut table = TextTable::of("event | clock:");
-    let mut row = |event: &str, clock: Option<u32>, of_line: Option<Linear>| {
-        let formula = || line.zip(of_line).map(|(line, clocks)| clocks.text(&code(&line.length)));
-        let clock = clock.map(|clock| clock.to_string()).or_else(formula);
-        table
-            .row([event.to_owned(), clock.unwrap_or_else(|| "depends on the operands".to_owned())]);
-    };
-    row("`valid` is high, first", timing.start_to_valid, None);
+    let mut events: Vec<(&str, Option<u32>, Option<Linear>)> =
+        vec![("`valid` is high, first", timing.start_to_valid, None)];
     if let Some(line) = line {
-        row("`valid` is high, last", None, Some(line.last_valid));
+        events.push(("`valid` is high, last", None, Some(line.last_valid)));
     }
-    row("`done` is high", timing.start_to_done, line.map(|line| line.done));
-    row("the next `start` is taken", timing.start_to_start, line.map(|line| line.next_start));
+    events.push(("`done` is high", timing.start_to_done, line.map(|line| line.done)));
+    let next_start = line.map(|line| line.next_start);
+    events.push(("the next `start` is taken", timing.start_to_start, next_start));
+    let mut table = TextTable::of("event | clock:");
+    for (event, clock, clock_of_line) in events {
+        let text = match (clock, line, clock_of_line) {
+            (Some(clock), ..) => clock.to_string(),
+            (None, Some(line), Some(clocks)) => clocks.text(&code(&line.length)),
+            _ => "depends on the operands".to_owned(),
+        };
+        table.row([event.to_owned(), text]);
+    }
     table
 }
 
@@ -303,12 +319,12 @@ pub fn terms(bound: &Bound) -> TextTable {
 pub fn domain(design: &Design, contract: &dyn Contract) -> TextTable {
     let mut table = TextTable::of("operand | format | from: | to: | what it is");
     for operand in contract.operands() {
-        let value = |raw: i64| short(operand.format.to_f64(i128::from(raw)));
+        let (low, high) = operand.domain;
         table.row([
             code(&operand.name),
             format_text(operand.format),
-            value(operand.domain.0),
-            value(operand.domain.1),
+            short(operand.format.to_f64(i128::from(low))),
+            short(operand.format.to_f64(i128::from(high))),
             // If the contract says nothing about the operand, the description does.
             match (operand.doc.as_str(), design.find(&operand.name)) {
                 ("", Some(port)) => design.net(port).doc.clone(),
@@ -322,24 +338,21 @@ pub fn domain(design: &Design, contract: &dyn Contract) -> TextTable {
 /// Returns the worked example beside the formula.
 pub fn example(contract: &dyn Contract, example: &WorkedExample) -> TextTable {
     let mut table = TextTable::of("port | integer: | value: | formula in f64:");
-    let mut row = |quantity: &Quantity, formula: String, of: String| {
-        let name = code(&quantity.name) + &of;
-        table.row([name, quantity.raw.to_string(), short(quantity.value), formula]);
-    };
     let operands: Vec<i64> = example.operands.iter().map(|it| it.raw as i64).collect();
-    for quantity in &example.operands {
-        row(quantity, String::new(), String::new());
+    for operand in &example.operands {
+        let (raw, value) = (operand.raw.to_string(), short(operand.value));
+        table.row([code(&operand.name), raw, value, String::new()]);
     }
     let mut exact = Vec::new();
     for (index, outputs) in (0..).zip(&example.results) {
         exact.clear();
         contract.exact(&operands, index, &mut exact);
         for (output, [exact, _]) in outputs.iter().zip(&exact) {
-            let of = match example.results.len() {
-                1 => String::new(),
-                _ => format!(", point {index}"),
-            };
-            row(output, short(*exact), of);
+            let mut name = code(&output.name);
+            if example.results.len() != 1 {
+                name += &format!(", point {index}");
+            }
+            table.row([name, output.raw.to_string(), short(output.value), short(*exact)]);
         }
     }
     table
@@ -348,18 +361,26 @@ pub fn example(contract: &dyn Contract, example: &WorkedExample) -> TextTable {
 /// Returns the keys of the device, and the keys that every device shares if they are not at their defaults.
 pub fn keys(schema: &Schema, config: &Config) -> TextTable {
     let mut table = TextTable::of("key | value | accepts | what it governs");
-    let changed = |key: &&Key| *config.value(key.name) != key.default;
-    for key in schema.keys.iter().chain(shared_keys().iter().filter(changed)) {
-        let [now, default] = [config.value(key.name), &key.default].map(|it| shortened(it.toml()));
+    let mut keys: Vec<&Key> = schema.keys.iter().collect();
+    for key in shared_keys() {
+        if *config.value(key.name) != key.default {
+            keys.push(key);
+        }
+    }
+    for key in keys {
+        let now = shortened(config.value(key.name).toml());
+        let default = shortened(key.default.toml());
         let value = match config.applies(schema, key.name) {
             false => "–".to_owned(),
             true if now == default => code(&now),
             true => format!("{} (default {})", code(&now), code(&default)),
         };
-        let only = key.condition.map_or_else(String::new, |condition| {
-            format!(" Only with {}.", code(&condition.words(config.value(condition.key))))
-        });
-        table.row([code(key.name), value, key.accepts(), format!("{}{only}", key.doc)]);
+        let mut doc = key.doc.to_owned();
+        if let Some(condition) = key.condition {
+            let words = condition.words(config.value(condition.key));
+            doc += &format!(" Only with {}.", code(&words));
+        }
+        table.row([code(key.name), value, key.accepts(), doc]);
     }
     table
 }

@@ -25,16 +25,19 @@ impl RecordView {
         let mut table = TextTable::of(
             "target | LUT: | DSP: | RAM: | FF: | gates: | MHz: | M points/s: | k/s per LUT: | M/s per DSP:",
         );
-        table.rows = measured.iter().map(|it| row(it, record.clocks_per_point)).collect();
-        let of = |figures: &Figures, text: String| (figures.device.clone(), text);
-        let timed = measured.iter().filter(|it| !it.critical_path.is_empty());
-        let untimed = measured.iter();
-        Self {
-            table: TableView::new("Area and speed", &table),
-            paths: timed.map(|it| of(it, it.path_in_words())).collect(),
-            untimed: untimed.filter_map(|it| Some(of(it, it.untimed.clone()?))).collect(),
-            tools: Vec::from_iter(record.tools()).join(", "),
+        let mut paths = Vec::new();
+        let mut untimed = Vec::new();
+        for figures in measured {
+            table.rows.push(row(figures, record.clocks_per_point));
+            if !figures.critical_path.is_empty() {
+                paths.push((figures.device.clone(), figures.path_in_words()));
+            }
+            if let Some(reason) = &figures.untimed {
+                untimed.push((figures.device.clone(), reason.clone()));
+            }
         }
+        let tools = Vec::from_iter(record.tools()).join(", ");
+        Self { table: TableView::new("Area and speed", &table), paths, untimed, tools }
     }
 }
 
@@ -45,10 +48,16 @@ pub fn leading<'r>(
     record: &'r SynthesisRecord,
     target: Option<&str>,
 ) -> Option<(&'r Figures, Frequency, Rate)> {
-    let on_fpgas = record.targets.iter().filter(|it| it.area.luts.is_some());
-    let timed: Vec<(&Figures, Frequency, Rate)> = on_fpgas
-        .filter_map(|it| Some((it, it.frequency?, Rate::new(it, record.clocks_per_point)?)))
-        .collect();
+    let mut timed: Vec<(&Figures, Frequency, Rate)> = Vec::new();
+    for figures in &record.targets {
+        let is_fpga = figures.area.luts.is_some();
+        if is_fpga
+            && let Some(frequency) = figures.frequency
+            && let Some(rate) = Rate::new(figures, record.clocks_per_point)
+        {
+            timed.push((figures, frequency, rate));
+        }
+    }
     let on_target = timed.iter().find(|(figures, ..)| Some(figures.target.name()) == target);
     let fastest = timed.iter().max_by(|a, b| a.2.points.total_cmp(&b.2.points));
     on_target.or(fastest).copied()
@@ -56,23 +65,45 @@ pub fn leading<'r>(
 
 fn row(figures: &Figures, clocks_per_point: f64) -> Vec<String> {
     let area = &figures.area;
-    let known = |text: Option<String>| text.unwrap_or_else(|| NONE.to_owned());
-    let count = |number: Option<u64>| known(number.map(|it| it.to_string()));
-    let decimal = |number: Option<f64>| known(number.map(|it| format!("{it:.1}")));
-    let rate = Rate::new(figures, clocks_per_point);
+    let frequency = match figures.frequency {
+        Some(Frequency { median, runs: 1, .. }) => format!("{median:.1}"),
+        Some(Frequency { median, lowest, highest, .. }) => {
+            format!("{median:.1} ({lowest:.1}–{highest:.1})")
+        }
+        None => NONE.to_owned(),
+    };
+    let (mut points, mut per_lut, mut per_dsp) = (None, None, None);
+    if let Some(rate) = Rate::new(figures, clocks_per_point) {
+        points = Some(rate.points);
+        per_lut = rate.per_lut.map(|millions| millions * 1000.0);
+        per_dsp = rate.per_dsp;
+    }
     vec![
         figures.device.clone(),
         count(area.luts),
         count(area.dsps),
         count(area.block_rams),
         area.flip_flops.to_string(),
-        known(area.gates.map(|it| format!("{it:.0}"))),
-        known(figures.frequency.map(|it| match it.runs {
-            1 => format!("{:.1}", it.median),
-            _ => format!("{:.1} ({:.1}–{:.1})", it.median, it.lowest, it.highest),
-        })),
-        decimal(rate.map(|it| it.points)),
-        decimal(rate.and_then(|it| it.per_lut).map(|it| it * 1000.0)),
-        decimal(rate.and_then(|it| it.per_dsp)),
+        decimal(area.gates, 0),
+        frequency,
+        decimal(points, 1),
+        decimal(per_lut, 1),
+        decimal(per_dsp, 1),
     ]
+}
+
+/// Returns the text of a count, or [`NONE`].
+fn count(number: Option<u64>) -> String {
+    match number {
+        Some(number) => number.to_string(),
+        None => NONE.to_owned(),
+    }
+}
+
+/// Returns the text of a number with this number of digits behind the point, or [`NONE`].
+fn decimal(number: Option<f64>, digits: usize) -> String {
+    match number {
+        Some(number) => format!("{number:.digits$}"),
+        None => NONE.to_owned(),
+    }
 }

@@ -65,30 +65,35 @@ fn label(lane: &Lane) -> String {
 /// Returns the width that a clock should have, within limits. The first width has room for all texts. The second one
 /// is for drawings with addresses in place of the names of microinstructions.
 fn clock_widths(waves: &Waves) -> [i32; 2] {
-    let wanted = |lanes: &mut dyn Iterator<Item = &Lane>| {
-        let widths = lanes.filter(|lane| lane.shape == LaneStyle::Bus).flat_map(|lane| {
-            let segments = segments(lane, 0..lane.values.len()).into_iter();
-            segments.map(|(from, to)| {
-                let text = lane.values[from].as_deref().unwrap_or_default();
-                (text_width(text) + MARGIN) / (to - from) as i32
-            })
-        });
-        widths.max().unwrap_or(0).clamp(*CLOCK.start(), *CLOCK.end())
-    };
-    let mut values = waves.lanes.iter().filter(|lane| lane.name != MICROINSTRUCTION);
-    [wanted(&mut waves.lanes.iter()), wanted(&mut values)]
+    let (mut with_names, mut with_addresses) = (0, 0);
+    for lane in &waves.lanes {
+        if lane.shape != LaneStyle::Bus {
+            continue;
+        }
+        let mut widest = 0;
+        for (from, to) in segments(lane, 0..lane.values.len()) {
+            let text = lane.values[from].as_deref().unwrap_or_default();
+            widest = widest.max((text_width(text) + MARGIN) / (to - from) as i32);
+        }
+        with_names = with_names.max(widest);
+        if lane.name != MICROINSTRUCTION {
+            with_addresses = with_addresses.max(widest);
+        }
+    }
+    [with_names, with_addresses].map(|width| width.clamp(*CLOCK.start(), *CLOCK.end()))
 }
 
 /// Returns the stretches of some places in which a value stays, as half-open ranges. For example, the values 5, 5 and 6
 /// have the ranges from 0 to 2 and from 2 to 3.
 fn segments(lane: &Lane, places: Range<usize>) -> Vec<(usize, usize)> {
-    let mut to = places.start;
-    let stretch = |alike: &[Option<String>]| {
-        let from = to;
-        to += alike.len();
-        (from, to)
-    };
-    lane.values[places].chunk_by(|a, b| a == b).map(stretch).collect()
+    let mut segments = Vec::new();
+    let mut from = places.start;
+    for alike in lane.values[places].chunk_by(|a, b| a == b) {
+        let to = from + alike.len();
+        segments.push((from, to));
+        from = to;
+    }
+    segments
 }
 
 /// A strip, with the place of its clocks.
@@ -173,11 +178,12 @@ impl Grid<'_> {
         let (middle, low) = (top + SWING / 2, top + SWING);
         let segments = segments(lane, self.places.clone());
         // If the names of microinstructions do not fit, their addresses are drawn.
-        let fits = |&(from, to): &(usize, usize)| {
+        let mut all_fit = true;
+        for &(from, to) in &segments {
             let text = lane.values[from].as_deref().unwrap_or_default();
-            text.chars().count() <= self.room(from, to)
-        };
-        let addresses = lane.name == MICROINSTRUCTION && !segments.iter().all(fits);
+            all_fit &= text.chars().count() <= self.room(from, to);
+        }
+        let addresses = lane.name == MICROINSTRUCTION && !all_fit;
         for (from, to) in segments {
             let (x, end) = (self.x(from), self.x(to));
             let frame = format!(

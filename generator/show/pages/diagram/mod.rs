@@ -17,7 +17,7 @@ use crate::pages::drawing::{Drawing, Item, text_width};
 use glint_rtl::netlist::{Design, Pipeline, Stage};
 use graph::{BoxForm, DiagramBox, DiagramGraph};
 use place::Placement;
-use route::{Body, LANE, Routes, WireRoute};
+use route::{Body, LANE, Routes, WireRoute, WireSegment};
 
 /// The height of a line of text in a box.
 const LINE: i32 = 14;
@@ -54,17 +54,23 @@ pub fn drawing(design: &Design) -> Drawing {
     let graph = DiagramGraph::new(design);
     let back = place::back(&graph);
     let lanes = route::lanes(&graph, &back);
-    let sizes: Vec<Sizes> =
-        (0..graph.boxes.len()).map(|at| Sizes::new(&graph, at, lanes[at].len())).collect();
+    let mut sizes: Vec<Sizes> = Vec::new();
+    for (at, lanes_of_box) in lanes.iter().enumerate() {
+        sizes.push(Sizes::new(&graph, at, lanes_of_box.len()));
+    }
     let heights: Vec<f64> = sizes.iter().map(Sizes::all).collect();
     let placement = Placement::new(&graph, &heights, &back);
-    let mut bodies: Vec<Body> =
-        sizes.iter().zip(&placement.middle).map(|(sizes, middle)| sizes.body(*middle)).collect();
+    let mut bodies: Vec<Body> = Vec::new();
+    for (sizes, middle) in sizes.iter().zip(&placement.middle) {
+        bodies.push(sizes.body(*middle));
+    }
     let mut routes = route::routes(&graph, &placement, &bodies, &lanes);
     // Wires around the topmost box run above it.
     let above = routes.top().min(0.0);
     routes.lower(-above);
-    bodies.iter_mut().for_each(|body| body.lower(-above));
+    for body in &mut bodies {
+        body.lower(-above);
+    }
     let mut items = Vec::new();
     let mut page = Page { left: 0, items: &mut items };
     if let Some(pipeline) = &design.pipeline {
@@ -78,11 +84,16 @@ pub fn drawing(design: &Design) -> Drawing {
         page.block(one, routes.left[at], &bodies[at]);
     }
     let left = page.left;
-    let count = |wanted: fn(BoxForm) -> bool| {
-        let boxes = graph.boxes.iter();
-        boxes.filter(|one| wanted(one.form)).count()
-    };
-    let blocks = count(|form| matches!(form, BoxForm::Block(kind) if kind != BlockKind::Constant));
+    let (mut blocks, mut inputs, mut outputs) = (0, 0, 0);
+    for one in &graph.boxes {
+        match one.form {
+            BoxForm::Block(BlockKind::Constant) => {}
+            BoxForm::Block(_) => blocks += 1,
+            BoxForm::Input => inputs += 1,
+            BoxForm::Output => outputs += 1,
+            _ => {}
+        }
+    }
     let between = match &design.pipeline {
         None => format!("{blocks} blocks and the control unit"),
         Some(pipeline) => format!("{} stages with {blocks} blocks", pipeline.stages.len()),
@@ -91,9 +102,7 @@ pub fn drawing(design: &Design) -> Drawing {
         id: "block-diagram".to_owned(),
         title: format!("Blocks of {}", design.name),
         description: format!(
-            "{between} between {} inputs at the top and {} outputs at the bottom. A table below says the same in words.",
-            count(|form| form == BoxForm::Input),
-            count(|form| form == BoxForm::Output),
+            "{between} between {inputs} inputs at the top and {outputs} outputs at the bottom. A table below says the same in words."
         ),
         width: left + coordinate(bottom(&bodies, &routes)) + BORDER,
         height: coordinate(routes.width) + BORDER,
@@ -159,12 +168,14 @@ fn lines(one: &DiagramBox) -> Vec<(&'static str, String)> {
     };
     let class = if is_port(one) { "tick" } else { "tick name" };
     let mut lines = vec![(class, head)];
-    lines.extend(one.aliases.iter().map(|alias| ("tick small", alias.clone())));
-    let small = |line: &str| ("tick small", line.to_owned());
+    let mut small_lines = one.aliases.clone();
     match one.caption.chars().count() {
         0 => {}
-        1..=LONG => lines.push(small(&one.caption)),
-        _ => lines.extend(one.caption.split(" · ").map(small)),
+        1..=LONG => small_lines.push(one.caption.clone()),
+        _ => small_lines.extend(one.caption.split(" · ").map(str::to_owned)),
+    }
+    for line in small_lines {
+        lines.push(("tick small", line));
     }
     if !one.control.is_empty() {
         lines.push(("control-lines", one.control.clone()));
@@ -201,19 +212,24 @@ impl Page<'_> {
         place: &Placement,
         routes: &Routes,
     ) {
-        let columns = |stage: usize| {
-            let boxes = graph.boxes.iter().zip(&place.column);
-            let columns = boxes.filter(move |(one, _)| one.stage == Some(stage));
-            columns.map(|(_, column)| routes.columns[*column])
+        // The beginning of the first column, and the end of the last column, of each stage with boxes.
+        let mut extents: Vec<Option<(f64, f64)>> = vec![None; pipeline.stages.len()];
+        for (one, column) in graph.boxes.iter().zip(&place.column) {
+            let Some(stage) = one.stage else { continue };
+            let Some(extent) = extents.get_mut(stage) else { continue };
+            let (from, to) = routes.columns[*column];
+            let (least, most) = extent.unwrap_or((f64::MAX, 0.0));
+            *extent = Some((from.min(least), to.max(most)));
+        }
+        let first = match extents.first() {
+            Some(Some((from, _))) => *from,
+            _ => f64::MAX,
         };
-        let end =
-            |stage: usize| columns(stage).map(|column| column.1).fold(0.0, f64::max) + REGISTERS;
-        let first = columns(0).map(|column| column.0).fold(f64::MAX, f64::min);
         let mut top = first - 2.0 * REGISTERS;
-        // Where shared multipliers alone work there is no box.
-        let drawn = |(number, _): &(usize, &Stage)| columns(*number).next().is_some();
-        for (number, stage) in pipeline.stages.iter().enumerate().filter(drawn) {
-            let bottom = end(number);
+        for (number, stage) in pipeline.stages.iter().enumerate() {
+            // Where shared multipliers alone work there is no box.
+            let Some((_, end)) = extents[number] else { continue };
+            let bottom = end + REGISTERS;
             self.stage(number, stage, [top, bottom], routes);
             top = bottom;
         }
@@ -236,16 +252,11 @@ impl Page<'_> {
         for (at, (class, line)) in (1..).zip(said) {
             self.items.push(Item::text(class, BORDER, top + 13 * at, line));
         }
-        let crossing = |net: &WireRoute| {
-            let pieces = net.pieces.clone().into_iter();
-            pieces.filter(|it| it.from.1 == it.to.1 && it.from.0 < ends[1] && ends[1] < it.to.0)
-        };
-        let mut places: Vec<i32> =
-            routes.nets.iter().flat_map(crossing).map(|it| coordinate(it.from.1)).collect();
-        places.sort_unstable();
-        places.dedup();
-        let marks = places.iter().map(|x| format!("M{} {}h8v4h-8Z", self.left + x - 4, bottom - 2));
-        self.items.push(Item::path("arrow", marks.collect::<String>()));
+        let mut marks = String::new();
+        for x in crossings(routes, ends[1]) {
+            marks += &format!("M{} {}h8v4h-8Z", self.left + x - 4, bottom - 2);
+        }
+        self.items.push(Item::path("arrow", marks));
         self.items.push(Item::Close);
     }
 
@@ -254,18 +265,21 @@ impl Page<'_> {
             return;
         }
         self.items.push(Item::Open { class: "net", title: driver.title.clone() });
-        let pieces = net.pieces.iter();
-        let lines = pieces.map(|it| format!("M{}L{}", self.point(it.from), self.point(it.to)));
-        let lines: String = lines.collect();
+        let mut lines = String::new();
+        for piece in &net.pieces {
+            lines += &format!("M{}L{}", self.point(piece.from), self.point(piece.to));
+        }
         self.items.push(Item::path("wire", lines));
-        let arrows = net.pins.iter().map(|&pin| format!("M{}l-3 -6h6Z", self.point(pin)));
-        let arrows: String = arrows.collect();
+        let mut arrows = String::new();
+        for &pin in &net.pins {
+            arrows += &format!("M{}l-3 -6h6Z", self.point(pin));
+        }
         self.items.push(Item::path("arrow", arrows));
         if !net.junctions.is_empty() {
-            let dots = net.junctions.iter();
-            let dots =
-                dots.map(|&at| format!("M{}m-2 0a2 2 0 1 0 4 0a2 2 0 1 0 -4 0Z", self.point(at)));
-            let dots: String = dots.collect();
+            let mut dots = String::new();
+            for &junction in &net.junctions {
+                dots += &format!("M{}m-2 0a2 2 0 1 0 4 0a2 2 0 1 0 -4 0Z", self.point(junction));
+            }
             self.items.push(Item::path("arrow", dots));
         }
         self.items.push(Item::Close);
@@ -297,6 +311,21 @@ impl Page<'_> {
         }
         items.push(Item::Close);
     }
+}
+
+/// Returns the places, each once, at which wires cross the end of a stage.
+fn crossings(routes: &Routes, end: f64) -> Vec<i32> {
+    let mut places: Vec<i32> = Vec::new();
+    for net in &routes.nets {
+        for WireSegment { from, to } in &net.pieces {
+            if from.1 == to.1 && from.0 < end && end < to.0 {
+                places.push(coordinate(from.1));
+            }
+        }
+    }
+    places.sort_unstable();
+    places.dedup();
+    places
 }
 
 /// Returns the class of a box, which gives it its colour; its caption says the same.

@@ -40,19 +40,27 @@ impl Placement {
     /// Puts boxes of these `heights` into columns; `back` marks the wires that lead back, as [`back`] does. Among
     /// four layouts, it takes the one with the least height, which is the width of the page.
     pub fn new(graph: &DiagramGraph, heights: &[f64], back: &[bool]) -> Self {
-        let rankers = [Ranker::NetworkSimplex, Ranker::LongestPath];
-        let variants = rankers.into_iter().flat_map(|it| [(it, false), (it, true)]);
+        let variants = [
+            (Ranker::NetworkSimplex, false),
+            (Ranker::NetworkSimplex, true),
+            (Ranker::LongestPath, false),
+            (Ranker::LongestPath, true),
+        ];
         let placements =
             variants.map(|(ranker, last)| Self::variant(graph, heights, back, ranker, last));
-        let narrowest = placements.min_by(|a, b| a.height(heights).total_cmp(&b.height(heights)));
+        let narrowest =
+            placements.into_iter().min_by(|a, b| a.height(heights).total_cmp(&b.height(heights)));
         narrowest.expect("there are four")
     }
 
     /// Returns the height from the top of the highest box to the bottom of the lowest.
     fn height(&self, heights: &[f64]) -> f64 {
-        let boxes = || self.middle.iter().zip(heights);
-        let top = boxes().map(|(middle, height)| middle - height / 2.0).fold(f64::MAX, f64::min);
-        boxes().map(|(middle, height)| middle + height / 2.0).fold(0.0, f64::max) - top
+        let (mut top, mut bottom) = (f64::MAX, 0.0_f64);
+        for (middle, height) in self.middle.iter().zip(heights) {
+            top = top.min(middle - height / 2.0);
+            bottom = bottom.max(middle + height / 2.0);
+        }
+        bottom - top
     }
 
     /// Makes a layout by one way to rank boxes. With `handshake`, the outputs of the handshake are at the end;
@@ -66,38 +74,25 @@ impl Placement {
     ) -> Self {
         let mut layered: Layered<NodeLabel, EdgeLabel> =
             Layered::with_options(GraphOptions { multigraph: true, ..GraphOptions::default() });
-        let node = |height| NodeLabel { width: 1.0, height, ..NodeLabel::default() };
         layered.set_node(END, Some(node(1.0)));
         for (at, &height) in heights.iter().enumerate() {
             layered.set_node(at.to_string(), Some(node(height)));
-            let edge = EdgeLabel { weight: LAST, ..EdgeLabel::default() };
             if graph.boxes[at].form == BoxForm::Output
                 && (handshake || !driven_by_control(graph, at))
             {
-                layered.set_edge(at.to_string(), END.to_owned(), Some(edge), None);
+                layered.set_edge(at.to_string(), END.to_owned(), Some(edge(LAST)), None);
             }
         }
         stages(graph, &mut layered);
-        let is_port = |at: usize| matches!(graph.boxes[at].form, BoxForm::Input | BoxForm::Output);
-        let ends = |wire: usize| {
-            let (from, to) = (graph.wires[wire].from, graph.wires[wire].to);
-            let (from, to) = if back[wire] { (to, from) } else { (from, to) };
-            // Several wires between two boxes go side by side.
-            let same = |other: &DiagramWire| *other == graph.wires[wire];
-            let first = graph.wires.iter().position(same).unwrap_or(wire);
-            (from.to_string(), to.to_string(), first.to_string())
-        };
         for (at, wire) in graph.wires.iter().enumerate() {
             // A wire from a box to itself goes around the box.
             if wire.from == wire.to {
                 continue;
             }
-            let (from, to, name) = ends(at);
-            let edge = EdgeLabel {
-                weight: if is_port(wire.from) || is_port(wire.to) { PORT } else { 1 },
-                ..EdgeLabel::default()
-            };
-            layered.set_edge(from, to, Some(edge), Some(&name));
+            let (from, to, name) = edge_names(graph, back, at);
+            let weight =
+                if is_port(graph, wire.from) || is_port(graph, wire.to) { PORT } else { 1 };
+            layered.set_edge(from, to, Some(edge(weight)), Some(&name));
         }
         let options = LayoutOptions {
             rankdir: RankDir::LR,
@@ -107,37 +102,78 @@ impl Placement {
             ..LayoutOptions::default()
         };
         layout(&mut layered, Some(options));
+        Self::read(graph, heights.len(), back, &layered)
+    }
 
-        let at = |node: usize| {
-            let found = layered.node(&node.to_string());
-            found.and_then(|found| Some((found.x?, found.y?))).unwrap_or_default()
-        };
-        let places: Vec<(f64, f64)> = (0..heights.len()).map(at).collect();
-        let mut xs: Vec<f64> = places.iter().map(|place| place.0.round()).collect();
-        xs.sort_unstable_by(f64::total_cmp);
-        xs.dedup();
-        let column = |x: f64| xs.iter().position(|&column| (column - x).abs() < 1.5);
-        let passes = (0..graph.wires.len()).map(|wire| {
-            let (from, to, name) = ends(wire);
-            let edge = layered.edge(&from, &to, Some(&name));
-            let points = edge.map_or(&[][..], |edge| &edge.points);
-            // The first and the last are on the borders of the boxes.
-            let between = points.get(1..points.len().saturating_sub(1)).unwrap_or_default();
-            let mut passes: Vec<(usize, f64)> =
-                between.iter().filter_map(|point| Some((column(point.x)?, point.y))).collect();
+    /// Reads the places of boxes and wires from a finished layout.
+    fn read(
+        graph: &DiagramGraph,
+        boxes: usize,
+        back: &[bool],
+        layered: &Layered<NodeLabel, EdgeLabel>,
+    ) -> Self {
+        let mut places: Vec<(f64, f64)> = Vec::new();
+        for at in 0..boxes {
+            places.push(match layered.node(&at.to_string()) {
+                Some(NodeLabel { x: Some(x), y: Some(y), .. }) => (*x, *y),
+                _ => (0.0, 0.0),
+            });
+        }
+        let mut columns: Vec<f64> = places.iter().map(|(x, _)| x.round()).collect();
+        columns.sort_unstable_by(f64::total_cmp);
+        columns.dedup();
+        let mut all_passes = Vec::new();
+        for wire in 0..graph.wires.len() {
+            let (from, to, name) = edge_names(graph, back, wire);
+            let mut passes: Vec<(usize, f64)> = Vec::new();
+            if let Some(edge) = layered.edge(&from, &to, Some(&name)) {
+                // The first and the last are on the borders of the boxes.
+                let last = edge.points.len().saturating_sub(1);
+                for point in edge.points.get(1..last).unwrap_or_default() {
+                    if let Some(column) = nearest_column(&columns, point.x) {
+                        passes.push((column, point.y));
+                    }
+                }
+            }
             if back[wire] {
                 passes.reverse();
             }
-            passes
-        });
+            all_passes.push(passes);
+        }
         Self {
-            column: places.iter().map(|place| column(place.0).unwrap_or(0)).collect(),
-            middle: places.iter().map(|place| place.1).collect(),
-            columns: xs.len(),
-            passes: passes.collect(),
+            column: places.iter().map(|(x, _)| nearest_column(&columns, *x).unwrap_or(0)).collect(),
+            middle: places.iter().map(|(_, y)| *y).collect(),
+            columns: columns.len(),
+            passes: all_passes,
             back: back.to_vec(),
         }
     }
+}
+
+fn node(height: f64) -> NodeLabel {
+    NodeLabel { width: 1.0, height, ..NodeLabel::default() }
+}
+
+fn edge(weight: i32) -> EdgeLabel {
+    EdgeLabel { weight, ..EdgeLabel::default() }
+}
+
+fn is_port(graph: &DiagramGraph, at: usize) -> bool {
+    matches!(graph.boxes[at].form, BoxForm::Input | BoxForm::Output)
+}
+
+/// Returns the names of a wire's ends and of its edge in the layout. A wire that leads back is turned around. Several
+/// wires between two boxes, which go side by side, are one edge.
+fn edge_names(graph: &DiagramGraph, back: &[bool], wire: usize) -> (String, String, String) {
+    let DiagramWire { from, to } = graph.wires[wire];
+    let (start, end) = if back[wire] { (to, from) } else { (from, to) };
+    let first = graph.wires.iter().position(|other| *other == graph.wires[wire]).unwrap_or(wire);
+    (start.to_string(), end.to_string(), first.to_string())
+}
+
+/// Returns the index of the column at `x`, if there is one.
+fn nearest_column(columns: &[f64], x: f64) -> Option<usize> {
+    columns.iter().position(|&column| (column - x).abs() < 1.5)
 }
 
 /// Ties the boxes of each stage between two nodes that are not drawn, so that a column is in one stage.
@@ -145,24 +181,27 @@ fn stages(graph: &DiagramGraph, layered: &mut Layered<NodeLabel, EdgeLabel>) {
     if graph.stages == 0 {
         return;
     }
-    let border = |stage: usize| format!("stage {stage}");
     for stage in 0..=graph.stages {
-        let node = NodeLabel { width: 1.0, height: 1.0, ..NodeLabel::default() };
-        layered.set_node(border(stage), Some(node));
+        layered.set_node(stage_border(stage), Some(node(1.0)));
     }
-    let mut tie = |from: String, to: String| {
-        let edge = EdgeLabel { weight: 0, ..EdgeLabel::default() };
-        layered.set_edge(from, to, Some(edge), Some("tie"));
-    };
     for (at, one) in graph.boxes.iter().enumerate() {
         let (from, to) = match (one.form, one.stage) {
             (BoxForm::Input, _) => (None, Some(0)),
             (_, Some(stage)) => (Some(stage), Some(stage + 1)),
             (_, None) => (Some(graph.stages), None),
         };
-        from.into_iter().for_each(|stage| tie(border(stage), at.to_string()));
-        to.into_iter().for_each(|stage| tie(at.to_string(), border(stage)));
+        if let Some(stage) = from {
+            layered.set_edge(stage_border(stage), at.to_string(), Some(edge(0)), Some("tie"));
+        }
+        if let Some(stage) = to {
+            layered.set_edge(at.to_string(), stage_border(stage), Some(edge(0)), Some("tie"));
+        }
     }
+}
+
+/// Returns the name of the node in front of a stage.
+fn stage_border(stage: usize) -> String {
+    format!("stage {stage}")
 }
 
 /// Returns whether an output is the control unit's.
@@ -174,19 +213,23 @@ fn driven_by_control(graph: &DiagramGraph, output: usize) -> bool {
 /// Marks the wires that lead back. In each loop, it is the wire into the mux that chooses among the most inputs, if the
 /// loop has one. For example, in an accumulator it is the wire from the register to the mux in front of the adder.
 pub fn back(graph: &DiagramGraph) -> Vec<bool> {
-    let weight = |at: usize| match graph.boxes[at].form {
-        BoxForm::Block(BlockKind::Mux(inputs)) if !graph.boxes[at].control.is_empty() => 2 + inputs,
-        BoxForm::Block(BlockKind::Mux(_)) => 2,
-        BoxForm::Block(BlockKind::Register) => 1,
-        _ => 0,
-    };
     let mut order: Vec<usize> = (0..graph.wires.len()).collect();
-    order.sort_by_key(|&wire| std::cmp::Reverse(weight(graph.wires[wire].to)));
+    order.sort_by_key(|&wire| std::cmp::Reverse(back_weight(graph, graph.wires[wire].to)));
     let mut back = vec![false; graph.wires.len()];
     for wire in order {
         back[wire] = reaches(graph, &back, graph.wires[wire].to, graph.wires[wire].from);
     }
     back
+}
+
+/// Returns how well a wire that leads back may end at a box: a larger number is better.
+fn back_weight(graph: &DiagramGraph, at: usize) -> usize {
+    match graph.boxes[at].form {
+        BoxForm::Block(BlockKind::Mux(inputs)) if !graph.boxes[at].control.is_empty() => 2 + inputs,
+        BoxForm::Block(BlockKind::Mux(_)) => 2,
+        BoxForm::Block(BlockKind::Register) => 1,
+        _ => 0,
+    }
 }
 
 /// Returns whether there is a way from one box to another that does not lead back.
@@ -198,9 +241,11 @@ fn reaches(graph: &DiagramGraph, back: &[bool], from: usize, to: usize) -> bool 
             return true;
         }
         if !std::mem::replace(&mut seen[at], true) {
-            let wires = graph.wires.iter().zip(back);
-            let onward = wires.filter(|(wire, back)| wire.from == at && !**back);
-            pending.extend(onward.map(|(wire, _)| wire.to));
+            for (wire, leads_back) in graph.wires.iter().zip(back) {
+                if wire.from == at && !leads_back {
+                    pending.push(wire.to);
+                }
+            }
         }
     }
     false

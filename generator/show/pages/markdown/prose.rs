@@ -6,37 +6,45 @@ use crate::pages::account::{Align, TextTable};
 /// one is not.
 pub fn table(table: &TextTable) -> String {
     let headings: Vec<String> = table.columns.iter().map(|column| prose(&column.heading)).collect();
-    let rows: Vec<Vec<String>> =
-        table.rows.iter().map(|row| row.iter().map(|cell| prose(cell)).collect()).collect();
-    let width = |at: usize| {
-        let cells = rows.iter().map(|row| row[at].chars().count());
-        cells.fold(headings[at].chars().count().max(3), usize::max)
-    };
-    let last = table.columns.len() - 1;
-    let widths: Vec<usize> = (0..=last).map(|at| if at == last { 3 } else { width(at) }).collect();
-    let line = |cells: &[String]| {
-        let cells: Vec<String> = cells
-            .iter()
-            .zip(table.columns.iter().zip(&widths))
-            .map(|(cell, (column, &width))| match column.align {
-                Align::Left => format!("{cell:width$}"),
-                Align::Right => format!("{cell:>width$}"),
-            })
-            .collect();
-        format!("| {} |", cells.join(" | "))
-    };
-    let rule: Vec<String> = table
-        .columns
-        .iter()
-        .zip(&widths)
-        .map(|(column, &width)| match column.align {
+    let mut rows: Vec<Vec<String>> = Vec::new();
+    for row in &table.rows {
+        rows.push(row.iter().map(|cell| prose(cell)).collect());
+    }
+    let mut widths: Vec<usize> = Vec::new();
+    for (at, heading) in headings.iter().enumerate() {
+        let mut width = 3;
+        if at + 1 < headings.len() {
+            width = width.max(heading.chars().count());
+            for row in &rows {
+                width = width.max(row[at].chars().count());
+            }
+        }
+        widths.push(width);
+    }
+    let mut rule: Vec<String> = Vec::new();
+    for (column, &width) in table.columns.iter().zip(&widths) {
+        rule.push(match column.align {
             Align::Left => "-".repeat(width),
             Align::Right => "-".repeat(width - 1) + ":",
-        })
-        .collect();
-    let mut lines = vec![line(&headings), line(&rule)];
-    lines.extend(rows.iter().map(|row| line(row)));
+        });
+    }
+    let mut lines = vec![line(table, &widths, &headings), line(table, &widths, &rule)];
+    for row in &rows {
+        lines.push(line(table, &widths, row));
+    }
     lines.join("\n")
+}
+
+/// Returns one line of a table, with its cells padded to these widths.
+fn line(table: &TextTable, widths: &[usize], cells: &[String]) -> String {
+    let mut padded: Vec<String> = Vec::new();
+    for ((cell, column), &width) in cells.iter().zip(&table.columns).zip(widths) {
+        padded.push(match column.align {
+            Align::Left => format!("{cell:width$}"),
+            Align::Right => format!("{cell:>width$}"),
+        });
+    }
+    format!("| {} |", padded.join(" | "))
 }
 
 /// Escapes prose so that no sign is Markdown's, except names in backquotes. For example, `a*b` outside of backquotes
