@@ -4,7 +4,7 @@
 //! result keeps its error. Bits that turn out not to be needed are taken away again.
 
 use super::boxes::{BoxError, ResultProof};
-use super::lower::{Guards, lowered};
+use super::lower::{FoundPolynomials, Guards, lowered};
 use super::plan::ExpressionPlan;
 use super::refusal::PlanRefusal;
 use super::statement::ExpressionStatement;
@@ -26,19 +26,18 @@ const DIVISIONS: usize = 400;
 pub(super) fn allocated(
     statement: &ExpressionStatement,
 ) -> Result<(Guards, ExpressionPlan), PlanRefusal> {
-    let (_, sources) = lowered(statement, &Guards(Vec::new()), &[])?;
-    let mut guards = Guards(vec![FIRST_GUARD; sources]);
-    let mut plan = lowered(statement, &guards, &[])?.0;
+    let mut guards = Guards(Vec::new());
+    let mut plan = with_guards(statement, &mut guards)?;
     while let Some(excess) = largest_excess(statement, &plan) {
         let source = excess.source(statement, &plan, &guards)?;
         guards.0[source] += 1;
-        plan = lowered(statement, &guards, &[])?.0;
+        plan = with_guards(statement, &mut guards)?;
     }
-    for source in 0..sources {
+    for source in 0..guards.0.len() {
         while guards.0[source] > FIRST_GUARD {
             let mut fewer = guards.clone();
             fewer.0[source] -= 1;
-            let candidate = lowered(statement, &fewer, &[])?.0;
+            let candidate = with_guards(statement, &mut fewer)?;
             if largest_excess(statement, &candidate).is_some() {
                 break;
             }
@@ -47,6 +46,20 @@ pub(super) fn allocated(
         }
     }
     Ok((guards, plan))
+}
+
+/// Returns the plan with these guards. A choice of fraction bits that has none yet gets the first.
+fn with_guards(
+    statement: &ExpressionStatement,
+    guards: &mut Guards,
+) -> Result<ExpressionPlan, PlanRefusal> {
+    loop {
+        let (plan, sources) = lowered(statement, guards, &FoundPolynomials::default())?;
+        if sources <= guards.0.len() {
+            return Ok(plan);
+        }
+        guards.0.resize(sources, FIRST_GUARD);
+    }
 }
 
 /// A result that does not keep its error yet.

@@ -215,6 +215,11 @@ impl ErrorAnalysis<'_> {
             Operation::Absolute(a) => {
                 self.limit(values, a, Enclosure::between(-limits.high, limits.high));
             }
+            Operation::Narrow(a, _)
+                if self.plan.node(a).format.frac <= self.plan.node(id).format.frac =>
+            {
+                self.limit(values, a, limits);
+            }
             _ => {}
         }
     }
@@ -248,13 +253,15 @@ impl ErrorAnalysis<'_> {
             Operation::Minimum(a, b) => minimum(input(*a), input(*b)),
             Operation::Maximum(a, b) => negated(minimum(negated(input(*a)), negated(input(*b)))),
             Operation::Less(a, b) => {
-                // A bit: both where the comparison is not the same for the whole box.
-                let (a, b) = (input(*a).actual, input(*b).actual);
-                bit(a.high < b.low, a.low >= b.high)
+                let (a, b) = (input(*a), input(*b));
+                let is_less = |a: Enclosure, b: Enclosure| bit(a.high < b.low, a.low >= b.high);
+                let is_exact = a.error == NOTHING && b.error == NOTHING;
+                condition(is_less(a.ideal, b.ideal), is_less(a.actual, b.actual), is_exact)
             }
             Operation::NonZero(a) => {
-                let a = input(*a).actual;
-                bit(a.low > 0.0 || a.high < 0.0, a == NOTHING)
+                let is_nonzero = |a: Enclosure| bit(a.low > 0.0 || a.high < 0.0, a == NOTHING);
+                let a = input(*a);
+                condition(is_nonzero(a.ideal), is_nonzero(a.actual), a.error == NOTHING)
             }
             Operation::Choose { condition, cases, is_continuous } => {
                 self.chosen(*condition, *cases, *is_continuous, values)
@@ -296,6 +303,9 @@ impl ErrorAnalysis<'_> {
         };
         if !value.is_limited() {
             return Err(Undecided { node: id, what: "its value has no limit" });
+        }
+        if matches!(node.operation, Operation::Less(..) | Operation::NonZero(_)) {
+            return Ok(value);
         }
         let value = value.within(node.limits).limited(self.actual(node, values));
         if matches!(node.operation, Operation::Narrow(..) | Operation::ShiftLeft(..)) {
@@ -339,31 +349,46 @@ impl ErrorAnalysis<'_> {
         values: &[NodeError],
     ) -> NodeError {
         let [zero, one] = cases.map(|case| values[case.0]);
-        match values[condition.0].known() {
-            Some(0.0) => return zero,
-            Some(_) => return one,
-            None => {}
+        let condition = values[condition.0];
+        // Where nothing was rounded before the condition, the hardware decides as the formula does.
+        let decides_alike = is_continuous || condition.error == NOTHING;
+        match (fixed(condition.actual), fixed(condition.ideal)) {
+            (Some(taken), ideal) if decides_alike || ideal == Some(taken) => {
+                return if taken == 0.0 { zero } else { one };
+            }
+            (Some(taken), _) => {
+                let (taken, other) = if taken == 0.0 { (zero, one) } else { (one, zero) };
+                let error = taken.error + (taken.ideal - other.ideal).hull(NOTHING);
+                return NodeError::new(taken.ideal.hull(other.ideal), error);
+            }
+            _ => {}
         }
         let mut error = zero.error.hull(one.error);
-        if !is_continuous && !self.is_exact(condition, values) {
+        if !decides_alike {
             let apart = zero.ideal - one.ideal;
             error = error + apart.hull(-apart).hull(NOTHING);
         }
         NodeError::new(zero.ideal.hull(one.ideal), error)
     }
-
-    /// Returns whether a condition is computed from values without errors.
-    fn is_exact(&self, condition: NodeId, values: &[NodeError]) -> bool {
-        let inputs = self.plan.node(condition).operation.inputs();
-        inputs.iter().all(|input| values[input.0].error == NOTHING)
-    }
 }
 
-/// Returns a bit, which is 1 for the whole box, or 0 for the whole box, or neither.
-fn bit(is_one: bool, is_zero: bool) -> NodeError {
+/// Returns the values of a bit, which is 1 for the whole box, or 0 for the whole box, or neither.
+fn bit(is_one: bool, is_zero: bool) -> Enclosure {
     let low = if is_one { 1.0 } else { 0.0 };
     let high = if is_zero { 0.0 } else { 1.0 };
-    NodeError::exactly(Enclosure::between(low, high))
+    Enclosure::between(low, high)
+}
+
+/// Returns what is known of a condition, from the bit that the formula has and the bit that the hardware has. If nothing
+/// was rounded before it, both are the same bit.
+fn condition(ideal: Enclosure, actual: Enclosure, is_exact: bool) -> NodeError {
+    let error = if is_exact { NOTHING } else { actual - ideal };
+    NodeError { ideal, error, actual }
+}
+
+/// Returns the value, if the limits leave a single one.
+fn fixed(limits: Enclosure) -> Option<f64> {
+    (limits.low == limits.high).then_some(limits.low)
 }
 
 fn product(a: NodeError, b: NodeError, is_square: bool) -> NodeError {
@@ -484,8 +509,17 @@ fn approximated(
     let mut error = NOTHING;
     if !is_exact {
         let whole = operand.ideal.hull(inside(actual));
-        let (_, slope) = formula.slope("x", whole).map_err(|_| undecided)?;
-        error = slope * operand.error;
+        // The value at the hardware's operand, minus the value at the ideal one.
+        let at_actual = formula.enclose(&[("x", inside(actual))]).map_err(|_| undecided)?;
+        error = at_actual - ideal;
+        if let Ok((_, slope)) = formula.slope("x", whole) {
+            let by_slope = slope * operand.error;
+            let low = error.low.max(by_slope.low);
+            let high = error.high.min(by_slope.high);
+            if low <= high {
+                error = Enclosure::between(low, high);
+            }
+        }
     }
     if own_errors {
         let own = approximation.error();

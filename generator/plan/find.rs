@@ -8,7 +8,7 @@ use glint_approximate::Wish;
 use super::allocate::allocated;
 use super::boxes::ResultProof;
 use super::exhaust::largest_errors;
-use super::lower::lowered;
+use super::lower::{FoundPolynomials, Guards, lowered};
 use super::plan::ExpressionPlan;
 use super::refusal::PlanRefusal;
 use super::statement::ExpressionStatement;
@@ -70,14 +70,7 @@ pub fn find(statement: &ExpressionStatement) -> FindResult {
 
 fn searched(statement: &ExpressionStatement) -> Result<ProvedPlan, PlanRefusal> {
     let (guards, estimate) = allocated(statement)?;
-    let mut found = Vec::new();
-    for function in estimate.functions() {
-        let wish = Wish::default();
-        let polynomials = glint_approximate::find(function, wish)
-            .map_err(|refusal| PlanRefusal::new(refusal.message, refusal.remedy))?;
-        found.push(polynomials);
-    }
-    let (plan, _) = lowered(statement, &guards, &found)?;
+    let plan = with_polynomials(statement, &guards, estimate)?;
     let mut bounds = enclosed_errors(statement, &plan)?;
     let mut proof = ProofKind::Enclosed;
     if statement.combinations() <= 1 << MOST_COMBINATIONS {
@@ -87,6 +80,36 @@ fn searched(statement: &ExpressionStatement) -> Result<ProvedPlan, PlanRefusal> 
         }
     }
     Ok(ProvedPlan { statement: statement.clone(), plan, bounds, proof })
+}
+
+/// Returns the plan with polynomials for all of its functions.
+///
+/// Polynomials may have results of another width than was estimated, and then a function that reads them has another
+/// operand. So the plan is made anew until each function has the polynomials that were found for it.
+fn with_polynomials(
+    statement: &ExpressionStatement,
+    guards: &Guards,
+    estimate: ExpressionPlan,
+) -> Result<ExpressionPlan, PlanRefusal> {
+    let mut found = FoundPolynomials::default();
+    let mut plan = estimate;
+    loop {
+        let mut is_complete = true;
+        for approximation in plan.approximations() {
+            if approximation.polynomials.is_some() {
+                continue;
+            }
+            is_complete = false;
+            let function = &approximation.function;
+            let polynomials = glint_approximate::find(function, Wish::default())
+                .map_err(|refusal| PlanRefusal::new(refusal.message, refusal.remedy))?;
+            found.insert(function, polynomials);
+        }
+        if is_complete {
+            return Ok(plan);
+        }
+        plan = lowered(statement, guards, &found)?.0;
+    }
 }
 
 /// Returns a proved bound of the error of each result.

@@ -7,6 +7,7 @@ mod direction;
 mod quotient;
 mod root;
 
+use std::collections::HashMap;
 use std::sync::Arc;
 
 use glint_approximate::{Curve, Outside, Piecewise, TargetFunction};
@@ -43,21 +44,35 @@ const LIMIT_THE_OPERANDS: &str =
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub(super) struct Guards(pub(super) Vec<i32>);
 
-/// The polynomials that were found for the functions of a plan, in the order of their nodes.
-pub(super) type Found = [Arc<Piecewise>];
+/// The polynomials that were found so far, by the functions that they approximate.
+#[derive(Clone, Debug, Default)]
+pub(super) struct FoundPolynomials(HashMap<String, Arc<Piecewise>>);
+
+impl FoundPolynomials {
+    /// Adds the polynomials of a function.
+    pub(super) fn insert(&mut self, function: &TargetFunction, polynomials: Arc<Piecewise>) {
+        self.0.insert(format!("{function:?}"), polynomials);
+    }
+
+    /// Returns the polynomials of exactly this function, with its domain and its formats.
+    fn get(&self, function: &TargetFunction) -> Option<Arc<Piecewise>> {
+        if self.0.is_empty() {
+            return None;
+        }
+        self.0.get(&format!("{function:?}")).cloned()
+    }
+}
 
 /// A plan in the making.
 pub(super) struct Lowering<'s> {
     statement: &'s ExpressionStatement,
     guards: &'s Guards,
-    found: &'s Found,
+    found: &'s FoundPolynomials,
     plan: ExpressionPlan,
     /// The parts that have a node already.
     known: Vec<(Expression, NodeId)>,
     /// The number of places where the plan rounds, so far.
     sources: usize,
-    /// The number of functions of one number, so far.
-    functions: usize,
     /// The fraction bits of the result that has the most of them.
     finest: i32,
 }
@@ -69,7 +84,7 @@ pub(super) struct Lowering<'s> {
 pub(super) fn lowered(
     statement: &ExpressionStatement,
     guards: &Guards,
-    found: &Found,
+    found: &FoundPolynomials,
 ) -> Result<(ExpressionPlan, usize), PlanRefusal> {
     let finest = statement.results.iter().map(|result| result.fraction as i32).max();
     let mut lowering = Lowering {
@@ -79,7 +94,6 @@ pub(super) fn lowered(
         plan: ExpressionPlan::default(),
         known: Vec::new(),
         sources: 0,
-        functions: 0,
         finest: finest.unwrap_or(0),
     };
     for (number, operand) in statement.operands.iter().enumerate() {
@@ -125,7 +139,8 @@ impl<'s> Lowering<'s> {
         })
     }
 
-    /// Takes the next choice of fraction bits, beside `frac`, and gives its number to the node that `make` adds.
+    /// Takes the next choice of fraction bits, beside `frac`, and gives its number to the node that `make` adds. The choice is
+    /// taken even where `make` finds that nothing need be rounded: the numbers of the later choices stay the same.
     fn rounding(
         &mut self,
         frac: i32,
@@ -140,11 +155,6 @@ impl<'s> Lowering<'s> {
             self.plan.nodes[node.0].source = Some(source);
         }
         Ok(node)
-    }
-
-    /// Returns a node with fewer bits, at a choice of fraction bits.
-    fn shortened(&mut self, name: &str, node: NodeId, frac: i32) -> Result<NodeId, PlanRefusal> {
-        self.rounding(frac, |own, frac| own.plan.shorten(name, node, frac, Rounding::Nearest))
     }
 
     /// Returns the node of a part of a formula.
@@ -178,11 +188,13 @@ impl<'s> Lowering<'s> {
         }
         let node = self.part(&core)?;
         let range = self.range(&core)?;
-        let frac = self.plan.node(node).format.frac.min(self.finest);
-        let node = match self.plan.node(node).format.width() {
-            ..=WIDEST_OPERAND => node,
-            _ => self.shortened("operand", node, frac)?,
-        };
+        let format = self.plan.node(node).format;
+        let node = self.rounding(format.frac.min(self.finest), |own, frac| {
+            if format.width() <= WIDEST_OPERAND {
+                return Ok(node);
+            }
+            own.plan.shorten("operand", node, frac, Rounding::Nearest)
+        })?;
         self.function("curve", node, &function, range)
     }
 
@@ -283,10 +295,12 @@ impl<'s> Lowering<'s> {
     fn factor(&mut self, part: &Expression) -> Result<NodeId, PlanRefusal> {
         let node = self.part(part)?;
         let format = self.plan.node(node).format;
-        if format.width() <= WIDEST_FACTOR {
-            return Ok(node);
-        }
-        self.shortened("factor", node, self.finest)
+        self.rounding(self.finest, |own, frac| {
+            if format.width() <= WIDEST_FACTOR {
+                return Ok(node);
+            }
+            own.plan.shorten("factor", node, frac, Rounding::Nearest)
+        })
     }
 
     fn choice(
@@ -365,8 +379,7 @@ impl<'s> Lowering<'s> {
             (values.low * unit - UNITS).floor() as i128,
             (values.high * unit + UNITS).ceil() as i128,
         );
-        let polynomials = self.found.get(self.functions).cloned();
-        self.functions += 1;
+        let polynomials = self.found.get(&target);
         let approximation = Approximation { function: target, polynomials };
         self.plan.polynomial(name, node, approximation, values)
     }

@@ -1,6 +1,5 @@
 //! Holds a plan, and builds one node after the other with the format that each result needs.
 
-use glint_approximate::TargetFunction;
 use glint_base::fixed::{Format, MAX_WIDTH, Rounding};
 use glint_base::interval::{self, Interval};
 use glint_formula::Enclosure;
@@ -364,10 +363,13 @@ impl ExpressionPlan {
     }
 
     /// Returns the functions of one number that the plan approximates, in the order of their nodes.
-    pub fn functions(&self) -> impl Iterator<Item = &TargetFunction> {
-        self.nodes.iter().filter_map(|node| match &node.operation {
-            Operation::Polynomial(_, approximation) => Some(&approximation.function),
-            _ => None,
-        })
+    pub fn approximations(&self) -> Vec<&Approximation> {
+        let mut all = Vec::new();
+        for node in &self.nodes {
+            if let Operation::Polynomial(_, approximation) = &node.operation {
+                all.push(&**approximation);
+            }
+        }
+        all
     }
 }

@@ -66,12 +66,12 @@ impl Lowering<'_> {
         let shifted =
             self.plan.shift_left("dividend_shifted", dividend, octave.places, shifted_format)?;
         self.plan.nodes[shifted.0].limits = limits;
-        let shifted = match self.plan.node(shifted).format.width() {
-            ..=WIDEST_FACTOR => shifted,
-            _ => self.rounding(finest + octave.exponent, |own, frac| {
-                own.plan.shorten("dividend_shortened", shifted, frac, Rounding::Nearest)
-            })?,
-        };
+        let shifted = self.rounding(finest + octave.exponent, |own, frac| {
+            if own.plan.node(shifted).format.width() <= WIDEST_FACTOR {
+                return Ok(shifted);
+            }
+            own.plan.shorten("dividend_shortened", shifted, frac, Rounding::Nearest)
+        })?;
         let product = self.plan.multiply("ratio", shifted, inverse)?;
         let ratio = self.plan.scale("ratio_scaled", product, -octave.exponent)?;
         self.plan.nodes[ratio.0].limits =

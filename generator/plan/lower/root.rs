@@ -44,6 +44,8 @@ fn doubled_exponent(formula: &Expression) -> Option<RBig> {
 
 /// A word as a fraction within one octave, and the places by which it was shifted.
 pub(super) struct Octave {
+    /// The word, without a sign.
+    pub(super) word: NodeId,
     /// The fraction, shortened to the bits that the table takes.
     pub(super) mantissa: NodeId,
     /// The places, or pairs of places.
@@ -93,7 +95,7 @@ impl Lowering<'_> {
             return Ok(Some(shifted));
         }
         let zero = self.plan.constant("zero", 0, self.plan.node(shifted).format.frac)?;
-        let is_some = self.plan.nonzero("is_nonzero", node)?;
+        let is_some = self.plan.nonzero("is_nonzero", octave.word)?;
         self.plan.choose("power_or_zero", is_some, [zero, shifted], false).map(Some)
     }
 
@@ -118,7 +120,7 @@ impl Lowering<'_> {
         let bits = self.plan.node(mantissa).format.frac;
         let first = 1i64 << (bits - if by_pairs { 2 } else { 1 });
         let domain = (first, (1i64 << bits) - 1);
-        Ok(Octave { mantissa, places, exponent: word_format.int, domain })
+        Ok(Octave { word, mantissa, places, exponent: word_format.int, domain })
     }
 
     /// Returns a number of places times a small constant.
