@@ -196,6 +196,10 @@ impl<'d, 'p> PlanDatapath<'d, 'p> {
             Operation::Narrow(a, rounding) => {
                 return d.narrow(name, input(a), *format, *rounding, Overflow::Wrap);
             }
+            Operation::IntegerPart(a) => {
+                return d.narrow(name, input(a), *format, Rounding::Truncate, Overflow::Wrap);
+            }
+            Operation::FractionPart(a, _) => input(a).bits(0, *format),
             Operation::Normalise { word, by_pairs } => {
                 let [normalised, places] = normalised(d, name, input(word), *by_pairs);
                 // The node of the places follows the word.

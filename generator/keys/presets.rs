@@ -58,7 +58,7 @@ const COORDINATE: OperandFormat = (true, 16, 15);
 /// From 0 to below 1, with 16 bits.
 const PART_OF_ONE: OperandFormat = (false, 16, 16);
 
-const EXPRESSIONS: [ExpressionPreset; 9] = [
+const EXPRESSIONS: [ExpressionPreset; 10] = [
     ExpressionPreset {
         name: "divide",
         operands: &[("x", PART_OF_ONE), ("y", PART_OF_ONE)],
@@ -97,6 +97,12 @@ const EXPRESSIONS: [ExpressionPreset; 9] = [
         operands: &[("x", COORDINATE), ("y", COORDINATE), ("turn", PART_OF_ONE)],
         parts: &[("s", "sin(2 * pi * turn)"), ("c", "cos(2 * pi * turn)")],
         results: &[("u", "x * c - y * s", 15, ""), ("v", "x * s + y * c", 15, "")],
+    },
+    ExpressionPreset {
+        name: "pow",
+        operands: &[("x", PART_OF_ONE), ("y", PART_OF_ONE)],
+        parts: &[],
+        results: &[("r", "x ^ y", 15, "x > 0")],
     },
     ExpressionPreset {
         name: "multiply-add",

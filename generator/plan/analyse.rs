@@ -14,6 +14,9 @@ use glint_formula::Enclosure;
 use super::node::{Approximation, NodeId, Operation, PlanNode, normalising_shifts};
 use super::plan::ExpressionPlan;
 
+/// The values of an integer part that are followed one by one.
+const MOST_INTEGERS: i64 = 70;
+
 /// What is known of a node for all operands within a box.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct NodeError {
@@ -121,6 +124,10 @@ impl ErrorAnalysis<'_> {
                 known.values.push(NodeError::UNKNOWN);
             } else if let Operation::Normalise { word, by_pairs } = node.operation {
                 return self.each_shift(word, by_pairs, &known, operands, visit);
+            } else if let Operation::IntegerPart(a) = node.operation
+                && let Some(integers) = self.integers(a, &known.values)
+            {
+                return self.each_integer(a, integers, &known, operands, visit);
             } else {
                 match self.value(id, &known.values, operands) {
                     Ok(value) => known.values.push(value),
@@ -179,6 +186,32 @@ impl ErrorAnalysis<'_> {
             branch.values.push(NodeError::new(scaled(ideal, factor), scaled(error, factor)));
             let count = Enclosure::exactly(f64::from(shift / step));
             self.with_places(branch, count, operands, visit);
+        }
+    }
+
+    /// Returns the integer parts that a node can have, the first and the last; `None` if they are too many.
+    fn integers(&self, id: NodeId, values: &[NodeError]) -> Option<(i64, i64)> {
+        let actual = values[id.0].actual;
+        let (first, last) = (actual.low.floor() as i64, actual.high.floor() as i64);
+        (last - first < MOST_INTEGERS).then_some((first, last))
+    }
+
+    /// Continues behind an integer part, once for each value that it can have.
+    fn each_integer(
+        &self,
+        id: NodeId,
+        (first, last): (i64, i64),
+        known: &Known,
+        operands: &[(&str, Enclosure)],
+        visit: &mut Visit<'_>,
+    ) {
+        let unit = exp2(-self.plan.node(id).format.frac);
+        for integer in first..=last {
+            let mut branch = known.clone();
+            let limits = Enclosure::between(integer as f64, integer as f64 + 1.0 - unit);
+            self.limit(&mut branch.values, id, limits);
+            branch.values.push(NodeError::exactly(Enclosure::exactly(integer as f64)));
+            self.run_from(branch, operands, visit);
         }
     }
 
@@ -283,6 +316,15 @@ impl ErrorAnalysis<'_> {
             }
             Operation::Normalise { .. } | Operation::Places(_) => {
                 unreachable!("each_shift gives the values of these nodes")
+            }
+            Operation::IntegerPart(_) => {
+                return Err(Undecided { node: id, what: "its integer part has too many values" });
+            }
+            Operation::FractionPart(a, integer) => {
+                let (a, integer) = (input(*a), input(*integer));
+                let value = NodeError::new(a.ideal - integer.ideal, a.error);
+                let most = 1.0 - exp2(-node.format.frac);
+                value.limited(Enclosure::between(0.0, most)).limited(a.actual - integer.ideal)
             }
             Operation::ShiftLeft(a, places) => {
                 let factor = exp2(known_places(id, input(*places))?);

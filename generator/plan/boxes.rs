@@ -172,7 +172,7 @@ pub(super) fn best_halves<K: BoxScore>(
     limits: &OperandBox,
     known: &dyn Fn(&OperandBox) -> Option<K>,
 ) -> Option<Vec<K>> {
-    let mut best: Option<((usize, f64, u64), Vec<K>)> = None;
+    let mut best: Option<((usize, f64, f64, u64), Vec<K>)> = None;
     for operand in 0..limits.len() {
         let Some(halves) = halves_along(limits, operand) else { continue };
         let mut found = Vec::new();
@@ -180,11 +180,18 @@ pub(super) fn best_halves<K: BoxScore>(
             found.extend(known(half));
         }
         let unknown = found.iter().filter(|half| half.score().is_infinite()).count();
-        let finite = found.iter().map(BoxScore::score).filter(|score| score.is_finite());
-        let largest = finite.fold(0.0, f64::max);
+        let mut largest = f64::NEG_INFINITY;
+        let mut sum = 0.0;
+        for half in &found {
+            let score = half.score();
+            if score.is_finite() {
+                largest = f64::max(largest, score);
+                sum += score;
+            }
+        }
         let (low, high) = limits[operand];
         // Of operands that are equally good, the one with the most values.
-        let rank = (unknown, largest, u64::MAX - high.abs_diff(low));
+        let rank = (unknown, largest, sum, u64::MAX - high.abs_diff(low));
         if best.as_ref().is_none_or(|(other, _)| rank < *other) {
             best = Some((rank, found));
         }

@@ -61,6 +61,8 @@ impl ExpressionPlan {
                 };
                 wrapped(node, rounded)
             }
+            Operation::IntegerPart(a) => known(*a) >> self.node(*a).format.frac,
+            Operation::FractionPart(a, _) => node.format.raw(node.format.bits(known(*a))),
             Operation::Normalise { word, by_pairs } => {
                 normalised(known(*word), self.node(*word).format.width(), *by_pairs).0
             }

@@ -4,6 +4,7 @@
 //! example, `sqrt(x^2 + y^2)` is a root of the part `x^2 + y^2`. Sums and products of parts are computed as they are.
 
 mod direction;
+mod exponential;
 mod quotient;
 mod root;
 
@@ -186,6 +187,12 @@ impl<'s> Lowering<'s> {
         {
             return Ok(node);
         }
+        if let Some(node) = self.logarithm(&core, &function)? {
+            return Ok(node);
+        }
+        if let Some(node) = self.exponential(&core, &function)? {
+            return Ok(node);
+        }
         let node = self.part(&core)?;
         let range = self.range(&core)?;
         let format = self.plan.node(node).format;
@@ -252,10 +259,7 @@ impl<'s> Lowering<'s> {
                 let a = self.part(a)?;
                 self.plan.multiply("square", a, a)
             }
-            Operator::Power => Err(PlanRefusal::new(
-                "a power whose base and exponent both vary has no rule yet",
-                "write exp2(y * log2(x)) with a [let] part for the product, or make one of them a number",
-            )),
+            Operator::Power => self.part(&exponential::written_with_logarithm(a, b, &part.span)),
             Operator::Mod => Err(PlanRefusal::new(
                 "a remainder by a number that varies has no rule",
                 "write the remainder by a number, x % 1 for example",
@@ -369,10 +373,12 @@ impl<'s> Lowering<'s> {
             error: UNITS,
         };
         let values = function_range(function, operand, domain).ok_or_else(|| {
-            PlanRefusal::new(
-                "this is not finite, or has no value, for some of the operands",
-                LIMIT_THE_OPERANDS,
-            )
+            let [from, to] = [domain.0, domain.1].map(|raw| operand.to_f64(raw.into()));
+            let formula = function.python();
+            let message = format!(
+                "this is not finite, or has no value, for some of the operands: {formula} for x from {from} to {to}"
+            );
+            PlanRefusal::new(message, LIMIT_THE_OPERANDS)
         })?;
         let unit = exp2(fraction as i32);
         let values = (

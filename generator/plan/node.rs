@@ -73,6 +73,10 @@ pub enum Operation {
     /// The value in the format of the result: low bits are rounded off, and high bits are dropped. The proof shows that
     /// the dropped bits are copies of the sign.
     Narrow(NodeId, Rounding),
+    /// The greatest integer that is not above a.
+    IntegerPart(NodeId),
+    /// a minus its integer part, which is the second node: from 0 to below 1.
+    FractionPart(NodeId, NodeId),
     /// The bits of an unsigned word, shifted left until the top one is 1, read as a fraction from 1/2 to below 1. By
     /// pairs, the shift is even, and the fraction from 1/4 to below 1. A word of zeros stays so.
     Normalise {
@@ -118,6 +122,7 @@ impl Operation {
             | Self::NonZero(a)
             | Self::Scale(a)
             | Self::Narrow(a, _)
+            | Self::IntegerPart(a)
             | Self::Normalise { word: a, .. }
             | Self::Places(a)
             | Self::Polynomial(a, _) => vec![*a],
@@ -127,6 +132,7 @@ impl Operation {
             | Self::Minimum(a, b)
             | Self::Maximum(a, b)
             | Self::Less(a, b)
+            | Self::FractionPart(a, b)
             | Self::ShiftLeft(a, b)
             | Self::ShiftRight(a, b) => vec![*a, *b],
             Self::Choose { condition, cases, .. } => vec![*condition, cases[0], cases[1]],

@@ -305,6 +305,23 @@ impl ExpressionPlan {
         self.narrow(name, a, Format::holding(range.0, range.1, frac), rounding)
     }
 
+    /// Adds the integer part and the fraction part of a, which must have fraction bits.
+    pub(super) fn split(&mut self, name: &str, a: NodeId) -> Result<[NodeId; 2], PlanRefusal> {
+        let node = self.node(a);
+        let (frac, range) = (node.format.frac, node.range);
+        let integers = (range.0 >> frac, range.1 >> frac);
+        let integer_name = format!("{name}_integer");
+        let integer = self.exact(&integer_name, Operation::IntegerPart(a), integers, 0)?;
+        let format = Format::unsigned(0, frac);
+        let fraction = self.insert(
+            &format!("{name}_fraction"),
+            Operation::FractionPart(a, integer),
+            format,
+            format.range(),
+        )?;
+        Ok([integer, fraction])
+    }
+
     /// Adds the word that [`Operation::Normalise`] gives, and its places.
     pub(super) fn normalise(
         &mut self,

@@ -32,12 +32,15 @@ fn comparison(text: &str) -> Comparison {
     }
 }
 
+/// The largest error of a combination is computed in f64, with a margin: it may be larger than the bound by this.
+const ROUNDING: f64 = 1e-9;
+
 /// The statements of the tests: formulas of x and y, the format of both, and where the errors are promised.
 fn statements(bits: i32) -> Vec<ExpressionStatement> {
     let signed = Format::signed(0, bits - 1);
     let unsigned = Format::unsigned(0, bits);
     let not_origin = Some("x^2 + y^2 > 0");
-    let cases: [(&[&str], Format, Option<&str>); 9] = [
+    let cases: [(&[&str], Format, Option<&str>); 11] = [
         (&["x * y"], signed, None),
         (&["sqrt(x^2 + y^2)"], signed, None),
         (&["atan2(y, x) / pi"], signed, not_origin),
@@ -47,6 +50,8 @@ fn statements(bits: i32) -> Vec<ExpressionStatement> {
         (&["if(x > y, x - y, 3 * y)", "abs(x - y) / 3"], signed, None),
         (&["sin(x) * y + 0.3", "1 / sqrt(1 + x * y)"], unsigned, None),
         (&["sqrt(x^2 + y^2)", "atan2(y, x) / pi"], signed, not_origin),
+        (&["x ^ y"], unsigned, Some("x > 0")),
+        (&["exp(-8 * (x + y))", "ln(x + y + 1 / 64)"], unsigned, None),
     ];
     let mut statements = Vec::new();
     for (formulas, format, promise) in cases {
@@ -67,15 +72,13 @@ fn statements(bits: i32) -> Vec<ExpressionStatement> {
 fn enclosed_errors_hold_for_every_combination() {
     for bits in [5, 8] {
         for statement in statements(bits) {
-            let found =
-                find(&statement).unwrap_or_else(|refusal| panic!("{refusal:?} {statement:#?}"));
+            let found = find(&statement).unwrap_or_else(|refusal| panic!("{refusal:?}"));
             let enclosed = enclosed_errors(&statement, &found.plan).expect("a proof");
             let largest = largest_errors(&statement, &found.plan).expect("values");
             for ((enclosed, largest), result) in
                 enclosed.iter().zip(&largest).zip(&statement.results)
             {
-                // The largest error is rounded up.
-                assert!(*largest <= enclosed.next_up());
+                assert!(*largest <= enclosed + ROUNDING);
                 assert!(*enclosed < result.error, "{statement:?}");
                 // A bound of several times the error would be useless.
                 assert!(*enclosed < 4.0 * largest + 0.1, "{enclosed} for {largest}: {statement:?}");
@@ -133,7 +136,6 @@ fn refusals_name_the_part_and_a_remedy() {
     for (formula, promise, message, remedy) in [
         ("1 + x / y", None, "this is not finite", "where"),
         ("z + x", None, "there is no operand `z`", "name an operand"),
-        ("(2 + x) ^ y", None, "a power whose base and exponent both vary", "exp2"),
         ("x % (y + 2)", None, "a remainder by a number that varies", "x % 1"),
         ("sqrt(x + y)", None, "this is not finite, or has no value", "where"),
         ("atan2(y, x)", None, "not finite, or has no value", "where"),
@@ -193,7 +195,7 @@ impl Draws {
         let a = self.formula(depth - 1);
         let other_depth = self.below(u64::from(depth)) as u32;
         let b = self.formula(other_depth);
-        match self.below(20) {
+        match self.below(23) {
             0 => format!("({a}) + ({b})"),
             1 => format!("({a}) - ({b})"),
             2 => format!("({a}) * ({b})"),
@@ -213,6 +215,9 @@ impl Draws {
             16 => format!("-({a})"),
             17 => format!("tanh({a}) * ({b})"),
             18 => format!("({a}) / ({b})"),
+            19 => format!("exp2(6 * ({a}))"),
+            20 => format!("ln(1 / 128 + abs({a}))"),
+            21 => format!("(0.1 + abs({a})) ^ ({b})"),
             _ => format!("log2(1 + abs({a}))"),
         }
     }
@@ -245,7 +250,10 @@ fn random_formulas_are_proved_or_refused() {
                 proved += 1;
                 let enclosed = enclosed_errors(&statement, &found.plan).expect("a proof");
                 let largest = largest_errors(&statement, &found.plan).expect("values");
-                assert!(largest[0] <= enclosed[0].next_up(), "{formula}: {largest:?} {enclosed:?}");
+                assert!(
+                    largest[0] <= enclosed[0] + ROUNDING,
+                    "{formula}: {largest:?} {enclosed:?}"
+                );
                 assert!(found.bounds[0] < 1.0, "{formula}: {:?}", found.bounds);
             }
             Err(refusal) => {

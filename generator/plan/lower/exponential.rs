@@ -1,0 +1,131 @@
+//! Rewrites logarithms and exponential functions of parts with many octaves: one table serves a single octave.
+//!
+//! A word v is m · 2^k with m from 1/2 to below 1, so that log₂ v is log₂ m + k: a table, and a sum. The other way, 2^u is
+//! 2^f · 2^i for the integer part i and the fraction part f of u: a table, and a shift.
+
+use std::ops::Range;
+
+use glint_base::fixed::Rounding;
+use glint_formula::{Expression, Function, Kind, Operator};
+
+use super::root::FEW_OCTAVES;
+use super::{Lowering, number};
+use crate::node::NodeId;
+use crate::refusal::PlanRefusal;
+
+/// The exponents of an exponential function whose values are one table, from the smallest to the largest.
+const SHORT_EXPONENTS: f64 = 3.0;
+
+/// Returns a^b as 2^(b · log₂ a), with one place in the text for all of its parts.
+pub(super) fn written_with_logarithm(
+    a: &Expression,
+    b: &Expression,
+    place: &Range<usize>,
+) -> Expression {
+    let part = |kind: Kind| Expression::new(kind, place.clone());
+    let logarithm = part(Kind::Unary(Function::Log2, Box::new(a.clone())));
+    let exponent = part(Kind::Binary(Operator::Mul, Box::new(b.clone()), Box::new(logarithm)));
+    part(Kind::Unary(Function::Exp2, Box::new(exponent)))
+}
+
+/// Returns the base of an exponential function of x: the number, or nothing for 2. Any other formula gives `None`.
+fn base_of(function: &Expression) -> Option<Option<Expression>> {
+    let operand = Expression::operand("x");
+    match &function.kind {
+        Kind::Unary(Function::Exp2, a) if **a == operand => Some(None),
+        Kind::Unary(Function::Exp, a) if **a == operand => Some(Some(number("e"))),
+        Kind::Binary(Operator::Power, a, b) if **b == operand && a.operands().is_empty() => {
+            let is_two = **a == number("2");
+            Some(if is_two { None } else { Some((**a).clone()) })
+        }
+        _ => None,
+    }
+}
+
+impl Lowering<'_> {
+    /// Returns the node of a logarithm, if its part has many octaves.
+    pub(super) fn logarithm(
+        &mut self,
+        core: &Expression,
+        function: &Expression,
+    ) -> Result<Option<NodeId>, PlanRefusal> {
+        let Kind::Unary(kind @ (Function::Log2 | Function::Ln), operand) = &function.kind else {
+            return Ok(None);
+        };
+        if **operand != Expression::operand("x") {
+            return Ok(None);
+        }
+        let range = self.range(core)?;
+        if range.low <= 0.0 || range.high < range.low * FEW_OCTAVES {
+            return Ok(None);
+        }
+        let node = self.part(core)?;
+        let octave = self.octave(node, range, false)?;
+        let finest = self.finest;
+        let within = self.rounding(finest + 2, |own, frac| {
+            own.approximation("logarithm", octave.mantissa, &number("log2(x)"), octave.domain, frac)
+        })?;
+        let exponent = self.plan.constant("exponent", octave.exponent.into(), 0)?;
+        let octaves = self.plan.subtract("octaves", exponent, octave.places)?;
+        let logarithm = self.plan.add("logarithm_of_word", octaves, within)?;
+        if *kind == Function::Log2 {
+            return Ok(Some(logarithm));
+        }
+        let factor = self.number(&number("ln(2)"))?;
+        self.plan.multiply("natural_logarithm", logarithm, factor).map(Some)
+    }
+
+    /// Returns the node of an exponential function, if its exponents are many.
+    pub(super) fn exponential(
+        &mut self,
+        core: &Expression,
+        function: &Expression,
+    ) -> Result<Option<NodeId>, PlanRefusal> {
+        let Some(base) = base_of(function) else { return Ok(None) };
+        let exponents = match &base {
+            None => core.clone(),
+            Some(base) => {
+                let place = &core.span;
+                let part = |kind: Kind| Expression::new(kind, place.clone());
+                let logarithm = part(Kind::Unary(Function::Log2, Box::new(base.clone())));
+                let kind = Kind::Binary(Operator::Mul, Box::new(core.clone()), Box::new(logarithm));
+                part(kind)
+            }
+        };
+        let range = self.range(&exponents)?;
+        if range.high - range.low < SHORT_EXPONENTS {
+            return Ok(None);
+        }
+        let exact = self.part(&exponents)?;
+        let finest = self.finest;
+        let exponent = self.rounding(finest + 2, |own, frac| {
+            own.plan.shorten("exponent", exact, frac.max(1), Rounding::Nearest)
+        })?;
+        if self.plan.node(exponent).format.frac < 1 {
+            return Ok(None);
+        }
+        let [integer, fraction] = self.plan.split("exponent", exponent)?;
+        let bits = self.plan.node(fraction).format.frac;
+        // Rounding can carry the exponent to the next integer.
+        let largest = (range.high.floor() as i32 + 1).min(self.plan.node(integer).range.1 as i32);
+        let domain = (0, (1i64 << bits) - 1);
+        let frac = (finest + 2 + largest).max(0);
+        let within = self.rounding(frac, |own, frac| {
+            own.approximation("octave", fraction, &number("exp2(x)"), domain, frac)
+        })?;
+        let source = self.plan.node(within).source;
+        let scaled = self.plan.scale("octave_scaled", within, largest)?;
+        let top = self.plan.constant("top_exponent", largest.into(), 0)?;
+        let places = self.plan.subtract("octaves_below", top, integer)?;
+        let least = self.plan.node(places).range.0.max(0);
+        let most = self.plan.node(places).range.1.clamp(least, MOST_PLACES);
+        let format = glint_base::fixed::Format::holding(0, most, 0);
+        let places = self.plan.narrow("places", places, format, Rounding::Truncate)?;
+        let shifted = self.plan.shift_right("exponential", scaled, places)?;
+        self.plan.nodes[shifted.0].source = source;
+        Ok(Some(shifted))
+    }
+}
+
+/// The most places of a shift. Beyond them nothing is left of any word.
+const MOST_PLACES: i128 = 63;
