@@ -36,7 +36,10 @@ pub fn bar(output: OutputOptions, total: u64, what: &str) -> ProgressBar {
         ProgressDrawTarget::stderr()
     };
     let without = !output.json && !output.quiet && !console::Term::stderr().is_term();
-    let width = console::Term::stderr().size_checked().map_or(USUAL, |(_, width)| width);
+    let width = match console::Term::stderr().size_checked() {
+        Some((_, width)) => width,
+        None => USUAL,
+    };
     let bar = styled(ProgressBar::with_draw_target(Some(total), target), usize::from(width), what);
     if without {
         let (watched, what) = (bar.downgrade(), what.to_owned());
@@ -47,13 +50,19 @@ pub fn bar(output: OutputOptions, total: u64, what: &str) -> ProgressBar {
 
 /// Writes a line after ten seconds and then a line a minute about a bar that nothing draws, until it is finished or dropped.
 fn told(bar: &WeakProgressBar, what: &str) {
-    for wait in std::iter::once(FIRST).chain(std::iter::repeat(EVERY)) {
+    let mut wait = FIRST;
+    loop {
         std::thread::sleep(wait);
-        let Some(bar) = bar.upgrade().filter(|bar| !bar.is_finished()) else { return };
+        wait = EVERY;
+        let Some(bar) = bar.upgrade() else { return };
+        if bar.is_finished() {
+            return;
+        }
         let (done, all) = (bar.position(), bar.length().unwrap_or(0));
-        let left = remaining(bar.elapsed(), done, all);
-        let left = left.map_or_else(String::new, |left| format!(", about {left} left"));
-        eprintln!("{what}: {done} of {all}{left}");
+        match remaining(bar.elapsed(), done, all) {
+            Some(left) => eprintln!("{what}: {done} of {all}, about {left} left"),
+            None => eprintln!("{what}: {done} of {all}"),
+        }
     }
 }
 
@@ -74,27 +83,30 @@ fn styled(bar: ProgressBar, width: usize, what: &str) -> ProgressBar {
 }
 
 fn template(width: usize) -> String {
-    let room = |beside: usize| width.saturating_sub(beside).clamp(SHORTEST, LONGEST);
     if width >= WIDE {
-        let bar = room(BESIDE_WIDE);
+        let bar = width.saturating_sub(BESIDE_WIDE).clamp(SHORTEST, LONGEST);
         format!("{{msg:24!}} [{{bar:{bar}}}] {{human_pos}}/{{human_len}} {{rate}} {{left}}")
     } else {
-        let bar = room(BESIDE);
+        let bar = width.saturating_sub(BESIDE).clamp(SHORTEST, LONGEST);
         format!("{{msg:20!}} [{{bar:{bar}}}] {{percent:>3}} % {{rate}} {{left}}")
     }
 }
 
 /// Writes a number with three digits, with k, M or G: as much as a rate is worth. For example, 1234.5678 is `1.23k`.
 fn rounded(number: f64) -> String {
-    let units = [(1e9, "G"), (1e6, "M"), (1e3, "k")];
-    let found = units.into_iter().find(|(size, _)| number >= *size);
-    let (number, unit) = found.map_or((number, ""), |(size, unit)| (number / size, unit));
-    let decimals = match number {
+    let (size, unit) = match number {
+        1e9.. => (1e9, "G"),
+        1e6.. => (1e6, "M"),
+        1e3.. => (1e3, "k"),
+        _ => (1.0, ""),
+    };
+    let scaled = number / size;
+    let decimals = match scaled {
         100.0.. => 0,
         10.0.. => 1,
         _ => 2,
     };
-    format!("{number:.decimals$}{unit}")
+    format!("{scaled:.decimals$}{unit}")
 }
 
 /// Returns the time that is left at the pace so far; nothing before the first step, when nobody knows. For example,
@@ -103,8 +115,8 @@ fn remaining(elapsed: Duration, done: u64, all: u64) -> Option<String> {
     if done == 0 || done >= all {
         return None;
     }
-    let seconds = elapsed.as_secs_f64() * (all - done) as f64 / done as f64;
-    let seconds = seconds.ceil() as u64;
+    let exact = elapsed.as_secs_f64() * (all - done) as f64 / done as f64;
+    let seconds = exact.ceil() as u64;
     Some(match seconds {
         ..60 => format!("{seconds} s"),
         60..3600 => format!("{} min {} s", seconds / 60, seconds % 60),

@@ -41,8 +41,11 @@ pub fn run(registry: &Registry, output: OutputOptions, details: bool) -> Result<
     bar.finish_and_clear();
     let holds = findings.iter().all(|finding| finding.failures.is_empty());
     if output.json {
-        let list = loaded.iter().zip(&findings).map(|(one, finding)| as_json(one, finding));
-        return Ok(output.concluded(holds, list.collect::<Result<Vec<Value>>>()?));
+        let mut list: Vec<Value> = Vec::new();
+        for (one, finding) in loaded.iter().zip(&findings) {
+            list.push(as_json(one, finding)?);
+        }
+        return Ok(output.concluded(holds, list));
     }
     print(&loaded, &findings, details)?;
     Ok(holds)
@@ -62,7 +65,7 @@ const COLUMNS: &str = "configuration | device;6 | clocks/point:2 | points:4 | cl
 
 fn print(loaded: &[Loaded], findings: &[MainJobResult], details: bool) -> Result<()> {
     for (one, finding) in loaded.iter().zip(findings) {
-        if let Some(worst) = finding.outcome.worst.as_ref().filter(|_| details) {
+        if details && let Some(worst) = &finding.outcome.worst {
             say!(
                 "{}: {} registers and {} outputs equal the golden model on each of {} clocks; the largest error is at {}",
                 one.path,
@@ -72,8 +75,10 @@ fn print(loaded: &[Loaded], findings: &[MainJobResult], details: bool) -> Result
                 cosim::worst_operands(one, worst)
             );
         }
-        for remark in one.core.contract.remarks().iter().filter(|_| details) {
-            say!("{}: {remark}", one.path);
+        if details {
+            for remark in one.core.contract.remarks() {
+                say!("{}: {remark}", one.path);
+            }
         }
         for failure in &finding.failures {
             say!("{}: FAILS: {failure}", one.path);
@@ -83,22 +88,29 @@ fn print(loaded: &[Loaded], findings: &[MainJobResult], details: bool) -> Result
             say!("{}: {where_to_look}", one.path);
         }
     }
-    let rows = loaded.iter().zip(findings).map(|(one, finding)| {
-        let clocks = finding.timing.clocks_per_point();
-        let worst = finding.outcome.worst.as_ref();
-        vec![
+    let mut rows = Vec::new();
+    for (one, finding) in loaded.iter().zip(findings) {
+        let clocks = match finding.timing.clocks_per_point() {
+            Some(clocks) => clocks.to_string(),
+            None => "varies".to_owned(),
+        };
+        let largest_error = match &finding.outcome.worst {
+            Some(worst) => format!("{:.3}", worst.units),
+            None => "-".to_owned(),
+        };
+        rows.push(vec![
             short(&one.path).to_owned(),
             one.core.device.name.to_owned(),
-            clocks.map_or_else(|| "varies".to_owned(), |clocks| clocks.to_string()),
+            clocks,
             text::grouped(finding.outcome.points),
             text::grouped(finding.outcome.clocks),
             format!("{}, {}", finding.outcome.registers, finding.outcome.outputs),
             text::grouped(one.core.design.rom_bits()),
             finding.bound.words(),
-            worst.map_or_else(|| "-".to_owned(), |worst| format!("{:.3}", worst.units)),
+            largest_error,
             verdict(&finding.bound, &finding.failures).to_owned(),
-        ]
-    });
+        ]);
+    }
     tables::print(COLUMNS, rows);
     tables::print_line(&counts(findings));
     Ok(())
@@ -113,10 +125,16 @@ fn short(path: &str) -> &str {
 
 /// Returns how many hold, how many are outside the contract, how many fail. For example, `19 of 21 hold; 2 FAIL.`
 fn counts(findings: &[MainJobResult]) -> String {
-    let verdicts = findings.iter().map(|finding| verdict(&finding.bound, &finding.failures));
-    let count = |wanted| verdicts.clone().filter(|verdict| *verdict == wanted).count();
-    let mut parts = vec![format!("{} of {} hold", count(HOLDS), findings.len())];
-    let (outside, fail) = (count(OUTSIDE), count(FAILS));
+    let (mut hold, mut outside, mut fail) = (0, 0, 0);
+    for finding in findings {
+        match verdict(&finding.bound, &finding.failures) {
+            HOLDS => hold += 1,
+            OUTSIDE => outside += 1,
+            FAILS => fail += 1,
+            _ => {}
+        }
+    }
+    let mut parts = vec![format!("{hold} of {} hold", findings.len())];
     if outside > 0 {
         parts.push(format!("{outside} outside the accuracy contract, within their own bound"));
     }

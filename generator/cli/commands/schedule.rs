@@ -76,9 +76,10 @@ pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) ->
 fn print(one: &Loaded, pipeline: &Pipeline) {
     let period = 1000.0 / pipeline.clock_mhz;
     let bits: u32 = pipeline.stages.iter().map(|stage| stage.register_bits).sum();
-    let delayed: u32 = pipeline.stages.iter().map(|stage| stage.delayed_bits).sum();
-    let delayed =
-        if delayed > 0 { format!(", and {delayed} bits in delay lines") } else { String::new() };
+    let delayed = match pipeline.stages.iter().map(|stage| stage.delayed_bits).sum::<u32>() {
+        0 => String::new(),
+        bits => format!(", and {bits} bits in delay lines"),
+    };
     let multipliers = match pipeline.registered.len() {
         0 => String::new(),
         some => format!(" beside those in {}", counted(some, "multiplier")),
@@ -90,8 +91,9 @@ fn print(one: &Loaded, pipeline: &Pipeline) {
         pipeline.clock_mhz,
         pipeline.target,
     );
-    let rows = pipeline.stages.iter().enumerate().map(|(number, stage)| {
-        vec![
+    let mut stages = Vec::new();
+    for (number, stage) in pipeline.stages.iter().enumerate() {
+        stages.push(vec![
             number.to_string(),
             stage.microinstructions.join("; "),
             computed(&one.core.design, pipeline, number).join(", "),
@@ -99,23 +101,29 @@ fn print(one: &Loaded, pipeline: &Pipeline) {
             format!("{:.2}", stage.slack_ns),
             stage.register_bits.to_string(),
             stage.delayed_bits.to_string(),
-        ]
-    });
+        ]);
+    }
     tables::print(
         "stage: | microinstructions | computes | logic ns:3 | slack ns:1 | bits:2 | delayed:4",
-        rows,
+        stages,
     );
     if pipeline.units.is_empty() {
         return;
     }
     say!("a point every {} clocks; the product of each slot:", pipeline.interval);
-    let slots = (0..pipeline.interval).map(|slot| slot.to_string());
-    let headings: Vec<String> = ["multiplier".to_owned()].into_iter().chain(slots).collect();
-    let rows = pipeline.units.iter().map(|unit| {
-        let serves = unit.serves.iter().map(|it| it.clone().unwrap_or_default());
-        [unit.name.clone()].into_iter().chain(serves).collect()
-    });
-    tables::print(&headings.join(" | "), rows);
+    let mut headings = "multiplier".to_owned();
+    for slot in 0..pipeline.interval {
+        headings += &format!(" | {slot}");
+    }
+    let mut multipliers = Vec::new();
+    for unit in &pipeline.units {
+        let mut row = vec![unit.name.clone()];
+        for product in &unit.serves {
+            row.push(product.clone().unwrap_or_default());
+        }
+        multipliers.push(row);
+    }
+    tables::print(&headings, multipliers);
 }
 
 /// Returns the names of the values that a stage computes. For example, a stage with one multiplier may have only
@@ -125,8 +133,9 @@ fn computed<'a>(design: &'a Design, pipeline: &'a Pipeline, stage: usize) -> Vec
 }
 
 fn as_json(one: &Loaded, pipeline: &Pipeline) -> Value {
-    let stages = pipeline.stages.iter().enumerate().map(|(number, stage)| {
-        json!({
+    let mut stages = Vec::new();
+    for (number, stage) in pipeline.stages.iter().enumerate() {
+        stages.push(json!({
             "stage": number,
             "microinstructions": stage.microinstructions,
             "computes": computed(&one.core.design, pipeline, number),
@@ -134,10 +143,12 @@ fn as_json(one: &Loaded, pipeline: &Pipeline) -> Value {
             "slack_ns": stage.slack_ns,
             "register_bits": stage.register_bits,
             "delayed_bits": stage.delayed_bits,
-        })
-    });
-    let reservations =
-        pipeline.units.iter().map(|unit| json!({ "multiplier": unit.name, "slots": unit.serves }));
+        }));
+    }
+    let mut reservations = Vec::new();
+    for unit in &pipeline.units {
+        reservations.push(json!({ "multiplier": unit.name, "slots": unit.serves }));
+    }
     json!({
         "config": one.path,
         "name": one.core.config.name,
@@ -146,7 +157,7 @@ fn as_json(one: &Loaded, pipeline: &Pipeline) -> Value {
         "latency": pipeline.stages.len(),
         "interval": pipeline.interval,
         "registered_multipliers": pipeline.registered.len(),
-        "reservations": reservations.collect::<Vec<_>>(),
-        "stages": stages.collect::<Vec<_>>(),
+        "reservations": reservations,
+        "stages": stages,
     })
 }

@@ -88,8 +88,10 @@ impl Files {
 /// Runs `glint verify`.
 pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) -> Result<bool> {
     let loaded = load(registry, &arguments.configs.paths)?;
-    let files = loaded.iter().map(|one| Files::new(&arguments.out, &one.core.config.name));
-    let files = files.collect::<Result<Vec<_>>>()?;
+    let mut files = Vec::new();
+    for one in &loaded {
+        files.push(Files::new(&arguments.out, &one.core.config.name)?);
+    }
     let mut list = Vec::new();
     let mut verified = true;
     for (one, files) in loaded.iter().zip(files) {
@@ -138,27 +140,31 @@ fn one_configuration(
 
 /// Prints the conclusion, the checks that say more than that it holds, and the command that completes it.
 fn print_conclusion(one: &Loaded, record: &VerificationRecord) {
-    let with = |verdict| record.checks.iter().filter(move |it| it.finding.verdict == verdict);
-    let counts = record.counts.iter();
-    let counts: Vec<String> = counts.map(|(it, count)| format!("{count} {}", it.words())).collect();
-    let open = record
-        .checks
-        .iter()
-        .filter(|check| check.finding.verdict.conclusion() == Conclusion::Incomplete);
+    let mut counts: Vec<String> = Vec::new();
+    for (verdict, count) in &record.counts {
+        counts.push(format!("{count} {}", verdict.words()));
+    }
+    let mut open = 0;
+    let mut commands = BTreeSet::new();
+    for check in &record.checks {
+        if check.finding.verdict.conclusion() == Conclusion::Incomplete {
+            open += 1;
+        }
+        commands.extend(&check.finding.complete_with);
+    }
     let words = match record.conclusion {
-        Conclusion::Incomplete => format!("verified but for {}", counted(open.count(), "check")),
+        Conclusion::Incomplete => format!("verified but for {}", counted(open, "check")),
         other => other.words().to_owned(),
     };
     tables::print_line(&format!("{}: {words}: {}", one.path, counts.join(", ")));
-    let holds = |it: &CheckVerdict| {
-        matches!(it, CheckVerdict::Proved | CheckVerdict::Passed | CheckVerdict::Failed)
-    };
-    for &verdict in record.counts.keys().filter(|it| !holds(it)) {
-        let titles: Vec<&str> = with(verdict).map(|answer| answer.title).collect();
+    for &verdict in record.counts.keys() {
+        if matches!(verdict, CheckVerdict::Proved | CheckVerdict::Passed | CheckVerdict::Failed) {
+            continue;
+        }
+        let with_verdict = record.checks.iter().filter(|it| it.finding.verdict == verdict);
+        let titles: Vec<&str> = with_verdict.map(|answer| answer.title).collect();
         tables::print_line(&format!("  {}: {}", verdict.words(), titles.join(", ")));
     }
-    let commands: BTreeSet<_> =
-        record.checks.iter().filter_map(|it| it.finding.complete_with.as_ref()).collect();
     for command in commands {
         say!("  complete it with: {}", command.replacen(&record.config, &one.path, 1));
     }

@@ -352,7 +352,7 @@ fn wrap_of(node: &Node, range: Interval) -> Result<i128, String> {
     Ok(amount)
 }
 
-/// Returns the node that an extension or another name stands for, or the node itself.
+/// Returns the node that this one extends or renames, or the node itself.
 fn unextended(graph: &Graph, id: NodeId) -> NodeId {
     match &graph.node(id).cell {
         Cell::Op(NodeOp::Extend(of) | NodeOp::Relabel(of)) => *of,

@@ -26,35 +26,40 @@ impl<'a> DesignPair<'a> {
     /// Fails if the second design is no pipeline, or if one design has a port that the other lacks.
     pub fn new(sequential: &'a Design, pipeline: &'a Design) -> Result<Self> {
         let stages = pipeline.pipeline.as_ref().context("the design is no pipeline")?;
-        let names = |design: &Design, wanted: fn(Role) -> bool| {
-            let ports = design.ports.iter().filter(|port| wanted(port.role));
-            let names = ports.map(|port| (design.net(port.net).name.clone(), port.net));
-            names.collect::<Vec<_>>()
-        };
-        let operands = names(pipeline, |role| role == Role::Point);
-        let known = names(sequential, |role| matches!(role, Role::Operand { .. }));
-        let [mut one, mut other] =
-            [&operands, &known].map(|ports| ports.iter().map(|(name, _)| name).collect::<Vec<_>>());
-        one.sort();
-        other.sort();
-        if one != other {
+        let mut operands = Vec::new();
+        let mut outputs = Vec::new();
+        for port in &pipeline.ports {
+            let name = &pipeline.net(port.net).name;
+            match port.role {
+                Role::Point => operands.push(name.clone()),
+                Role::Result | Role::Status => outputs.push((name.clone(), port.net)),
+                _ => {}
+            }
+        }
+        let mut sequential_operands = Vec::new();
+        for port in &sequential.ports {
+            if matches!(port.role, Role::Operand { .. }) {
+                sequential_operands.push(sequential.net(port.net).name.clone());
+            }
+        }
+        let mut sorted_operands = operands.clone();
+        sorted_operands.sort();
+        sequential_operands.sort();
+        if sorted_operands != sequential_operands {
             bail!("the cores have different operands");
         }
-        let is_output = |role| matches!(role, Role::Result | Role::Status);
-        let outputs = names(pipeline, is_output)
-            .into_iter()
-            .map(|(name, net)| {
-                let same = sequential.find(&name);
-                let same =
-                    same.with_context(|| format!("the sequential core has no output `{name}`"))?;
-                Ok((name, net, same))
-            })
-            .collect::<Result<_>>()?;
+        let mut paired_outputs = Vec::new();
+        for (name, net) in outputs {
+            let Some(same) = sequential.find(&name) else {
+                bail!("the sequential core has no output `{name}`")
+            };
+            paired_outputs.push((name, net, same));
+        }
         Ok(Self {
             sequential,
             pipeline,
-            operands: operands.into_iter().map(|(name, _)| name).collect(),
-            outputs,
+            operands,
+            outputs: paired_outputs,
             latency: stages.stages.len(),
         })
     }
@@ -72,13 +77,12 @@ impl<'a> DesignPair<'a> {
         let design = self.sequential;
         let valid = design.handshake()?.valid;
         let mut core = interpreter(design)?;
-        let inputs = |rst_n: u64, start: u64| self.inputs(design, operands, rst_n, start);
         for (rst_n, start) in [(0, 0), (1, 1)] {
-            core.settle(&inputs(rst_n, start));
+            core.settle(&self.inputs(design, operands, rst_n, start));
             core.edge();
         }
         for _ in 0..MOST_CLOCKS {
-            core.settle(&inputs(1, 0));
+            core.settle(&self.inputs(design, operands, 1, 0));
             if core.value(valid) == 1 {
                 return Ok(self.outputs.iter().map(|&(_, _, net)| core.value(net)).collect());
             }
@@ -102,17 +106,22 @@ impl<'a> DesignPair<'a> {
 
     /// Returns the values of the inputs; `now` in the clock that takes the point.
     fn inputs(&self, design: &Design, operands: &[u64], rst_n: u64, now: u64) -> Vec<u64> {
-        let inputs = design.inputs().map(|port| match port.role {
-            Role::Reset => rst_n,
-            Role::Start | Role::Strobe | Role::InValid => now,
-            Role::OutReady => 1,
-            _ => {
-                let name = &design.net(port.net).name;
-                let at = self.operands.iter().position(|operand| operand == name);
-                at.map_or(0, |at| operands[at])
-            }
-        });
-        inputs.collect()
+        let mut inputs = Vec::new();
+        for port in design.inputs() {
+            inputs.push(match port.role {
+                Role::Reset => rst_n,
+                Role::Start | Role::Strobe | Role::InValid => now,
+                Role::OutReady => 1,
+                _ => {
+                    let name = &design.net(port.net).name;
+                    match self.operands.iter().position(|operand| operand == name) {
+                        Some(at) => operands[at],
+                        None => 0,
+                    }
+                }
+            });
+        }
+        inputs
     }
 }
 

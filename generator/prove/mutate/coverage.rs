@@ -44,13 +44,8 @@ struct PlaceWatch<'a> {
 
 impl<'a> PlaceWatch<'a> {
     fn new(design: &Design, operands: &'a [NetId], seed: u64) -> Self {
-        let roms = design.roms.iter();
-        Self {
-            seed,
-            addresses: roms.clone().map(|rom| (rom.address, u64::MAX)).collect(),
-            operands,
-            places: roms.map(|rom| vec![Vec::new(); rom.words.len()]).collect(),
-        }
+        let addresses = design.roms.iter().map(|rom| (rom.address, u64::MAX)).collect();
+        Self { seed, addresses, operands, places: no_places(design) }
     }
 
     fn note(&mut self, points: u64, simulator: &Simulator) {
@@ -63,15 +58,16 @@ impl<'a> PlaceWatch<'a> {
                 && places.len() < PLACES
                 && places.last().is_none_or(|latest| latest.points < points)
             {
-                let operands = self.operands.iter();
-                places.push(TestPlace {
-                    seed: self.seed,
-                    points,
-                    operands: operands.map(|&net| simulator.value(net)).collect(),
-                });
+                let operands = self.operands.iter().map(|&net| simulator.value(net)).collect();
+                places.push(TestPlace { seed: self.seed, points, operands });
             }
         }
     }
+}
+
+/// Returns an empty list of places for each word of each ROM.
+fn no_places(design: &Design) -> Vec<Vec<Vec<TestPlace>>> {
+    design.roms.iter().map(|rom| vec![Vec::new(); rom.words.len()]).collect()
 }
 
 impl Coverage {
@@ -80,17 +76,18 @@ impl Coverage {
     /// # Errors
     /// Fails if the design cannot be simulated.
     pub(super) fn of(design: &Design, lockstep: &Lockstep<'_>, points: u64) -> Result<Self> {
-        let operands: Vec<NetId> = design
-            .registers
-            .iter()
-            .filter(|register| register.kind == RegisterKind::Operand)
-            .map(|register| register.q)
-            .collect();
-        let begin = |seed| PlaceWatch::new(design, &operands, seed);
-        let streams = lockstep.watch(points, begin, PlaceWatch::note)?;
-        let roms = design.roms.iter();
-        let mut all: Vec<Vec<Vec<TestPlace>>> =
-            roms.map(|rom| vec![Vec::new(); rom.words.len()]).collect();
+        let mut operands: Vec<NetId> = Vec::new();
+        for register in &design.registers {
+            if register.kind == RegisterKind::Operand {
+                operands.push(register.q);
+            }
+        }
+        let streams = lockstep.watch(
+            points,
+            |seed| PlaceWatch::new(design, &operands, seed),
+            PlaceWatch::note,
+        )?;
+        let mut all = no_places(design);
         for stream in streams {
             let words = all.iter_mut().flatten().zip(stream.places.into_iter().flatten());
             for (all, places) in words {
@@ -114,13 +111,15 @@ impl Coverage {
         word: usize,
     ) -> impl Iterator<Item = OperandValues> {
         self.places(rom, word).iter().map(|place| {
-            let operands = self.operands.iter().zip(&place.operands);
-            let raw = operands.filter_map(|(&net, &bits)| {
-                let Driver::Register(register) = design.net(net).driver else { return None };
-                let name = operand_of(design, design.register(register))?;
-                Some((name.to_owned(), design.net(net).format.raw(bits) as i64))
-            });
-            raw.collect()
+            let mut values = OperandValues::new();
+            for (&net, &bits) in self.operands.iter().zip(&place.operands) {
+                if let Driver::Register(register) = design.net(net).driver
+                    && let Some(name) = operand_of(design, design.register(register))
+                {
+                    values.push((name.to_owned(), design.net(net).format.raw(bits) as i64));
+                }
+            }
+            values
         })
     }
 }
@@ -128,13 +127,15 @@ impl Coverage {
 /// Returns the operand that a register holds, which it takes from a port or from the buffer behind it. For example, the
 /// operand register of `cos_gamma` gives the name of the port, `cos_gamma`.
 pub(super) fn operand_of<'d>(design: &'d Design, register: &NetlistRegister) -> Option<&'d str> {
-    let before = |net: NetId| match &design.net(net).driver {
+    let taken = cone::reached(register.data, |net| match &design.net(net).driver {
         Driver::Op(op) => op.operands(),
         Driver::Register(buffer) => design.register(*buffer).data.into_iter().collect(),
         _ => Vec::new(),
-    };
-    let taken = cone::reached(register.data, before);
-    let mut operands = design.ports.iter().filter(|it| matches!(it.role, Role::Operand { .. }));
-    let port = operands.find(|port| taken.contains(&port.net))?;
-    Some(&design.net(port.net).name)
+    });
+    for port in &design.ports {
+        if matches!(port.role, Role::Operand { .. }) && taken.contains(&port.net) {
+            return Some(&design.net(port.net).name);
+        }
+    }
+    None
 }

@@ -25,12 +25,8 @@ impl Netlist {
     /// # Errors
     /// Fails if the JSON has no nets or cells of the harness.
     pub fn new(design: &Design, json: &Value) -> Result<Self> {
-        let module = &json["modules"][TOP];
-        let part = |name: &str| {
-            let part = module[name].as_object();
-            part.with_context(|| format!("the netlist of `yosys` has no {name} of `{TOP}`"))
-        };
-        let (nets, cells) = (part("netnames")?, part("cells")?);
+        let nets = part_of_top(json, "netnames")?;
+        let cells = part_of_top(json, "cells")?;
         let known = known(design);
         // One bit has several names, most of them made by tools.
         let mut best: BTreeMap<u64, (u8, &str)> = BTreeMap::new();
@@ -47,28 +43,35 @@ impl Netlist {
         }
         let mut names = BTreeMap::new();
         for (name, net) in nets {
-            let all = net["bits"].as_array().map_or(&[] as &[Value], Vec::as_slice);
+            let Some(all) = net["bits"].as_array() else { continue };
             let offset = net["offset"].as_u64().unwrap_or(0);
             for (at, bit) in all.iter().enumerate() {
                 let Some((_, shown)) = bit.as_u64().and_then(|bit| best.get(&bit)) else {
                     continue;
                 };
-                let name = match all.len() {
+                let bit_name = match all.len() {
                     1 => name.clone(),
                     _ => format!("{name}[{}]", at as u64 + offset),
                 };
-                names.insert(name, (*shown).to_owned());
+                names.insert(bit_name, (*shown).to_owned());
             }
         }
         // A flip-flop, or a DSP block with a register at its output.
-        let outputs: Vec<String> =
-            std::iter::once("Q".to_owned()).chain((0..36).map(|bit| format!("P{bit}"))).collect();
-        let registers = cells.iter().filter_map(|(name, cell)| {
-            let bits = outputs.iter().filter_map(|pin| cell["connections"][pin][0].as_u64());
-            let (_, shown) = bits.filter_map(|bit| best.get(&bit)).next()?;
-            Some((name.clone(), (*shown).to_owned()))
-        });
-        Ok(Self { names, registers: registers.collect(), cells: cells.clone() })
+        let mut outputs = vec!["Q".to_owned()];
+        for bit in 0..36 {
+            outputs.push(format!("P{bit}"));
+        }
+        let mut registers = BTreeMap::new();
+        for (name, cell) in cells {
+            for pin in &outputs {
+                let bit = cell["connections"][pin][0].as_u64();
+                if let Some((_, shown)) = bit.and_then(|bit| best.get(&bit)) {
+                    registers.insert(name.clone(), (*shown).to_owned());
+                    break;
+                }
+            }
+        }
+        Ok(Self { names, registers, cells: cells.clone() })
     }
 
     /// Makes sure that the timing includes the delay of every DSP block: every parameter of the cells of a kind must be
@@ -82,11 +85,15 @@ impl Netlist {
         timed: impl Fn(&str, &Value) -> bool,
         why: impl Fn(&str) -> String,
     ) -> Result<()> {
-        for (name, cell) in self.cells.iter().filter(|(_, cell)| cell["type"] == kind) {
-            let mut parameters = cell["parameters"].as_object().into_iter().flatten();
-            if let Some((parameter, value)) = parameters.find(|(it, value)| !timed(it, value)) {
-                let is = format!("{parameter} is {}", value.as_str().unwrap_or_default());
-                bail!("the DSP block `{name}` {}", why(&is));
+        for (name, cell) in &self.cells {
+            if cell["type"] != kind {
+                continue;
+            }
+            for (parameter, value) in cell["parameters"].as_object().into_iter().flatten() {
+                if !timed(parameter, value) {
+                    let is = format!("{parameter} is {}", value.as_str().unwrap_or_default());
+                    bail!("the DSP block `{name}` {}", why(&is));
+                }
             }
         }
         Ok(())
@@ -103,15 +110,20 @@ impl Netlist {
     }
 }
 
+/// Returns the nets or the cells of the module of the harness.
+fn part_of_top<'j>(json: &'j Value, name: &str) -> Result<&'j Map<String, Value>> {
+    let part = json["modules"][TOP][name].as_object();
+    part.with_context(|| format!("the netlist of `yosys` has no {name} of `{TOP}`"))
+}
+
 /// Returns a path, from pairs of a name and the time in nanoseconds at which it settles. Each name is there once in a
 /// row, at its last time. For example, `a` at 1.0, `a` at 1.5 and `b` at 2.0 are two steps: `a` at 1.5 and `b` at 2.0.
 pub fn path(points: impl IntoIterator<Item = (String, f64)>) -> Vec<PathPoint> {
     let mut steps: Vec<PathPoint> = Vec::new();
     for (name, ns) in points {
-        let ns = rounded(ns);
         match steps.last_mut() {
-            Some(last) if last.name == name => last.ns = ns,
-            _ => steps.push(PathPoint { name, ns }),
+            Some(last) if last.name == name => last.ns = rounded(ns),
+            _ => steps.push(PathPoint { name, ns: rounded(ns) }),
         }
     }
     steps
@@ -121,7 +133,8 @@ pub fn path(points: impl IntoIterator<Item = (String, f64)>) -> Vec<PathPoint> {
 /// register's name comes first, then a ROM's, a product's, one that the author gave, any other. For example, the text
 /// for the output of the ROM `coefficient` is `ROM coefficient`.
 fn known(design: &Design) -> BTreeMap<&str, (u8, String)> {
-    let known = design.nets.iter().map(|net| {
+    let mut known = BTreeMap::new();
+    for net in &design.nets {
         let shown = match net.driver {
             Driver::Rom(rom) => (1, format!("ROM {}", design.rom(rom).name)),
             Driver::Register(_) => (0, net.name.clone()),
@@ -129,9 +142,9 @@ fn known(design: &Design) -> BTreeMap<&str, (u8, String)> {
             Driver::Input => (5, net.name.clone()),
             _ => (if net.named { 3 } else { 4 }, net.name.clone()),
         };
-        (net.name.as_str(), shown)
-    });
-    known.collect()
+        known.insert(net.name.as_str(), shown);
+    }
+    known
 }
 
 /// Returns a net's name without the instances that it lies in, and without the bit of one that was split. For example,

@@ -52,14 +52,14 @@ struct AxisPlaces {
 
 impl AxisPlaces {
     fn new(axis: &ChartAxis) -> Result<Self> {
-        let end = |value| {
-            axis.place(value)
-                .ok_or_else(|| anyhow!("an end of `{}` has no place on it", axis.label))
+        let (Some(from), Some(to)) = (axis.place(axis.range.0), axis.place(axis.range.1)) else {
+            return Err(anyhow!("an end of `{}` has no place on it", axis.label));
         };
-        Ok(Self {
-            range: end(axis.range.0)?..end(axis.range.1)?,
-            ticks: ticks(axis).into_iter().filter_map(|tick| axis.place(tick)).collect(),
-        })
+        let mut places = Vec::new();
+        for tick in ticks(axis) {
+            places.extend(axis.place(tick));
+        }
+        Ok(Self { range: from..to, ticks: places })
     }
 }
 
@@ -92,10 +92,6 @@ fn draw(chart: &Chart, text: &mut String) -> Result<(), Box<dyn std::error::Erro
         .build_cartesian_2d(AxisPlaces::new(&chart.x)?, AxisPlaces::new(&chart.y)?)?;
     // The library's sizes are larger than the SVG's by a quarter.
     let font = ("sans-serif", 16 * FINE).into_font().color(&INK);
-    let label = |axis: &ChartAxis, place: f64| match axis.scale {
-        AxisScale::Linear => number(place),
-        AxisScale::Logarithmic => number(libm::pow(10.0, place)),
-    };
     plane
         .configure_mesh()
         .axis_style(INK)
@@ -105,8 +101,8 @@ fn draw(chart: &Chart, text: &mut String) -> Result<(), Box<dyn std::error::Erro
         .x_desc(chart.x.label.as_str())
         .label_style(font.clone())
         .axis_desc_style(font.clone())
-        .x_label_formatter(&|place| label(&chart.x, *place))
-        .y_label_formatter(&|place| label(&chart.y, *place))
+        .x_label_formatter(&|place| tick_label(&chart.x, *place))
+        .y_label_formatter(&|place| tick_label(&chart.y, *place))
         .draw()?;
     let (low, high) = chart.x.range;
     for mark in &chart.marks {
@@ -122,39 +118,60 @@ fn draw(chart: &Chart, text: &mut String) -> Result<(), Box<dyn std::error::Erro
     // A series with a value at only one place is a point with its name.
     for (at, (x, y), left) in points(chart) {
         plane.draw_series([Circle::new((x, y), 4 * FINE, style(at).filled())])?;
-        let (away, end) = if left { (-8, HPos::Right) } else { (8, HPos::Left) };
-        let away = away * FINE as i32;
-        let name = font.clone().pos(Pos::new(end, VPos::Center));
-        let name = Text::new(chart.series[at].name.clone(), (away, 0), name);
+        let (side, end) = if left { (-8, HPos::Right) } else { (8, HPos::Left) };
+        let away = side * FINE as i32;
+        let text_style = font.clone().pos(Pos::new(end, VPos::Center));
+        let name = Text::new(chart.series[at].name.clone(), (away, 0), text_style);
         plane.draw_series([EmptyElement::at((x, y)) + name])?;
     }
     area.present()?;
     Ok(())
 }
 
+/// Returns the label of the tick at a place of an axis.
+fn tick_label(axis: &ChartAxis, place: f64) -> String {
+    match axis.scale {
+        AxisScale::Linear => number(place),
+        AxisScale::Logarithmic => number(libm::pow(10.0, place)),
+    }
+}
+
+/// Returns the place of the only value of a series. Returns `None` if it has several, or none.
+fn only_place(chart: &Chart, values: &[f64]) -> Option<(f64, f64)> {
+    let mut known = chart.places.iter().zip(values).filter(|(_, value)| value.is_finite());
+    let (x, y) = known.next()?;
+    let place = (chart.x.place(*x)?, chart.y.place(*y)?);
+    match known.next() {
+        None => Some(place),
+        Some(_) => None,
+    }
+}
+
+/// Returns the places of the ends of an axis.
+fn ends(axis: &ChartAxis) -> Option<(f64, f64)> {
+    Some((axis.place(axis.range.0)?, axis.place(axis.range.1)?))
+}
+
 /// Finds the series of one value: number, place, and whether the name is left of it. A name is on the side with more
 /// room, unless the name of a neighbour above is there.
 fn points(chart: &Chart) -> Vec<(usize, (f64, f64), bool)> {
-    let only = |values: &[f64]| {
-        let mut known = chart.places.iter().zip(values).filter(|(_, value)| value.is_finite());
-        let (x, y) = known.next()?;
-        let place = chart.x.place(*x).zip(chart.y.place(*y))?;
-        known.next().is_none().then_some(place)
-    };
-    let series = chart.series.iter().enumerate();
-    let mut places: Vec<_> =
-        series.filter_map(|(at, series)| Some((at, only(&series.values)?))).collect();
+    let mut places: Vec<(usize, (f64, f64))> = Vec::new();
+    for (at, series) in chart.series.iter().enumerate() {
+        if let Some(place) = only_place(chart, &series.values) {
+            places.push((at, place));
+        }
+    }
     places.sort_by(|(_, (_, one)), (_, (_, other))| other.total_cmp(one));
-    let ends = |axis: &ChartAxis| axis.place(axis.range.0).zip(axis.place(axis.range.1));
-    let Some(((left, right), (low, high))) = ends(&chart.x).zip(ends(&chart.y)) else {
+    let (Some((left, right)), Some((low, high))) = (ends(&chart.x), ends(&chart.y)) else {
         return Vec::new();
     };
     let mut points: Vec<(usize, (f64, f64), bool)> = Vec::new();
     for (at, (x, y)) in places {
         let roomier = x > (left + right) / 2.0;
-        let near = |above: f64| above - y < (high - low) / 20.0;
-        let in_the_way =
-            points.last().is_some_and(|(_, (_, above), taken)| near(*above) && *taken == roomier);
+        let in_the_way = match points.last() {
+            Some((_, (_, above), taken)) => above - y < (high - low) / 20.0 && *taken == roomier,
+            None => false,
+        };
         points.push((at, (x, y), roomier != in_the_way));
     }
     points
@@ -242,14 +259,18 @@ fn number(value: f64) -> String {
         return format!("{value:.1e}").replace(".0e", "e").replace("e-", "e\u{2212}");
     }
     let text = format!("{value:.6}");
-    let text = text.trim_end_matches('0').trim_end_matches('.');
-    if text == "-0" { "0" } else { text }.replace('-', "\u{2212}")
+    let shortest = text.trim_end_matches('0').trim_end_matches('.');
+    if shortest == "-0" { "0" } else { shortest }.replace('-', "\u{2212}")
+}
+
+/// Returns a colour as the library writes it. For example, [`INK`] is `#010000`.
+fn hex(RGBColor(r, g, b): RGBColor) -> String {
+    format!("#{r:02X}{g:02X}{b:02X}")
 }
 
 /// Replaces placeholder colours by classes, and adds the attributes that make the element an image to a screen
 /// reader.
 fn themed(text: &str, chart: &Chart) -> String {
-    let hex = |RGBColor(r, g, b): RGBColor| format!("#{r:02X}{g:02X}{b:02X}");
     let mut roles = vec![
         (hex(INK), "ink".to_owned()),
         (hex(GRID), "grid".to_owned()),
@@ -263,7 +284,10 @@ fn themed(text: &str, chart: &Chart) -> String {
                 themed.replace(&format!("{property}=\"{colour}\""), &format!("class=\"{class}\""));
         }
     }
-    let body = themed.split_once('>').map_or("", |(_, body)| body);
+    let body = match themed.split_once('>') {
+        Some((_, body)) => body,
+        None => "",
+    };
     format!(
         "<svg viewBox=\"0 0 {WIDTH} {HEIGHT}\" role=\"img\" aria-labelledby=\"{id}-title\" aria-describedby=\"{id}-caption\">{body}",
         id = chart.id,

@@ -72,34 +72,48 @@ impl Relief {
         let y = (-v * self.repeat).rem_euclid(1.0) * height - 0.5;
         let (left, above) = (x.floor(), y.floor());
         let (right_share, below_share) = (x - left, y - above);
-        let slope = |dx: i64, dy: i64| {
-            let column = (left as i64 + dx).rem_euclid(self.width as i64) as usize;
-            let row = (above as i64 + dy).rem_euclid(self.height as i64) as usize;
-            self.slopes[row * self.width + column]
-        };
-        let corners = [slope(0, 0), slope(1, 0), slope(0, 1), slope(1, 1)];
-        let between = |axis: usize, scale: f64| {
-            let [a, b, c, d] = corners.map(|slope| f64::from(slope[axis]));
-            let above = a + (b - a) * right_share;
-            let below = c + (d - c) * right_share;
-            (above + (below - above) * below_share) * scale * self.repeat * self.depth
-        };
-        [between(0, width), between(1, height)]
+        let (column, row) = (left as i64, above as i64);
+        let above_left = self.slope(column, row);
+        let above_right = self.slope(column + 1, row);
+        let below_left = self.slope(column, row + 1);
+        let below_right = self.slope(column + 1, row + 1);
+        let mut rise = [0.0; 2];
+        for (axis, scale) in [width, height].into_iter().enumerate() {
+            let above = between(above_left[axis], above_right[axis], right_share);
+            let below = between(below_left[axis], below_right[axis], right_share);
+            let slope = above + (below - above) * below_share;
+            rise[axis] = slope * scale * self.repeat * self.depth;
+        }
+        rise
     }
+
+    /// Returns the slopes at a pixel of the repeated map.
+    fn slope(&self, column: i64, row: i64) -> [f32; 2] {
+        let column = column.rem_euclid(self.width as i64) as usize;
+        let row = row.rem_euclid(self.height as i64) as usize;
+        self.slopes[row * self.width + column]
+    }
+}
+
+/// Returns the number at a share of the way from one number to another.
+fn between(from: f32, to: f32, share: f64) -> f64 {
+    let (from, to) = (f64::from(from), f64::from(to));
+    from + (to - from) * share
 }
 
 /// Returns the rise per pixel to the right and upward: half the difference of the neighbours. For example, between the
 /// heights 0 and 1 a pixel has the rise 0.5.
 fn slopes(heights: &[f32], width: usize, height: usize) -> Vec<[f32; 2]> {
-    let at = |column: usize, row: usize| heights[row % height * width + column % width];
-    (0..height)
-        .flat_map(|row| (0..width).map(move |column| (column, row)))
-        .map(|(column, row)| {
-            let right = at(column + 1, row) - at(column + width - 1, row);
-            let up = at(column, row + height - 1) - at(column, row + 1);
-            [right / 2.0, up / 2.0]
-        })
-        .collect()
+    let height_at = |column: usize, row: usize| heights[row % height * width + column % width];
+    let mut slopes = Vec::with_capacity(heights.len());
+    for row in 0..height {
+        for column in 0..width {
+            let right = height_at(column + 1, row) - height_at(column + width - 1, row);
+            let up = height_at(column, row + height - 1) - height_at(column, row + 1);
+            slopes.push([right / 2.0, up / 2.0]);
+        }
+    }
+    slopes
 }
 
 #[cfg(test)]

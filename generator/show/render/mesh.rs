@@ -94,7 +94,7 @@ impl Mesh {
         kept.retain(|corners| area_vector(&positions, corners).unit().is_some());
         ensure!(all > 0, "there is no triangle");
         ensure!(!kept.is_empty(), "all {all} triangles are without area");
-        // The normals that are given, without those of length 0.
+        // The normals that are given; `None` for a normal of length 0.
         let given: Vec<Option<Vector>> = normals.iter().map(|normal| normal.unit()).collect();
         let is_complete =
             kept.iter().flatten().all(|corner| usable_normal(corner, &given).is_some());

@@ -104,24 +104,26 @@ impl Shader<'_> {
             exact: Vec::new(),
             beyond: 0,
         };
-        let same = |a: &Hit, b: &Hit| (a.object, a.triangle) == (b.object, b.triangle);
         let mut column = 0;
-        for run in hits.chunk_by(same) {
-            if run[0].is_something() {
-                // A line has a point more than intervals.
-                let most = self.feed.longest().map_or(run.len(), |longest| longest + 1);
-                for part in run.chunks(most) {
-                    let surfaces: Vec<SurfacePoint> = (column..)
-                        .zip(part)
-                        .map(|(column, hit)| self.surface(hit, ray(column)))
-                        .collect();
-                    self.surfaces(&surfaces, &mut shaded)?;
-                    column += part.len();
-                }
-            } else {
-                let background = run.iter().map(|_| (self.background, 0));
-                shaded.samples.extend(background);
+        for run in hits.chunk_by(|a, b| (a.object, a.triangle) == (b.object, b.triangle)) {
+            if !run[0].is_something() {
+                let samples = shaded.samples.len() + run.len();
+                shaded.samples.resize(samples, (self.background, 0));
                 column += run.len();
+                continue;
+            }
+            let most = match self.feed.longest() {
+                // A line has a point more than intervals.
+                Some(longest) => longest + 1,
+                None => run.len(),
+            };
+            for part in run.chunks(most) {
+                let mut surfaces: Vec<SurfacePoint> = Vec::with_capacity(part.len());
+                for hit in part {
+                    surfaces.push(self.surface(hit, ray(column)));
+                    column += 1;
+                }
+                self.surfaces(&surfaces, &mut shaded)?;
             }
         }
         Ok(shaded)

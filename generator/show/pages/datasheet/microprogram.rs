@@ -41,50 +41,47 @@ impl Microprogram {
         let control = &design.control;
         let numbered = control.fields.iter().any(|field| !field.lines.is_empty());
         let positions = design.field_positions();
-        let fields = control.fields.iter().zip(positions).map(|(field, low)| {
+        let mut fields = Vec::new();
+        for (field, low) in control.fields.iter().zip(positions) {
             let width = design.width(field.net);
-            FieldView {
-                name: field.name.clone(),
-                lines: match (&field.lines[..], numbered) {
-                    ([], true) => vec!["–".to_owned(); width as usize],
-                    ([], false) => (low..low + width).rev().map(|bit| bit.to_string()).collect(),
-                    (lines, _) => lines.iter().map(u16::to_string).collect(),
-                },
-            }
-        });
-        // The column "then" of the page's table is the last.
-        let then = account::microprogram(design).rows.into_iter().map(|mut row| row.pop());
-        let microprogram = control.microprogram.iter().zip(then).enumerate();
-        Self {
-            numbered,
-            fields: fields.collect(),
-            rows: microprogram
-                .map(|(address, (it, then))| MicroinstructionRow {
-                    address,
-                    name: it.name.clone(),
-                    bits: bits(design, &it.values),
-                    then: html(&then.unwrap_or_default()),
-                })
-                .collect(),
+            let lines = match (&field.lines[..], numbered) {
+                ([], true) => vec!["–".to_owned(); width as usize],
+                ([], false) => (low..low + width).rev().map(|bit| bit.to_string()).collect(),
+                (lines, _) => lines.iter().map(u16::to_string).collect(),
+            };
+            fields.push(FieldView { name: field.name.clone(), lines });
         }
+        let mut rows = Vec::new();
+        let page_rows = account::microprogram(design).rows;
+        for (address, page_row) in page_rows.into_iter().enumerate() {
+            let microinstruction = &control.microprogram[address];
+            // The column "then" of the page's table is the last.
+            let then = page_row.last().map_or("", String::as_str);
+            rows.push(MicroinstructionRow {
+                address,
+                name: microinstruction.name.clone(),
+                bits: bits(design, &microinstruction.values),
+                then: html(then),
+            });
+        }
+        Self { numbered, fields, rows }
     }
 }
 
 fn bits(design: &Design, values: &[u64]) -> Vec<(bool, bool, String)> {
-    let fields = design.control.fields.iter().zip(values);
-    fields
-        .flat_map(|(field, &value)| {
-            let width = design.width(field.net);
-            let meaning = match &field.kind {
-                FieldKind::Select(choices) => {
-                    let choice = choices.get(value as usize).map_or("", String::as_str);
-                    format!("{}: {choice}", field.name)
-                }
-                _ => format!("{}: {value}", field.name),
-            };
-            (0..width)
-                .rev()
-                .map(move |bit| (bit + 1 == width, value >> bit & 1 == 1, meaning.clone()))
-        })
-        .collect()
+    let mut bits = Vec::new();
+    for (field, &value) in design.control.fields.iter().zip(values) {
+        let width = design.width(field.net);
+        let meaning = match &field.kind {
+            FieldKind::Select(choices) => {
+                let choice = choices.get(value as usize).map_or("", String::as_str);
+                format!("{}: {choice}", field.name)
+            }
+            _ => format!("{}: {value}", field.name),
+        };
+        for bit in (0..width).rev() {
+            bits.push((bit + 1 == width, value >> bit & 1 == 1, meaning.clone()));
+        }
+    }
+    bits
 }

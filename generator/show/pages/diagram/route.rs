@@ -76,21 +76,30 @@ pub struct Routes {
 impl Routes {
     /// Returns the topmost place of a wire.
     pub fn top(&self) -> f64 {
-        let pieces = self.nets.iter().flat_map(|net| &net.pieces);
-        pieces.map(|piece| piece.from.1.min(piece.to.1)).fold(f64::MAX, f64::min)
+        let mut top = f64::MAX;
+        for piece in self.nets.iter().flat_map(|net| &net.pieces) {
+            top = top.min(piece.from.1).min(piece.to.1);
+        }
+        top
     }
 
     /// Returns the lowest place of a wire.
     pub fn bottom(&self) -> f64 {
-        let pieces = self.nets.iter().flat_map(|net| &net.pieces);
-        pieces.map(|piece| piece.from.1.max(piece.to.1)).fold(0.0, f64::max)
+        let mut bottom: f64 = 0.0;
+        for piece in self.nets.iter().flat_map(|net| &net.pieces) {
+            bottom = bottom.max(piece.from.1).max(piece.to.1);
+        }
+        bottom
     }
 
     /// Moves all wires down.
     pub fn lower(&mut self, by: f64) {
         for net in &mut self.nets {
-            let pieces = net.pieces.iter_mut().flat_map(|piece| [&mut piece.from, &mut piece.to]);
-            for (_, y) in pieces.chain(&mut net.junctions).chain(&mut net.pins) {
+            for piece in &mut net.pieces {
+                piece.from.1 += by;
+                piece.to.1 += by;
+            }
+            for (_, y) in net.junctions.iter_mut().chain(&mut net.pins) {
                 *y += by;
             }
         }
@@ -101,7 +110,10 @@ impl Routes {
 /// from box 5 back to box 2 gives both boxes a lane for the net of box 5.
 pub fn lanes(graph: &DiagramGraph, back: &[bool]) -> Vec<Vec<usize>> {
     let mut lanes = vec![Vec::new(); graph.boxes.len()];
-    for (wire, _) in graph.wires.iter().zip(back).filter(|(_, back)| **back) {
+    for (wire, leads_back) in graph.wires.iter().zip(back) {
+        if !leads_back {
+            continue;
+        }
         for at in [wire.from, wire.to] {
             if !lanes[at].contains(&wire.from) {
                 lanes[at].push(wire.from);
@@ -166,13 +178,13 @@ impl Router<'_> {
     /// Returns the heights at which a wire passes the columns between its ends, in its direction.
     fn between(&mut self, wire: usize) -> Vec<(usize, f64)> {
         let (net, back) = (self.graph.wires[wire].from, self.placement.back[wire]);
-        let passes = self.placement.passes[wire].iter();
-        passes
-            .map(|&(column, y)| {
-                let y = *self.passes.entry((net, column, back)).or_insert(y);
-                (column, y)
-            })
-            .collect()
+        let mut between = Vec::new();
+        for &(column, wanted) in &self.placement.passes[wire] {
+            // All wires of a net pass a column at the place of the first.
+            let y = *self.passes.entry((net, column, back)).or_insert(wanted);
+            between.push((column, y));
+        }
+        between
     }
 
     /// Returns the y coordinate at which each wire enters its box. Pins are from above, in the order in which the
@@ -251,13 +263,10 @@ impl Router<'_> {
     fn finish(mut self, pins: &[f64]) -> Routes {
         let columns = self.placement.columns;
         let tracks: Vec<usize> = self.gaps.iter_mut().map(|gap| assign(gap)).collect();
-        let widest = |column: usize| {
-            let of = |(at, body): (usize, &Body)| {
-                (self.placement.column[at] == column).then_some(body.width)
-            };
-            let widths = self.bodies.iter().enumerate().filter_map(of);
-            widths.fold(0.0, f64::max)
-        };
+        let mut widest = vec![0.0_f64; columns];
+        for (body, &column) in self.bodies.iter().zip(&self.placement.column) {
+            widest[column] = widest[column].max(body.width);
+        }
         // The borders of gaps; a column is between one gap and the next.
         let mut borders: Vec<(f64, f64)> = Vec::new();
         let mut x = 0.0;
@@ -266,14 +275,13 @@ impl Router<'_> {
             let wide =
                 if outside { 0.0 } else { 2.0 * MARGIN + TRACK * tracks.saturating_sub(1) as f64 };
             borders.push((x, x + wide));
-            x += wide + if gap < columns { widest(gap) } else { 0.0 };
+            x += wide + if gap < columns { widest[gap] } else { 0.0 };
         }
-        let left = |at: usize| {
-            let column = self.placement.column[at];
+        let mut left: Vec<f64> = Vec::new();
+        for (body, &column) in self.bodies.iter().zip(&self.placement.column) {
             let (from, to) = (borders[column].1, borders[column + 1].0);
-            from + (to - from - self.bodies[at].width) / 2.0
-        };
-        let left: Vec<f64> = (0..self.bodies.len()).map(left).collect();
+            left.push(from + (to - from - body.width) / 2.0);
+        }
         let mut nets = vec![WireRoute::default(); self.bodies.len()];
         for (gap, trunks) in self.gaps.iter().enumerate() {
             for trunk in trunks {

@@ -37,7 +37,18 @@ impl Trunk {
 
     /// Returns the upper and the lower end.
     pub fn reach(&self) -> (f64, f64) {
-        self.taps().fold((f64::MAX, f64::MIN), |(low, high), (y, _)| (low.min(y), high.max(y)))
+        let (mut low, mut high) = (f64::MAX, f64::MIN);
+        for (y, _) in self.taps() {
+            low = low.min(y);
+            high = high.max(y);
+        }
+        (low, high)
+    }
+
+    /// Returns whether a place is between the ends.
+    fn reaches(&self, y: f64) -> bool {
+        let (low, high) = self.reach();
+        (low..=high).contains(&y)
     }
 
     /// Returns whether it goes straight from side to side.
@@ -48,18 +59,25 @@ impl Trunk {
 
     /// Counts crossings and overlaps when it is left of another.
     fn left_of(&self, other: &Self) -> usize {
-        let within = |trunk: &Self, y: f64| {
-            let (low, high) = trunk.reach();
-            (low..=high).contains(&y)
-        };
-        let right = || self.taps().filter(|(_, side)| *side == Side::Right);
-        let left = || other.taps().filter(|(_, side)| *side == Side::Left);
-        let crossings = right().filter(|(y, _)| within(other, *y)).count()
-            + left().filter(|(y, _)| within(self, *y)).count();
-        let overlaps = right()
-            .flat_map(|(y, _)| left().map(move |(z, _)| (y - z).abs()))
-            .filter(|distance| *distance < NEAR)
-            .count();
+        let (mut crossings, mut overlaps) = (0, 0);
+        for (y, side) in self.taps() {
+            if side != Side::Right {
+                continue;
+            }
+            if other.reaches(y) {
+                crossings += 1;
+            }
+            for (other_y, other_side) in other.taps() {
+                if other_side == Side::Left && (y - other_y).abs() < NEAR {
+                    overlaps += 1;
+                }
+            }
+        }
+        for (y, side) in other.taps() {
+            if side == Side::Left && self.reaches(y) {
+                crossings += 1;
+            }
+        }
         crossings + OVERLAP * overlaps
     }
 
@@ -91,11 +109,13 @@ pub fn assign(trunks: &mut [Trunk]) -> usize {
         if trunks[at].is_straight() {
             continue;
         }
-        let before = trunks[..at].iter().filter(|other| {
-            let bound = other.meets(&trunks[at]) || trunks[at].left_of(other) >= OVERLAP;
-            bound && !other.is_straight()
-        });
-        let track = before.map(|other| other.track + 1).max().unwrap_or(0);
+        let mut track = 0;
+        for other in &trunks[..at] {
+            let is_bound = other.meets(&trunks[at]) || trunks[at].left_of(other) >= OVERLAP;
+            if is_bound && !other.is_straight() {
+                track = track.max(other.track + 1);
+            }
+        }
         trunks[at].track = track;
         tracks = tracks.max(track + 1);
     }

@@ -187,7 +187,7 @@ impl<'a> Blocks<'a> {
         (inputs, selected_by)
     }
 
-    /// Returns what an operand of a block's net brings from outside of the block.
+    /// Returns the blocks, ports and constants outside of a block that an operand of its net comes from.
     fn sources_outside(&self, operand: NetId, head: NetId) -> Vec<NetId> {
         if !self.groups.is_part(operand, head) {
             return self.source(operand).into_iter().collect();
@@ -201,7 +201,7 @@ impl<'a> Blocks<'a> {
         matches!(self.design.net(id).driver, Driver::Op(Op::Mux { .. }))
     }
 
-    /// Returns the documentation of a block: its output's, or else that of the last net inside which has any.
+    /// Returns the documentation of a block: the text of its output, or else of the last net inside that has a text.
     fn doc(&self, inside: &[NetId], head: NetId) -> String {
         let of_head = &self.design.net(head).doc;
         if inside.contains(&head) && !of_head.is_empty() {
