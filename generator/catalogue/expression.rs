@@ -355,19 +355,21 @@ fn left_by<'d>(
     places: Signal<'d>,
     format: Format,
 ) -> Signal<'d> {
-    let mut row = d.narrow(&format!("{name}_wide"), x, format, Rounding::Truncate, Overflow::Wrap);
+    let integer = |bits: u32| Format::unsigned(bits as i32, 0);
+    let width = format.width();
+    let wide = d.narrow(&format!("{name}_wide"), x, format, Rounding::Truncate, Overflow::Wrap);
+    let mut row = wide.read_as(integer(width));
     for bit in 0..places.format().width() {
-        let shift = 1i32 << bit;
-        let moved = if shift < format.width() as i32 {
-            let moved = row.shift_left(shift);
-            let name = format!("{name}_kept{shift}");
-            d.narrow(&name, moved, format, Rounding::Truncate, Overflow::Wrap)
+        let shift = 1u32.checked_shl(bit).unwrap_or(u32::MAX);
+        let moved = if shift < width {
+            let kept = row.bits(0, integer(width - shift));
+            kept.with_fraction(shift as i32).shift_left(shift as i32)
         } else {
-            d.raw_constant("zeros", 0, format)
+            d.raw_constant("zeros", 0, integer(width))
         };
         row = d.choose(&format!("{name}_by{shift}"), places.bit(bit), [row, moved]);
     }
-    row
+    row.read_as(format)
 }
 
 fn about(keys: &Keys, found: &ProvedPlan) -> About {

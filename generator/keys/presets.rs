@@ -1,5 +1,5 @@
 //! Holds configurations to start from: of `function` by the name of the function (`exp2`, `sqrt`, `sigmoid`, …), and of
-//! `expression` by what it computes (`divide`, `polar`, `rotate`, …).
+//! `expression` by the thing computed (`divide`, `polar`, `rotate`, …).
 
 use glint_config::{TableEntries, TableEntry, Value};
 

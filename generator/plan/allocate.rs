@@ -12,7 +12,7 @@ use super::statement::ExpressionStatement;
 /// The guard with which each place begins.
 const FIRST_GUARD: i32 = -3;
 
-/// The most bits that a place gets beside what is natural for it.
+/// The most bits that a place gets beyond the bits of the results.
 const MOST_GUARD: i32 = 24;
 
 /// The divisions of the domain for an estimate of the error.

@@ -17,7 +17,7 @@ use super::plan::ExpressionPlan;
 /// The values of an integer part that are followed one by one.
 const MOST_INTEGERS: i64 = 70;
 
-/// What is known of a node for all operands within a box.
+/// The limits of a node's value and of its error, for all operands within a box.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct NodeError {
     /// Contains the value in real-number arithmetic.
@@ -36,7 +36,7 @@ const ANYTHING: Enclosure = Enclosure::between(f64::NEG_INFINITY, f64::INFINITY)
 pub(super) struct Undecided {
     /// The node that it is about.
     pub(super) node: NodeId,
-    /// What is not known there.
+    /// The reason.
     pub(super) what: &'static str,
 }
 
@@ -86,7 +86,7 @@ impl NodeError {
 /// Takes the values of all nodes, and the first node of which nothing could be said.
 type Visit<'v> = dyn FnMut(&[NodeError], Option<&Undecided>) + 'v;
 
-/// What is known of the nodes so far.
+/// The limits of the nodes so far.
 #[derive(Clone)]
 struct Known {
     values: Vec<NodeError>,
@@ -257,7 +257,7 @@ impl ErrorAnalysis<'_> {
         }
     }
 
-    /// Returns what is known of a node, from what is known of its inputs.
+    /// Returns the limits of a node, from the limits of its inputs.
     fn value(
         &self,
         id: NodeId,
@@ -379,7 +379,7 @@ impl ErrorAnalysis<'_> {
         }
     }
 
-    /// Returns what is known of a choice.
+    /// Returns the limits of a choice.
     ///
     /// If rounding can make the condition wrong, the hardware may give the other case than the formula has. Both cases then
     /// count, and how far they are apart, except where both have the same value.
@@ -421,7 +421,7 @@ fn bit(is_one: bool, is_zero: bool) -> Enclosure {
     Enclosure::between(low, high)
 }
 
-/// Returns what is known of a condition, from the bit that the formula has and the bit that the hardware has. If nothing
+/// Returns the limits of a condition, from the bit that the formula has and the bit that the hardware has. If nothing
 /// was rounded before it, both are the same bit.
 fn condition(ideal: Enclosure, actual: Enclosure, is_exact: bool) -> NodeError {
     let error = if is_exact { NOTHING } else { actual - ideal };
@@ -515,7 +515,7 @@ fn known_places(node: NodeId, places: NodeError) -> Result<i32, Undecided> {
     }
 }
 
-/// Returns what is known of a function of one number: the error of its polynomials, and the error of its operand times the
+/// Returns the limits of a function of one number: the error of its polynomials, and the error of its operand times the
 /// slope of the function.
 fn approximated(
     id: NodeId,

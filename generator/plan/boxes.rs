@@ -166,7 +166,7 @@ impl BoxScore for BoxError {
     }
 }
 
-/// Returns what is known of the two halves of a box, divided along the operand that makes the most known; `None` for a single
+/// Returns the scores of the two halves of a box, divided along the operand that makes the most known; `None` for a single
 /// combination. A half for which `known` gives nothing is left out.
 pub(super) fn best_halves<K: BoxScore>(
     limits: &OperandBox,

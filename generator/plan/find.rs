@@ -41,7 +41,7 @@ impl ProofKind {
 /// A plan with the proved error of each result.
 #[derive(Clone, Debug)]
 pub struct ProvedPlan {
-    /// What was asked for.
+    /// The formulas that it computes.
     pub statement: ExpressionStatement,
     /// How it is computed.
     pub plan: ExpressionPlan,

@@ -16,7 +16,7 @@ pub struct NodeId(pub usize);
 pub struct PlanNode {
     /// The name of the net in the hardware. No other node has it.
     pub name: String,
-    /// What is computed from earlier nodes.
+    /// The operation on earlier nodes.
     pub operation: Operation,
     /// The format of the result.
     pub format: Format,

@@ -11,7 +11,7 @@ pub struct PlanRefusal {
     pub result: Option<usize>,
     /// The bytes of the result's formula that it concerns, if it concerns one place.
     pub place: Option<Range<usize>>,
-    /// What is wrong, in words.
+    /// The fault, in words.
     pub message: String,
     /// What to change, in words.
     pub remedy: String,

@@ -1,4 +1,4 @@
-//! Orders a plan as a microprogram: a product at a time, with registers for what a later step reads.
+//! Orders a plan as a microprogram: a product at a time, with registers for the values that later steps read.
 //!
 //! The hardware has one multiplier. Each product, each step of Horner's rule and each normalised word has a
 //! microinstruction of its own, and a register that holds its value from then on. All other operations are logic between

@@ -4,7 +4,7 @@
 use glint_base::fixed::Format;
 use glint_formula::{Comparison, Enclosure, Expression, RBig};
 
-/// What a user asks for: results as formulas of operands, each with the error that it may have.
+/// The formulas that a user asks for: results as formulas of operands, each with the error that it may have.
 #[derive(Clone, Debug)]
 pub struct ExpressionStatement {
     /// The operands, in the order of the ports.

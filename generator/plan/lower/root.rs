@@ -6,12 +6,15 @@
 use glint_base::fixed::{Format, Rounding, exp2};
 use glint_formula::{Enclosure, Expression, Function, Kind, Operator, RBig};
 
-use super::Lowering;
+use super::{Lowering, WIDEST_OPERAND};
 use crate::node::NodeId;
 use crate::refusal::PlanRefusal;
 
 /// Domains below this ratio of largest to smallest value are one table.
 pub(super) const FEW_OCTAVES: f64 = 4.0;
+
+/// A word that is never below 2 to minus this power is shortened before it is normalised.
+const MOST_OCTAVES_BELOW_1: i32 = 12;
 
 /// The exponent of a power, doubled: −1 is the exponent −1/2.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -106,6 +109,16 @@ impl Lowering<'_> {
         range: Enclosure,
         by_pairs: bool,
     ) -> Result<Octave, PlanRefusal> {
+        // Far from 0, a word has more bits than any result needs.
+        let octaves_below_1 = -floor_of_log2(range.low);
+        let is_far = octaves_below_1 < MOST_OCTAVES_BELOW_1;
+        let node = self.rounding(self.finest + 3 + octaves_below_1, |own, frac| {
+            let is_wide = own.plan.node(node).format.width() > WIDEST_OPERAND;
+            if !is_wide || !is_far {
+                return Ok(node);
+            }
+            own.plan.shorten("word_shortened", node, frac, Rounding::Nearest)
+        })?;
         let format = self.plan.node(node).format;
         // Without a sign, without integer bits that are never used, and by pairs with an even number of integer bits.
         let word_format = holding(Enclosure::between(0.0, range.high), format.frac);
@@ -138,4 +151,12 @@ pub(super) fn holding(values: Enclosure, frac: i32) -> Format {
     let unit = exp2(frac);
     let low = if values.low >= 0.0 { 0 } else { (values.low * unit - 1.0).floor() as i128 };
     Format::holding(low, (values.high * unit + 1.0).floor() as i128, frac)
+}
+
+/// Returns the greatest power of two that is not above a positive number, as the exponent. For example, 5 gives 2.
+fn floor_of_log2(value: f64) -> i32 {
+    const FRACTION_BITS: u32 = f64::MANTISSA_DIGITS - 1;
+    const BIAS: i32 = f64::MAX_EXP - 1;
+    let exponent = (value.abs().to_bits() >> FRACTION_BITS) as i32;
+    exponent - BIAS
 }
