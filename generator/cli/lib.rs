@@ -8,6 +8,7 @@ mod interrupt;
 mod own_file;
 mod progress;
 mod record_text;
+mod report;
 mod store;
 mod tables;
 
@@ -17,8 +18,6 @@ use std::process::ExitCode;
 use std::time::Duration;
 
 use clap::{Args, CommandFactory, FromArgMatches, Parser, Subcommand};
-use serde::Serialize;
-use serde_json::json;
 
 use failure::wrong_usage;
 use glint_base::program::{self, Program};
@@ -133,16 +132,6 @@ struct OutputOptions {
     /// No progress bars
     #[arg(long, short, global = true)]
     quiet: bool,
-}
-
-impl OutputOptions {
-    /// Returns whether everything `holds`. With `--json`, it first prints the findings about each configuration.
-    fn concluded(self, holds: bool, configurations: impl Serialize) -> bool {
-        if self.json {
-            tables::print_json(&json!({ "ok": holds, "configurations": configurations }));
-        }
-        holds
-    }
 }
 
 /// Reads a command line; help has examples with the name of the running program.

@@ -29,13 +29,14 @@ const EVERY: Duration = Duration::from_secs(60);
 
 /// Returns a bar over `total` steps; hidden when output is for scripts or on request, and a line a minute without a terminal.
 pub fn bar(output: OutputOptions, total: u64, what: &str) -> ProgressBar {
-    let target = if output.json || output.quiet {
+    let is_hidden = output.quiet || !output.is_for_people();
+    let target = if is_hidden {
         ProgressDrawTarget::hidden()
     } else {
         // Draws nothing when standard error is not a terminal.
         ProgressDrawTarget::stderr()
     };
-    let without = !output.json && !output.quiet && !console::Term::stderr().is_term();
+    let without = !is_hidden && !console::Term::stderr().is_term();
     let width = match console::Term::stderr().size_checked() {
         Some((_, width)) => width,
         None => USUAL,

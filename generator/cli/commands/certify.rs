@@ -6,11 +6,12 @@ use std::time::Duration;
 use anyhow::{Context, Result, bail};
 use clap::Args;
 use rayon::prelude::*;
-use serde_json::json;
+use serde_json::{Value, json};
 
 use super::{Loaded, cosim, load_sequential};
 use crate::own_file::OwnFile;
-use crate::{Configs, OutputOptions, progress, say, tables};
+use crate::report::CommandReport;
+use crate::{Configs, OutputOptions, progress, say};
 use glint_base::{input, text};
 use glint_core::cosim::exhaustive::Certificate;
 use glint_core::package::digest;
@@ -79,7 +80,7 @@ pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) ->
     let gappa = Tool::find("gappa")?;
     gappa.ensure_works(limit)?;
     let coq = arguments.coq.then(|| Tool::find("coqc")).transpose()?;
-    let mut list = Vec::new();
+    let mut list = output.list();
     let mut whole = true;
     for one in &loaded {
         let contract = one.core.contract.as_ref();
@@ -108,16 +109,7 @@ pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) ->
                 if let Some(record) = record {
                     record.write_json(&certificate(one, contract.bound().units, false, &[]))?;
                 }
-                if !output.json {
-                    say!("{}: not certified: {step}", one.path);
-                    tell_terms(&contract.bound());
-                }
-                list.push(json!({
-                    "config": one.path,
-                    "certified": false,
-                    "step": step,
-                    "terms": cosim::terms(&contract.bound()),
-                }));
+                list.add(&WithoutStatements { one, step, bound: contract.bound() })?;
                 continue;
             }
         };
@@ -135,38 +127,19 @@ pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) ->
         if let Some(directory) = out {
             write(&directory, &one.path, &stated, &outcomes)?;
         }
-        let report = CertificateReport::new(&stated, &outcomes);
+        let report = Certification::new(one, bound, is_stated, arguments.coq, &stated, &outcomes);
         let is_certified = report.open.is_empty();
         whole &= is_certified;
         if let Some(record) = record {
             record.write_json(&certificate(one, bound, is_certified, &stated))?;
         }
-        if !output.json {
-            report.print(one, bound, arguments.coq);
-        }
-        let mut open = Vec::new();
-        for (Statement { output, number, also, .. }, why) in &report.open {
-            open.push(json!({ "number": number, "output": output, "also": also, "why": why }));
-        }
-        list.push(json!({
-            "config": one.path,
-            "certified": is_certified,
-            "bound": bound,
-            "bound_found": !is_stated,
-            "statements": stated.len(),
-            "contradictory": report.contradictory,
-            "without_witness": report.without_witness,
-            "open": open,
-            "coq": arguments.coq,
-        }));
+        list.add(&report)?;
     }
-    if output.json {
+    list.finish(|certificates| {
         let gappa = gappa.version()?;
         let coq = coq.map(|coq| coq.version()).transpose()?;
-        tables::print_json(
-            &json!({ "ok": whole, "gappa": gappa, "coq": coq, "certificates": list }),
-        );
-    }
+        Ok(json!({ "ok": whole, "gappa": gappa, "coq": coq, "certificates": certificates }))
+    })?;
     Ok(whole)
 }
 
@@ -183,69 +156,134 @@ fn certificate(one: &Loaded, bound: f64, certified: bool, stated: &[Statement]) 
     }
 }
 
-/// The outcomes of the statements of one configuration.
-struct CertificateReport<'s> {
-    statements: usize,
-    /// The statements without a proof, and why each has none.
-    open: Vec<(&'s Statement, &'s str)>,
-    /// The number of statements whose hypotheses contradict each other.
-    contradictory: usize,
-    /// The number of proved statements for which no point is known at which the hypotheses hold.
-    without_witness: usize,
+/// A configuration for which no statements can be made.
+struct WithoutStatements<'a> {
+    one: &'a Loaded,
+    /// The step of the formula that has no statement, in words.
+    step: String,
+    /// The bound of the contract, which is not proved.
+    bound: Bound,
 }
 
-impl<'s> CertificateReport<'s> {
-    fn new(statements: &'s [Statement], outcomes: &'s [ProofOutcome]) -> Self {
+impl CommandReport for WithoutStatements<'_> {
+    fn json(&self) -> Result<Value> {
+        Ok(json!({
+            "config": self.one.path,
+            "certified": false,
+            "step": self.step,
+            "terms": cosim::terms(&self.bound),
+        }))
+    }
+
+    fn print(&self) -> Result<()> {
+        say!("{}: not certified: {}", self.one.path, self.step);
+        tell_terms(&self.bound);
+        Ok(())
+    }
+}
+
+/// The outcome of all statements of a configuration.
+struct Certification<'a> {
+    one: &'a Loaded,
+    /// In output units.
+    bound: f64,
+    /// The contract states the bound. Gappa finds any other.
+    is_stated: bool,
+    /// Coq checks the proofs.
+    with_coq: bool,
+    /// The number of statements.
+    statements: usize,
+    /// The number of statements whose hypotheses contradict each other.
+    contradictory: usize,
+    /// The number of proved statements without a witness.
+    without_witness: usize,
+    /// The statements that are not proved, each with the reason.
+    open: Vec<(&'a Statement, &'a str)>,
+}
+
+impl<'a> Certification<'a> {
+    fn new(
+        one: &'a Loaded,
+        bound: f64,
+        is_stated: bool,
+        with_coq: bool,
+        statements: &'a [Statement],
+        outcomes: &'a [ProofOutcome],
+    ) -> Self {
         let mut report = Self {
+            one,
+            bound,
+            is_stated,
+            with_coq,
             statements: statements.len(),
-            open: Vec::new(),
             contradictory: 0,
             without_witness: 0,
+            open: Vec::new(),
         };
         for (statement, outcome) in statements.iter().zip(outcomes) {
             match outcome {
-                ProofOutcome::Open(why) => report.open.push((statement, why.as_str())),
+                ProofOutcome::Open(why) => report.open.push((statement, why)),
                 ProofOutcome::Proved(_, ProofSubject::Nothing) => report.contradictory += 1,
                 ProofOutcome::Proved(_, ProofSubject::Unknown) => report.without_witness += 1,
-                ProofOutcome::Proved(_, ProofSubject::Point(_)) => {}
+                ProofOutcome::Proved(..) => (),
             }
         }
         report
     }
+}
 
-    /// Prints the verdict on a configuration, and at most three of the open statements.
-    fn print(&self, one: &Loaded, bound: f64, coq: bool) {
-        let by = if coq { "proved by Gappa and checked by Coq" } else { "proved by Gappa" };
-        let proved = self.statements - self.open.len() - self.contradictory;
-        let mut remarks = String::new();
-        if self.without_witness > 0 {
-            remarks += &format!(", {} of them without a witness", self.without_witness);
+impl CommandReport for Certification<'_> {
+    fn json(&self) -> Result<Value> {
+        let mut open = Vec::new();
+        for (statement, why) in &self.open {
+            let Statement { output, number, also, .. } = statement;
+            open.push(json!({ "number": number, "output": output, "also": also, "why": why }));
         }
-        if self.contradictory > 0 {
-            let number = self.contradictory;
-            remarks += &format!(", and {number} whose hypotheses contradict each other");
-        }
+        Ok(json!({
+            "config": self.one.path,
+            "certified": self.open.is_empty(),
+            "bound": self.bound,
+            "bound_found": !self.is_stated,
+            "statements": self.statements,
+            "contradictory": self.contradictory,
+            "without_witness": self.without_witness,
+            "open": open,
+            "coq": self.with_coq,
+        }))
+    }
+
+    fn print(&self) -> Result<()> {
+        let (path, bound, statements) = (&self.one.path, self.bound, self.statements);
+        let by =
+            if self.with_coq { "proved by Gappa and checked by Coq" } else { "proved by Gappa" };
+        let proved = statements - self.open.len() - self.contradictory;
+        let empty = match self.contradictory {
+            0 => String::new(),
+            empty => format!(", and {empty} whose hypotheses contradict each other"),
+        };
+        let unknown = match self.without_witness {
+            0 => String::new(),
+            unknown => format!(", {unknown} of them without a witness"),
+        };
         if self.open.is_empty() {
-            let origin = if one.core.contract.bound().is_stated() {
+            let origin = if self.is_stated {
                 ""
             } else {
                 ", a bound that is found, as the contract states none"
             };
             say!(
-                "{}: certified: |output - formula| <= {bound:.6} units over the whole domain{origin}; {proved} statements {by}{remarks}",
-                one.path
+                "{path}: certified: |output - formula| <= {bound:.6} units over the whole domain{origin}; {proved} statements {by}{unknown}{empty}"
             );
         } else {
             say!(
-                "{}: not certified: {proved} of {} statements {by}{remarks}, {} open",
-                one.path,
-                self.statements,
+                "{path}: not certified: {proved} of {statements} statements {by}{unknown}{empty}, {} open",
                 self.open.len()
             );
         }
         for (statement, why) in self.open.iter().take(3) {
             say!("  {} of {}: {why}", statement.number, statement.output);
         }
+        Ok(())
     }
 }
 

@@ -20,6 +20,7 @@ use glint_prove::synth::SynthesisRecord;
 use glint_show::evidence::comparison::{self, Accuracy, MultiplierSize};
 use glint_tools::Tool;
 use glint_tools::synthesis::{self, Usage};
+use show::ComparisonReport;
 
 /// Compare all devices with cos^n gamma at one exponent, side by side
 ///
@@ -87,7 +88,7 @@ struct ModelFigures {
 
 /// Runs `glint compare`.
 pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) -> Result<bool> {
-    if arguments.csv && output.json {
+    if arguments.csv && !output.is_for_people() {
         wrong_usage!("--csv and --json are two ways to print the same: give one");
     }
     let mut notes = Vec::new();
@@ -167,7 +168,12 @@ pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) ->
             }
         }
     }
-    show::show(output, arguments, &entries, &notes, &failures)?;
+    output.report(&ComparisonReport {
+        arguments,
+        entries: &entries,
+        notes: &notes,
+        failures: &failures,
+    })?;
     Ok(failures.is_empty())
 }
 

@@ -16,6 +16,7 @@ use super::mismatch::{self, Reproducer};
 use super::{Loaded, load, verdict};
 use crate::destination::Destination;
 use crate::failure::Failure;
+use crate::report::CommandReport;
 use crate::{Configs, Force, OutputOptions, TimeLimit, count, progress, say, wrong_usage};
 use benches::benches;
 use glint_base::text;
@@ -138,15 +139,32 @@ fn built_in(output: OutputOptions, loaded: &[Loaded], arguments: &Arguments) -> 
         .collect::<Result<_>>()?;
     bar.finish_and_clear();
     let mut holds = true;
-    let mut list = Vec::new();
+    let mut list = output.list();
     for (one, outcome) in loaded.iter().zip(&outcomes) {
         let bound = one.core.contract.bound();
         let failures = outcome.failures(&bound);
         holds &= failures.is_empty();
-        if output.json {
-            list.push(as_json(one, outcome, &bound, &failures)?);
-            continue;
-        }
+        list.add(&CheckedRun { one, outcome, bound, failures })?;
+    }
+    list.conclude(holds)
+}
+
+/// A run of golden model and built-in simulator.
+struct CheckedRun<'a> {
+    one: &'a Loaded,
+    outcome: &'a Outcome,
+    /// The bound of the contract.
+    bound: Bound,
+    failures: Vec<String>,
+}
+
+impl CommandReport for CheckedRun<'_> {
+    fn json(&self) -> Result<Value> {
+        as_json(self.one, self.outcome, &self.bound, &self.failures)
+    }
+
+    fn print(&self) -> Result<()> {
+        let Self { one, outcome, bound, failures } = self;
         // A difference from the golden model ends the run; other failures do not.
         let compared = if outcome.mismatch.is_none() { "equal" } else { "compared with" };
         say!(
@@ -156,7 +174,7 @@ fn built_in(output: OutputOptions, loaded: &[Loaded], arguments: &Arguments) -> 
             text::grouped(outcome.clocks),
             outcome.registers,
             outcome.outputs,
-            verdict(&bound, &failures),
+            verdict(bound, failures),
         );
         if let Some(worst) = &outcome.worst {
             say!(
@@ -176,8 +194,8 @@ fn built_in(output: OutputOptions, loaded: &[Loaded], arguments: &Arguments) -> 
             let reproducer = Reproducer::of_run(one, mismatch)?;
             say!("  {}", reproducer.text(mismatch));
         }
+        Ok(())
     }
-    Ok(output.concluded(holds, list))
 }
 
 fn outcome(

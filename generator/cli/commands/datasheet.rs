@@ -4,11 +4,12 @@ use std::path::PathBuf;
 
 use anyhow::{Context, Result};
 use clap::Args;
-use serde_json::json;
+use serde_json::{Value, json};
 
 use super::{Loaded, load, yosys};
+use crate::report::CommandReport;
 use crate::store::{self, Written};
-use crate::{Configs, OutputOptions, TimeLimit, progress, say, tables, wrong_usage};
+use crate::{Configs, OutputOptions, TimeLimit, progress, say, wrong_usage};
 use glint_core::cosim::exhaustive::{PROOFS, Record};
 use glint_core::package::Seal;
 use glint_core::registry::Registry;
@@ -111,7 +112,7 @@ pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) ->
         }
     }
     bar.finish_and_clear();
-    tell(output, &report, &notes);
+    output.report(&DatasheetFiles { files: report, notes })?;
     Ok(true)
 }
 
@@ -124,24 +125,34 @@ fn path(arguments: &Arguments, one: &Loaded, single: bool) -> PathBuf {
     }
 }
 
-fn tell(output: OutputOptions, report: &[(&Loaded, String, Written)], notes: &[String]) {
-    if output.json {
-        let files = report.iter().map(|(one, path, written)| {
-            json!({
+/// The files of the datasheets.
+struct DatasheetFiles<'a> {
+    /// The configuration and the path of each file, and whether the file has changed.
+    files: Vec<(&'a Loaded, String, Written)>,
+    notes: Vec<String>,
+}
+
+impl CommandReport for DatasheetFiles<'_> {
+    fn json(&self) -> Result<Value> {
+        let mut files = Vec::new();
+        for (one, path, written) in &self.files {
+            files.push(json!({
                 "config": one.path,
                 "name": one.core.config.name,
                 "file": path,
                 "written": *written == Written::Replaced,
-            })
-        });
-        let files: Vec<_> = files.collect();
-        tables::print_json(&json!({ "ok": true, "datasheets": files, "notes": notes }));
-        return;
+            }));
+        }
+        Ok(json!({ "ok": true, "datasheets": files, "notes": self.notes }))
     }
-    for (one, path, written) in report {
-        say!("{}: {path} {written}", one.path);
-    }
-    for note in notes {
-        say!("Note: {note}");
+
+    fn print(&self) -> Result<()> {
+        for (one, path, written) in &self.files {
+            say!("{}: {path} {written}", one.path);
+        }
+        for note in &self.notes {
+            say!("Note: {note}");
+        }
+        Ok(())
     }
 }

@@ -4,11 +4,12 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result};
 use clap::Args;
-use serde_json::json;
+use serde_json::{Value, json};
 
-use super::load;
+use super::{Loaded, load};
+use crate::report::CommandReport;
 use crate::store::{self, Written};
-use crate::{Configs, OutputOptions, say, tables};
+use crate::{Configs, OutputOptions, say};
 use glint_core::cosim::exhaustive::PROOFS;
 use glint_core::package::Seal;
 use glint_core::registry::Registry;
@@ -38,7 +39,7 @@ pub struct Arguments {
 /// Runs `glint describe`.
 pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) -> Result<bool> {
     let loaded = load(registry, &arguments.configs.paths)?;
-    let mut report = Vec::new();
+    let mut list = output.list();
     for (at, one) in loaded.iter().enumerate() {
         let page = pages::of(&one.core, &one.path, Path::new(PROOFS));
         let page = page.with_context(|| format!("`{}`", one.path))?;
@@ -55,25 +56,45 @@ pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) ->
             }
             None => None,
         };
-        match written {
-            Some(written) if output.json => report.push(json!({
-                "config": one.path,
+        list.add(&DescribedPage { one, page, written, is_first: at == 0 })?;
+    }
+    list.finish(|pages| Ok(json!({ "ok": true, "described": pages })))?;
+    Ok(true)
+}
+
+/// The page of a configuration.
+struct DescribedPage<'a> {
+    one: &'a Loaded,
+    page: String,
+    /// Whether the file has changed, if the page is written into a file.
+    written: Option<Written>,
+    is_first: bool,
+}
+
+impl CommandReport for DescribedPage<'_> {
+    fn json(&self) -> Result<Value> {
+        let (config, name) = (&self.one.path, &self.one.core.config.name);
+        Ok(match self.written {
+            Some(written) => json!({
+                "config": config,
                 "name": name,
                 "written": written == Written::Replaced,
                 "file": format!("{name}.md"),
-            })),
-            Some(written) => say!("{}: {name}.md {written}", one.path),
-            None if output.json => {
-                report.push(json!({ "config": one.path, "name": name, "page": page }));
+            }),
+            None => json!({ "config": config, "name": name, "page": self.page }),
+        })
+    }
+
+    fn print(&self) -> Result<()> {
+        match self.written {
+            Some(written) => {
+                say!("{}: {}.md {written}", self.one.path, self.one.core.config.name);
             }
             None => {
-                let gap = if at > 0 { "\n" } else { "" };
-                say!("{gap}{}", page.trim_end());
+                let gap = if self.is_first { "" } else { "\n" };
+                say!("{gap}{}", self.page.trim_end());
             }
         }
+        Ok(())
     }
-    if output.json {
-        tables::print_json(&json!({ "ok": true, "described": report }));
-    }
-    Ok(true)
 }

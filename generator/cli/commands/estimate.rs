@@ -5,6 +5,7 @@ use clap::Args;
 use serde_json::{Value, json};
 
 use super::{Loaded, load};
+use crate::report::CommandReport;
 use crate::{Configs, OutputOptions, say, tables};
 use glint_base::program::Program;
 use glint_core::registry::Registry;
@@ -38,18 +39,39 @@ struct EstimateRow {
 /// Runs `glint estimate`.
 pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) -> Result<bool> {
     let loaded = load(registry, &arguments.configs.paths)?;
-    let estimates: Vec<(&Loaded, Vec<EstimateRow>)> =
-        loaded.iter().map(|one| (one, rows(one))).collect();
-    if output.json {
-        let estimates: Vec<Value> =
-            estimates.iter().map(|(one, rows)| as_json(one, rows)).collect();
-        tables::print_json(&json!({ "ok": true, "estimates": estimates }));
-        return Ok(true);
+    let mut estimates = Vec::new();
+    for one in &loaded {
+        estimates.push((one, rows(one)));
     }
-    let lines = estimates.iter().flat_map(|(one, rows)| rows.iter().map(|row| line(one, row)));
-    tables::print("core | family | LUT: | DSP: | RAM: | MHz: | smallest chip", lines);
-    say!("These are estimates; `{Program} synth` measures.");
+    output.report(&EstimateTable { estimates })?;
     Ok(true)
+}
+
+/// The estimates of each configuration.
+struct EstimateTable<'a> {
+    estimates: Vec<(&'a Loaded, Vec<EstimateRow>)>,
+}
+
+impl CommandReport for EstimateTable<'_> {
+    fn json(&self) -> Result<Value> {
+        let mut estimates = Vec::new();
+        for (one, rows) in &self.estimates {
+            estimates.push(as_json(one, rows));
+        }
+        Ok(json!({ "ok": true, "estimates": estimates }))
+    }
+
+    fn print(&self) -> Result<()> {
+        let mut lines = Vec::new();
+        for (one, rows) in &self.estimates {
+            for row in rows {
+                lines.push(line(one, row));
+            }
+        }
+        tables::print("core | family | LUT: | DSP: | RAM: | MHz: | smallest chip", lines);
+        say!("These are estimates; `{Program} synth` measures.");
+        Ok(())
+    }
 }
 
 fn rows(one: &Loaded) -> Vec<EstimateRow> {

@@ -12,6 +12,7 @@ use serde_json::{Value, json};
 
 use super::{Loaded, load_one};
 use crate::failure::Failure;
+use crate::report::CommandReport;
 use crate::{OutputOptions, say, tables, wrong_usage};
 use glint_base::fixed::Format;
 use glint_core::cosim::Driven;
@@ -97,31 +98,63 @@ fn point(
     for (operand, &raw) in operands.iter().zip(&raw) {
         operand_values.push(SignalValue::new(operand.name.clone(), operand.format, raw.into()));
     }
-    if output.json {
-        tables::print_json(&json!({
-            "config": one.path,
-            "operands": operand_values,
-            "not_given": missing,
-            "inside_the_domain": outside.is_empty(),
-            "signals": signals,
-            "formula": as_json(&results),
-        }));
-        return Ok(true);
-    }
-    if !missing.is_empty() {
-        say!("Operands that were not given: {}.", missing.join(", "));
-    }
-    if !outside.is_empty() {
-        say!("Outside the domain for which the contract is stated: {}.", outside.join("; "));
-    }
-    print_values("operand", operand_values);
-    print_values("golden, when valid", signals);
-    let mut rows = Vec::new();
-    for ResultComparison { name, value, exact, error } in results {
-        rows.push(vec![name, value.to_string(), format!("{exact:.9}"), format!("{error:.3}")]);
-    }
-    tables::print("result | value: | formula in f64: | error in last places:", rows);
+    output.report(&EvaluatedPoint {
+        one,
+        operands: operand_values,
+        missing,
+        outside,
+        signals,
+        results,
+    })?;
     Ok(true)
+}
+
+/// A point with the values of all signals in the clock of its result.
+struct EvaluatedPoint<'a> {
+    one: &'a Loaded,
+    operands: Vec<SignalValue>,
+    /// The operands that were not given, with the values that they have then.
+    missing: Vec<String>,
+    /// The operands outside the domain, in words.
+    outside: Vec<String>,
+    signals: Vec<SignalValue>,
+    results: Vec<ResultComparison>,
+}
+
+impl CommandReport for EvaluatedPoint<'_> {
+    fn json(&self) -> Result<Value> {
+        Ok(json!({
+            "config": self.one.path,
+            "operands": self.operands,
+            "not_given": self.missing,
+            "inside_the_domain": self.outside.is_empty(),
+            "signals": self.signals,
+            "formula": as_json(&self.results),
+        }))
+    }
+
+    fn print(&self) -> Result<()> {
+        if !self.missing.is_empty() {
+            say!("Operands that were not given: {}.", self.missing.join(", "));
+        }
+        if !self.outside.is_empty() {
+            let outside = self.outside.join("; ");
+            say!("Outside the domain for which the contract is stated: {outside}.");
+        }
+        print_values("operand", &self.operands);
+        print_values("golden, when valid", &self.signals);
+        let mut rows = Vec::new();
+        for result in &self.results {
+            rows.push(vec![
+                result.name.clone(),
+                result.value.to_string(),
+                format!("{:.9}", result.exact),
+                format!("{:.3}", result.error),
+            ]);
+        }
+        tables::print("result | value: | formula in f64: | error in last places:", rows);
+        Ok(())
+    }
 }
 
 /// Returns the signals of the golden model with their values. The golden model of a pipeline is the model of its
@@ -232,10 +265,10 @@ impl SignalValue {
     }
 }
 
-fn print_values(what: &str, values: Vec<SignalValue>) {
+fn print_values(what: &str, values: &[SignalValue]) {
     let mut rows = Vec::new();
     for SignalValue { name, raw, value, format } in values {
-        rows.push(vec![name, format, raw.to_string(), value.to_string()]);
+        rows.push(vec![name.clone(), format.clone(), raw.to_string(), value.to_string()]);
     }
     tables::print(&format!("{what} | format | raw: | value:"), rows);
 }

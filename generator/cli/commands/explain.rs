@@ -2,9 +2,10 @@
 
 use anyhow::Result;
 use clap::Args;
-use serde_json::json;
+use serde_json::{Value, json};
 
 use crate::failure::wrong_usage;
+use crate::report::CommandReport;
 use crate::{OutputOptions, say, tables};
 use glint_base::codes;
 use glint_core::registry::Registry;
@@ -29,16 +30,39 @@ pub fn run(_: &Registry, output: OutputOptions, arguments: &Arguments) -> Result
         let code = arguments.code.as_deref().unwrap_or_default();
         wrong_usage!("there is no code `{code}`; `explain` alone lists all");
     }
-    if output.json {
-        let page = |(code, title, text): &(&str, &str, &str)| json!({ "code": code, "title": title, "text": text });
-        tables::print_json(&json!({ "codes": pages.iter().map(page).collect::<Vec<_>>() }));
-    } else if arguments.code.is_some() {
-        let (code, title, text) = pages[0];
-        say!("{code}: {title}\n");
-        tables::print_line(text);
-    } else {
-        let rows = pages.iter().map(|(code, title, _)| vec![code.to_string(), title.to_string()]);
-        tables::print("code | mistake", rows);
-    }
+    output.report(&Explanation { pages, single: arguments.code.is_some() })?;
     Ok(true)
+}
+
+/// The pages about codes: of one code, or of all.
+struct Explanation {
+    /// The code of each page, its title and its text.
+    pages: Vec<(&'static str, &'static str, &'static str)>,
+    /// The user names the code.
+    single: bool,
+}
+
+impl CommandReport for Explanation {
+    fn json(&self) -> Result<Value> {
+        let mut codes = Vec::new();
+        for (code, title, text) in &self.pages {
+            codes.push(json!({ "code": code, "title": title, "text": text }));
+        }
+        Ok(json!({ "codes": codes }))
+    }
+
+    fn print(&self) -> Result<()> {
+        if self.single {
+            let (code, title, text) = self.pages[0];
+            say!("{code}: {title}\n");
+            tables::print_line(text);
+            return Ok(());
+        }
+        let mut rows = Vec::new();
+        for (code, title, _) in &self.pages {
+            rows.push(vec![(*code).to_owned(), (*title).to_owned()]);
+        }
+        tables::print("code | mistake", rows);
+        Ok(())
+    }
 }

@@ -5,11 +5,12 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, Result};
 use clap::Args;
 use rayon::prelude::*;
-use serde_json::json;
+use serde_json::{Value, json};
 
 use super::{Loaded, load};
+use crate::report::CommandReport;
 use crate::store::{self, Written};
-use crate::{Configs, OutputOptions, failure, progress, say, tables};
+use crate::{Configs, OutputOptions, failure, progress, say};
 use glint_base::program::Program;
 use glint_core::cosim::directed::ComputationCache;
 use glint_core::package::{self, OutputFiles, Seal};
@@ -55,20 +56,10 @@ pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) ->
     if arguments.check {
         return compare(output, &arguments.out, &loaded, &made);
     }
-    let mut report = Vec::new();
+    let mut list = output.list();
     for (one, Made { files, .. }) in loaded.iter().zip(&made) {
         let written = write(&arguments.out, one, files, arguments.force)?;
-        if output.json {
-            let paths: Vec<&str> = files.iter().map(|file| file.path.as_str()).collect();
-            report.push(json!({
-                "config": one.path,
-                "name": one.core.config.name,
-                "written": written == Written::Replaced,
-                "files": paths,
-            }));
-        } else {
-            say!("{}: {} files {written}", one.path, files.len());
-        }
+        list.add(&GeneratedFiles { one, files, written })?;
     }
     for (one, Made { word_stride, .. }) in loaded.iter().zip(&made) {
         if *word_stride > 1 {
@@ -82,13 +73,37 @@ pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) ->
     for (one, excess) in misfits {
         failure::warn(&format!("{}: by the estimate {excess}", one.path));
     }
-    if output.json {
-        let shared = [package::driver().path];
-        tables::print_json(&json!({ "ok": true, "generated": report, "shared": shared }));
-    } else {
+    let shared = [package::driver().path];
+    list.finish(|generated| Ok(json!({ "ok": true, "generated": generated, "shared": shared })))?;
+    if output.is_for_people() {
         print_next_step(&arguments.out, &loaded, !arguments.no_bench);
     }
     Ok(true)
+}
+
+/// The files of a configuration, after they are written.
+struct GeneratedFiles<'a> {
+    one: &'a Loaded,
+    files: &'a OutputFiles,
+    /// Whether a file has changed.
+    written: Written,
+}
+
+impl CommandReport for GeneratedFiles<'_> {
+    fn json(&self) -> Result<Value> {
+        let paths: Vec<&str> = self.files.iter().map(|file| file.path.as_str()).collect();
+        Ok(json!({
+            "config": self.one.path,
+            "name": self.one.core.config.name,
+            "written": self.written == Written::Replaced,
+            "files": paths,
+        }))
+    }
+
+    fn print(&self) -> Result<()> {
+        say!("{}: {} files {}", self.one.path, self.files.len(), self.written);
+        Ok(())
+    }
 }
 
 /// Prints how the generated files are simulated, with their benches if there are any.
@@ -184,15 +199,26 @@ fn compare(output: OutputOptions, out: &Path, loaded: &[Loaded], made: &[Made]) 
     for (one, Made { files, .. }) in loaded.iter().zip(made) {
         all.extend(store::differences(out, &one.core.config.name, files.as_slice())?);
     }
-    if output.json {
-        tables::print_json(&json!({ "ok": all.is_empty(), "different": all }));
-    } else {
-        for path in &all {
+    let is_equal = all.is_empty();
+    output.report(&Differences(all))?;
+    Ok(is_equal)
+}
+
+/// The paths of the files that are not as `generate` would write them.
+struct Differences(Vec<String>);
+
+impl CommandReport for Differences {
+    fn json(&self) -> Result<Value> {
+        Ok(json!({ "ok": self.0.is_empty(), "different": self.0 }))
+    }
+
+    fn print(&self) -> Result<()> {
+        for path in &self.0 {
             say!("differs: {path}");
         }
-        if all.is_empty() {
-            tables::print_line("everything is as it would be generated");
+        if self.0.is_empty() {
+            say!("everything is as it would be generated");
         }
+        Ok(())
     }
-    Ok(all.is_empty())
 }

@@ -4,12 +4,13 @@ use std::path::Path;
 
 use anyhow::Result;
 use clap::Args;
-use serde_json::json;
+use serde_json::{Value, json};
 
 use super::{CONFIGS, paths};
+use crate::report::CommandReport;
 use crate::{OutputOptions, say, tables};
 use glint_base::program::Program;
-use glint_core::registry::Registry;
+use glint_core::registry::{Device, Registry};
 
 /// List the devices, and the configurations in configs/
 #[derive(Args)]
@@ -25,26 +26,38 @@ pub fn run(registry: &Registry, output: OutputOptions, _: &Arguments) -> Result<
     } else {
         Vec::new()
     };
-    if output.json {
-        let devices: Vec<_> = registry
-            .devices()
-            .iter()
-            .map(|device| json!({ "name": device.name, "summary": device.summary }))
-            .collect();
-        tables::print_json(&json!({ "devices": devices, "configs": configs }));
-        return Ok(true);
-    }
-    let rows = registry
-        .devices()
-        .iter()
-        .map(|device| vec![device.name.to_owned(), device.summary.to_owned()]);
-    tables::print("device | what it computes", rows);
-    say!(
-        "Most are sequential cores or, with architecture = \"pipelined\", pipelines that take a point every few clocks, at twice the rate from a multiplier or two, or one every clock; \
-         `{Program} tune DEVICE --error E --rate R` chooses."
-    );
-    for config in configs {
-        tables::print_line(&config);
-    }
+    output.report(&Inventory { devices: registry.devices(), configs })?;
     Ok(true)
+}
+
+/// The devices, and the paths of the configurations in `configs/`.
+struct Inventory<'a> {
+    devices: &'a [Device],
+    configs: Vec<String>,
+}
+
+impl CommandReport for Inventory<'_> {
+    fn json(&self) -> Result<Value> {
+        let mut devices = Vec::new();
+        for device in self.devices {
+            devices.push(json!({ "name": device.name, "summary": device.summary }));
+        }
+        Ok(json!({ "devices": devices, "configs": self.configs }))
+    }
+
+    fn print(&self) -> Result<()> {
+        let mut rows = Vec::new();
+        for device in self.devices {
+            rows.push(vec![device.name.to_owned(), device.summary.to_owned()]);
+        }
+        tables::print("device | what it computes", rows);
+        say!(
+            "Most are sequential cores or, with architecture = \"pipelined\", pipelines that take a point every few clocks, at twice the rate from a multiplier or two, or one every clock; \
+             `{Program} tune DEVICE --error E --rate R` chooses."
+        );
+        for config in &self.configs {
+            tables::print_line(config);
+        }
+        Ok(())
+    }
 }

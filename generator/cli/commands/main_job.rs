@@ -8,6 +8,7 @@ use serde_json::{Value, json};
 
 use super::mismatch::Reproducer;
 use super::{CONFIGS, FAILS, HOLDS, Loaded, OUTSIDE, cosim, generate, load, verdict};
+use crate::report::CommandReport;
 use crate::{OutputOptions, progress, say, tables};
 use glint_base::text;
 use glint_core::core::{TEST_POINTS, TEST_SEED};
@@ -40,15 +41,31 @@ pub fn run(registry: &Registry, output: OutputOptions, details: bool) -> Result<
         loaded.par_iter().map(|one| finding(one, &bar)).collect::<Result<_>>()?;
     bar.finish_and_clear();
     let holds = findings.iter().all(|finding| finding.failures.is_empty());
-    if output.json {
-        let mut list: Vec<Value> = Vec::new();
-        for (one, finding) in loaded.iter().zip(&findings) {
-            list.push(as_json(one, finding)?);
-        }
-        return Ok(output.concluded(holds, list));
-    }
-    print(&loaded, &findings, details)?;
+    output.report(&MainJobReport { loaded: &loaded, findings: &findings, details, holds })?;
     Ok(holds)
+}
+
+/// The results of all configurations.
+struct MainJobReport<'a> {
+    loaded: &'a [Loaded],
+    findings: &'a [MainJobResult],
+    /// People are told more than the table.
+    details: bool,
+    holds: bool,
+}
+
+impl CommandReport for MainJobReport<'_> {
+    fn json(&self) -> Result<Value> {
+        let mut configurations = Vec::new();
+        for (one, finding) in self.loaded.iter().zip(self.findings) {
+            configurations.push(as_json(one, finding)?);
+        }
+        Ok(json!({ "ok": self.holds, "configurations": configurations }))
+    }
+
+    fn print(&self) -> Result<()> {
+        print(self.loaded, self.findings, self.details)
+    }
 }
 
 fn finding(one: &Loaded, bar: &indicatif::ProgressBar) -> Result<MainJobResult> {

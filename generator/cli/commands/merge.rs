@@ -48,10 +48,10 @@ pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) ->
         one.path
     );
     let merged = job.merge(&states, &names)?;
-    if !output.json {
+    if output.is_for_people() {
         announce(one, &job, &ShardState::new("", Shard::WHOLE));
     }
-    let mut list = Vec::new();
-    let holds = report(output, one, &job, &merged, &mut list)?;
-    Ok(output.concluded(holds, list))
+    let mut list = output.list();
+    let holds = report(one, &job, &merged, &mut list)?;
+    list.conclude(holds)
 }

@@ -12,6 +12,7 @@ use super::mismatch::{self, first_clock, traced};
 use super::{Loaded, load};
 use crate::destination::Destination;
 use crate::own_file::OwnFile;
+use crate::report::CommandReport;
 use crate::{Configs, OutputOptions, TimeLimit, progress, say, tables, wrong_usage};
 use glint_base::program::Program;
 use glint_core::registry::Registry;
@@ -96,7 +97,7 @@ pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) ->
     }
     let faults: Vec<Faults> = loaded.iter().map(|one| Faults::of(&one.core.design)).collect();
     if arguments.list {
-        return Ok(list(output, &loaded, &faults));
+        return list(output, &loaded, &faults);
     }
     let mut total = 0;
     for faults in &faults {
@@ -118,7 +119,8 @@ pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) ->
         records.push(OwnFile::record(arguments.out.as_deref(), &one.core.config.name)?);
     }
     let bar = progress::bar(output, total as u64, "faults planted");
-    let mut scores = Vec::new();
+    let mut list = output.list();
+    let mut holds = true;
     for (((one, faults), text), record) in loaded.iter().zip(&faults).zip(&texts).zip(records) {
         let found = mutate::run(&one.core, faults.iter(), &|| bar.inc(1));
         let netlist = Score::of(&found.with_context(|| format!("`{}`", one.path))?);
@@ -139,34 +141,55 @@ pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) ->
         if let Some(record) = record {
             record.write_json(&scored)?;
         }
-        if !output.json {
-            bar.suspend(|| print(&scored));
-        }
-        scores.push(scored);
+        bar.suspend(|| list.add(&scored))?;
+        holds &= scored.holds();
     }
     bar.finish_and_clear();
-    let holds = scores.iter().all(Scored::holds);
-    Ok(output.concluded(holds, scores))
+    list.conclude(holds)
+}
+
+impl CommandReport for Scored {
+    fn json(&self) -> Result<Value> {
+        Ok(json!(self))
+    }
+
+    fn print(&self) -> Result<()> {
+        print(self);
+        Ok(())
+    }
 }
 
 /// Prints the names of all faults, which always succeeds.
-fn list(output: OutputOptions, loaded: &[Loaded], faults: &[Faults]) -> bool {
-    let mut list = Vec::new();
+fn list(output: OutputOptions, loaded: &[Loaded], faults: &[Faults]) -> Result<bool> {
+    let mut list = output.list();
     for (one, faults) in loaded.iter().zip(faults) {
-        if output.json {
-            let mut named: Vec<Value> = Vec::new();
-            for fault in faults.iter() {
-                named.push(json!({ "id": fault.id, "kind": fault.kind }));
-            }
-            list.push(json!({ "config": one.path, "faults": named }));
-            continue;
+        list.add(&FaultNames { one, faults })?;
+    }
+    list.conclude(true)
+}
+
+/// The names of all faults of a configuration.
+struct FaultNames<'a> {
+    one: &'a Loaded,
+    faults: &'a Faults,
+}
+
+impl CommandReport for FaultNames<'_> {
+    fn json(&self) -> Result<Value> {
+        let mut faults = Vec::new();
+        for fault in self.faults.iter() {
+            faults.push(json!({ "id": fault.id, "kind": fault.kind }));
         }
-        say!("{}: {} faults", one.path, faults.len());
-        for fault in faults.iter() {
+        Ok(json!({ "config": self.one.path, "faults": faults }))
+    }
+
+    fn print(&self) -> Result<()> {
+        say!("{}: {} faults", self.one.path, self.faults.len());
+        for fault in self.faults.iter() {
             say!("  {}  {}", fault.id, fault.kind);
         }
+        Ok(())
     }
-    output.concluded(true, list)
 }
 
 /// Plants one fault, and prints its verdict with the means to reproduce it.
@@ -191,24 +214,44 @@ fn only(output: OutputOptions, one: &Loaded, id: &str) -> Result<bool> {
         traced(one, &lockstep, Destination::open(&path)?, u64::MAX, from)?;
         waveform = Some((path, from, mismatch.clock));
     }
-    if output.json {
-        tables::print_json(&found_as_json(one, &found));
-        return Ok(*verdict != MutantVerdict::Undecided);
-    }
-    let said = match verdict {
-        MutantVerdict::Caught(check, shown) => format!("caught by {check}: {}", shown_by(shown)),
-        MutantVerdict::Equivalent(how) => format!("equivalent, {how}"),
-        MutantVerdict::Undecided => "UNDECIDED: not caught, and not proved equivalent".to_owned(),
-    };
-    say!("{}: {} ({}): {said}", one.path, fault.id, fault.kind);
-    if let Some((path, from, to)) = waveform {
-        say!("  `{}` shows clocks {from} to {to}", path.display());
-    }
-    if !matches!(verdict, MutantVerdict::Equivalent(_)) {
-        let notices = if found.shipped { "notices it" } else { "does not notice it" };
-        say!("  the shipped bench {notices}");
-    }
+    output.report(&PlantedFault { one, found: &found, waveform })?;
     Ok(*verdict != MutantVerdict::Undecided)
+}
+
+/// A fault with its verdict.
+struct PlantedFault<'a> {
+    one: &'a Loaded,
+    found: &'a FaultResult,
+    /// The waveform of a fault that is caught, its first clock and its last.
+    waveform: Option<(PathBuf, u64, u64)>,
+}
+
+impl CommandReport for PlantedFault<'_> {
+    fn json(&self) -> Result<Value> {
+        Ok(found_as_json(self.one, self.found))
+    }
+
+    fn print(&self) -> Result<()> {
+        let FaultResult { fault, verdict, shipped } = self.found;
+        let said = match verdict {
+            MutantVerdict::Caught(check, shown) => {
+                format!("caught by {check}: {}", shown_by(shown))
+            }
+            MutantVerdict::Equivalent(how) => format!("equivalent, {how}"),
+            MutantVerdict::Undecided => {
+                "UNDECIDED: not caught, and not proved equivalent".to_owned()
+            }
+        };
+        say!("{}: {} ({}): {said}", self.one.path, fault.id, fault.kind);
+        if let Some((path, from, to)) = &self.waveform {
+            say!("  `{}` shows clocks {from} to {to}", path.display());
+        }
+        if !matches!(verdict, MutantVerdict::Equivalent(_)) {
+            let notices = if *shipped { "notices it" } else { "does not notice it" };
+            say!("  the shipped bench {notices}");
+        }
+        Ok(())
+    }
 }
 
 /// Describes where and how a mutant differs. For example, the text begins with `seed 3, with exponent=#5, after clock

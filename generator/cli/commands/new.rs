@@ -3,11 +3,12 @@
 use anyhow::Result;
 use clap::Args;
 use clap::builder::PossibleValuesParser;
-use serde_json::json;
+use serde_json::{Value, json};
 
 use super::none_of;
 use super::settings::KeyAssignment;
 use crate::failure::Failure;
+use crate::report::CommandReport;
 use crate::{OutputOptions, number, tables, wrong_usage};
 use glint_base::program::Program;
 use glint_base::target::TIMING_NAMES;
@@ -87,12 +88,28 @@ pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) ->
         );
         head + &config::brief(&schema, &config, &given)
     };
-    if output.json {
-        tables::print_json(&json!({ "ok": true, "device": device, "name": name, "text": text }));
-    } else {
-        tables::print_line(text.trim_end());
-    }
+    output.report(&NewConfiguration { device, name, text })?;
     Ok(true)
+}
+
+/// A new configuration, as TOML.
+struct NewConfiguration<'a> {
+    /// The device or the preset, as the user names it.
+    device: &'a str,
+    name: String,
+    text: String,
+}
+
+impl CommandReport for NewConfiguration<'_> {
+    fn json(&self) -> Result<Value> {
+        let Self { device, name, text } = self;
+        Ok(json!({ "ok": true, "device": device, "name": name, "text": text }))
+    }
+
+    fn print(&self) -> Result<()> {
+        tables::print_line(self.text.trim_end());
+        Ok(())
+    }
 }
 
 impl Arguments {

@@ -5,9 +5,10 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, bail};
 use clap::Args;
-use serde_json::json;
+use serde_json::{Value, json};
 
-use crate::{OutputOptions, say, tables, wrong_usage};
+use crate::report::CommandReport;
+use crate::{OutputOptions, say, wrong_usage};
 use glint_base::identifier;
 use glint_core::registry::Registry;
 
@@ -50,19 +51,32 @@ pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) ->
     let directory = arguments.out.clone().unwrap_or_else(|| PathBuf::from(name));
     let files = FILES.map(|(path, text)| (path, text_for(text, name, &arguments.glint)));
     write(&directory, &files)?;
-    if output.json {
+    output.report(&NewCrate { name, directory: directory.display().to_string() })?;
+    Ok(true)
+}
+
+/// A new crate with a device.
+struct NewCrate<'a> {
+    /// The name of the device.
+    name: &'a str,
+    directory: String,
+}
+
+impl CommandReport for NewCrate<'_> {
+    fn json(&self) -> Result<Value> {
         let paths = FILES.map(|(path, _)| path);
-        tables::print_json(
-            &json!({ "ok": true, "directory": directory.display().to_string(), "files": paths }),
-        );
-    } else {
-        say!("{}: {} files written. Next:", directory.display(), FILES.len());
-        say!("  cd {}", directory.display());
+        Ok(json!({ "ok": true, "directory": self.directory, "files": paths }))
+    }
+
+    fn print(&self) -> Result<()> {
+        let Self { name, directory } = self;
+        say!("{directory}: {} files written. Next:", FILES.len());
+        say!("  cd {directory}");
         say!("  cargo test");
         say!("  cargo run -- new {name} > {name}.toml");
         say!("  cargo run -- generate {name}.toml");
+        Ok(())
     }
-    Ok(true)
 }
 
 /// Writes the files below a directory that is not there yet: all of them, or nothing.

@@ -5,20 +5,21 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, anyhow, bail};
 use clap::{Args, ValueEnum};
-use serde_json::json;
+use serde_json::{Value, json};
 
 use super::load_one;
 use crate::destination::Destination;
 use crate::failure::{self, Failure};
-use crate::{Force, OutputOptions, TimeLimit, number, progress, say, tables, wrong_usage};
+use crate::report::CommandReport;
+use crate::{Force, OutputOptions, TimeLimit, number, progress, say, wrong_usage};
 use glint_base::{input, text};
 use glint_core::core::Core;
 use glint_core::cosim::batch::{Engine, Golden, RustHdl};
 use glint_core::registry::Registry;
 use glint_prove::batch::Verilog;
 use glint_show::render::{
-    self, BuiltIn, Light, Material, Mesh, Object, PictureDifference, Relief, Rendered, Scene,
-    Settings, Shape, Vector, View,
+    self, BuiltIn, Light, Material, Object, PictureDifference, Relief, Rendered, Scene, Settings,
+    Shape, Vector, View,
 };
 use glint_tools::VerilogSimulator;
 
@@ -163,7 +164,8 @@ pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) ->
     })?;
     bar.finish_and_clear();
     destination.write(rendered.whole(core.device.name).png()?)?;
-    tell(output, arguments, &name, &core, &scene, &settings, &rendered);
+    let report = RenderedPicture::new(arguments, &name, &core, &scene, &settings, &rendered);
+    output.report(&report)?;
     Ok(true)
 }
 
@@ -257,32 +259,54 @@ fn read(path: &Path) -> Result<Vec<u8>> {
     Ok(bytes)
 }
 
-/// Prints the result.
-fn tell(
-    output: OutputOptions,
-    arguments: &Arguments,
-    name: &str,
-    core: &Core,
-    scene: &Scene,
-    settings: &Settings,
-    rendered: &Rendered,
-) {
-    let meshes: Vec<&Mesh> = scene
-        .objects
-        .iter()
-        .filter_map(|object| match &object.shape {
-            Shape::Ball { .. } => None,
-            Shape::Mesh(mesh) => Some(mesh),
-        })
-        .collect();
-    let triangles: usize = meshes.iter().map(|mesh| mesh.triangles.len()).sum();
-    let degenerate: usize = meshes.iter().map(|mesh| mesh.degenerate).sum();
-    let path = arguments.out.display().to_string();
-    let through = arguments.through.to_possible_value();
-    let through = through.map_or_else(String::new, |value| value.get_name().to_owned());
-    let bound = core.contract.bound().units;
-    let (width, height) = settings.size;
-    if output.json {
+/// The picture that is written.
+struct RenderedPicture<'a> {
+    arguments: &'a Arguments,
+    /// The configuration, for people.
+    name: &'a str,
+    core: &'a Core,
+    settings: &'a Settings,
+    rendered: &'a Rendered,
+    /// The number of triangles of all meshes.
+    triangles: usize,
+    /// The number of triangles without area.
+    degenerate: usize,
+}
+
+impl<'a> RenderedPicture<'a> {
+    fn new(
+        arguments: &'a Arguments,
+        name: &'a str,
+        core: &'a Core,
+        scene: &Scene,
+        settings: &'a Settings,
+        rendered: &'a Rendered,
+    ) -> Self {
+        let (mut triangles, mut degenerate) = (0, 0);
+        for object in &scene.objects {
+            if let Shape::Mesh(mesh) = &object.shape {
+                triangles += mesh.triangles.len();
+                degenerate += mesh.degenerate;
+            }
+        }
+        Self { arguments, name, core, settings, rendered, triangles, degenerate }
+    }
+
+    fn path(&self) -> String {
+        self.arguments.out.display().to_string()
+    }
+
+    /// Returns the engine that computed the points, as the command line names it.
+    fn through(&self) -> String {
+        let through = self.arguments.through.to_possible_value();
+        through.map_or_else(String::new, |value| value.get_name().to_owned())
+    }
+}
+
+impl CommandReport for RenderedPicture<'_> {
+    fn json(&self) -> Result<Value> {
+        let Self { arguments, name, core, settings, rendered, .. } = *self;
+        let (width, height) = settings.size;
         let comparison = rendered.comparison.as_ref().map(|comparison| {
             let PictureDifference { largest, psnr, gain, .. } = comparison.difference;
             json!({
@@ -290,60 +314,66 @@ fn tell(
                 "psnr": psnr,
                 "shown_times": gain,
                 "largest_error_of_the_formula_in_units": comparison.units,
-                "bound_in_units": bound,
+                "bound_in_units": core.contract.bound().units,
             })
         });
-        tables::print_json(&json!({
+        Ok(json!({
             "ok": true,
             "config": arguments.config.as_ref().map(|_| name),
             "device": core.device.name,
-            "out": path,
-            "through": through,
+            "out": self.path(),
+            "through": self.through(),
             "width": width,
             "height": height,
             "samples": settings.samples,
             "exponent": settings.material.exponent,
             "points": rendered.points,
-            "triangles": triangles,
-            "degenerate_triangles": degenerate,
+            "triangles": self.triangles,
+            "degenerate_triangles": self.degenerate,
             "deviations_beyond_the_domain": rendered.beyond,
             "compare": comparison,
-        }));
-        return;
+        }))
     }
-    say!(
-        "{path}: {width}x{height} pixels, n = {}, {} points of {name} through {through}",
-        settings.material.exponent,
-        text::grouped(rendered.points)
-    );
-    if degenerate > 0 {
-        failure::warn(&format!("{degenerate} triangles are without area and were left out"));
-    }
-    if rendered.beyond > 0 {
-        failure::warn(&format!(
-            "at {} points the deviation exceeds the device's domain and was shortened to it",
-            text::grouped(rendered.beyond)
-        ));
-    }
-    if let Some(comparison) = &rendered.comparison {
-        let difference = &comparison.difference;
-        let psnr = match difference.psnr {
-            Some(psnr) => format!("PSNR {psnr:.2} dB"),
-            None => "the same picture".to_owned(),
-        };
+
+    fn print(&self) -> Result<()> {
+        let Self { name, core, settings, rendered, degenerate, .. } = *self;
+        let (width, height) = settings.size;
+        let (path, through) = (self.path(), self.through());
         say!(
-            "  from left to right: the device, Blinn in f64, their difference times {}",
-            difference.gain
+            "{path}: {width}x{height} pixels, n = {}, {} points of {name} through {through}",
+            settings.material.exponent,
+            text::grouped(rendered.points)
         );
-        say!(
-            "  against Blinn: largest difference {} of 255, {psnr} over what is lit",
-            difference.largest
-        );
-        say!(
-            "  against its own formula: largest error {:.3} units (bound {})",
-            comparison.units,
-            core.contract.bound().words()
-        );
+        if degenerate > 0 {
+            failure::warn(&format!("{degenerate} triangles are without area and were left out"));
+        }
+        if rendered.beyond > 0 {
+            failure::warn(&format!(
+                "at {} points the deviation exceeds the device's domain and was shortened to it",
+                text::grouped(rendered.beyond)
+            ));
+        }
+        if let Some(comparison) = &rendered.comparison {
+            let difference = &comparison.difference;
+            let psnr = match difference.psnr {
+                Some(psnr) => format!("PSNR {psnr:.2} dB"),
+                None => "the same picture".to_owned(),
+            };
+            say!(
+                "  from left to right: the device, Blinn in f64, their difference times {}",
+                difference.gain
+            );
+            say!(
+                "  against Blinn: largest difference {} of 255, {psnr} over what is lit",
+                difference.largest
+            );
+            say!(
+                "  against its own formula: largest error {:.3} units (bound {})",
+                comparison.units,
+                core.contract.bound().words()
+            );
+        }
+        Ok(())
     }
 }
 

@@ -7,6 +7,7 @@ use clap::Args;
 use serde_json::{Value, json};
 
 use super::{Loaded, load, paths};
+use crate::report::CommandReport;
 use crate::{Configs, OutputOptions, say, store, tables};
 use glint_base::text::counted;
 use glint_core::package::{Seal, sealed};
@@ -39,7 +40,7 @@ pub struct Arguments {
 /// Runs `glint schedule`.
 pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) -> Result<bool> {
     let named = paths(&arguments.configs.paths)?;
-    let mut list = Vec::new();
+    let mut list = output.list();
     let mut shown = 0;
     for one in load(registry, &arguments.configs.paths)? {
         let Some(pipeline) = &one.core.design.pipeline else {
@@ -58,19 +59,30 @@ pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) ->
             store::write_sealed(&path, &drawing, Seal::Markup, arguments.force)
                 .with_context(|| format!("`{}` was not drawn", one.path))?;
         }
-        if output.json {
-            list.push(as_json(&one, pipeline));
-        } else {
-            print(&one, pipeline);
-        }
+        list.add(&PipelineSchedule { one: &one, pipeline })?;
     }
     if shown == 0 {
         bail!("none of {} configurations is pipelined; name one", named.len());
     }
-    if output.json {
-        tables::print_json(&json!({ "ok": true, "schedules": list }));
-    }
+    list.finish(|schedules| Ok(json!({ "ok": true, "schedules": schedules })))?;
     Ok(true)
+}
+
+/// A configuration with its pipeline.
+struct PipelineSchedule<'a> {
+    one: &'a Loaded,
+    pipeline: &'a Pipeline,
+}
+
+impl CommandReport for PipelineSchedule<'_> {
+    fn json(&self) -> Result<Value> {
+        Ok(as_json(self.one, self.pipeline))
+    }
+
+    fn print(&self) -> Result<()> {
+        print(self.one, self.pipeline);
+        Ok(())
+    }
 }
 
 fn print(one: &Loaded, pipeline: &Pipeline) {

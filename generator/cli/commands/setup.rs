@@ -9,6 +9,7 @@ use serde_json::{Map, Value, json};
 
 use super::{Loaded, load_one, none_of, rows};
 use crate::failure::Failure;
+use crate::report::CommandReport;
 use crate::{OutputOptions, say, tables, wrong_usage};
 use glint_base::program::Program;
 use glint_core::registry::Registry;
@@ -127,10 +128,10 @@ pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) ->
     }
     let Some(path) = &arguments.batch else {
         let set_up = host.set_up(&given).map_err(Failure::WrongUsage)?;
-        match (arguments.csv, output.json) {
-            (true, _) => host.print_csv(&[set_up])?,
-            (_, true) => tables::print_json(&host.json(&set_up)),
-            _ => host.print(&set_up),
+        if arguments.csv {
+            host.print_csv(&[set_up])?;
+        } else {
+            output.report(&SingleSetUp { host: &host, set_up })?;
         }
         return Ok(true);
     };
@@ -142,13 +143,45 @@ pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) ->
         |headings| host.places(headings).map_err(anyhow::Error::msg),
         |places, record| host.set_up_row(&given, places, record),
     )?;
-    if output.json {
-        let rows: Vec<Value> = set_ups.iter().map(|set_up| host.json(set_up)).collect();
-        tables::print_json(&json!({ "config": one.path, "rows": rows }));
-    } else {
-        host.print_csv(&set_ups)?;
-    }
+    output.report(&BatchSetUp { host: &host, set_ups })?;
     Ok(true)
+}
+
+/// One line or point.
+struct SingleSetUp<'a> {
+    host: &'a HostInputs<'a>,
+    set_up: SetUp,
+}
+
+impl CommandReport for SingleSetUp<'_> {
+    fn json(&self) -> Result<Value> {
+        Ok(self.host.json(&self.set_up))
+    }
+
+    fn print(&self) -> Result<()> {
+        self.host.print(&self.set_up);
+        Ok(())
+    }
+}
+
+/// A line or point for each row of a CSV file.
+struct BatchSetUp<'a> {
+    host: &'a HostInputs<'a>,
+    set_ups: Vec<SetUp>,
+}
+
+impl CommandReport for BatchSetUp<'_> {
+    fn json(&self) -> Result<Value> {
+        let mut rows = Vec::new();
+        for set_up in &self.set_ups {
+            rows.push(self.host.json(set_up));
+        }
+        Ok(json!({ "config": self.host.one.path, "rows": rows }))
+    }
+
+    fn print(&self) -> Result<()> {
+        self.host.print_csv(&self.set_ups)
+    }
 }
 
 impl<'a> HostInputs<'a> {

@@ -19,6 +19,7 @@ use glint_prove::synth::{Figures, Flow, Rate, SynthesisRecord, SynthesisSubject,
 use glint_prove::tune::{Cost, Features};
 use glint_show::evidence::comparison;
 use glint_tools::gates::cells::LIBERTY;
+use show::SynthesisReport;
 
 /// The exponent at which the clocks of a device are counted if they depend on it.
 const EXPONENT: f64 = 35.0;
@@ -95,7 +96,7 @@ pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) ->
     let bar = progress::bar(output, steps_of_each * loaded.len() as u64, "synthesis");
     bar.tick();
     let tell = |one: &Loaded, figures: &Figures| {
-        if !output.json {
+        if output.is_for_people() {
             bar.suspend(|| say!("{}: {}", one.path, show::in_a_line(figures)));
         }
     };
@@ -116,14 +117,7 @@ pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) ->
             written.push(record.write_json(&one.record())?);
         }
     }
-    if output.json {
-        show::as_json(&measured, &notes);
-        return Ok(true);
-    }
-    show::print(&measured, &notes);
-    for file in written {
-        say!("{file} written");
-    }
+    output.report(&SynthesisReport { measured, notes, written })?;
     Ok(true)
 }
 

@@ -12,6 +12,7 @@ use serde_json::{Value as Json, json};
 use super::settings::KeyAssignment;
 use crate::destination::Destination;
 use crate::failure::{self, Failure};
+use crate::report::CommandReport;
 use crate::tables;
 use crate::{Force, OutputOptions, number, progress, say, wrong_usage};
 use glint_base::program::Program;
@@ -83,7 +84,7 @@ pub struct Arguments {
 
 /// Runs `glint tune`.
 pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) -> Result<bool> {
-    if output.json && arguments.csv {
+    if arguments.csv && !output.is_for_people() {
         wrong_usage!("--json and --csv are two forms of the same: give one");
     }
     if !(arguments.error > 0.0 && arguments.error.is_finite()) {
@@ -134,18 +135,35 @@ pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) ->
     if let Some(file) = file {
         file.write(&text)?;
     }
-    if output.json {
-        tables::print_json(&as_json(&answer, arguments, &text));
-    } else if arguments.csv {
-        print_csv(&answer)?;
-    } else {
-        print(&device, &answer, arguments, &text);
-    }
+    output.report(&TunedConfiguration { device: &device, answer: &answer, arguments, text })?;
     let excess = answer.best.cost.excess(arguments.target);
     if !excess.is_empty() {
         failure::warn(&format!("{}: by the estimate {excess}", arguments.device));
     }
     Ok(true)
+}
+
+/// The result of a search.
+struct TunedConfiguration<'a> {
+    device: &'a Device,
+    answer: &'a Answer,
+    arguments: &'a Arguments,
+    /// The best configuration, as TOML.
+    text: String,
+}
+
+impl CommandReport for TunedConfiguration<'_> {
+    fn json(&self) -> Result<Json> {
+        Ok(as_json(self.answer, self.arguments, &self.text))
+    }
+
+    fn print(&self) -> Result<()> {
+        if self.arguments.csv {
+            return print_csv(self.answer);
+        }
+        print(self.device, self.answer, self.arguments, &self.text);
+        Ok(())
+    }
 }
 
 /// Opens the new file that an option names, if it names one.

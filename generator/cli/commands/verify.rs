@@ -5,10 +5,11 @@ use std::path::{Path, PathBuf};
 
 use anyhow::Result;
 use clap::Args;
-use serde_json::json;
+use serde_json::{Value, json};
 
 use super::{Loaded, load};
 use crate::own_file::OwnFile;
+use crate::report::CommandReport;
 use crate::{Configs, OutputOptions, TimeLimit, progress, say, tables};
 use glint_base::text::counted;
 use glint_core::cosim::exhaustive::PROOFS;
@@ -92,20 +93,34 @@ pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) ->
     for one in &loaded {
         files.push(Files::new(&arguments.out, &one.core.config.name)?);
     }
-    let mut list = Vec::new();
+    let mut list = output.list();
     let mut verified = true;
     for (one, files) in loaded.iter().zip(files) {
         let (record, timings) = one_configuration(output, one, arguments)?;
         verified &= record.conclusion <= Conclusion::InPart;
         let written = files.write(&record, &timings)?;
-        if output.json {
-            list.push(json!({ "written": written, "record": record }));
-            continue;
-        }
-        print_conclusion(one, &record);
-        say!("  written: {}", written.join(", "));
+        list.add(&Verification { one, record, written })?;
     }
-    Ok(output.concluded(verified, list))
+    list.conclude(verified)
+}
+
+/// The record of a configuration, and the files that are written about it.
+struct Verification<'a> {
+    one: &'a Loaded,
+    record: VerificationRecord,
+    written: [String; 3],
+}
+
+impl CommandReport for Verification<'_> {
+    fn json(&self) -> Result<Value> {
+        Ok(json!({ "written": self.written, "record": self.record }))
+    }
+
+    fn print(&self) -> Result<()> {
+        print_conclusion(self.one, &self.record);
+        say!("  written: {}", self.written.join(", "));
+        Ok(())
+    }
 }
 
 fn one_configuration(
@@ -129,7 +144,7 @@ fn one_configuration(
         let bar = progress::bar(output, check.steps(&subject), check.title);
         let answer = check.run(&subject, &|steps| bar.inc(steps));
         bar.finish_and_clear();
-        if !output.json {
+        if output.is_for_people() {
             print(one, &answer);
         }
         answers.push(answer);

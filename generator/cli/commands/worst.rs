@@ -6,9 +6,11 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, Result, ensure};
 use clap::Args;
 use serde::{Deserialize, Serialize};
+use serde_json::{Value, json};
 
 use super::{Loaded, load};
 use crate::own_file::OwnFile;
+use crate::report::CommandReport;
 use crate::{Configs, OutputOptions, count, progress, say};
 use glint_base::program::Program;
 use glint_base::{input, text};
@@ -64,7 +66,9 @@ struct LargestError {
 
 /// The report on a configuration.
 #[derive(Serialize)]
-struct WorstReport {
+struct WorstReport<'a> {
+    #[serde(skip)]
+    one: &'a Loaded,
     #[serde(flatten)]
     found: LargestError,
     /// The error that the contract states, in output units.
@@ -80,7 +84,8 @@ pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) ->
     let records = loaded.iter().map(|one| record(one, arguments)).collect::<Result<Vec<_>>>()?;
     let total = search::steps(arguments.starts).saturating_mul(loaded.len() as u64);
     let bar = progress::bar(output, total, "climbs");
-    let mut reports = Vec::new();
+    let mut list = output.list();
+    let mut all_hold = true;
     for (one, record) in loaded.iter().zip(records) {
         let contract = one.core.contract.as_ref();
         let found = search::worst(contract, arguments.starts, arguments.seed, &|| bar.inc(1));
@@ -95,15 +100,23 @@ pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) ->
                 None => file.write_json(&found).map(drop)?,
             }
         }
-        let report = WorstReport { found, bound, holds, recorded };
-        if !output.json {
-            bar.suspend(|| print(one, &report));
-        }
-        reports.push(report);
+        let report = WorstReport { one, found, bound, holds, recorded };
+        bar.suspend(|| list.add(&report))?;
+        all_hold &= holds;
     }
     bar.finish_and_clear();
-    let holds = reports.iter().all(|report| report.holds);
-    Ok(output.concluded(holds, reports))
+    list.conclude(all_hold)
+}
+
+impl CommandReport for WorstReport<'_> {
+    fn json(&self) -> Result<Value> {
+        Ok(json!(self))
+    }
+
+    fn print(&self) -> Result<()> {
+        print(self);
+        Ok(())
+    }
 }
 
 fn known(one: &Loaded, arguments: &Arguments, found: &Reached) -> LargestError {
@@ -123,8 +136,8 @@ fn known(one: &Loaded, arguments: &Arguments, found: &Reached) -> LargestError {
     }
 }
 
-fn print(one: &Loaded, report: &WorstReport) {
-    let WorstReport { found, bound, holds, recorded } = report;
+fn print(report: &WorstReport) {
+    let WorstReport { one, found, bound, holds, recorded } = report;
     let verdict = match (bound.is_finite(), holds) {
         (false, _) => "of a contract that states no bound".to_owned(),
         (true, true) => format!("within the bound of {bound:.4}"),

@@ -5,7 +5,8 @@ use serde::Serialize;
 use serde_json::{Map, Value, json};
 
 use super::{Arguments, ComparisonEntry};
-use crate::{OutputOptions, failure, say, tables};
+use crate::report::CommandReport;
+use crate::{failure, say, tables};
 use glint_base::program::Program;
 use glint_base::target::FAMILIES;
 use glint_base::text;
@@ -14,35 +15,40 @@ use glint_prove::synth::{Frequency, Rate, TARGETS, Target, tools};
 use glint_show::evidence::comparison::{ANGLES, ANGLES_PER_DEGREE, Accuracy, MultiplierSize};
 use glint_tools::synthesis::Usage;
 
-/// Prints everything in the form that was asked for.
-pub fn show(
-    output: OutputOptions,
-    arguments: &Arguments,
-    entries: &[ComparisonEntry],
-    notes: &[String],
-    failures: &[String],
-) -> Result<()> {
-    if output.json {
-        tables::print_json(&as_json(arguments, entries, notes, failures));
-        return Ok(());
+/// A comparison of devices.
+pub struct ComparisonReport<'a> {
+    pub arguments: &'a Arguments,
+    pub entries: &'a [ComparisonEntry],
+    pub notes: &'a [String],
+    /// The runs of synthesis that failed, each with the reason.
+    pub failures: &'a [String],
+}
+
+impl CommandReport for ComparisonReport<'_> {
+    fn json(&self) -> Result<Value> {
+        Ok(as_json(self.arguments, self.entries, self.notes, self.failures))
     }
-    if arguments.csv {
-        tables::print_csv(as_csv(arguments, entries))?;
-        for note in notes.iter().chain(failures) {
-            failure::warn(note);
+
+    fn print(&self) -> Result<()> {
+        let Self { arguments, entries, notes, failures } = *self;
+        if arguments.csv {
+            tables::print_csv(as_csv(arguments, entries))?;
+            for note in notes.iter().chain(failures) {
+                failure::warn(note);
+            }
+            return Ok(());
         }
-        return Ok(());
+        print_errors(arguments, entries);
+        print_hardware(entries);
+        print_speed(entries);
+        for note in entries.iter().filter_map(at_rest).chain(notes.iter().cloned()) {
+            say!("Note: {note}.");
+        }
+        for failure in failures {
+            say!("FAILS: {failure}");
+        }
+        Ok(())
     }
-    print_errors(arguments, entries);
-    print_hardware(entries);
-    print_speed(entries);
-    for note in entries.iter().filter_map(at_rest).chain(notes.iter().cloned()) {
-        say!("Note: {note}.");
-    }
-    for failure in failures {
-        say!("FAILS: {failure}");
-    }
-    Ok(())
 }
 
 /// Returns a sentence about the operands at which the errors of a device are computed, if the device has more

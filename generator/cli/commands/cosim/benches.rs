@@ -8,6 +8,7 @@ use super::Arguments;
 use crate::commands::Loaded;
 use crate::commands::mismatch::{first_clock, waveform_of};
 use crate::failure;
+use crate::report::CommandReport;
 use crate::{OutputOptions, destination, progress, say, tables, wrong_usage};
 use glint_base::program::Program;
 use glint_core::package::FileKind;
@@ -64,14 +65,31 @@ pub fn benches(
         .collect::<Result<_>>()?;
     bar.finish_and_clear();
     let holds = runs.iter().all(|run| run.outcome.passed);
-    let mut list = Vec::new();
+    let mut list = output.list();
     for (one, run) in loaded.iter().zip(&runs) {
-        match output.json {
-            true => list.push(as_json(one, run, points, arguments)),
-            false => print(one, run, points, arguments.seed, which),
-        }
+        list.add(&BenchReport { one, run, points, arguments, which })?;
     }
-    Ok(output.concluded(holds, list))
+    list.conclude(holds)
+}
+
+/// The run of a bench, with the options of the command.
+struct BenchReport<'a> {
+    one: &'a Loaded,
+    run: &'a BenchRun,
+    points: u64,
+    arguments: &'a Arguments,
+    which: VerilogSimulator,
+}
+
+impl CommandReport for BenchReport<'_> {
+    fn json(&self) -> Result<Value> {
+        Ok(as_json(self.one, self.run, self.points, self.arguments))
+    }
+
+    fn print(&self) -> Result<()> {
+        print(self.one, self.run, self.points, self.arguments.seed, self.which);
+        Ok(())
+    }
 }
 
 /// Runs the emitted bench in an external simulator. Golden model and built-in simulator agree on the expected values.

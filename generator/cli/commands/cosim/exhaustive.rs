@@ -36,7 +36,7 @@ pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) ->
         wrong_usage!("--resume is for one configuration; here are {}", loaded.len());
     }
     let sweeps = loaded.iter().map(|one| arguments.sweep.of(one)).collect::<Result<Vec<_>>>()?;
-    let mut list = Vec::new();
+    let mut list = output.list();
     let mut holds = true;
     for (one, sweep) in loaded.iter().zip(sweeps) {
         let fingerprint = one.core.fingerprint(&sweep);
@@ -54,14 +54,14 @@ pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) ->
                 .with_context(|| format!("`{}` is damaged; name another file", path.display()))?;
             state = found;
         }
-        if !output.json {
+        if output.is_for_people() {
             announce(one, &job, &state);
             announce_duration(&job, &state)?;
         }
         prove(output, &job, &mut state, arguments.resume.as_deref())?;
-        holds &= report(output, one, &job, &state, &mut list)?;
+        holds &= report(one, &job, &state, &mut list)?;
     }
-    Ok(output.concluded(holds, list))
+    list.conclude(holds)
 }
 
 /// Returns the state that a file holds, if there is one.

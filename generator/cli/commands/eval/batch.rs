@@ -9,6 +9,7 @@ use serde_json::{Map, Value, json};
 use super::operands;
 use crate::commands::setup::REAL;
 use crate::commands::{Loaded, rows};
+use crate::report::CommandReport;
 use crate::{OutputOptions, failure, tables};
 use glint_golden::Contract;
 
@@ -35,11 +36,15 @@ pub fn batch(
 ) -> Result<bool> {
     let contract = one.core.contract.as_ref();
     let (mut text, mut json) = (headings(contract), Vec::new());
+    let for_people = output.is_for_people();
     let mut row = PointResult::default();
     let mut missing = Vec::new();
-    let mut show = |row: &PointResult| match output.json {
-        true => json.push(as_json(contract, row)),
-        false => append(contract, row, &mut text),
+    let mut show = |row: &PointResult| {
+        if for_people {
+            append(contract, row, &mut text);
+        } else {
+            json.push(as_json(contract, row));
+        }
     };
     rows::read(
         path,
@@ -50,21 +55,37 @@ pub fn batch(
         },
         |columns, record| points(contract, given, columns, record, &mut row, &mut show),
     )?;
-    match output.json {
-        true => {
-            tables::print_json(
-                &json!({ "config": one.path, "not_given": missing, "points": json }),
-            );
-        }
-        false => {
-            tables::print_line(text.trim_end());
-            if !missing.is_empty() {
-                let path = path.display();
-                failure::warn(&format!("`{path}` has no column for {}", missing.join(", ")));
-            }
-        }
-    }
+    output.report(&EvaluatedPoints { one, path, missing, text, points: json })?;
     Ok(true)
+}
+
+/// The points of a CSV file.
+struct EvaluatedPoints<'a> {
+    one: &'a Loaded,
+    /// The CSV file.
+    path: &'a Path,
+    /// The operands without a column, with the values that they have then.
+    missing: Vec<String>,
+    /// The points as CSV, for people.
+    text: String,
+    /// The points for scripts.
+    points: Vec<Value>,
+}
+
+impl CommandReport for EvaluatedPoints<'_> {
+    fn json(&self) -> Result<Value> {
+        let Self { one, missing, points, .. } = self;
+        Ok(json!({ "config": one.path, "not_given": missing, "points": points }))
+    }
+
+    fn print(&self) -> Result<()> {
+        tables::print_line(self.text.trim_end());
+        if !self.missing.is_empty() {
+            let (path, missing) = (self.path.display(), self.missing.join(", "));
+            failure::warn(&format!("`{path}` has no column for {missing}"));
+        }
+        Ok(())
+    }
 }
 
 /// Returns the operand of each column. A column of the real values that `glint setup` writes beside the operands has

@@ -1,9 +1,11 @@
 //! Prints the figures of synthesis for people and for scripts.
 
+use anyhow::Result;
 use serde::Serialize;
 use serde_json::{Value, json};
 
 use super::{FigureRecord, Measurement};
+use crate::report::CommandReport;
 use crate::say;
 use crate::tables;
 use glint_prove::synth::{Figures, Frequency, Rate, tools};
@@ -11,7 +13,30 @@ use glint_prove::synth::{Figures, Frequency, Rate, tools};
 /// The cell without a figure.
 const NONE: &str = "–";
 
-pub fn print(measured: &[Measurement], notes: &[String]) {
+/// The measurements of all configurations.
+pub struct SynthesisReport<'a> {
+    pub measured: Vec<Measurement<'a>>,
+    /// The targets that are left out, each with the reason.
+    pub notes: Vec<String>,
+    /// The records that are written.
+    pub written: Vec<String>,
+}
+
+impl CommandReport for SynthesisReport<'_> {
+    fn json(&self) -> Result<Value> {
+        Ok(as_json(&self.measured, &self.notes))
+    }
+
+    fn print(&self) -> Result<()> {
+        print(&self.measured, &self.notes);
+        for file in &self.written {
+            say!("{file} written");
+        }
+        Ok(())
+    }
+}
+
+fn print(measured: &[Measurement], notes: &[String]) {
     let mut rows = Vec::new();
     for one in measured {
         for figures in &one.figures {
@@ -116,7 +141,7 @@ struct Told<'a> {
     rate: Option<Rate>,
 }
 
-pub fn as_json(measured: &[Measurement], notes: &[String]) {
+fn as_json(measured: &[Measurement], notes: &[String]) -> Value {
     let mut all: Vec<Value> = Vec::new();
     for one in measured {
         let mut targets: Vec<Value> = Vec::new();
@@ -131,5 +156,5 @@ pub fn as_json(measured: &[Measurement], notes: &[String]) {
             "targets": targets,
         }));
     }
-    tables::print_json(&json!({ "ok": true, "synthesis": all, "notes": notes }));
+    json!({ "ok": true, "synthesis": all, "notes": notes })
 }

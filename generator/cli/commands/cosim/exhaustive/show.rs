@@ -7,7 +7,8 @@ use serde_json::{Value, json};
 
 use crate::commands::Loaded;
 use crate::commands::mismatch::Reproducer;
-use crate::{OutputOptions, say};
+use crate::report::{CommandReport, ReportList};
+use crate::say;
 use glint_base::program::Program;
 use glint_base::text;
 use glint_core::cosim::exhaustive::{Difference, Job, Proof, Shard, ShardState};
@@ -42,11 +43,10 @@ pub fn announce(one: &Loaded, job: &Job<'_>, state: &ShardState) {
 /// # Errors
 /// Fails if the design cannot be simulated, or if the waveform of a difference cannot be written.
 pub fn report(
-    output: OutputOptions,
     one: &Loaded,
     job: &Job<'_>,
     state: &ShardState,
-    list: &mut Vec<Value>,
+    list: &mut ReportList,
 ) -> Result<bool> {
     let contract = one.core.contract.as_ref();
     let mut proof = Proof::new(contract, state.f.peak, state.colours.peak);
@@ -54,16 +54,33 @@ pub fn report(
     if let Some((difference, _)) = &found {
         proof.failures.push(difference.to_string());
     }
-    if output.json {
-        list.push(as_json(one, job, &proof, state, found.as_ref()));
-    } else {
-        print(one, job, &proof, state);
-        if let Some((difference, reproducer)) = &found {
-            let text = reproducer.text(&difference.mismatch);
-            say!("  {text}");
-        }
+    let holds = proof.failures.is_empty();
+    list.add(&ProofReport { one, job, state, proof, found })?;
+    Ok(holds)
+}
+
+/// The state of a proof, with its conclusion.
+struct ProofReport<'a> {
+    one: &'a Loaded,
+    job: &'a Job<'a>,
+    state: &'a ShardState,
+    proof: Proof,
+    /// The first combination that differs, with its waveform.
+    found: Option<(Difference, Reproducer)>,
+}
+
+impl CommandReport for ProofReport<'_> {
+    fn json(&self) -> Result<Value> {
+        Ok(as_json(self.one, self.job, &self.proof, self.state, self.found.as_ref()))
     }
-    Ok(proof.failures.is_empty())
+
+    fn print(&self) -> Result<()> {
+        print(self.one, self.job, &self.proof, self.state);
+        if let Some((difference, reproducer)) = &self.found {
+            say!("  {}", reproducer.text(&difference.mismatch));
+        }
+        Ok(())
+    }
 }
 
 /// Returns the first combination that differs, with its waveform.
