@@ -1,4 +1,6 @@
-//! Builds the operands, the colour outputs and the notes that the hardware descriptions of several devices share.
+//! Builds the parts that the hardware descriptions of several devices share: the operands `cos_gamma` and `exponent`, and the
+//! colour outputs. It also writes a paragraph for the pages of these devices ([`outputs_note`]): on writes while the device
+//! is busy, and on how long the outputs hold.
 
 use glint_base::fixed::{Format, Rounding};
 use glint_keys::common as keys;
@@ -26,7 +28,7 @@ pub struct ColourProducts<'d> {
 }
 
 impl<'d> ColourProducts<'d> {
-    /// Makes the operands, with the source's numbers where it has some.
+    /// Makes the colour operands. `blocks` has their numbers in the figure of the device's source, if the source has a figure.
     #[track_caller]
     pub fn new(
         d: &'d Designer,
@@ -56,8 +58,9 @@ impl<'d> ColourProducts<'d> {
     }
 }
 
-/// Returns the note on writes while the device is busy and on how long its outputs hold, where each colour has a
-/// multiplier of its own behind the register that `follow` names, until `until`.
+/// Returns the paragraph of a device's page on writes while the device is busy, and on how long its outputs hold. If each colour
+/// has its own multiplier, the outputs follow the register that `follow` names until the next computation does `until`. For
+/// example, `follow` is "the accumulator", and `until` is "begins".
 pub fn outputs_note(keys: &keys::ColourKeys, follow: &str, until: &str) -> Note {
     if keys.in_turn() {
         return Topic::Writes.note(

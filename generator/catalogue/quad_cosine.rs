@@ -1,8 +1,12 @@
-//! The hardware description of `quad-cosine` (seed 000, the claimed device): `cosᵏ(√(n/k)·δ)` along a scan line, k ∈ {1, 2,
-//! 4, 16} by n.
+//! The hardware description of `quad-cosine`, which computes the specular intensities of the points of a scan line.
 //!
-//! Block numbers are the patent's. The triggers of block 14 become words of a microprogram with the same order of events.
-//! ROMs 9 and 12 are synchronous, and output 29 follows output 37 by two clocks.
+//! The intensity is an amplitude times `cosᵏ(√(n/k)·δ)`, where δ is the angle at a point and n is the specular exponent.
+//! Decoder 10 chooses k from n: 1 for n = 1, 2 for n = 2, 4 for n = 3 to 6, and 16 for all other n. The source, called seed 000,
+//! is a patent that claims this device. All numbers of blocks and outputs are the numbers in the patent's figure.
+//!
+//! Block 14 is the control unit. In the patent it consists of triggers; here it is a microprogram with the same order of events.
+//! ROMs 9 and 12 are synchronous. `valid` follows output 37 (`write_angle`) by two clocks, one for register 8 and one for ROM 12.
+//! With `line.stages` = 7 it follows by seven clocks.
 
 use glint_base::fixed::Format;
 use glint_config::Config;
@@ -18,11 +22,12 @@ use super::common;
 /// The powers, in the order of ROM 12's tables and of the decoder's outputs 30 to 33.
 const POWERS: [u32; 4] = [1, 2, 4, 16];
 
-/// The numbers of the amplitude's way through the figure.
+/// The numbers that the patent's figure gives to the inputs, the register, the multiplier and the output of the amplitude.
 pub(super) const AMPLITUDE: ChannelBlocks =
     ChannelBlocks { inputs: (15, 16), register: 1, multiplier: 13, output: 27 };
 
-/// Describes `quad-cosine`: `cosᵏ(√(n/k)·δ)` along a scan line, k ∈ {1, 2, 4, 16} by n.
+/// Describes `quad-cosine`: `cosᵏ(√(n/k)·δ)` for each angle δ along a scan line. The exponent n decides whether k is 1, 2, 4 or
+/// 16.
 pub fn describe<'d>(d: &'d Designer, config: &Config) {
     let keys = Keys::of(config);
     let table = keys.table_address as i32;

@@ -128,7 +128,7 @@ pub struct CosineTable {
     pub words: Vec<i64>,
     /// How far the formula at the ends of a step is from the middle at most.
     pub step: f64,
-    /// How far it is from the word.
+    /// How far the formula at the ends of a step is from the step's word at most. This includes the rounding of the word.
     pub total: f64,
     /// The steepest slope, per right angle.
     pub slope: f64,
@@ -159,8 +159,9 @@ impl CosineTable {
         table
     }
 
-    /// Returns the word for an angle with `fraction` fraction bits, in right angles; the last one beyond them. For example,
-    /// half a right angle reads word 128 of 256.
+    /// Returns the index of the word for the angle `scaled`, a raw value with `fraction` fraction bits, in right angles. The
+    /// table has 2^`address` words. Negative angles, and angles of a right angle or more, give the last index. For example,
+    /// half a right angle gives the index 128 in a table of 256 words.
     #[inline]
     pub fn address(scaled: i64, fraction: u32, address: u32) -> usize {
         let most = (1usize << address) - 1;

@@ -1,5 +1,8 @@
 //! The golden model and the accuracy contract of `shading`: ambient, diffuse and specular light of a normal of any length.
-//! Both are built from the models and contracts of the parts.
+//!
+//! `shading` is composed of other devices, its parts. Each light has three: a `dot-product` for its diffuse cosine, another for
+//! its specular cosine, and a highlight, such as `blinn` or a `function`. The golden model runs the models of the parts and sums
+//! the light. The contract combines the proved error bounds of the parts.
 
 use std::sync::Arc;
 
@@ -18,7 +21,7 @@ use glint_config::Config;
 use glint_formula::{Kind, parse};
 use glint_keys::shading::{HighlightDevice, Keys, PartConfigs};
 
-/// Returns the parts, one after the other, and the sum behind them.
+/// Returns the device: the parts of each light, one after the other, followed by the sum of ambient, diffuse and specular light.
 fn device(keys: &Keys, parts: &PartConfigs) -> device::Device {
     let mut frame = Frame::default();
     let mut vector = |name: &str, suffix: &str, format| {

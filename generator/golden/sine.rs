@@ -5,7 +5,7 @@
 use super::curve::{self, SegmentedCurve};
 use glint_base::fixed::exp2;
 
-/// How the table is organised.
+/// The organisation of the sine table: an entry for each bucket of operands, or segments with linear interpolation.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum TableScheme {
     /// One entry per value of the `address` leading fraction bits of the operand.
@@ -23,14 +23,14 @@ pub enum TableScheme {
     },
 }
 
-/// The parameters of the table.
+/// The parameters of the sine table.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct SineParams {
     /// Fraction bits of the operand, C.
     pub operand_fraction: u32,
     /// Fraction bits of the sine, S.
     pub fraction: u32,
-    /// The organisation.
+    /// The organisation of the sine table.
     pub scheme: TableScheme,
 }
 

@@ -10,7 +10,7 @@ use glint_config::{Config, Key, Problems, Schema, TextPattern};
 use glint_formula::{Fault, parse};
 
 glint_config::keys! {
-    /// The keys of a configuration.
+    /// The values of a configuration of the device `function`, one field for each of its keys.
     pub struct Keys {
         formula: String = Key::text("function.formula", "1 / sqrt(x)", TextPattern::Formula,
             "The function of the operand x."),

@@ -3,14 +3,15 @@
 
 use glint_base::fixed::Format;
 
-/// The classes, in the order of [`Histogram::counts`].
+/// The names of the classes into which [`Histogram`] sorts results by `f`, in the order of [`Histogram::counts`]. The class `1`
+/// has the results with the largest `f` below 1.0, or 1.0. The class `outside` has the results with operands outside the domain.
 pub const CLASSES: [&str; 9] =
     ["0", "<0.001", "<0.01", "<0.1", "<0.5", "<0.9", "<1", "1", "outside"];
 
-/// The upper ends of those between 0 and 1.
+/// The upper ends of the classes `<0.001` to `<0.9`.
 const ENDS: [f64; 5] = [0.001, 0.01, 0.1, 0.5, 0.9];
 
-/// Results by the word `f` that they are made of.
+/// The number of results in each of [`CLASSES`].
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Histogram {
     counts: [u64; CLASSES.len()],

@@ -1,8 +1,10 @@
-//! Offers points to a pipeline at random, clock by clock.
+//! Drives the inputs of a pipeline with random points and a random handshake, clock by clock.
 //!
-//! Points come with bubbles between them, and now and then one is withdrawn. Results are held back at times, and resets drop
-//! the points on their way. The rate at which each side is ready changes from time to time. Everything is a function of the
-//! seed.
+//! [`Offers`] raises `in_valid` with the operands of a point, and keeps both until the pipeline takes the point. Between two
+//! points it pauses at random. Now and then it withdraws a point that the pipeline has not taken yet, lowers `out_ready` so that
+//! results must wait, or applies a reset, which drops every point in the pipeline. Every 24 clocks it draws anew how often it
+//! offers a point, and how often `out_ready` is high. For example, `out_ready` is high in every clock, and later in one of five.
+//! The same seed gives the same inputs.
 
 use std::collections::VecDeque;
 use std::sync::Arc;
@@ -11,10 +13,10 @@ use super::points::PointSource;
 use super::ports::Ports;
 use super::random::Random;
 
-/// How eager a side of the handshake is: it is ready once in this number of clocks.
+/// The average number of clocks until a new point is offered, or until `out_ready` is high again.
 const PACES: [u64; 4] = [1, 1, 2, 5];
 
-/// Clocks for which a pace is kept.
+/// The number of clocks after which new paces are drawn.
 const PACE_CLOCKS: u64 = 24;
 
 /// A reset comes once in this number of clocks.
@@ -26,8 +28,8 @@ pub(super) struct Offers {
     random: Random,
     /// The offer until it is taken: the bit patterns of the operands in the order of the ports, and the side value.
     offered: Option<(Vec<u64>, u64)>,
-    /// The rest of a list of points, raw operands in the order of the contract, where offers go on with one: no others
-    /// are drawn, none is withdrawn, and there is no reset.
+    /// The points of a list that are still to be offered, as raw operands in the order of the contract. While there is a list,
+    /// no point is drawn or withdrawn, and no reset begins.
     listed: Option<VecDeque<Vec<i64>>>,
     reset_left: u64,
     pace: (u64, u64),

@@ -1,12 +1,19 @@
-//! Draws the operands of computations.
+//! Draws the operands of computations at random, and prefers operands at which an error would show.
 //!
-//! A highlight is narrow: most operands of a domain leave `f` at 0, and some at 1. Three of four points are therefore drawn
-//! *by the value of the formula*. Such a point is first drawn in the domain, and then moved along the straight line from the
-//! peak of `f` until the formula has a drawn value. Half of these values are drawn evenly, and half by decades. One in eight
-//! of these points is taken to the very step at which the formula crosses that value, or leaves 0. The other points are
-//! corners of the domain, evenly drawn, or any bits at all.
+//! A highlight device multiplies colours by a reflectance `f`, from 0 to 1. Over most of the domain `f` is 0, so evenly drawn
+//! operands test little. Three of four points are therefore drawn *by the value of the formula* for `f`:
 //!
-//! If a device is no highlight, half of the points are points at which its contract hints.
+//! 1. [`PointSource`] draws operands in the domain, and a value for the formula. It draws half of the values evenly, and half
+//!    with an evenly drawn logarithm.
+//! 2. It moves the operands along a straight line toward the peak, the operands with the largest `f`, until the formula has
+//!    about this value.
+//! 3. For one in eight of these points it searches on, for the two neighbouring steps between which the formula crosses the
+//!    value, or leaves 0, and takes one of the two.
+//!
+//! The other points are corners of the domain, points that are drawn evenly, or arbitrary bit patterns.
+//!
+//! If a device is no highlight, half of the points come from [`Contract::hint`]: operands at which the formula is steep, bends
+//! or ends.
 
 use std::sync::LazyLock;
 
@@ -77,7 +84,8 @@ impl<'a> PointSource<'a> {
         points
     }
 
-    /// Holds an operand at a raw value: other values may be drawn for it, but seldom are.
+    /// Sets the domain of an operand to one raw value. Nearly all points then have this value; a point of arbitrary bit patterns
+    /// may have another.
     pub fn hold(&mut self, name: &str, raw: i64) {
         let held = self.operands.iter_mut().filter(|operand| operand.name == name);
         held.for_each(|operand| operand.domain = (raw, raw));
@@ -124,7 +132,7 @@ impl<'a> PointSource<'a> {
         self.operands.iter().map(|it| random.within(it.domain.0, it.domain.1)).collect()
     }
 
-    /// Draws operands at which the contract says that results say much.
+    /// Draws operands by [`Contract::hint`], and clamps them to their domains. Returns `None` if the contract gives no hints.
     pub fn hint(&self, random: &mut Random) -> Option<Vec<i64>> {
         self.contract.hint(&mut || random.unit()).map(|hint| self.clamped(hint))
     }

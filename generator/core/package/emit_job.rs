@@ -1,4 +1,6 @@
-//! What all parts of emission read: a design, the inputs of its files, and the names in its Verilog.
+//! Collects the data that the generators of a core's files read: the netlist, facts such as the clocks of a computation, the
+//! names of modules and memories in the Verilog, and the registers on a bus. For example, the test bench takes the ports from
+//! `design`, and the name of the control unit's instance from `naming`.
 
 use super::bus::Bus;
 use super::inputs::EmitInputs;
@@ -6,7 +8,7 @@ use super::map::Map;
 use glint_rtl::netlist::Design;
 use glint_rtl::verilog::naming::Naming;
 
-/// A design with everything that its files are made of.
+/// A core to emit: its netlist, and everything else that its files are generated from.
 pub struct EmitJob<'a> {
     pub design: &'a Design,
     pub inputs: &'a EmitInputs,

@@ -1,7 +1,11 @@
-//! Rewrites logarithms and exponential functions of parts with many octaves: one table serves a single octave.
+//! Lowers logarithms and exponential functions over several octaves, so that a table for a single octave serves all octaves.
 //!
-//! A word v is m · 2^k with m from 1/2 to below 1, so that log₂ v is log₂ m + k: a table, and a sum. The other way, 2^u is
-//! 2^f · 2^i for the integer part i and the fraction part f of u: a table, and a shift.
+//! A logarithm is lowered in this way if the largest value of its operand is at least 4 times the smallest. For example, log₂ of
+//! operands from 1 to 1000. The operand v is m · 2^k with m from 1/2 to below 1. Because log₂ v = log₂ m + k, a table of
+//! log₂ m and an addition compute the logarithm.
+//!
+//! An exponential function 2^u is lowered in this way if its exponent u extends over at least 3, for example from 0 to 10. With
+//! the integer part i and the fraction part f of u, 2^u = 2^f · 2^i. A table of 2^f and a shift compute it.
 
 use std::ops::Range;
 
@@ -13,7 +17,7 @@ use super::{Lowering, number};
 use crate::node::NodeId;
 use crate::refusal::PlanRefusal;
 
-/// The exponents of an exponential function whose values are one table, from the smallest to the largest.
+/// If the largest exponent exceeds the smallest by less than this, one table computes the whole exponential function.
 const SHORT_EXPONENTS: f64 = 3.0;
 
 /// Returns a^b as 2^(b · log₂ a), with one place in the text for all of its parts.
@@ -43,7 +47,8 @@ fn base_of(function: &Expression) -> Option<Option<Expression>> {
 }
 
 impl Lowering<'_> {
-    /// Returns the node of a logarithm, if its part has many octaves.
+    /// Returns the node of the logarithm `function`, whose operand is the expression `core`. Returns `None` if `function` is no
+    /// logarithm, if its operand may be 0 or less, or if the largest operand is less than `FEW_OCTAVES` times the smallest.
     pub(super) fn logarithm(
         &mut self,
         core: &Expression,
@@ -75,7 +80,8 @@ impl Lowering<'_> {
         self.plan.multiply("natural_logarithm", logarithm, factor).map(Some)
     }
 
-    /// Returns the node of an exponential function, if its exponents are many.
+    /// Returns the node of the exponential function `function`, whose operand is the expression `core`. Returns `None` if
+    /// `function` is no exponential function, if its exponent extends over less than `SHORT_EXPONENTS`, or has no fraction bits.
     pub(super) fn exponential(
         &mut self,
         core: &Expression,

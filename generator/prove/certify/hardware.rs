@@ -115,8 +115,12 @@ impl<'a> Hardware<'a> {
         Ok(value)
     }
 
-    /// Returns the difference of two values and its range. `less` says whether the first value is known to be less,
-    /// or known not to be less. Returns `None` if a value does not vary or has no translation.
+    /// Returns the difference a − b of two nodes as a term, and the interval that contains this difference. The caller must
+    /// know that a < b if `less` is true, and that a ≥ b if it is false. For example, if `less` is true and the nodes have 4
+    /// fraction bits, the interval ends at −1/16.
+    ///
+    /// Returns `None` if a node is constant in this case, if a node cannot be written as a term, or if the nodes have
+    /// different numbers of fraction bits.
     pub fn compared(
         &mut self,
         terms: &mut RealTerms,

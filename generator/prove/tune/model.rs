@@ -1,8 +1,9 @@
 //! Estimates the cost of a configuration from its netlist.
 //!
-//! DSP blocks and block RAMs follow from the widths; look-up tables are a weighted sum of [`Features`], whose weights
-//! `benches/tune/fit` fits to the records in `records/synthesis/`. The clock is the longest path by the measured delays
-//! of the pipelines' targets.
+//! DSP blocks and block RAMs follow from the widths. Look-up tables are a weighted sum of [`Features`], whose weights
+//! `benches/tune/fit` fits to the records in `records/synthesis/`. The clock follows from the longest path between registers.
+//! The delays of its cells are in [`Timing`](glint_base::target::Timing): they were measured for each FPGA family, and the
+//! scheduler of pipelines uses them too.
 
 use std::collections::BTreeSet;
 
@@ -134,7 +135,7 @@ impl Features {
     }
 }
 
-/// Returns the number of DSP blocks for a product, the better way round.
+/// Returns the number of DSP blocks for a product, with its operands in the order that takes fewer blocks.
 fn dsps_of_product(design: &Design, family: &Family, a: NetId, b: NetId) -> u64 {
     let [a, b] = [a, b].map(|net| {
         let sign = if design.net(net).format.signed { family.estimate.sign } else { 0 };
@@ -169,8 +170,8 @@ fn slices(operand: u32, block: u32) -> Vec<u32> {
     slices
 }
 
-/// Returns the number of partial products of a product, the better way round. For example, on iCE40, whose blocks
-/// multiply 16 by 16 bits, a product of 20 by 12 bits has 2.
+/// Returns the number of partial products of a product, with its operands in the order that has fewer of them. For example, on
+/// iCE40, whose blocks multiply 16 by 16 bits, a product of 20 by 12 bits has 2.
 fn blocks(family: &Family, a: u32, b: u32) -> u64 {
     let (wide, narrow) = family.timing.multiplier;
     let one_way = count_slices(a, wide) * count_slices(b, narrow);
@@ -209,7 +210,7 @@ fn block_rams_of_rom(family: &Family, words: u64, width: u64) -> u64 {
     (words * width).div_ceil(capacity)
 }
 
-/// Returns the longest path between registers in nanoseconds, by the delays of the pipelines' target.
+/// Returns the delay of the longest path between registers, in nanoseconds, including the delay of a register.
 fn period(design: &Design, family: &Family) -> f64 {
     let delays = &family.timing;
     let order = design.levelise().unwrap_or_default();

@@ -10,16 +10,16 @@ use glint_golden::formulas;
 use glint_golden::{Contract, Highlight};
 use glint_rtl::netlist::{Design, Driver, Op};
 
-/// Angles to a degree in the grid from 0 to 90°.
+/// The number of angles in each degree at which [`accuracy`] compares a device with `cosⁿγ`.
 pub const ANGLES_PER_DEGREE: u32 = 100;
 
-/// Angles of the grid, both ends among them: 9001, from 0 to 90° in steps of 0.01°.
+/// The number of angles at which [`accuracy`] compares: 9001, from 0 to 90° in steps of 0.01°, both ends included.
 pub const ANGLES: u32 = 90 * ANGLES_PER_DEGREE + 1;
 
 /// An angle at which a device is timed, in degrees.
 const TYPICAL: f64 = 10.0;
 
-/// An absolute error over the grid.
+/// An absolute error over all [`ANGLES`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Spread {
     /// The largest.
@@ -83,11 +83,12 @@ pub fn accuracy(contract: &dyn Contract, n: f64) -> Option<Accuracy> {
     Some(accuracy)
 }
 
-/// Returns the clocks per point for the exponent `n`, from one `start` to the next. If a `start` shows a line of
-/// points, the longest line counts. For example, a line of 16 points in 20 clocks takes 1.25 clocks a point.
+/// Returns the number of clocks per point for the exponent `n`: the clocks from one `start` to the earliest next `start`, divided
+/// by the number of results between them. If the device computes lines, the function runs the longest line of the domain. For
+/// example, a line of 16 points in 20 clocks takes 1.25 clocks per point.
 ///
 /// # Errors
-/// Fails if the device does not end, or shows no point.
+/// Fails if the computation is not over after 65 536 clocks, or if the device never raises `valid`.
 pub fn clocks_per_point(design: &Design, contract: &dyn Contract, n: f64) -> Result<f64> {
     let point = contract.highlight().and_then(|it| it.at(TYPICAL.to_radians(), n));
     let point = point.unwrap_or_default();

@@ -97,7 +97,8 @@ impl Camera {
         Vector::new(from.dot(self.right), from.dot(self.up), from.dot(self.back))
     }
 
-    /// Returns a direction of the camera's coordinates, outside.
+    /// Converts a direction from the camera's coordinates to the coordinates of the scene. For example, (0, 0, −1) gives the
+    /// direction in which the camera looks.
     #[inline]
     pub fn outward(&self, direction: Vector) -> Vector {
         let [x, y, z] = direction.0;

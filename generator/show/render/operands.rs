@@ -252,7 +252,9 @@ impl Feed {
         self.surfaces
     }
 
-    /// Returns whether the device takes dγ, and so the smooth normal's angle.
+    /// Returns whether the device has the operand `cos_dgamma`, the cosine of dγ. In such a device, `cos_gamma` belongs to the
+    /// angle γ between the smooth normal and the half vector, and dγ is the amount by which the perturbed normal of a rough
+    /// surface changes this angle. In any other device, `cos_gamma` belongs to the perturbed normal.
     pub fn takes_deviation(&self) -> bool {
         self.takes(OperandMeaning::CosDgamma)
     }
