@@ -196,6 +196,15 @@ impl<'d, 'p> PlanDatapath<'d, 'p> {
             Operation::Narrow(a, rounding) => {
                 return d.narrow(name, input(a), *format, *rounding, Overflow::Wrap);
             }
+            Operation::Bit(a, number) => {
+                let a = input(a);
+                let top = a.format().width() - 1;
+                // Above its sign a number has copies of the sign, or zeros.
+                return match *number <= top || a.format().signed {
+                    true => a.bit((*number).min(top)),
+                    false => d.raw_constant(name, 0, Format::BIT),
+                };
+            }
             Operation::IntegerPart(a) => {
                 return d.narrow(name, input(a), *format, Rounding::Truncate, Overflow::Wrap);
             }

@@ -30,7 +30,7 @@ pub(super) fn allocated(
     let mut plan = with_guards(statement, &mut guards)?;
     while let Some(excess) = largest_excess(statement, &plan) {
         let source = excess.source(statement, &plan, &guards)?;
-        guards.0[source] += 1;
+        guards.add_bit(source);
         plan = with_guards(statement, &mut guards)?;
     }
     for source in 0..guards.0.len() {
@@ -63,14 +63,14 @@ fn with_guards(
 }
 
 /// A result that does not keep its error yet.
-struct ExcessiveResult {
+pub(super) struct ExcessiveResult {
     result: usize,
     /// The operands at which the error is largest.
     worst: BoxError,
 }
 
 /// Returns the result that exceeds its error by the largest factor; `None` if every result keeps its error.
-fn largest_excess(
+pub(super) fn largest_excess(
     statement: &ExpressionStatement,
     plan: &ExpressionPlan,
 ) -> Option<ExcessiveResult> {
@@ -89,7 +89,7 @@ fn largest_excess(
 
 impl ExcessiveResult {
     /// Returns the place with the largest share of the error. A place that cannot have more bits does not count.
-    fn source(
+    pub(super) fn source(
         &self,
         statement: &ExpressionStatement,
         plan: &ExpressionPlan,
@@ -99,7 +99,7 @@ impl ExcessiveResult {
         let mut largest = (0.0, None);
         for (node, needed) in plan.nodes.iter().zip(&proof.needed) {
             let Some(source) = node.source.filter(|_| *needed) else { continue };
-            if guards.0[source] >= MOST_GUARD {
+            if guards.0.get(source).is_some_and(|guard| *guard >= MOST_GUARD) {
                 continue;
             }
             let share = proof.share(&self.worst.limits, source);

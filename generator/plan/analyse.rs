@@ -314,6 +314,13 @@ impl ErrorAnalysis<'_> {
                 };
                 NodeError::new(ideal, error + own)
             }
+            Operation::Bit(a, number) => {
+                let value = match input(*a).known() {
+                    Some(integer) => Enclosure::exactly(((integer as i64) >> number & 1) as f64),
+                    None => bit(false, false),
+                };
+                return Ok(NodeError::exactly(value));
+            }
             Operation::Normalise { .. } | Operation::Places(_) => {
                 unreachable!("each_shift gives the values of these nodes")
             }

@@ -166,13 +166,26 @@ impl BoxScore for BoxError {
     }
 }
 
+/// How good a division of a box is: the smallest is the best. The first field that differs decides.
+#[derive(Clone, Copy, PartialEq, PartialOrd)]
+struct DivisionRank {
+    /// The halves of which nothing is known.
+    unknown: usize,
+    /// The larger of the other scores.
+    largest: f64,
+    /// The sum of the other scores.
+    sum: f64,
+    /// Larger the fewer values the divided operand has.
+    short: u64,
+}
+
 /// Returns the scores of the two halves of a box, divided along the operand that makes the most known; `None` for a single
 /// combination. A half for which `known` gives nothing is left out.
 pub(super) fn best_halves<K: BoxScore>(
     limits: &OperandBox,
     known: &dyn Fn(&OperandBox) -> Option<K>,
 ) -> Option<Vec<K>> {
-    let mut best: Option<((usize, f64, f64, u64), Vec<K>)> = None;
+    let mut best: Option<(DivisionRank, Vec<K>)> = None;
     for operand in 0..limits.len() {
         let Some(halves) = halves_along(limits, operand) else { continue };
         let mut found = Vec::new();
@@ -191,7 +204,7 @@ pub(super) fn best_halves<K: BoxScore>(
         }
         let (low, high) = limits[operand];
         // Of operands that are equally good, the one with the most values.
-        let rank = (unknown, largest, sum, u64::MAX - high.abs_diff(low));
+        let rank = DivisionRank { unknown, largest, sum, short: u64::MAX - high.abs_diff(low) };
         if best.as_ref().is_none_or(|(other, _)| rank < *other) {
             best = Some((rank, found));
         }

@@ -61,6 +61,7 @@ impl ExpressionPlan {
                 };
                 wrapped(node, rounded)
             }
+            Operation::Bit(a, number) => known(*a) >> number & 1,
             Operation::IntegerPart(a) => known(*a) >> self.node(*a).format.frac,
             Operation::FractionPart(a, _) => node.format.raw(node.format.bits(known(*a))),
             Operation::Normalise { word, by_pairs } => {

@@ -5,7 +5,7 @@ use std::sync::{Arc, LazyLock, Mutex};
 
 use glint_approximate::Wish;
 
-use super::allocate::allocated;
+use super::allocate::{allocated, largest_excess};
 use super::boxes::ResultProof;
 use super::exhaust::largest_errors;
 use super::lower::{FoundPolynomials, Guards, lowered};
@@ -69,8 +69,15 @@ pub fn find(statement: &ExpressionStatement) -> FindResult {
 }
 
 fn searched(statement: &ExpressionStatement) -> Result<ProvedPlan, PlanRefusal> {
-    let (guards, estimate) = allocated(statement)?;
-    let plan = with_polynomials(statement, &guards, estimate)?;
+    let (mut guards, estimate) = allocated(statement)?;
+    let mut plan = with_polynomials(statement, &guards, estimate)?;
+    // The polynomials can have other formats than was estimated, and then another error.
+    while let Some(excess) = largest_excess(statement, &plan) {
+        let source = excess.source(statement, &plan, &guards)?;
+        guards.add_bit(source);
+        let estimate = lowered(statement, &guards, &FoundPolynomials::default())?.0;
+        plan = with_polynomials(statement, &guards, estimate)?;
+    }
     let mut bounds = enclosed_errors(statement, &plan)?;
     let mut proof = ProofKind::Enclosed;
     if statement.combinations() <= 1 << MOST_COMBINATIONS {

@@ -7,6 +7,7 @@ mod direction;
 mod exponential;
 mod quotient;
 mod root;
+mod wave;
 
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -44,6 +45,16 @@ const LIMIT_THE_OPERANDS: &str =
 /// The fraction bits of each place where a plan rounds, relative to the result with the most of them.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub(super) struct Guards(pub(super) Vec<i32>);
+
+impl Guards {
+    /// Gives the place of this number a bit more.
+    pub(super) fn add_bit(&mut self, place: usize) {
+        if place >= self.0.len() {
+            self.0.resize(place + 1, 0);
+        }
+        self.0[place] += 1;
+    }
+}
 
 /// The polynomials that were found so far, by the functions that they approximate.
 #[derive(Clone, Debug, Default)]
@@ -185,6 +196,9 @@ impl<'s> Lowering<'s> {
         if let Some(power) = root::power_of(&function)
             && let Some(node) = self.power(part, &core, &function, power)?
         {
+            return Ok(node);
+        }
+        if let Some(node) = self.wave(&core, &function)? {
             return Ok(node);
         }
         if let Some(node) = self.logarithm(&core, &function)? {

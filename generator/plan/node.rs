@@ -1,5 +1,6 @@
 //! Defines the operations of a plan and the formats of their results.
 
+use std::mem::{Discriminant, discriminant};
 use std::sync::Arc;
 
 use glint_approximate::{Piecewise, TargetFunction};
@@ -73,6 +74,8 @@ pub enum Operation {
     /// The value in the format of the result: low bits are rounded off, and high bits are dropped. The proof shows that
     /// the dropped bits are copies of the sign.
     Narrow(NodeId, Rounding),
+    /// The bit of this number of an integer, 0 for the lowest.
+    Bit(NodeId, u32),
     /// The greatest integer that is not above a.
     IntegerPart(NodeId),
     /// a minus its integer part, which is the second node: from 0 to below 1.
@@ -114,6 +117,20 @@ impl Approximation {
 }
 
 impl Operation {
+    /// Returns everything that an exact operation is known by; `None` for an operation that may round, or that has more than its
+    /// inputs.
+    pub(super) fn identity(&self) -> Option<(Discriminant<Self>, Vec<NodeId>, u32)> {
+        let more = match self {
+            Self::Operand(_) | Self::Constant { .. } | Self::Polynomial(..) => return None,
+            Self::Narrow(..) | Self::ShiftRight(..) | Self::ShiftLeft(..) => return None,
+            Self::Choose { is_continuous, .. } => u32::from(*is_continuous),
+            Self::Normalise { by_pairs, .. } => u32::from(*by_pairs),
+            Self::Bit(_, number) => *number,
+            _ => 0,
+        };
+        Some((discriminant(self), self.inputs(), more))
+    }
+
     /// Returns the nodes that the operation reads.
     pub fn inputs(&self) -> Vec<NodeId> {
         match self {
@@ -123,6 +140,7 @@ impl Operation {
             | Self::Scale(a)
             | Self::Narrow(a, _)
             | Self::IntegerPart(a)
+            | Self::Bit(a, _)
             | Self::Normalise { word: a, .. }
             | Self::Places(a)
             | Self::Polynomial(a, _) => vec![*a],

@@ -65,6 +65,9 @@ impl ExpressionPlan {
         if width > MAX_WIDTH as i32 {
             return Err(PlanRefusal::too_wide(name, width));
         }
+        if let Some(same) = self.same_node(&operation, format) {
+            return Ok(same);
+        }
         let name = self.unused_name(name);
         self.nodes.push(PlanNode {
             name,
@@ -75,6 +78,17 @@ impl ExpressionPlan {
             source: None,
         });
         Ok(NodeId(self.nodes.len() - 1))
+    }
+
+    /// Returns the node that already does an operation, if it is exact.
+    fn same_node(&self, operation: &Operation, format: Format) -> Option<NodeId> {
+        let wanted = operation.identity()?;
+        let is_same = |node: &PlanNode| {
+            node.source.is_none()
+                && node.format == format
+                && node.operation.identity().as_ref() == Some(&wanted)
+        };
+        self.nodes.iter().position(is_same).map(NodeId)
     }
 
     /// Returns the name, or with a number behind it if a node already has it. For example, a second `product` is
@@ -303,6 +317,16 @@ impl ExpressionPlan {
         }
         let range = (rounding.shift(node.range.0, places), rounding.shift(node.range.1, places));
         self.narrow(name, a, Format::holding(range.0, range.1, frac), rounding)
+    }
+
+    /// Adds a bit of an integer.
+    pub(super) fn bit(
+        &mut self,
+        name: &str,
+        a: NodeId,
+        number: u32,
+    ) -> Result<NodeId, PlanRefusal> {
+        self.insert(name, Operation::Bit(a, number), Format::BIT, (0, 1))
     }
 
     /// Adds the integer part and the fraction part of a, which must have fraction bits.

@@ -15,6 +15,7 @@ mod cocotb;
 mod delay_lines;
 mod equality;
 mod example;
+mod expressions;
 mod external;
 mod faults;
 mod foreign;

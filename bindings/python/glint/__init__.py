@@ -13,6 +13,7 @@ which the Verilog equals bit by bit, states the proved bound of its error, and g
 """
 
 import numbers
+import json
 import os
 import sys
 from decimal import Decimal
@@ -23,7 +24,7 @@ import numpy as np
 
 from . import _glint
 
-__all__ = ["Core", "Port", "devices", "function"]
+__all__ = ["Core", "Port", "devices", "expression", "function"]
 __version__ = _glint.__version__
 
 
@@ -291,6 +292,59 @@ def function(formula, low, high, *, fraction=None, error=None, **keys):
     if error is not None:
         given["result.error"] = error
     return Core(device="function", **{**given, **keys})
+
+
+def expression(results, *, let=None, fraction=None, error=None, where=None, keys=None, **operands):
+    """A core for formulas of several operands: `glint.expression("x / y", x=(0, 1, 16), y=(0.5, 1, 16), fraction=15)`.
+
+    An operand is a domain with its fraction bits, `x=(-1, 1, 15)`, or its fields, `x={"bits": 16, "fraction": 15, "signed": True}`.
+    `results` is a formula, whose result is named `r`, or a dictionary of formulas by name. In place of a formula a result can have
+    its fields, `{"formula": "x / y", "fraction": 15, "where": "y > x"}`; `fraction`, `error` and `where` are for the results
+    that do not state them. `let` has named parts, and `keys` any other keys, `{"architecture": "pipelined"}`.
+    """
+    if isinstance(results, str):
+        results = {"r": results}
+    shared = {"fraction": fraction, "error": error, "where": where}
+    shared = {field: value for field, value in shared.items() if value is not None}
+    lines = ['device = "expression"', 'name = "expression"']
+    lines += [f"{key} = {_toml(key, value)}" for key, value in (keys or {}).items()]
+    for name, domain in operands.items():
+        if not isinstance(domain, dict):
+            try:
+                low, high, bits = domain
+            except (TypeError, ValueError):
+                words = f"operand {name!r} is {domain!r}; give (from, to, fraction bits), or a dictionary of its fields"
+                raise TypeError(words) from None
+            domain = {"from": low, "to": high, "fraction": bits}
+        lines.append(f"operands.{name} = {_table(f'operands.{name}', domain)}")
+    for name, formula in (let or {}).items():
+        lines.append(f"let.{name} = {_toml(f'let.{name}', formula)}")
+    for name, result in results.items():
+        fields = {"formula": result} if isinstance(result, str) else result
+        lines.append(f"results.{name} = {_table(f'results.{name}', {**shared, **fields})}")
+    core = Core.__new__(Core)
+    core._set(_glint.Core.from_toml("\n".join(lines) + "\n"))
+    return core
+
+
+def _table(key, fields):
+    """The fields of an entry as a table of TOML."""
+    return "{ " + ", ".join(f"{name} = {_toml(f'{key}.{name}', value)}" for name, value in fields.items()) + " }"
+
+
+def _toml(key, value):
+    """The value of a key as TOML."""
+    plain = _plain(key, value)
+    if isinstance(plain, bool):
+        return "true" if plain else "false"
+    if isinstance(plain, str):
+        return json.dumps(plain, ensure_ascii=False)
+    if isinstance(plain, (int, float)):
+        return repr(plain)
+    if isinstance(plain, Decimal):
+        # All digits, as a formula of a number.
+        return json.dumps(format(plain, "f"))
+    raise ValueError(f"key {key!r}: {value!r} is no value of a key")
 
 
 def main():

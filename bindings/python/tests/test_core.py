@@ -58,6 +58,29 @@ def test_results_are_those_of_the_command_line(tmp_path, text):
         assert column.tolist() == [int(row[heading]) for row in printed]
 
 
+def test_expressions_of_several_operands_are_within_their_bounds():
+    core = glint.expression(
+        {"r": "sqrt(s)", "angle": {"formula": "atan2(y, x) / pi", "where": "s > 0"}},
+        let={"s": "x^2 + y^2"},
+        fraction=11,
+        x=(-1, 1, 11),
+        y={"bits": 12, "fraction": 11, "signed": True},
+    )
+    x, y = np.meshgrid(np.linspace(-1, 0.99, 41), np.linspace(-0.99, 0.98, 37))
+    x, y = np.round(x * 2**11) / 2**11, np.round(y * 2**11) / 2**11
+    found = core(x, y)
+    assert np.abs(found["r"] - np.hypot(x, y)).max() * 2**11 <= core.bound < 1
+    turns = (found["angle"] - np.arctan2(y, x) / np.pi + 1) % 2 - 1
+    assert np.abs(turns).max() * 2**11 <= core.bound
+    assert core.cosim(2000) is None
+    quotient = glint.expression("x / y", x=(0, 1, 8), y=(Fraction(1, 2), 1, 8), fraction=7, keys={"architecture": "pipelined"})
+    assert abs(quotient(0.5, 0.75) - 2 / 3) * 2**7 <= quotient.bound < 1
+    with pytest.raises(ValueError, match="no value"):
+        glint.expression("x / y", x=(0, 1, 8), y=(0, 1, 8), fraction=7)
+    with pytest.raises(TypeError, match="fraction bits"):
+        glint.expression("x", x=3, fraction=7)
+
+
 def test_every_operand_of_a_function_is_within_its_bound():
     for formula, low, high, of in [
         ("1/sqrt(x)", 1, 4, lambda x: 1 / np.sqrt(x)),

@@ -3,13 +3,14 @@
 //! The divisor b is m · 2^−k with m from 1/2 to below 1. A table gives 1/m, and the dividend is shifted by the same k places,
 //! so that a / b = (a · 2^k) · (1/m).
 
-use glint_base::fixed::{Rounding, exp2};
+use glint_base::fixed::{Format, Rounding, exp2};
 use glint_formula::{Enclosure, Expression};
 
 use super::root::{FEW_OCTAVES, Octave, holding};
 use super::{Lowering, WIDEST_FACTOR, WIDEST_OPERAND, number};
 use crate::node::NodeId;
 use crate::refusal::PlanRefusal;
+use crate::statement::StatedResult;
 
 impl Lowering<'_> {
     /// Returns the node of a / b, which is the formula `part`.
@@ -23,7 +24,10 @@ impl Lowering<'_> {
         let divisor = self.part(b)?;
         let values = self.range(part)?;
         let divisors = self.range(b)?;
-        let largest = values.low.abs().max(values.high.abs());
+        let largest = match self.is_proper(a, b) {
+            true => 1.0,
+            false => values.low.abs().max(values.high.abs()),
+        };
         let size = self.plan.absolute("divisor_size", divisor)?;
         let sizes = Enclosure::between(0.0, divisors.low.abs().max(divisors.high.abs()));
         let is_short = self.plan.node(size).format.width() <= WIDEST_OPERAND;
@@ -45,6 +49,16 @@ impl Lowering<'_> {
         self.plan.choose("quotient", is_negative, [quotient, negated], false)
     }
 
+    /// Returns whether every result that has the quotient a / b is promised only where a < b, and a is never below 0.
+    fn is_proper(&self, a: &Expression, b: &Expression) -> bool {
+        let is_not_negative = self.range(a).is_ok_and(|values| values.low >= 0.0);
+        let promises_it = |result: &StatedResult| {
+            let promise = result.promise.as_ref();
+            promise.is_some_and(|it| *it.left == *b && *it.right == *a)
+        };
+        is_not_negative && self.statement.results.iter().all(promises_it)
+    }
+
     /// Returns dividend / divisor, for a divisor that is known as a fraction within one octave.
     pub(super) fn ratio_in_octave(
         &mut self,
@@ -60,9 +74,19 @@ impl Lowering<'_> {
         let format = self.plan.node(dividend).format;
         // The dividend is at most the largest quotient times the divisor, and the shifted divisor below 2^exponent.
         let most = largest * exp2(octave.exponent);
-        let low = if self.plan.node(dividend).range.0 < 0 { -most } else { 0.0 };
-        let limits = Enclosure::between(low, most);
-        let shifted_format = holding(limits, format.frac);
+        let is_signed = self.plan.node(dividend).range.0 < 0;
+        let low = if is_signed { -most } else { 0.0 };
+        let shifted_format = if largest <= 1.0 {
+            // The shifted divisor is below 2^exponent, and the shifted dividend not above it.
+            let above = exp2(octave.exponent + format.frac) as i128;
+            Format::holding(if is_signed { 1 - above } else { 0 }, above - 1, format.frac)
+        } else {
+            holding(Enclosure::between(low, most), format.frac)
+        };
+        let limits = Enclosure::between(
+            low.max(shifted_format.to_f64(shifted_format.min_raw())),
+            most.min(shifted_format.to_f64(shifted_format.max_raw())),
+        );
         let shifted =
             self.plan.shift_left("dividend_shifted", dividend, octave.places, shifted_format)?;
         self.plan.nodes[shifted.0].limits = limits;

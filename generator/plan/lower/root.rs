@@ -121,7 +121,12 @@ impl Lowering<'_> {
         })?;
         let format = self.plan.node(node).format;
         // Without a sign, without integer bits that are never used, and by pairs with an even number of integer bits.
-        let word_format = holding(Enclosure::between(0.0, range.high), format.frac);
+        let most = self.plan.node(node).range.1;
+        let limited = match self.is_exact(node) {
+            true => most.min((range.high * exp2(format.frac)).floor() as i128),
+            false => most,
+        };
+        let word_format = Format::holding(0, limited, format.frac);
         let is_odd = by_pairs && word_format.int % 2 != 0;
         let word_format = Format { int: word_format.int + i32::from(is_odd), ..word_format };
         let word = self.plan.narrow("word", node, word_format, Rounding::Truncate)?;
