@@ -196,6 +196,9 @@ impl<'d, 'p> PlanDatapath<'d, 'p> {
             Operation::Narrow(a, rounding) => {
                 return d.narrow(name, input(a), *format, *rounding, Overflow::Wrap);
             }
+            Operation::Saturate(a) => {
+                return d.narrow(name, input(a), *format, Rounding::Truncate, Overflow::Saturate);
+            }
             Operation::Bit(a, number) => {
                 let a = input(a);
                 let top = a.format().width() - 1;

@@ -314,6 +314,14 @@ impl ErrorAnalysis<'_> {
                 };
                 NodeError::new(ideal, error + own)
             }
+            Operation::Saturate(a) => {
+                let a = input(*a);
+                let largest = node.format.to_f64(node.format.max_raw());
+                // The part of the value above the largest is lost.
+                let lost = (largest - a.actual.high).min(0.0);
+                let value = NodeError::new(a.ideal, a.error + Enclosure::between(lost, 0.0));
+                value.limited(Enclosure::between(0.0, largest))
+            }
             Operation::Bit(a, number) => {
                 let value = match input(*a).known() {
                     Some(integer) => Enclosure::exactly(((integer as i64) >> number & 1) as f64),

@@ -61,6 +61,7 @@ impl ExpressionPlan {
                 };
                 wrapped(node, rounded)
             }
+            Operation::Saturate(a) => known(*a).min(node.format.max_raw()),
             Operation::Bit(a, number) => known(*a) >> number & 1,
             Operation::IntegerPart(a) => known(*a) >> self.node(*a).format.frac,
             Operation::FractionPart(a, _) => node.format.raw(node.format.bits(known(*a))),

@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 use std::sync::{Arc, LazyLock, Mutex};
 
-use glint_approximate::Wish;
+use glint_approximate::{Piecewise, TargetFunction, Wish};
 
 use super::allocate::{allocated, largest_excess};
 use super::boxes::ResultProof;
@@ -18,6 +18,12 @@ const DIVISIONS: usize = 4000;
 
 /// The most combinations of operands of which every one is computed, as a power of two.
 const MOST_COMBINATIONS: u32 = 20;
+
+/// The bits of a table that a look-up table of four inputs holds.
+const BITS_OF_A_CELL: f64 = 16.0;
+
+/// The look-up tables that a degree more takes: the sum, and delays beside it.
+const CELLS_OF_A_DEGREE: f64 = 50.0;
 
 /// How a bound was proved.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -108,15 +114,32 @@ fn with_polynomials(
             }
             is_complete = false;
             let function = &approximation.function;
-            let polynomials = glint_approximate::find(function, Wish::default())
-                .map_err(|refusal| PlanRefusal::new(refusal.message, refusal.remedy))?;
-            found.insert(function, polynomials);
+            found.insert(function, cheapest_polynomials(function)?);
         }
         if is_complete {
             return Ok(plan);
         }
         plan = lowered(statement, guards, &found)?.0;
     }
+}
+
+/// Returns the polynomials of a function with the least cost in a pipeline: each degree more needs a product, a sum, and
+/// registers for all that waits for them.
+fn cheapest_polynomials(function: &TargetFunction) -> Result<Arc<Piecewise>, PlanRefusal> {
+    let mut cheapest: Option<(f64, Arc<Piecewise>)> = None;
+    for degree in [1, 2] {
+        let wish = Wish { degree: Some(degree), ..Wish::default() };
+        let Ok(found) = glint_approximate::find(function, wish) else { continue };
+        let cost = found.rom_bits() as f64 / BITS_OF_A_CELL + CELLS_OF_A_DEGREE * f64::from(degree);
+        if cheapest.as_ref().is_none_or(|(least, _)| cost < *least) {
+            cheapest = Some((cost, found));
+        }
+    }
+    if let Some((_, found)) = cheapest {
+        return Ok(found);
+    }
+    glint_approximate::find(function, Wish::default())
+        .map_err(|refusal| PlanRefusal::new(refusal.message, refusal.remedy))
 }
 
 /// Returns a proved bound of the error of each result.

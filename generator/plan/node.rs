@@ -80,6 +80,8 @@ pub enum Operation {
     IntegerPart(NodeId),
     /// a minus its integer part, which is the second node: from 0 to below 1.
     FractionPart(NodeId, NodeId),
+    /// The value, or the largest of the format of the result where the value is above it. The value is never below 0.
+    Saturate(NodeId),
     /// The bits of an unsigned word, shifted left until the top one is 1, read as a fraction from 1/2 to below 1. By
     /// pairs, the shift is even, and the fraction from 1/4 to below 1. A word of zeros stays so.
     Normalise {
@@ -141,6 +143,7 @@ impl Operation {
             | Self::Narrow(a, _)
             | Self::IntegerPart(a)
             | Self::Bit(a, _)
+            | Self::Saturate(a)
             | Self::Normalise { word: a, .. }
             | Self::Places(a)
             | Self::Polynomial(a, _) => vec![*a],

@@ -319,6 +319,16 @@ impl ExpressionPlan {
         self.narrow(name, a, Format::holding(range.0, range.1, frac), rounding)
     }
 
+    /// Adds a value that is not below 0, limited to the largest value of a format with as many fraction bits.
+    pub(super) fn saturate(
+        &mut self,
+        name: &str,
+        a: NodeId,
+        format: Format,
+    ) -> Result<NodeId, PlanRefusal> {
+        self.insert(name, Operation::Saturate(a), format, format.range())
+    }
+
     /// Adds a bit of an integer.
     pub(super) fn bit(
         &mut self,

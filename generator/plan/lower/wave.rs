@@ -4,6 +4,7 @@
 //! even and at 1 − w where q is odd, with a minus sign in the third and the fourth quadrant. The cosine is the sine a
 //! quarter turn later.
 
+use glint_base::fixed::Format;
 use glint_formula::{Expression, Function, Kind, Operator, RBig};
 
 use super::{Lowering, number};
@@ -75,9 +76,11 @@ impl Lowering<'_> {
         let is_odd = self.plan.bit("is_odd_quadrant", quadrant, 0)?;
         let one = self.plan.constant("quarter", 1, 0)?;
         let back = self.plan.subtract("angle_back", one, way)?;
+        // At 1 itself the sine is flat, so that the nearest angle below has nearly the same sine, and the table needs no word more.
+        let back = self.plan.saturate("angle_back_kept", back, Format::unsigned(0, bits))?;
         let angle = self.plan.choose("angle_in_quadrant", is_odd, [way, back], true)?;
         let finest = self.finest;
-        let domain = (0, 1i64 << bits);
+        let domain = (0, (1i64 << bits) - 1);
         let table = number("sin(pi / 2 * x)");
         let size = self.rounding(finest + 1, |own, frac| {
             own.approximation("wave", angle, &table, domain, frac)
