@@ -49,7 +49,7 @@ impl NodeError {
         Self { ideal, error: NOTHING, actual: ideal }
     }
 
-    /// Makes the value of a node of which nothing is known. It does no harm where a choice takes the other case.
+    /// The value of a node without limits. It does no harm where a choice takes the other case.
     const UNKNOWN: Self = Self { ideal: ANYTHING, error: ANYTHING, actual: ANYTHING };
 
     /// Returns whether the value and its error have limits.
@@ -83,7 +83,7 @@ impl NodeError {
     }
 }
 
-/// Takes the values of all nodes, and the first node of which nothing could be said.
+/// Takes the values of all nodes, and the first node without limits.
 type Visit<'v> = dyn FnMut(&[NodeError], Option<&Undecided>) + 'v;
 
 /// The limits of the nodes so far.

@@ -40,7 +40,7 @@ impl PartialOrd for BoxError {
 
 impl Ord for BoxError {
     fn cmp(&self, other: &Self) -> Ordering {
-        // Among boxes of which nothing is known, the largest is divided first.
+        // Among boxes without a limit of the error, the largest is divided first.
         let size = |it: &Self| size_of(&it.limits);
         self.units.total_cmp(&other.units).then_with(|| size(self).cmp(&size(other)))
     }
@@ -169,7 +169,7 @@ impl BoxScore for BoxError {
 /// How good a division of a box is: the smallest is the best. The first field that differs decides.
 #[derive(Clone, Copy, PartialEq, PartialOrd)]
 struct DivisionRank {
-    /// The halves of which nothing is known.
+    /// The halves without a score.
     unknown: usize,
     /// The larger of the other scores.
     largest: f64,

@@ -16,7 +16,7 @@ use super::statement::ExpressionStatement;
 /// The divisions of the domain for the last bound.
 const DIVISIONS: usize = 4000;
 
-/// The most combinations of operands of which every one is computed, as a power of two.
+/// Every combination of operands is computed if there are at most 2 to this power.
 const MOST_COMBINATIONS: u32 = 20;
 
 /// The bits of a table that a look-up table of four inputs holds.

@@ -7,7 +7,7 @@ use glint_formula::Enclosure;
 use super::node::{Approximation, NodeId, Operation, PlanNode};
 use super::refusal::PlanRefusal;
 
-/// The limits of a value of which the rewriting knows nothing.
+/// The limits of a value before the rewriting limits it.
 const ANYTHING: Enclosure = Enclosure::between(f64::NEG_INFINITY, f64::INFINITY);
 
 /// An expression as a list of integer operations.
