@@ -166,50 +166,39 @@ impl BoxScore for BoxError {
     }
 }
 
-/// How good a division of a box is: the smallest is the best. The first field that differs decides.
-#[derive(Clone, Copy, PartialEq, PartialOrd)]
-struct DivisionRank {
-    /// The halves without a score.
-    unknown: usize,
-    /// The larger of the other scores.
-    largest: f64,
-    /// The sum of the other scores.
-    sum: f64,
-    /// Larger the fewer values the divided operand has.
-    short: u64,
+/// Returns a number with its leading digits alone: two numbers that differ by less than a per cent are mostly the same.
+fn coarse(value: f64) -> f64 {
+    const DROPPED_BITS: u32 = 46;
+    f64::from_bits(value.to_bits() >> DROPPED_BITS << DROPPED_BITS)
 }
 
-/// Returns the scores of the two halves of a box, divided along the operand that makes the most known; `None` for a single
+/// Returns the two halves of a box, divided along the operand on which its score depends most; `None` for a single
 /// combination. A half for which `known` gives nothing is left out.
+///
+/// The score depends most on an operand if it is smallest where the operand has its middle value alone.
 pub(super) fn best_halves<K: BoxScore>(
     limits: &OperandBox,
     known: &dyn Fn(&OperandBox) -> Option<K>,
 ) -> Option<Vec<K>> {
-    let mut best: Option<(DivisionRank, Vec<K>)> = None;
+    let mut best: Option<(f64, u64, usize)> = None;
     for operand in 0..limits.len() {
-        let Some(halves) = halves_along(limits, operand) else { continue };
-        let mut found = Vec::new();
-        for half in &halves {
-            found.extend(known(half));
-        }
-        let unknown = found.iter().filter(|half| half.score().is_infinite()).count();
-        let mut largest = f64::NEG_INFINITY;
-        let mut sum = 0.0;
-        for half in &found {
-            let score = half.score();
-            if score.is_finite() {
-                largest = f64::max(largest, score);
-                sum += score;
-            }
-        }
         let (low, high) = limits[operand];
+        if low == high {
+            continue;
+        }
+        let middle = low + (high - low) / 2;
+        let mut slice = limits.clone();
+        slice[operand] = (middle, middle);
+        let score = known(&slice).map_or(f64::NEG_INFINITY, |slice| coarse(slice.score()));
         // Of operands that are equally good, the one with the most values.
-        let rank = DivisionRank { unknown, largest, sum, short: u64::MAX - high.abs_diff(low) };
-        if best.as_ref().is_none_or(|(other, _)| rank < *other) {
-            best = Some((rank, found));
+        let rank = (score, u64::MAX - high.abs_diff(low), operand);
+        if best.is_none_or(|other| rank < other) {
+            best = Some(rank);
         }
     }
-    best.map(|(_, halves)| halves)
+    let (_, _, operand) = best?;
+    let halves = halves_along(limits, operand)?;
+    Some(halves.iter().filter_map(known).collect())
 }
 
 /// Returns the two halves of a box along one operand; `None` if it has a single value of this operand.

@@ -87,9 +87,26 @@ fn enclosed_errors_hold_for_every_combination() {
     }
 }
 
+/// Returns the rotation of a point by an angle in turns.
+fn rotation(bits: i32) -> ExpressionStatement {
+    let signed = Format::signed(0, bits - 1);
+    let turn = Format::unsigned(0, bits);
+    let fraction = bits as u32 - 1;
+    ExpressionStatement {
+        operands: vec![operand("x", signed), operand("y", signed), operand("turn", turn)],
+        results: vec![
+            result("u", "x * cos(2 * pi * turn) - y * sin(2 * pi * turn)", fraction),
+            result("v", "x * sin(2 * pi * turn) + y * cos(2 * pi * turn)", fraction),
+        ],
+    }
+}
+
 #[test]
 fn sixteen_bits_are_enclosed() {
-    for statement in statements(16) {
+    let mut all = statements(16);
+    all.push(rotation(16));
+    all.push(rotation(12));
+    for statement in all {
         let found = find(&statement).unwrap_or_else(|refusal| panic!("{refusal:?}"));
         assert_eq!(found.proof, ProofKind::Enclosed);
         for (bound, result) in found.bounds.iter().zip(&statement.results) {
