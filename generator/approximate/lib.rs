@@ -1,10 +1,10 @@
-//! Finds piecewise polynomials in fixed point that approximate a function of one operand, and proves their error.
+//! Finds piecewise polynomials in fixed point that approximate a function of one operand, and proves a bound on their error.
 //!
-//! The domain is cut into [`Segments`]. A table holds the coefficients of each segment, and the hardware evaluates the
-//! polynomial in integers with Horner's rule. [`find`] chooses the degree, the segments, the coefficients and the widths.
-//! [`Piecewise::prove`] then computes the result of every operand and compares it with the formula; the bound includes the
-//! error with which the formula is evaluated. If a formula's domain has too many operands, the proof uses intervals within
-//! segments instead.
+//! For example, a device can compute 1/√x for x from 1 to 4 with such a polynomial. The domain is cut into [`Segments`]; a table
+//! holds the coefficients of each segment, and the hardware evaluates the polynomial in integers by Horner's rule. [`find`]
+//! chooses the degree, the segments, the coefficients and the bit widths. [`Piecewise::prove`] then computes the result of every
+//! operand and compares it with the formula, allowing for the error with which the formula is evaluated. If the domain has too
+//! many operands for that, the proof uses intervals within segments instead.
 
 mod minimax;
 mod reduction;
@@ -40,11 +40,11 @@ const MOST_SUMS: usize = 4;
 const POLES: u32 = 1 << 16;
 const BESIDE: f64 = 1.0 / 1024.0;
 
-/// The number of bits that an operand may have if every value is to be computed.
+/// The largest number of bits of a domain whose operands a proof computes one by one.
 pub const MOST_BITS: u32 = 26;
 
 glint_config::choices! {
-    /// The result of an operand outside the domain.
+    /// The result that a device gives for an operand outside the function's domain.
     #[derive(Hash)]
     pub enum Outside {
         /// The result of the nearer end.
@@ -57,64 +57,65 @@ glint_config::choices! {
     }
 }
 
-/// The values of a function.
+/// The function to approximate: a formula, or a curve through samples.
 #[derive(Clone, Debug)]
 pub enum Curve {
-    /// The values of a formula of the operand x.
+    /// A formula of the operand x.
     Formula(Expression),
-    /// The values of the curve through samples.
+    /// The curve through samples, which are measured points.
     Samples(Samples),
 }
 
 /// A function on a domain, and the formats that its operand and result have.
 #[derive(Clone, Debug)]
 pub struct TargetFunction {
-    /// The values that are approximated.
+    /// The formula or the samples.
     pub curve: Curve,
     /// The raw operands, first and last. For example, the domain from 1 to below 4 with 16 fraction bits is (65536, 262143).
     pub domain: (i64, i64),
-    /// The operand's format.
+    /// The format of the operand.
     pub operand: Format,
-    /// The result of other operands.
+    /// The result for operands outside the domain.
     pub outside: Outside,
-    /// Fraction bits of the result.
+    /// The number of fraction bits of the result.
     pub fraction: u32,
-    /// The largest error, in units of the last place of the result.
+    /// The largest error that is allowed, in units of the last place of the result.
     pub error: f64,
 }
 
-/// Why there is no approximation.
+/// The reason why no approximation was found, with a remedy.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Refusal {
-    /// The configuration key that is best changed.
+    /// The configuration key that the user should change.
     pub key: &'static str,
-    /// The bytes of the formula that it is about, if it is about one place.
+    /// The range of bytes in the formula, if the reason concerns a part of it.
     pub place: Option<Range<usize>>,
-    /// The fault, in words.
+    /// The reason, as a message.
     pub message: String,
-    /// The remedy, in words.
+    /// The remedy, as a message.
     pub remedy: String,
 }
 
 impl Refusal {
-    /// Makes a refusal that concerns no place of the formula.
+    /// Makes a refusal that concerns no particular part of the formula.
     pub fn new(key: &'static str, message: String, remedy: impl Into<String>) -> Self {
         Self { key, place: None, message, remedy: remedy.into() }
     }
 }
 
-/// The bits that are cut off before and after a product.
+/// The numbers of bits of one step of Horner's rule: a step multiplies a sum by the offset in the segment, and cuts off low bits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct HornerStep {
-    /// Leading bits of the offset that are multiplied.
+    /// The number of leading bits of the offset that the step multiplies.
     pub offset: u32,
-    /// Low bits of the product that are dropped.
+    /// The number of low bits of the product that the step drops.
     pub dropped: u32,
 }
 
 impl HornerStep {
-    /// Returns the addend of the next coefficient: the product of a sum and an offset of `rest` bits, both cut. For example,
-    /// the sum 5 and the offset −3 give −4 if no bit of the offset and two bits of the product are cut.
+    /// Returns the product of a partial sum and the offset in the segment, without the low bits that this step drops. The step
+    /// adds it to the next coefficient. `rest` is the number of bits of the offset. For example, the sum 5 and the offset −3 give
+    /// −4 if no bit of the offset and two bits of the product are dropped.
     #[inline]
     pub fn product(self, sum: i64, offset: i64, rest: u32) -> i64 {
         let product = i128::from(sum) * i128::from(offset >> (rest - self.offset));
@@ -122,40 +123,41 @@ impl HornerStep {
     }
 }
 
-/// A piecewise polynomial in integers.
+/// A piecewise polynomial in integers: the table of coefficients, and all bit widths of its hardware.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Piecewise {
-    /// The operand's format.
+    /// The format of the operand.
     pub operand: Format,
-    /// The raw operands of the domain.
+    /// The smallest and the largest raw operand of the domain.
     pub domain: (i64, i64),
-    /// The result of other operands.
+    /// The result for operands outside the domain.
     pub outside: Outside,
-    /// How operands become the polynomial's.
+    /// The range reduction that maps an operand to the polynomial's shorter domain, if there is one.
     pub reduction: Option<Reduction>,
-    /// The polynomial's raw operand whose number is 0.
+    /// The raw operand of the polynomial that has the number 0 in [`Segments`].
     pub origin: i64,
-    /// How numbers choose words.
+    /// The segments, which map the number of an operand to a word of the table.
     pub segments: Segments,
-    /// The formats of the coefficients, the constant first.
+    /// The format of each coefficient, the constant first.
     pub coefficients: Vec<Format>,
-    /// The words of the table, each with its coefficients.
+    /// The words of the table, one for each segment. A word consists of the coefficients, the constant first.
     pub words: Vec<Vec<i64>>,
-    /// The cuts of the product that is added to coefficient k.
+    /// The bit widths of the product that is added to coefficient k, for each k.
     pub steps: Vec<HornerStep>,
-    /// The formats of the sums from coefficient k on. The first is the format of the polynomial.
+    /// The format of the partial sum from coefficient k on, for each k. The first is the format of the whole polynomial.
     pub sums: Vec<Format>,
-    /// The format of the result, which is the polynomial where nothing is reduced.
+    /// The format of the result. It is the format of the polynomial if there is no range reduction.
     pub result: Format,
     /// The proved bound of the error, in units of the last place of the result.
     pub bound: f64,
 }
 
 impl TargetFunction {
-    /// Returns an interval that contains the value at a raw operand, in units of the last place of the result.
+    /// Returns an interval that contains the exact value of the function at a raw operand, in units of the last place of the
+    /// result.
     ///
-    /// A formula is evaluated in `f64`. Where that leaves a step or a sign undecided, is beyond the range of `f64`, or is not exact
-    /// enough for the allowed error, the formula is evaluated once more with as many bits as it takes.
+    /// A formula is first evaluated in `f64`. It is evaluated again with more bits if `f64` leaves a comparison undecided,
+    /// overflows, or is not exact enough for the allowed error.
     ///
     /// # Errors
     /// Fails at the part of the formula that has no value there.
@@ -185,7 +187,7 @@ impl TargetFunction {
         RBig::from(raw) * scale
     }
 
-    /// Finds neighbouring operands between which the formula has a pole, or comes so near to one that intervals do not tell.
+    /// Finds two neighbouring operands between which the formula has a pole, or comes so close to one that intervals cannot tell.
     pub fn pole(&self) -> Option<(f64, f64)> {
         let Curve::Formula(formula) = &self.curve else { return None };
         let mut open = vec![self.domain];
@@ -206,7 +208,7 @@ impl TargetFunction {
         None
     }
 
-    /// Returns whether there are more operands than can be computed.
+    /// Returns whether the domain has too many operands for a proof that computes each.
     pub fn is_wide(&self) -> bool {
         self.domain.1.abs_diff(self.domain.0) >> MOST_BITS != 0
     }
@@ -247,12 +249,12 @@ impl TargetFunction {
 }
 
 impl Piecewise {
-    /// Returns the names of the registers with the sums, the polynomial's first.
+    /// Returns the names of the registers of the partial sums, starting with the register of the whole polynomial.
     pub fn registers(&self) -> [&'static str; 3] {
         [if self.reduction.is_some() { "polynomial" } else { "result" }, "sum1", "sum2"]
     }
 
-    /// Returns the polynomial's degree. For example, words of three coefficients have degree 2.
+    /// Returns the degree of the polynomials. For example, words of three coefficients have degree 2.
     pub fn degree(&self) -> usize {
         self.coefficients.len() - 1
     }
@@ -263,25 +265,26 @@ impl Piecewise {
         self.reduction.as_ref().map_or((raw, Restore::default()), |it| it.reduce(raw))
     }
 
-    /// Returns the number of a raw operand within the domain.
+    /// Returns the number of a raw operand, from which [`Segments`] finds its segment.
     pub fn number(&self, raw: i64) -> u64 {
         (self.reduced(raw).0 - self.origin) as u64 & ((1 << self.segments.bits) - 1)
     }
 
-    /// Returns where a raw operand lies. Beyond the words that the domain reads it is the last.
+    /// Returns the word and the offset of a raw operand. An operand beyond the words of the domain gets the last word.
     pub fn place(&self, raw: i64) -> SegmentOffset {
         let SegmentOffset { word, offset } = self.segments.place(self.number(raw));
         SegmentOffset { word: word.min(self.words.len() - 1), offset }
     }
 
-    /// Returns the sum from coefficient k on, without cutting off upper bits. `above` is the sum from coefficient k + 1 on.
+    /// Returns the partial sum from coefficient k on, with all its upper bits. `above` is the partial sum from coefficient k + 1
+    /// on.
     pub fn sum(&self, k: usize, place: SegmentOffset, above: i64) -> i64 {
         let coefficient = self.words[place.word][k];
         let Some(step) = self.steps.get(k) else { return coefficient };
         coefficient + step.product(above, place.offset, self.segments.rest())
     }
 
-    /// Returns the fraction bits that the sum with the constant has beyond the result.
+    /// Returns the number of fraction bits of the last sum that the result drops.
     pub fn guard(&self) -> u32 {
         (self.coefficients[0].frac - self.sums[0].frac) as u32
     }
@@ -304,7 +307,7 @@ impl Piecewise {
         self.restored(raw, self.sums_of(raw)[0])
     }
 
-    /// Returns the result of a raw operand from the value of the polynomial there.
+    /// Returns the result of a raw operand, given the value of the polynomial at that operand.
     pub fn restored(&self, raw: i64, polynomial: i64) -> i64 {
         self.reduced(raw).1.result(polynomial)
     }
@@ -316,8 +319,8 @@ impl Piecewise {
         self.words.len() as u64 * u64::from(width)
     }
 
-    /// Proves a bound of the error against the limits of the function, over every operand of the domain: none is further off,
-    /// whatever its exact value.
+    /// Proves a bound on the error at every operand of the domain: the distance of the result from the exact value is never
+    /// larger.
     ///
     /// # Errors
     /// Fails if the sums of an operand leave their formats, if its result is further off than the function allows, or if the
@@ -356,8 +359,8 @@ impl Piecewise {
 
 type SearchResult = Result<Arc<Piecewise>, Refusal>;
 
-/// Returns the approximation of a function with the least cost, and with a proved bound. A search that was already made is
-/// not repeated.
+/// Returns the cheapest approximation of a function that has a proven bound. If the same search was made before, it returns the
+/// earlier result.
 ///
 /// # Errors
 /// Fails if no approximation can be found and proved. The error says why.

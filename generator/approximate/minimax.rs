@@ -1,5 +1,5 @@
-//! Finds the polynomial with the smallest largest error on given points, by exchanging reference points (the Remez algorithm).
-//! For example, the best line for x² from −1 to 1 is off by 1/2.
+//! Fits polynomials to points so that the largest distance is as small as possible, by exchanging reference points (the Remez
+//! algorithm). For example, the best line for x² from −1 to 1 is off by 1/2.
 
 /// The number of coefficients that a polynomial may have.
 const MOST: usize = 4;
@@ -7,8 +7,9 @@ const MOST: usize = 4;
 /// The most exchanges. The search ends earlier once the largest error equals the error at the reference points.
 const EXCHANGES: usize = 30;
 
-/// Returns the coefficients, from the constant on, of the polynomial of `degree` whose largest distance from `values` at the
-/// points `at` is least, and that distance. The points must rise. With no more points than coefficients the degree is lowered.
+/// Returns the polynomial of `degree` whose largest distance from `values` at the points `at` is smallest, and that distance. The
+/// coefficients start with the constant. The points must be in rising order. If there are no more points than coefficients, the
+/// degree is lowered.
 pub fn minimax(at: &[f64], values: &[f64], degree: usize) -> ([f64; MOST], f64) {
     let count = degree.min(at.len().saturating_sub(1)) + 1;
     if at.len() <= count {
@@ -46,7 +47,7 @@ pub fn minimax(at: &[f64], values: &[f64], degree: usize) -> ([f64; MOST], f64) 
     best
 }
 
-/// Returns the value of a polynomial.
+/// Returns the value of a polynomial at the point `at`; the coefficients start with the constant.
 pub fn at_point(coefficients: &[f64], at: f64) -> f64 {
     coefficients.iter().rev().fold(0.0, |sum, coefficient| sum * at + coefficient)
 }

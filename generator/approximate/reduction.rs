@@ -1,9 +1,9 @@
-//! Reduces ranges: maps an operand of a whole format to an operand of a short domain. It also maps the polynomial's result
-//! there back to the result of the original operand.
+//! Range reduction: computes a function on a large domain from a polynomial on a short one.
 //!
-//! This module tries an identity of the formula at a few points and proves it nowhere. No bound depends on the identity:
-//! [`super::Piecewise::prove`] compares the result of every operand of the whole domain with the formula. The search refuses
-//! a domain that is too large for that.
+//! For example, f(x) = 1/√x on 1 ≤ x < 4 suffices for all x > 0, since f(4·x) = f(x)/2: the hardware shifts x into the short
+//! domain, and shifts the polynomial's value back. This module checks such an identity of the formula only at a few points. The
+//! bound of the error does not rely on it, because [`super::Piecewise::prove`] compares the result of every operand of the large
+//! domain with the formula.
 
 use super::{Curve, Outside, Refusal, TargetFunction};
 use glint_base::fixed::{Format, exp2};
@@ -11,8 +11,8 @@ use glint_formula::Function::Log2;
 use glint_formula::{Enclosure, Expression, Kind, RBig, parse};
 
 glint_config::choices! {
-    /// The identity with which values elsewhere are computed from values on a short domain. For example, `Even` computes
-    /// f(−3) as f(3).
+    /// The identity that a range reduction uses to compute values on a large domain from values on a short one. For example,
+    /// `Even` computes f(−3) as f(3).
     #[derive(Default, Hash)]
     pub enum Identity {
         /// None is used.
@@ -32,68 +32,70 @@ glint_config::choices! {
 }
 
 impl Identity {
-    /// Returns the word that a configuration has for it.
+    /// Returns the name of the identity in configurations.
     pub fn word(self) -> &'static str {
         Self::WORDS[self as usize]
     }
 }
 
-/// The reduction of operands to numbers of some bits, which are the operands of the polynomial.
+/// A range reduction: it maps an operand to a number of `bits` bits, which is the operand of the polynomial.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Reduction {
-    /// How the number of an operand is found.
+    /// The rule by which an operand gets its number.
     pub rule: Rule,
-    /// Bits of the number.
+    /// The width of the number.
     pub bits: u32,
-    /// The fraction bits of the polynomial in addition to the fraction bits of the result.
+    /// The number of fraction bits that the polynomial has more than the result.
     pub guard: u32,
 }
 
-/// How operands are reduced.
+/// The rule by which a range reduction maps an operand x to a number.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Rule {
-    /// To their size (absolute value), or the largest number. Of odd functions it states the value from which the
+    /// The number is |x|, or the largest number if |x| exceeds it. For an odd function the field holds the value from which the
     /// result of a negative operand is subtracted.
     Size(Option<i64>),
-    /// To the distance from the nearer zero of the sine, after a turn by this number of quadrants.
+    /// The number is the distance from the nearest zero of the sine, after x is advanced by this number of quadrants.
     Quadrants(u32),
-    /// To the bits behind the leading bit; where octaves come in pairs, with a bit that tells the two apart. For example, the
-    /// raw operand 5 of 8 bits has five leading zeros, and the bits 01 behind its leading bit give the number 32.
+    /// The number consists of the bits behind the leading 1 bit of x. If octaves come in pairs, one more bit tells the two
+    /// octaves apart. For example, the raw operand 5 of 8 bits has five leading zeros, and the bits 01 behind its leading bit
+    /// give the number 32.
     Octaves {
-        /// Bits of the operand.
+        /// The number of bits of the operand.
         width: u32,
-        /// Whether the number has a bit that says which of a pair it is.
+        /// Whether octaves come in pairs, so that the number has a bit that tells the two apart.
         pairs: bool,
-        /// One entry for each number of leading zeros of the operand: the shift to the right, and the addend before the
-        /// shift, in units of the polynomial.
+        /// How to restore the result, for each number of leading zeros of the operand: the shift to the right, and the addend
+        /// before the shift, in units of the polynomial.
         restores: Vec<(u32, i64)>,
     },
-    /// To the fraction of the exponent; the integer of the exponent becomes a shift.
+    /// The number is the fraction of the exponent of two; the integer of the exponent becomes a shift.
     Exponent {
-        /// A factor that makes the operand an exponent of two, and the bits that are cut off the product.
+        /// The factor that converts the operand to an exponent of two, and the number of low bits that are dropped from the
+        /// product.
         scale: Option<(i64, u32)>,
-        /// The integer at which the results are largest.
+        /// The integer of the exponent at which the results are largest.
         whole: i64,
-        /// Whether that is the smallest integer.
+        /// Whether `whole` is the smallest integer of the exponent, as for a falling function.
         falls: bool,
     },
 }
 
-/// Restores the result of an operand from the polynomial.
+/// The steps that restore the result of an operand from the value of the polynomial.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Restore {
-    /// Added to the polynomial.
+    /// The value that is added to the polynomial.
     addend: i64,
-    /// The places by which the sum is then shifted to the right, rounded to the nearest.
+    /// The number of bits by which the sum is then shifted to the right, rounded to the nearest.
     shift: u32,
-    /// The value from which that is subtracted, if any.
+    /// The value from which the shifted sum is then subtracted, if any.
     centre: Option<i64>,
-    /// The operand is 0, and the result too.
+    /// Whether the operand is 0 and the result is 0 too.
     zero: bool,
 }
 
 impl Restore {
-    /// Returns the result.
+    /// Returns the result for a value of the polynomial.
     pub fn result(self, polynomial: i64) -> i64 {
         if self.zero {
             return 0;
@@ -120,8 +122,8 @@ impl Restore {
 }
 
 impl Reduction {
-    /// Returns the number of a raw operand, and the way to restore its result from the polynomial there. For example, an even
-    /// function has the number 3 for the raw operands 3 and −3.
+    /// Returns the number of a raw operand, and the steps that restore its result from the polynomial. For example, an even
+    /// function gives the raw operands 3 and −3 the same number 3.
     pub fn reduce(&self, raw: i64) -> (i64, Restore) {
         let mask = (1i64 << self.bits) - 1;
         let mirrored = |low: i64| if low == 0 { mask } else { mask + 1 - low };
@@ -156,7 +158,7 @@ impl Reduction {
         }
     }
 
-    /// Returns the places by which the integer of an operand's exponent shifts.
+    /// Returns the number of bits by which the integer of an operand's exponent shifts the polynomial.
     pub fn places(&self, raw: i64) -> u32 {
         match self.rule {
             Rule::Exponent { scale, whole, .. } => {

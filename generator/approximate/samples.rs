@@ -1,7 +1,8 @@
-//! Reads measured points that replace a formula, and computes the curve through them.
+//! Reads samples, which are measured points that a configuration of the device `function` may give in place of a formula, and
+//! computes the curve through them.
 //!
-//! Between points the curve is Steffen's cubic (Astronomy and Astrophysics 239, 443, 1990). It has one continuous derivative,
-//! and is monotone wherever the points are. The slopes at the points are the f64 numbers that Steffen's formula gives.
+//! Between two samples the curve is Steffen's cubic (Astronomy and Astrophysics 239, 443, 1990). It has a continuous derivative,
+//! and it rises or falls wherever the samples do. The slopes at the samples are the f64 numbers that Steffen's formula gives.
 
 use super::Refusal;
 use glint_base::fixed::exp2;
@@ -13,13 +14,14 @@ const GAP: i64 = 4;
 /// The key that has them.
 const KEY: &str = "function.samples";
 
-/// Points with rising operands, each with the slope of the curve there, a place of the operand the unit.
+/// Samples in the order of their operands. Each has its raw operand, its value, and the slope of the curve per step of the raw
+/// operand.
 #[derive(Clone, Debug)]
 pub struct Samples(Vec<(i64, Enclosure, f64)>);
 
 impl Samples {
-    /// Reads points as a configuration has them, `x,y x,y`, for a domain of raw operands.
-    ///
+    /// Reads samples from the text of a configuration, `x,y x,y`. `fraction` is the number of fraction bits of the operand, and
+    /// `domain` the smallest and the largest raw operand.
     /// # Errors
     /// Fails if a point is no pair of numbers or at no operand of the domain, if two points have the same operand, if the
     /// domain has no point at an end, or if the points have a gap.
@@ -74,12 +76,12 @@ impl Samples {
         Ok(Self(points.map(|((raw, value), slope)| (raw, value, slope)).collect()))
     }
 
-    /// Returns how many there are.
+    /// Returns the number of samples.
     pub fn count(&self) -> usize {
         self.0.len()
     }
 
-    /// Returns the value of the curve at a raw operand.
+    /// Returns an interval that contains the value of the curve at a raw operand.
     pub fn limits(&self, raw: i64) -> Enclosure {
         let at = self.0.partition_point(|point| point.0 < raw).min(self.0.len() - 1);
         let (to, above, last) = self.0[at];

@@ -1,4 +1,5 @@
-//! Searches for the degree, the segments, the coefficients and the widths of the cheapest approximation of a function.
+//! Searches for the cheapest piecewise polynomial that approximates a function. It tries degrees, segments and bit widths, and
+//! finds the coefficients for each.
 
 use super::reduction::KEY;
 use super::seen::AllowedResults;
@@ -8,14 +9,14 @@ use super::{
 };
 use glint_base::fixed::MAX_WIDTH;
 
-/// The choices that a user makes of an approximation; the search makes the others.
+/// The choices that the user has made for an approximation. The search makes all other choices.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Wish {
-    /// The degree.
+    /// The degree of the polynomials, or `None` for the cheapest.
     pub degree: Option<u32>,
-    /// How segments are laid.
+    /// The layout of the segments, or `None` for the cheapest.
     pub layout: Option<Layout>,
-    /// The identity by which operands are reduced.
+    /// The identity of the range reduction.
     pub identity: Identity,
 }
 

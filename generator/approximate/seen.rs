@@ -1,5 +1,6 @@
-//! Computes, at each operand that a search looks at, the lowest and the highest result within the allowed error. For example,
-//! the value 10.3 with an allowed error of 1.0 has the lowest result 10 and the highest 11.
+//! Computes which results a search for coefficients may accept: for each operand that it looks at, the lowest and the highest
+//! result within the allowed error. For example, the value 10.3 with an allowed error of 1.0 has the lowest result 10 and the
+//! highest 11.
 
 use rayon::prelude::*;
 

@@ -1,48 +1,50 @@
-//! Cuts a domain into segments, and finds the word of the table that an operand reads.
+//! Cuts the domain of a piecewise polynomial into segments, and finds the segment of an operand. Each segment has one word of the
+//! table of coefficients. For example, 16 uniform segments of 8-bit operands contain 16 operands each.
 
-/// How segments are laid.
+/// The lengths of the segments over the domain.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Layout {
-    /// All of one length.
+    /// All segments have the same length.
     Uniform,
-    /// Half as long in each octave toward the low end, for functions that are steep there.
+    /// Segments are half as long in each octave toward the low end of the domain, for functions that are steep there.
     Octaves,
-    /// Half as long in each octave toward the high end.
+    /// Segments are half as long in each octave toward the high end of the domain.
     Halving,
 }
 
 impl Layout {
-    /// All, by the names that a configuration has for them.
+    /// All layouts, with their names in configurations.
     pub const NAMES: [(&str, Self); 3] =
         [("uniform", Self::Uniform), ("octaves", Self::Octaves), ("halving", Self::Halving)];
 
-    /// Returns the name.
+    /// Returns the name of the layout in configurations.
     pub fn name(self) -> &'static str {
         Self::NAMES.iter().find(|(_, layout)| *layout == self).map_or("", |(name, _)| name)
     }
 }
 
-/// The domain, from 0 to 2^bits, cut into segments. An octave is the block of numbers with the same highest bit. The numbers
-/// below the last octave are a block too, and all blocks have the same number of segments. For example, `bits = 8`,
-/// `octaves = 0` and `prefix = 4` give 16 segments of 16 numbers.
+/// A domain of the numbers from 0 to 2^bits − 1, cut into segments. An octave is the block of numbers with the same highest bit.
+/// The numbers below the last octave form one more block, and all blocks have the same number of segments. For example, `bits =
+/// 8`, `octaves = 0` and `prefix = 4` give 16 segments of 16 numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Segments {
-    /// Bits of the number of an operand.
+    /// The number of bits of an operand's number.
     pub bits: u32,
-    /// How the segments are laid.
+    /// The layout of the segments.
     pub layout: Layout,
     /// The number of octaves, or 0 for segments of one length.
     pub octaves: u32,
-    /// Bits of the number of a segment in its block.
+    /// The number of bits that select a segment within a block.
     pub prefix: u32,
 }
 
-/// A segment and the place of an operand in it.
+/// The segment of an operand, and the offset of the operand in it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SegmentOffset {
-    /// The word of the table.
+    /// The index of the segment's word in the table.
     pub word: usize,
-    /// From the middle of the segment, in parts of 2^−[`Segments::rest`] of its length: from −1/2 to below 1/2.
+    /// The distance of the operand from the middle of the segment, in units of 2^−[`Segments::rest`] of the segment's length. It
+    /// lies from −1/2 to below 1/2 of the length.
     pub offset: i64,
 }
 
@@ -71,8 +73,8 @@ impl Segments {
         }
     }
 
-    /// Returns where the operand of a number lies. For example, number 0x35 of 8 bits in 16 uniform segments has the word 3 and
-    /// the offset −3.
+    /// Returns the segment and the offset of the operand with this number. For example, number 0x35 of 8 bits in 16 uniform
+    /// segments has the word 3 and the offset −3.
     #[inline]
     pub fn place(&self, number: u64) -> SegmentOffset {
         let number = self.turned(number);
@@ -91,8 +93,8 @@ impl Segments {
         SegmentOffset { word, offset: ((low << places) as i64) - middle }
     }
 
-    /// Returns the numbers that read a word: the lowest and how many there are. For example, word 3 of 16 uniform segments over
-    /// 8 bits gives (48, 16).
+    /// Returns the numbers in the segment of a word: the lowest, and how many there are. For example, word 3 of 16 uniform
+    /// segments over 8 bits gives (48, 16).
     pub fn numbers(&self, word: usize) -> (u64, u64) {
         let block = (word >> self.prefix) as u32;
         let rest = self.rest_of(block);

@@ -1,9 +1,10 @@
-//! Finds the words of a table for given segments: the narrowest coefficients that are right at every operand.
+//! Finds the table of coefficients for given segments: the narrowest coefficients with which the result of every operand is
+//! within the allowed error.
 //!
-//! The search rounds the coefficients one after the other, the highest first. It subtracts from the function the part that
-//! the hardware computes from the coefficients chosen so far, and fits the rest again. The constant closes the search: every
-//! operand of a segment allows an interval of constants, and a constant within all of these intervals is right for all
-//! operands.
+//! The search rounds the coefficients one after the other, the highest first. After each it subtracts the part of the function
+//! that the hardware computes from the coefficients so far, and fits the rest again. The constant comes last: every operand of a
+//! segment allows an interval of constants, and a constant in the intersection of these intervals suits all operands of the
+//! segment.
 
 use rayon::prelude::*;
 
@@ -33,9 +34,9 @@ pub(super) const BITS_A_CELL: f64 = 16.0;
 
 /// A segment in the search.
 pub(super) struct CandidateSegment {
-    /// Its operands that are looked at, by their numbers among all such.
+    /// The operands of the segment that the search looks at, as a range of indices.
     seen: std::ops::Range<usize>,
-    /// The points to which polynomials are fitted: offsets, the same as fractions of the segment, and values.
+    /// The points to which polynomials are fitted: as offsets, as fractions of the segment, and their values.
     offsets: Vec<i64>,
     at: Vec<f64>,
     values: Vec<f64>,

@@ -1,9 +1,9 @@
-//! Proves a bound of the error by intervals within segments, for domains with too many operands to compute each.
+//! Proves a bound on the error of a piecewise polynomial by intervals, for domains with too many operands to compute each.
 //!
-//! If a real number t replaces the offset, a word of the table is a polynomial P. The result lies below P(t) by the parts
-//! that its roundings drop, and limits of this lag are known for a whole segment. The distance from the function to P within
-//! an interval is at most the distance in its middle plus the derivative times the way from there. If this bound is too
-//! large, the interval is halved, down to single operands.
+//! If the offset is treated as a real number t, a word of the table is a polynomial P(t). The result of the hardware is less than
+//! P(t) by the bits that roundings drop; this lag has limits for a whole segment. Within an interval, the distance between the
+//! function and P is at most the distance in the middle plus the largest derivative times half of the length. If this bound is
+//! too large, the interval is halved, down to single operands.
 
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -22,9 +22,9 @@ const FEW: i64 = 4;
 
 /// The sums of a segment between their limits.
 pub(super) struct Walk {
-    /// The sum from each coefficient on, in units of its last place.
+    /// The interval of the partial sum from each coefficient on, in units of its last place.
     pub sums: Vec<Interval>,
-    /// By how much the result lags behind the polynomial, in units of the result.
+    /// The limits of the lag: how much the result is below the polynomial, in units of the result.
     lag: Enclosure,
 }
 

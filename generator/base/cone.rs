@@ -1,10 +1,10 @@
-//! Searches graphs: the nodes that given roots depend on, and the nodes that given steps lead to.
+//! Searches graphs: for the nodes on which given nodes depend, and for the nodes that can be reached from given nodes.
 
 use std::collections::HashSet;
 use std::hash::Hash;
 
-/// Marks the nodes that any root depends on, including the roots. Each of the `count` nodes must come after its operands. For
-/// example, the root y of y = a + b needs a and b, but not a node c that only another root reads.
+/// Marks the nodes on which any of the `roots` depends, including the roots themselves. Each of the `count` nodes must come after
+/// its operands. For example, the root y of y = a + b needs a and b, but not a node c that only another root reads.
 pub fn needed<I: IntoIterator<Item = usize>>(
     count: usize,
     roots: impl IntoIterator<Item = usize>,
@@ -20,7 +20,7 @@ pub fn needed<I: IntoIterator<Item = usize>>(
     needed
 }
 
-/// Returns all nodes that repeated `steps` reach from the nodes `from`, including these nodes.
+/// Returns all nodes that can be reached from the nodes `from` by repeated `steps`, including `from`.
 pub fn reached<T: Copy + Eq + Hash, I: IntoIterator<Item = T>>(
     from: impl IntoIterator<Item = T>,
     steps: impl Fn(T) -> I,

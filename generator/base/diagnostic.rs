@@ -1,4 +1,4 @@
-//! Defines diagnostics: mistakes in a description, each with its message and the line of the Rust source.
+//! Defines diagnostics: the mistakes in a hardware description, each with a message and the line of the Rust source.
 
 use std::fmt;
 use std::panic::Location;
@@ -6,20 +6,20 @@ use std::panic::Location;
 use crate::codes::Code;
 use crate::program::Program;
 
-/// Where a description says something.
+/// A line of the Rust source of a hardware description.
 pub type SourceLocation = &'static Location<'static>;
 
-/// A mistake in a description. For example, it prints as `error[G0203]: …`, with `  --> ` and the place in the Rust source on
-/// the next line.
+/// A mistake in a hardware description. It prints as `error[G0203]: …`, followed by a line with `  --> ` and the place in the
+/// Rust source.
 #[derive(Clone, Debug)]
 pub struct Diagnostic {
     /// The kind of the mistake.
     pub code: Code,
-    /// The message, with the names of the signals.
+    /// The message, which names the signals.
     pub message: String,
-    /// Where in the Rust source.
+    /// The place in the Rust source.
     pub location: SourceLocation,
-    /// Other source locations that take part.
+    /// Other places in the Rust source that contribute to the mistake, each with a remark.
     pub notes: Vec<(String, SourceLocation)>,
 }
 
@@ -44,7 +44,7 @@ impl fmt::Display for Diagnostic {
     }
 }
 
-/// All mistakes of a description.
+/// All mistakes of a hardware description.
 #[derive(Clone, Debug)]
 pub struct Diagnostics(pub Vec<Diagnostic>);
 

@@ -1,17 +1,17 @@
-//! Defines fixed-point formats that are chosen at run time, and computes their rounding and overflow.
+//! Defines fixed-point formats and computes their rounding and overflow.
 //!
-//! A format is written `uI.F` or `sI.F`: I integer bits, F fraction bits and, in a signed format, one sign bit more. The
-//! width is therefore I + F, or 1 + I + F. A *raw* value is the integer that the bits denote. The real value is `raw · 2⁻ᶠ`,
-//! and one ulp is `2⁻ᶠ`. For example, raw 3 in `u1.2` is the value 0.75. Functions pass raw values as `i128`, and the bit
-//! pattern of a wire as `u64`.
+//! A format is written `uI.F` or `sI.F`: I integer bits, F fraction bits and, in a signed format, one sign bit more. The width is
+//! therefore I + F, or 1 + I + F. A *raw* value is the integer that the bits denote; the value is `raw · 2⁻ᶠ`, and one ulp is
+//! `2⁻ᶠ`. For example, raw 3 in `u1.2` is the value 0.75. Functions pass raw values as `i128`, and the bit pattern of a wire as
+//! `u64`.
 
 use std::fmt;
 use std::str::FromStr;
 
-/// The number of bits that a net may have at most.
+/// The largest number of bits that a net may have.
 pub const MAX_WIDTH: u32 = 64;
 
-/// How many places the point can be off the bits: the value of an ulp is an f64.
+/// The largest number of fraction bits, positive or negative. Beyond it the value of an ulp would be no `f64`.
 pub const MAX_POINT: i32 = 1000;
 
 /// A fixed-point format, `uI.F` or `sI.F`.
@@ -20,17 +20,17 @@ pub const MAX_POINT: i32 = 1000;
 /// known to be zero. For example, `u1.20` has 21 bits, and `s1.20` has 22.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Format {
-    /// Two's complement, with a sign bit above the integer bits.
+    /// Whether the format is signed (two's complement), with a sign bit above the integer bits.
     pub signed: bool,
-    /// Integer bits, the sign bit not counted.
+    /// The number I of integer bits, without the sign bit.
     pub int: i32,
-    /// Fraction bits.
+    /// The number F of fraction bits.
     pub frac: i32,
 }
 
-/// Returns the integer nearest to `x`, ties upward.
+/// Returns the integer nearest to `x`; ties go upward.
 ///
-/// `(x + 0.5).floor()` is not it: the sum is rounded, and 0.49999999999999994 becomes 1.
+/// `(x + 0.5).floor()` would be wrong: the sum is rounded, and 0.49999999999999994 would become 1.
 pub fn nearest(x: f64) -> f64 {
     let below = x.floor();
     if x - below >= 0.5 { below + 1.0 } else { below }
@@ -47,11 +47,11 @@ impl Format {
         Self { signed: true, int, frac }
     }
 
-    /// One bit without a point: a flag, an enable, a select line.
+    /// The format of a single bit, such as a flag, an enable or a select line.
     pub const BIT: Self = Self::unsigned(1, 0);
 
-    /// Returns the smallest format with `frac` fraction bits that holds every raw value from `low` to `high`. For example, 0 to
-    /// 255 with 8 fraction bits gives `u0.8`, and −1 to 3 with none gives `s2.0`.
+    /// Returns the smallest format with `frac` fraction bits that can represent every raw value from `low` to `high`. For
+    /// example, 0 to 255 with 8 fraction bits gives `u0.8`, and −1 to 3 with none gives `s2.0`.
     pub fn holding(low: i128, high: i128, frac: i32) -> Self {
         let magnitude = |raw: i128| 128 - if raw < 0 { !raw } else { raw }.leading_zeros() as i32;
         let signed = low < 0;
@@ -86,7 +86,7 @@ impl Format {
         (self.min_raw(), self.max_raw())
     }
 
-    /// Returns whether `raw` is representable.
+    /// Returns whether the format can represent `raw`.
     pub fn holds(self, raw: i128) -> bool {
         (self.min_raw()..=self.max_raw()).contains(&raw)
     }
@@ -139,7 +139,7 @@ impl Format {
         }
     }
 
-    /// Brings `raw`, which has `from_frac` fraction bits, to this format. For example, 6 with two fraction bits is 1.5: in
+    /// Converts `raw`, which has `from_frac` fraction bits, to this format. For example, raw 6 with two fraction bits is 1.5; in
     /// `u4.0` it becomes 1 if truncated, and 2 if rounded to the nearest.
     pub fn narrow(self, raw: i128, from_frac: i32, rounding: Rounding, overflow: Overflow) -> i128 {
         let shifted = rounding.shift(raw, from_frac - self.frac);
@@ -178,12 +178,12 @@ impl FromStr for Format {
     }
 }
 
-/// The treatment of fraction bits that are dropped.
+/// How a conversion treats fraction bits that it drops.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Rounding {
-    /// Drop them: toward minus infinity. Costs nothing.
+    /// Drops them, which rounds toward minus infinity. It costs no logic.
     Truncate,
-    /// To the nearest value, ties upward. Costs an incrementer.
+    /// Rounds to the nearest value, ties upward. It costs an incrementer.
     Nearest,
 }
 
@@ -200,16 +200,16 @@ impl Rounding {
     }
 }
 
-/// The treatment of a value beyond the range of its format.
+/// How a conversion treats a value that its format cannot represent.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Overflow {
-    /// The upper bits are dropped: arithmetic modulo the width.
+    /// Drops the upper bits: arithmetic modulo 2^width.
     Wrap,
-    /// The nearest representable value is taken.
+    /// Takes the nearest value that the format can represent.
     Saturate,
 }
 
-/// Returns the mask of `width` low bits.
+/// Returns a bit pattern whose `width` low bits are 1.
 pub const fn mask(width: u32) -> u64 {
     if width >= 64 { u64::MAX } else { (1 << width) - 1 }
 }

@@ -1,11 +1,11 @@
-//! Checks that a name is an identifier that Verilog takes.
+//! Checks that a name is a legal Verilog identifier and no keyword.
 
 use crate::keywords::is_keyword;
 
-/// Checks that `name` can name a net, a ROM or a module of the emitted Verilog.
+/// Checks that `name` can be the name of a net, a ROM or a module in Verilog.
 ///
 /// # Errors
-/// Fails if Verilog does not take the name. The error says why. For example, `wire` gives "it is a keyword".
+/// Fails if the name is not legal in Verilog. The error says why. For example, `wire` gives "it is a keyword".
 pub fn check(name: &str) -> Result<(), &'static str> {
     let mut characters = name.chars();
     match characters.next() {

@@ -1,4 +1,4 @@
-//! Reads the user's input: the text of a file or of standard input, or the JSON records in a directory.
+//! Reads what the user provides: text from a file or from standard input, or the JSON records in a directory.
 
 use std::fs::{self, File};
 use std::io::{self, ErrorKind, Read};
@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, Result};
 use serde::de::DeserializeOwned;
 
-/// The path that means standard input.
+/// The path with which a user means standard input.
 pub const STDIN: &str = "-";
 
 /// Returns the name by which written files know the file `path`: without directories, so that they are the same on every
@@ -47,7 +47,7 @@ pub fn open(path: &Path) -> io::Result<Box<dyn Read>> {
     Ok(Box::new(File::open(path)?))
 }
 
-/// Returns the text of a file, if there is one.
+/// Returns the text of a file, or `None` if the file does not exist.
 ///
 /// # Errors
 /// Fails as [`open`] does, except for a file that does not exist.
@@ -60,8 +60,8 @@ pub fn text(path: &Path) -> Result<Option<String>> {
     }
 }
 
-/// Returns the records in a directory: its files `*.json` that are a `T`, in the order of their names. Other files are left
-/// alone, and a directory that is not there has none.
+/// Returns the records in a directory: its `*.json` files that can be read as a `T`, in the order of their names. It ignores
+/// other files; a directory that does not exist has no records.
 ///
 /// # Errors
 /// Fails if the directory or a file in it cannot be read, or if a file is no JSON.

@@ -3,20 +3,21 @@
 
 use super::fixed::Format;
 
-/// The smallest and the largest raw value.
+/// An interval of raw values: the smallest and the largest.
 pub type Interval = (i128, i128);
 
-/// Returns the smallest interval with all values of these, if there are any. For example, (0, 3) and (8, 9) give (0, 9).
+/// Returns the smallest interval that contains all `intervals`, or `None` if there are none. For example, (0, 3) and (8, 9) give
+/// (0, 9).
 pub fn hull(intervals: impl IntoIterator<Item = Interval>) -> Option<Interval> {
     intervals.into_iter().reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)))
 }
 
-/// Returns the smallest interval with all these values, if there are any.
+/// Returns the smallest interval that contains all `raws`, or `None` if there are none.
 pub fn of_values(raws: impl IntoIterator<Item = i128>) -> Option<Interval> {
     hull(raws.into_iter().map(|raw| (raw, raw)))
 }
 
-/// Returns the intersection, if there is one. For example, (0, 5) and (3, 9) give (3, 5).
+/// Returns the intersection of two intervals, or `None` if they have no common value. For example, (0, 5) and (3, 9) give (3, 5).
 pub fn common(a: Interval, b: Interval) -> Option<Interval> {
     let both = (a.0.max(b.0), a.1.min(b.1));
     (both.0 <= both.1).then_some(both)

@@ -1,10 +1,10 @@
-//! Defines the error of a configuration key that asks for something that Glint cannot give.
+//! Defines the error of a configuration key whose value Glint cannot satisfy.
 
 use std::fmt;
 
-/// A configuration key whose value cannot be accepted.
+/// An error in the value of a configuration key, with a message and a remedy.
 ///
-/// The error knows the key and not the file. A caller who knows the file can add the line of the key.
+/// The error names the key but knows no file. A caller who knows the file can add the line of the key.
 ///
 /// ```
 /// # use glint_base::key_error::KeyError;
@@ -19,12 +19,12 @@ pub struct KeyError {
     pub message: String,
     /// The remedy. For example, it lists the integers that the key accepts.
     pub remedy: String,
-    /// The nearest value that the key can have, if it is a number and known.
+    /// The nearest valid value, if it is a number and known.
     pub nearest: Option<f64>,
 }
 
 impl KeyError {
-    /// Makes the error of a key without a nearest value.
+    /// Makes an error without a nearest value.
     pub fn new(
         key: impl Into<String>,
         message: impl Into<String>,
@@ -33,7 +33,7 @@ impl KeyError {
         Self { key: key.into(), message: message.into(), remedy: remedy.into(), nearest: None }
     }
 
-    /// Adds the nearest value that the key can have.
+    /// Adds the nearest valid value of the key.
     #[must_use]
     pub fn with_nearest(self, nearest: f64) -> Self {
         Self { nearest: Some(nearest), ..self }

@@ -1,5 +1,4 @@
-//! Provides the basis of all other crates: fixed-point formats, intervals, diagnostics, key errors, targets, names, text and
-//! input.
+//! The basis of all other crates: fixed-point formats, intervals, diagnostics, key errors, FPGA targets, names, text and input.
 
 pub mod codes;
 pub mod cone;

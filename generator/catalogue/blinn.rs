@@ -1,8 +1,9 @@
-//! The hardware description of `blinn`: cⁿ itself for run-time n (seeds 000–002). All other devices approximate this
-//! function.
+//! The hardware description of the device `blinn`, which computes f = cⁿ for a run-time exponent n.
 //!
-//! The seeds give no circuit. This circuit consists of a logarithm, a product and an exponential: cⁿ = 2^(−n·decay) with the
-//! decay −log₂ c. The decay is the number of an octave plus the decay of a mantissa.
+//! c = cos γ, where γ is the angle between the surface normal and the half vector; f is the reflectance, the factor by which the
+//! device multiplies colours. All seeds (000–002, the source documents) start from this formula, but give no circuit for it. This
+//! circuit computes cⁿ = 2^(−n·decay) with the decay −log₂ c: a logarithm, a product and an exponential. The decay is the number
+//! of octaves that c lies below 1/2, plus the decay of the remaining mantissa.
 
 use glint_base::fixed::Format;
 use glint_config::Config;
@@ -14,7 +15,7 @@ use glint_rtl::netlist::About;
 use super::common;
 use super::decay::{self, Distance};
 
-/// Describes `blinn`: cⁿ as 2^(−n·decay), with the decay −log₂ c.
+/// Describes the hardware of `blinn`, which computes cⁿ as 2^(−n·decay) with the decay −log₂ c.
 pub fn describe(d: &Designer, config: &Config) {
     let keys = Keys::of(config);
     d.about(about(&keys));

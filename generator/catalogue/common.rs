@@ -1,6 +1,8 @@
-//! Builds the parts that the hardware descriptions of several devices share: the operands `cos_gamma` and `exponent`, and the
-//! colour outputs. It also writes a paragraph for the pages of these devices ([`outputs_note`]): on writes while the device
-//! is busy, and on how long the outputs hold.
+//! Operands and colour outputs that the hardware descriptions of several devices share.
+//!
+//! The operands are `cos_gamma` (c = cos γ, γ being the angle between the surface normal and the half vector) and `exponent` (the
+//! specular exponent n). The colour outputs are the colours times the reflectance f. [`outputs_note`] writes a paragraph about
+//! writes while the device computes, and about the time for which the outputs keep their values.
 
 use glint_base::fixed::{Format, Rounding};
 use glint_keys::common as keys;
@@ -8,27 +10,29 @@ use glint_rtl::blocks::colour::{ChannelBlocks, Colours};
 use glint_rtl::blocks::line::{LineBlocks, OperandBlocks};
 use glint_rtl::dsl::{Designer, InputOperand, Note, Signal, Step, Topic, end, step, valid};
 
-/// Returns the operand `cos_gamma`, limited to 0 … 1.0.
+/// Adds the operand `cos_gamma`, whose register limits it to 0 … 1.0.
 #[track_caller]
 pub fn cosine<'d>(d: &'d Designer, keys: &keys::Cosine) -> InputOperand<'d> {
     d.operand_clamped("cos_gamma", keys.format(), 0.0, 1.0)
         .doc("cosine of the angle between normal and half vector")
 }
 
-/// Returns the operand `exponent` with `bits` bits.
+/// Adds the operand `exponent` with `bits` bits.
 #[track_caller]
 pub fn exponent(d: &Designer, bits: u32) -> InputOperand<'_> {
     d.operand("exponent", Format::unsigned(bits as i32, 0)).doc("specular exponent n")
 }
 
-/// The colours with as many multipliers as the keys say.
+/// The products of the reflectance f with the three colours, by one multiplier or by three, as the configuration key
+/// `colour.multipliers` says.
 pub struct ColourProducts<'d> {
     colours: Colours<'d>,
     in_turn: bool,
 }
 
 impl<'d> ColourProducts<'d> {
-    /// Makes the colour operands. `blocks` has their numbers in the figure of the device's source, if the source has a figure.
+    /// Adds the colour operands to the description. `blocks` are the numbers of their blocks in the figure of the device's
+    /// source, if the source has a figure.
     #[track_caller]
     pub fn new(
         d: &'d Designer,
@@ -38,8 +42,8 @@ impl<'d> ColourProducts<'d> {
         Self { colours: Colours::new(d, keys.bits as i32, blocks), in_turn: keys.in_turn() }
     }
 
-    /// Makes the outputs. Returns the microinstructions that compute the outputs, which must come before the microinstruction
-    /// with the result.
+    /// Adds the colour outputs, the colours times `f`. Returns the microinstructions that compute the products, which must come
+    /// before the microinstruction that raises `valid`; none if each colour has its own multiplier.
     #[track_caller]
     pub fn outputs(&self, f: Signal<'d>, rounding: Rounding) -> Vec<Step> {
         if self.in_turn {
@@ -49,7 +53,8 @@ impl<'d> ColourProducts<'d> {
         Vec::new()
     }
 
-    /// Makes the outputs, with the microinstruction that has the result, which ends the microprogram.
+    /// Adds the colour outputs. Returns the microinstructions that compute the products, followed by one that raises `valid` and
+    /// ends the microprogram.
     #[track_caller]
     pub fn results(&self, f: Signal<'d>, rounding: Rounding) -> Vec<Step> {
         let mut steps = self.outputs(f, rounding);
@@ -58,9 +63,9 @@ impl<'d> ColourProducts<'d> {
     }
 }
 
-/// Returns the paragraph of a device's page on writes while the device is busy, and on how long its outputs hold. If each colour
-/// has its own multiplier, the outputs follow the register that `follow` names until the next computation does `until`. For
-/// example, `follow` is "the accumulator", and `until` is "begins".
+/// Returns a paragraph for the page of a device: on writes while the device computes, and on how long its outputs keep their
+/// values. If each colour has its own multiplier, the outputs follow the register that `follow` names, until the next computation
+/// does `until`. For example, `follow` is "the accumulator", and `until` is "begins".
 pub fn outputs_note(keys: &keys::ColourKeys, follow: &str, until: &str) -> Note {
     if keys.in_turn() {
         return Topic::Writes.note(
@@ -74,7 +79,7 @@ pub fn outputs_note(keys: &keys::ColourKeys, follow: &str, until: &str) -> Note 
     ))
 }
 
-/// Seed 000's numbers of the accumulator that walks a line.
+/// The numbers that seed 000 gives to the inputs and blocks of the accumulator, which walks along a scan line.
 pub const LINE_BLOCKS: LineBlocks = LineBlocks {
     delta: OperandBlocks { inputs: (17, 18), register: 2 },
     start: OperandBlocks { inputs: (19, 20), register: 3 },

@@ -1,8 +1,9 @@
-//! The hardware description of `cosine-power` (seed 002): the paper's W(n,γ) = `(n/m·(cos γ − 1) + 1)^m`, m ∈ {2, 4, 8, 16}.
+//! The hardware description of the device `cosine-power`, which computes f = (n/m·(c − 1) + 1)^m.
 //!
-//! The paper gives no circuit. This circuit is the smallest for the formula: one multiplier and one accumulator. n/m is a
-//! shift by wiring. The sum is formed as a complement, `1 − n/m·(1 − cos γ)`. Every number is therefore a fraction from 0 to
-//! 1, and the saturation of the first product is the clamp at the zero of W.
+//! c = cos γ, where γ is the angle between the surface normal and the half vector; n is the specular exponent; the configuration
+//! chooses m = 2, 4, 8 or 16; f is the reflectance, the factor by which the device multiplies colours. The source is a paper
+//! (seed 002) that gives no circuit; this one has one multiplier and one accumulator. It computes the base as 1 − n/m·(1 − c):
+//! the division by m is a shift by wiring, and limiting the product to 1 also sets a negative base to 0.
 
 use glint_base::fixed::{Format, Overflow};
 use glint_config::Config;
@@ -13,7 +14,7 @@ use glint_rtl::netlist::{About, Topic};
 
 use super::common::{self, ColourProducts};
 
-/// Describes `cosine-power`: W(n,γ) by one multiplier and one accumulator.
+/// Describes the hardware of `cosine-power`, which computes (n/m·(cos γ − 1) + 1)^m with one multiplier and one accumulator.
 pub fn describe(d: &Designer, config: &Config) {
     let keys = Keys::of(config);
     let count = keys.power.ilog2();

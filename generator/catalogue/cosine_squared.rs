@@ -1,8 +1,9 @@
-//! The hardware description of `cosine-squared`, seed 000's prototype (Abbas, Szirmay-Kalos, Horváth 2000): `cos²(a·δ)` along
-//! a scan line.
+//! The hardware description of the device `cosine-squared`, which computes f = cos²(a·δ) for the points of a scan line.
 //!
-//! It has the accumulator of `quad-cosine`. The host multiplies its angles by `a = √(n/2)`, so that register 8 directly
-//! addresses a single table.
+//! δ is the angle at a point of the line; a = √(n/2) with the specular exponent n; f is the reflectance, the factor by which the
+//! device multiplies an amplitude. The host multiplies its angles by a, so that the accumulated angle in register 8 addresses a
+//! single table. The accumulator is the same as in `quad-cosine`. The source is the prototype that seed 000 cites (Abbas,
+//! Szirmay-Kalos, Horváth 2000).
 
 use glint_config::Config;
 use glint_keys::cosine_squared::Keys;
@@ -14,7 +15,7 @@ use glint_rtl::netlist::{About, Topic};
 
 use super::{common, quad_cosine};
 
-/// Describes `cosine-squared`: cos² of an angle along a scan line, from a single table.
+/// Describes the hardware of `cosine-squared`, which reads cos² of the angle at each point of a scan line from a table.
 pub fn describe(d: &Designer, config: &Config) {
     let keys = Keys::of(config);
     let table = keys.table_address as i32;

@@ -1,8 +1,10 @@
-//! The hardware description that `blinn` and `gauss` share: `f = 2^(−n·decay)`, where the decay is a function of cos γ alone.
+//! The hardware description that the devices `blinn` and `gauss` share: f = 2^(−n·decay(c)).
 //!
-//! The decay is the distance 1 − cos γ times a smooth ratio. This product keeps its relative accuracy toward cos γ = 1, which
-//! matters because n multiplies the decay. The ratio and 2^−x are piecewise polynomials on one multiplier. Another multiplier
-//! computes distance times ratio, and then n times decay. The integer of n·decay is a shift.
+//! c = cos γ, where γ is the angle between the surface normal and the half vector; n is the specular exponent; f is the
+//! reflectance, the factor by which the devices multiply colours. The decay depends on c alone: −log₂ c in `blinn`, γ²/(2 ln 2)
+//! in `gauss`. It is computed as the distance 1 − c times a smooth ratio, so that it stays accurate relative to its size near c =
+//! 1; n multiplies its error. Piecewise polynomials on one multiplier give the ratio and 2^−x, and another multiplier computes
+//! distance times ratio and n times decay. The integer part of n·decay becomes a shift.
 
 use glint_base::fixed::{Format, Overflow, Rounding};
 use glint_config::Config;
@@ -13,15 +15,15 @@ use glint_rtl::dsl::{Designer, Note, Signal, Topic, step};
 use super::common::{self, ColourProducts};
 use super::piecewise::{PolynomialDatapath, StepMultiplier, Tables};
 
-/// The distance of cos γ from 1, as each of the two devices has it.
+/// The distance 1 − c and the octave of the cosine c. `blinn` and `gauss` compute them in different ways.
 pub struct Distance<'d> {
-    /// 1 − cos γ less an ulp, an integer.
+    /// 1 − c, less one unit in the last place, as an integer.
     pub u: Signal<'d>,
-    /// An integer that the decay has in front of distance times ratio.
+    /// The number of octaves, an integer that is added to distance times ratio. `gauss` has none.
     pub octave: Option<Signal<'d>>,
 }
 
-/// Describes everything behind the operand `cos_gamma`: operands, the products, 2^−y, outputs, microprogram.
+/// Describes the hardware from the distance on: the operands, the products, 2^−x, the outputs and the microprogram.
 ///
 /// # Panics
 /// Panics if the check of the schema has not accepted the configuration. The caller must check it first.
@@ -159,7 +161,7 @@ fn ends<'d>(d: &'d Designer, cos_gamma: Signal<'d>, rounded: Signal<'d>) -> Sign
     d.choose("reflectance_next", facing, [dark, lit])
 }
 
-/// Returns the [`About::notes`](glint_rtl::dsl::About::notes) of both devices.
+/// Returns the notes for the pages of `blinn` and `gauss` ([`About::notes`](glint_rtl::dsl::About::notes)).
 pub fn notes(keys: &Keys) -> Vec<Note> {
     vec![
         Topic::Microprogram.note(

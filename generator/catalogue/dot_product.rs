@@ -1,5 +1,7 @@
-//! The hardware description of `dot-product`, the cosine between a vector of any length and a unit vector. It computes the
-//! sum of products and the sum of squares, and multiplies the sum of products by the inverse root of the sum of squares.
+//! The hardware description of the device `dot-product`, which computes cos γ = max(0, N·H / |N|).
+//!
+//! N is a vector of any length, such as an interpolated surface normal; H is a unit vector, such as the half vector; γ is the
+//! angle between them. The device adds up N·H and N·N, and multiplies N·H by 1/√(N·N), which it interpolates in a table.
 
 use super::normaliser::{by_pairs, inverse_root};
 use glint_base::fixed::{Format, Overflow, Rounding};
@@ -7,7 +9,7 @@ use glint_config::Config;
 use glint_keys::dot_product::Keys;
 use glint_rtl::dsl::{About, Designer, Signal, end, step, valid};
 
-/// Describes `dot-product`: the cosine between a vector of any length and a unit vector.
+/// Describes the hardware of `dot-product`, which computes the cosine between a vector of any length and a unit vector.
 pub fn describe(d: &Designer, config: &Config) {
     let keys = Keys::of(config);
     let lower = if keys.two_sided { "abs(" } else { "max(0, " };

@@ -1,6 +1,8 @@
-//! The hardware description of `expression`: formulas of several operands, by the plan that was found for them.
+//! The hardware description of the device `expression`, which computes formulas of several operands.
 //!
-//! Each operation of the plan is logic between registers. Products share one multiplier, a microinstruction each.
+//! A configuration states the formulas; for example, `a / b` or `sqrt(x*x + y*y)`. The planner ([`glint_plan`]) translates them
+//! into a plan, a list of fixed-point operations. This module turns each operation of the plan into logic between registers. All
+//! products share one multiplier, each in a microinstruction of its own.
 
 use glint_approximate::Piecewise;
 use glint_base::fixed::{Format, Overflow, Rounding};
@@ -20,7 +22,7 @@ use crate::piecewise::{PolynomialDatapath, StepMultiplier, Tables, flipped};
 /// The fewest bits of a table that a family of FPGAs has a block memory for.
 const BLOCK: u64 = 2048;
 
-/// Describes `expression`: formulas of several operands.
+/// Describes the hardware of `expression`: a datapath and a microprogram for the plan of the configuration's formulas.
 ///
 /// # Panics
 /// Panics if the check of the schema has not accepted the configuration. The caller must check it first.
@@ -45,12 +47,12 @@ struct PlanDatapath<'d, 'p> {
     found: &'p ProvedPlan,
     schedule: &'p PlanSchedule,
     is_pipelined: bool,
-    /// The registers of nodes that are held, except for those of polynomials.
+    /// The register of each node of the plan, or `None` for a node without one. Polynomials have their own registers.
     registers: Vec<Option<Register<'d>>>,
-    /// The value of each node as later nodes read it; `None` between a product and its register.
+    /// The value of each node as later nodes read it; `None` for a product until its register is made.
     signals: Vec<Option<Signal<'d>>>,
     polynomials: Vec<Option<PolynomialDatapath<'d, 'p>>>,
-    /// The factors of each product.
+    /// The two factors of each product, or `None` for a node that is no product.
     factors: Vec<Option<[Signal<'d>; 2]>>,
 }
 

@@ -1,5 +1,7 @@
-//! The hardware description of `function`, a formula of one operand: a table of coefficients, and Horner's rule on one
-//! multiplier.
+//! The hardware description of the device `function`, which computes y = g(x) for one operand x.
+//!
+//! A configuration states g as a formula, such as `sqrt(x)`, or as samples of a curve. A table gives the coefficients of a
+//! polynomial for the segment of x, and Horner's rule evaluates the polynomial with one multiplier.
 
 mod reduction;
 
@@ -13,7 +15,7 @@ use glint_rtl::netlist::About;
 
 use crate::piecewise::{PolynomialDatapath, StepMultiplier, Tables, flipped};
 
-/// Describes `function`: a table of coefficients, and Horner's rule on one multiplier.
+/// Describes the hardware of `function`: a table of coefficients, and Horner's rule with one multiplier.
 ///
 /// # Panics
 /// Panics if the check of the schema has not accepted the configuration. The caller must check it first.

@@ -1,7 +1,9 @@
-//! The hardware description of `gauss`: exp(−n·γ²/2), γ = arccos c, the fourth function that seed 002 weighs.
+//! The hardware description of the device `gauss`, which computes f = exp(−n·γ²/2).
 //!
-//! The seed gives no circuit. It prints the angle as ∠(H,L), but its own formulas use ∠(N,H), and this device uses ∠(N,H)
-//! too. It computes exp(−n·γ²/2) as 2^(−n·decay) with the decay γ²/(2 ln 2), which is 1 − c times a smooth function of 1 − c.
+//! γ = arccos c is the angle between the surface normal and the half vector; n is the specular exponent; f is the reflectance,
+//! the factor by which the device multiplies colours. The source is a paper (seed 002) that compares this function with others
+//! and gives no circuit. The paper prints the angle as ∠(H,L), but its formulas use ∠(N,H), and so does this device. It computes
+//! exp(−n·γ²/2) as 2^(−n·decay) with the decay γ²/(2 ln 2), which is 1 − c times a smooth function of 1 − c.
 
 use glint_base::fixed::Format;
 use glint_config::Config;
@@ -12,7 +14,7 @@ use glint_rtl::netlist::About;
 use super::common;
 use super::decay::{self, Distance};
 
-/// Describes `gauss`: exp(−n·γ²/2) as 2^(−n·decay), with the decay γ²/(2 ln 2).
+/// Describes the hardware of `gauss`, which computes exp(−n·γ²/2) as 2^(−n·decay) with the decay γ²/(2 ln 2).
 pub fn describe(d: &Designer, config: &Config) {
     let keys = Keys::of(config);
     d.about(about(&keys));

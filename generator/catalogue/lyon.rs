@@ -1,8 +1,9 @@
-//! The hardware description of `lyon` (US 5 739 820, Fig. 7C and 7D; the first analogue in seed 000):
-//! `max(0, 1 − β·D²)^(2^s)` from the difference vector D = N − H.
+//! The hardware description of the device `lyon`, which computes f = max(0, 1 − β·D²)^m with m = 2^s.
 //!
-//! The seed lists only the parts: two adders, four multipliers, shift register, counter, comparator and mux. The wiring is
-//! Glint's reading of the seed. Each kind of block is numbered on its own: adder 1, multiplier 1.
+//! D = N − H is the difference of the unit normal N and the unit half vector H; D² is its squared length; β = n/(2·m) with the
+//! specular exponent n; f is the reflectance, the factor by which the device multiplies colours. The source is the patent US 5
+//! 739 820 (Fig. 7C and 7D), which seed 000 cites. Seed 000 lists only the blocks: two adders, four multipliers, shift register,
+//! counter, comparator and mux. Glint chose the wiring, and numbers each kind of block from 1: adder 1, multiplier 1.
 
 use glint_base::fixed::{Format, Overflow, Rounding};
 use glint_config::{Config, Shared};
@@ -16,21 +17,21 @@ use super::common::{self, ColourProducts};
 /// How D² is formed, to the fraction bits of the register that takes it.
 struct SquaredDistance<'d> {
     value: Signal<'d>,
-    /// The microinstructions before the one that takes it.
+    /// The microinstructions before the microinstruction that loads D² into its register.
     steps: Vec<Step>,
-    /// The settings of that one.
+    /// The settings of the microinstruction that loads D² into its register.
     settings: Vec<StepSetting>,
 }
 
 /// How beta·D² is formed: the words that do it, and the result.
 struct Scaled<'d> {
-    /// β·D², not limited to the fraction bits of f yet where a shift makes it.
+    /// β·D². If the shift register makes it, it still has more fraction bits than f.
     value: Signal<'d>,
     steps: Vec<Step>,
     squarings: Squarings<'d>,
 }
 
-/// Describes `lyon`: `max(0, 1 − β·D²)^(2^s)` from the difference vector D = N − H.
+/// Describes the hardware of `lyon`, which computes max(0, 1 − β·D²)^(2^s) from the difference vector D = N − H.
 pub fn describe(d: &Designer, config: &Config) {
     let keys = Keys::of(config);
     let f = keys.f.format();

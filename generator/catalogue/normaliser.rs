@@ -1,5 +1,7 @@
-//! The hardware description of `normaliser`, which gives the unit vector of a vector of any length: a squarer, a
-//! shifter, a table, and a multiplier.
+//! The hardware description of the device `normaliser`, which computes the unit vector v/|v| of a vector v of any length.
+//!
+//! A multiplier squares the components one after the other, a shifter scales their sum v·v, and a table interpolates 1/√(v·v).
+//! The same result scales all components. For example, v = (0, 0, 0.5) gives (0, 0, 1).
 
 use glint_base::fixed::{Format, Overflow, Rounding};
 use glint_config::Config;
@@ -11,7 +13,7 @@ fn integer(bits: i32) -> Format {
     Format::unsigned(bits, 0)
 }
 
-/// Describes `normaliser`: the unit vector of a direction.
+/// Describes the hardware of `normaliser`, which computes the unit vector of a vector of any length.
 pub fn describe(d: &Designer, config: &Config) {
     d.about(About {
         device: "normaliser".into(),

@@ -1,7 +1,7 @@
-//! Builds the hardware of a piecewise polynomial, which computes a function of one operand: a table of coefficients, and
-//! Horner's rule. Each step of Horner's rule is one product and one sum.
+//! Builds the hardware of a piecewise polynomial: a table of coefficients, and Horner's rule with one product and one sum a step.
 //!
-//! The number of the operand within the domain addresses the table. One multiplier serves all polynomials of a description.
+//! The devices `function`, `expression`, `blinn` and `gauss` use it. The position of the operand within its domain addresses the
+//! table, which gives the coefficients of the operand's segment. One multiplier serves all polynomials of a device.
 
 use std::ops::Range;
 
@@ -9,17 +9,18 @@ use glint_approximate::{HornerStep, Layout, Piecewise};
 use glint_base::fixed::{Format, MAX_WIDTH, Overflow, Rounding};
 use glint_rtl::dsl::{Designer, OperandMux, Register, SharedProduct, Signal, StepSetting};
 
-/// The multiplier of the steps of polynomials, and of other products. Each has a microinstruction of its own.
+/// One multiplier that the steps of all polynomials of a device share, with other products. Each product has its own
+/// microinstruction.
 pub struct StepMultiplier<'d> {
     d: &'d Designer,
     name: &'d str,
-    /// The mux of the first factors and the product, where there is more than one step.
+    /// The mux of the first factors, and the shared product; `None` if there is only one product.
     shared: Option<(OperandMux<'d>, SharedProduct<'d>)>,
 }
 
 impl<'d> StepMultiplier<'d> {
-    /// Makes a multiplier with names for its select lines, its two operands and its product. `others` are the factors of
-    /// products that no polynomial needs, each with a name. No two products may have the same first factor.
+    /// Makes the multiplier. The four names are for its select lines, its two operands and its product. `others` are the names
+    /// and factors of products that belong to no polynomial. No two products may have the same first factor.
     pub fn new(
         d: &'d Designer,
         [select, sums, offsets, product]: [&'d str; 4],
@@ -46,7 +47,7 @@ impl<'d> StepMultiplier<'d> {
         Self { d, name: product, shared }
     }
 
-    /// Returns the settings of a step of one of the polynomials, which is carried out once.
+    /// Returns the settings of the microinstruction that carries out one step of a polynomial.
     pub fn step(&self, polynomial: &PolynomialDatapath<'d, '_>, step: usize) -> Vec<StepSetting> {
         let mut settings = Vec::new();
         let mut product = None;
@@ -58,7 +59,7 @@ impl<'d> StepMultiplier<'d> {
         settings
     }
 
-    /// Returns the product of a pair of factors.
+    /// Returns the product of a pair of factors, as the shared multiplier computes it.
     pub fn product(&self, [first, second]: [Signal<'d>; 2]) -> Signal<'d> {
         match &self.shared {
             Some((_, product)) => product.of(first, second),
@@ -66,41 +67,42 @@ impl<'d> StepMultiplier<'d> {
         }
     }
 
-    /// Returns the setting that selects a pair of factors, where there is more than one.
+    /// Returns the setting with which a microinstruction selects a pair of factors; `None` if the multiplier has only one
+    /// product.
     pub fn pick(&self, [first, _]: [Signal<'d>; 2]) -> Option<StepSetting> {
         let (factors, _) = self.shared.as_ref()?;
         Some(factors.pick(first))
     }
 }
 
-/// How the coefficients are kept.
+/// How the table of a polynomial stores its coefficients.
 #[derive(Clone, Copy, Debug)]
 pub struct Tables {
-    /// Each coefficient has a table of its own. Otherwise the coefficients are concatenated in words of as many bits as a net
-    /// may have.
+    /// Whether each coefficient has its own table. Otherwise one table has words that contain all coefficients, as far as a net
+    /// can be that wide.
     pub split: bool,
-    /// They are read on the clock edge, and come a clock after the number.
+    /// Whether the table is read at the rising edge. The coefficients then arrive one clock after the address.
     pub synchronous: bool,
 }
 
-/// A piecewise polynomial in a datapath.
+/// The table, the registers and the sums of one piecewise polynomial in a device.
 pub struct PolynomialDatapath<'d, 'p> {
     d: &'d Designer,
     it: &'p Piecewise,
     prefix: String,
-    /// The coefficients of the segment, the constant first.
+    /// The coefficients of the operand's segment, the constant first.
     coefficients: Vec<Signal<'d>>,
-    /// The offset from the middle of the segment, as far as each step multiplies it.
+    /// The offset of the operand from the middle of its segment, cut to the bits that each step multiplies.
     offsets: Vec<Signal<'d>>,
-    /// The sums from each coefficient on, the polynomial first.
+    /// The register of the partial sum from each coefficient on; the first holds the whole polynomial.
     registers: Vec<Register<'d>>,
 }
 
 impl<'d, 'p> PolynomialDatapath<'d, 'p> {
-    /// Makes the table and the registers of the sums. `registers` names these registers, the polynomial's first. `number` is
-    /// the operand's number within the domain, an integer of as many bits as [`glint_approximate::Segments::bits`] says. It
-    /// must be stable while the sums are loaded, and a clock earlier if the table is read on the clock edge. Names of other
-    /// nets begin with `prefix`.
+    /// Makes the table, and the registers of the partial sums. `registers` are the names of these registers, starting with the
+    /// register of the whole polynomial; the names of other nets begin with `prefix`. `number` is the position of the operand in
+    /// its domain, an integer of [`glint_approximate::Segments::bits`] bits. It must be stable while the sums are loaded, and one
+    /// clock earlier if the table is read at the rising edge.
     pub fn new(
         d: &'d Designer,
         prefix: &str,
@@ -122,8 +124,8 @@ impl<'d, 'p> PolynomialDatapath<'d, 'p> {
         Self { d, it, prefix: prefix.to_owned(), coefficients, offsets, registers }
     }
 
-    /// Returns the steps, in the order in which they are carried out; the last is number 0. For example, two registers give the
-    /// steps 1 and 0.
+    /// Returns the numbers of Horner's steps in the order of execution; the last is 0. For example, two registers give the steps
+    /// 1 and 0.
     pub fn steps(&self) -> impl Iterator<Item = usize> + use<> {
         (0..self.registers.len()).rev()
     }
@@ -154,7 +156,7 @@ impl<'d, 'p> PolynomialDatapath<'d, 'p> {
         register.load()
     }
 
-    /// Returns the polynomial, once all steps are carried out.
+    /// Returns the value of the polynomial, which is valid after all steps.
     pub fn q(&self) -> Signal<'d> {
         self.registers[0].q()
     }

@@ -1,8 +1,9 @@
-//! The hardware description of `quad-cosine`, which computes the specular intensities of the points of a scan line.
+//! The hardware description of the device `quad-cosine`, which computes f = cosᵏ(√(n/k)·δ) for the points of a scan line.
 //!
-//! The intensity is an amplitude times `cosᵏ(√(n/k)·δ)`, where δ is the angle at a point and n is the specular exponent.
-//! Decoder 10 chooses k from n: 1 for n = 1, 2 for n = 2, 4 for n = 3 to 6, and 16 for all other n. The source, called seed 000,
-//! is a patent that claims this device. All numbers of blocks and outputs are the numbers in the patent's figure.
+//! δ is the angle at a point of the line; n is the specular exponent; f is the reflectance, the factor by which the device
+//! multiplies an amplitude. Decoder 10 chooses k from n: 1 for n = 1, 2 for n = 2, 4 for n = 3 to 6, and 16 for all other n. The
+//! source, called seed 000, is a patent that claims this device. All numbers of blocks and outputs are the numbers in the
+//! patent's figure.
 //!
 //! Block 14 is the control unit. In the patent it consists of triggers; here it is a microprogram with the same order of events.
 //! ROMs 9 and 12 are synchronous. `valid` follows output 37 (`write_angle`) by two clocks, one for register 8 and one for ROM 12.
@@ -26,8 +27,7 @@ const POWERS: [u32; 4] = [1, 2, 4, 16];
 pub(super) const AMPLITUDE: ChannelBlocks =
     ChannelBlocks { inputs: (15, 16), register: 1, multiplier: 13, output: 27 };
 
-/// Describes `quad-cosine`: `cosᵏ(√(n/k)·δ)` for each angle δ along a scan line. The exponent n decides whether k is 1, 2, 4 or
-/// 16.
+/// Describes the hardware of `quad-cosine`, which computes `cosᵏ(√(n/k)·δ)` for the angle δ at each point of a scan line.
 pub fn describe<'d>(d: &'d Designer, config: &Config) {
     let keys = Keys::of(config);
     let table = keys.table_address as i32;

@@ -1,8 +1,10 @@
-//! The hardware description of `quadratic` (UA 20998, the analogue in seed 001): `c + a(n)·(c² − c)`, with a(n) from ROM.
+//! The hardware description of the device `quadratic`, which computes f = max(0, c + a(n)·(c² − c)).
 //!
-//! The patent's blocks follow one another without a control block. Two registers that the patent does not have cut the chain,
-//! so that no clock holds more than one multiplier before the outputs. Each kind of block is numbered on its own, as in the
-//! seed's text: register 1, adder 1, multiplier 1.
+//! c = cos γ, where γ is the angle between the surface normal and the half vector; n is the specular exponent; a(n) is a
+//! coefficient from a table, ROM(n); f is the reflectance, the factor by which the device multiplies colours. The source is the
+//! patent UA 20998, which seed 001 cites. The patent connects its blocks without a control block; this description adds two
+//! registers, so that no clock contains more than one multiplier before the outputs. Each kind of block is numbered from 1, as in
+//! the text of seed 001: register 1, adder 1, multiplier 1.
 
 mod coefficient;
 
@@ -27,7 +29,7 @@ const fn channel(output: u16) -> ChannelBlocks {
     }
 }
 
-/// Describes `quadratic`: `c + a(n)·(c² − c)`, with a(n) from ROM.
+/// Describes the hardware of `quadratic`, which computes `max(0, c + a(n)·(c² − c))` with a(n) from ROM(n).
 pub fn describe(d: &Designer, config: &Config) {
     let keys = Keys::of(config);
     d.about(about(&keys));

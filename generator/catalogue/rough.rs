@@ -1,7 +1,10 @@
-//! The hardware description of `rough` (UA 60139, seed 001): the highlight of a rough surface, `(n/2·(cos(γ±dγ) − 1) + 1)²`.
+//! The hardware description of the device `rough`, which computes f = (n/2·(cos(γ ± dγ) − 1) + 1)², the highlight of a rough
+//! surface.
 //!
-//! Block numbers are the patent's. Multiplier 10 computes four products, one at a time, and the select lines V1 V2 choose the
-//! product. The microprogram is the patent's table 1, word by word.
+//! γ is the angle between the surface normal and the half vector; dγ is the deviation of the normal on a rough surface; n is the
+//! specular exponent; f is the reflectance, the factor by which the device multiplies colours. The source is the patent UA 60139
+//! (seed 001), and block numbers are the numbers in its figure. Multiplier 10 computes four products one after the other, and the
+//! select lines V1 and V2 choose its operands. The microprogram equals table 1 of the patent, word by word.
 
 mod sine;
 
@@ -29,7 +32,7 @@ struct Formats {
     cos_cos: Format,
     sin_sin: Format,
     result: Format,
-    /// The word `f`: the low bits of register 13.
+    /// The format of the reflectance f, the low bits of register 13.
     f: Format,
     product_rounding: Rounding,
     result_rounding: Rounding,
@@ -69,7 +72,7 @@ impl Formats {
     }
 }
 
-/// Describes `rough`: the highlight of a rough surface, with the patent's blocks and microprogram.
+/// Describes the hardware of `rough` with the blocks and the microprogram of UA 60139.
 pub fn describe(d: &Designer, config: &Config) {
     let keys = Keys::of(config);
     let formats = Formats::of(&keys);

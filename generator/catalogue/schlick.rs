@@ -1,8 +1,9 @@
-//! The hardware description of `schlick` (seed 002), the rival of the paper's function: `c / (n − n·c + c)`, c = cos γ.
+//! The hardware description of the device `schlick`, which computes f = c / (n − n·c + c).
 //!
-//! The paper says that the division makes the function hard to build, and gives no circuit. This circuit is the smallest: one
-//! multiplier for the divisor, and an iterative divider that computes one bit of the quotient a clock. The divisor is formed
-//! as n·(1 − c) + c, in which every term is positive.
+//! c = cos γ, where γ is the angle between the surface normal and the half vector; n is the specular exponent; f is the
+//! reflectance, the factor by which the device multiplies colours. The source is a paper (seed 002), which says that the division
+//! makes this function of Schlick hard to build, and gives no circuit. This circuit has one multiplier for the divisor, n·(1 − c)
+//! + c, and a divider that computes one bit of the quotient a clock.
 
 use glint_base::fixed::{Format, Overflow, Rounding};
 use glint_config::Config;
@@ -13,7 +14,7 @@ use glint_rtl::netlist::{About, Topic};
 
 use super::common::{self, ColourProducts};
 
-/// Describes `schlick`: `c / (n − n·c + c)` by a multiplier and an iterative divider.
+/// Describes the hardware of `schlick`, which computes `c / (n − n·c + c)` with one multiplier and an iterative divider.
 pub fn describe(d: &Designer, config: &Config) {
     let keys = Keys::of(config);
     d.about(about(&keys));

@@ -1,6 +1,9 @@
-//! The hardware description of `shading`, which computes colours from normals, lights, half vectors and a material.
+//! The hardware description of the device `shading`, which computes a colour as ambient + Σ (diffuse·cos α + specular·f(cos γ)).
 //!
-//! Its parts are other devices of Glint.
+//! The sum runs over the lights. α is the angle between the surface normal and the direction of a light, γ the angle between the
+//! normal and the half vector of the light; f is the highlight's formula, for example cⁿ with c = cos γ. `shading` consists of
+//! other devices, called its parts: for each light two `dot-product` devices and a highlight device, such as `blinn` or
+//! `function`.
 
 use super::{blinn, cosine_power, dot_product, function, gauss, quadratic, schlick, threshold};
 use glint_base::fixed::{Overflow, Rounding};
@@ -8,7 +11,7 @@ use glint_config::Config;
 use glint_keys::shading::{HighlightDevice, Keys};
 use glint_rtl::dsl::{About, Designer, Signal};
 
-/// Describes `shading`: colours from normals, by parts that are other devices.
+/// Describes the hardware of `shading`: its parts, which are other devices, and the sum of the light.
 ///
 /// # Panics
 /// Panics if the check of the schema has not accepted the configuration. The caller must check it first.

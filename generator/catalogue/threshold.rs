@@ -1,9 +1,11 @@
-//! The hardware description of `threshold` (UA 30041, the prototype in seed 001): `(n/2·(cos γ − 1) + 1)²`, or 0 where
-//! a comparator finds the square below ROM(n).
+//! The hardware description of the device `threshold`, which computes f = (n/2·(c − 1) + 1)², or 0 if this square is below a
+//! level.
 //!
-//! The patent's blocks follow one another without a control block. Two registers that the patent does not have cut the
-//! chain, so that no clock holds more than one multiplier before the outputs. Each kind of block is numbered on its
-//! own, as in the seed's text: register 1, adder 1, multiplier 1.
+//! c = cos γ, where γ is the angle between the surface normal and the half vector; n is the specular exponent; the level comes
+//! from a table, ROM(n); f is the reflectance, the factor by which the device multiplies colours. The source is the patent UA
+//! 30041, which seed 001 cites. The patent connects its blocks without a control block; this description adds two registers, so
+//! that no clock contains more than one multiplier before the outputs. Each kind of block is numbered from 1, as in the text of
+//! seed 001: register 1, adder 1, multiplier 1.
 
 use glint_base::fixed::{Format, Overflow, Rounding, exp2};
 use glint_config::Config;
@@ -26,7 +28,8 @@ const fn channel(number: u16) -> ChannelBlocks {
     }
 }
 
-/// Describes `threshold`: `(n/2·(cos γ − 1) + 1)²`, gated by a comparator against ROM(n).
+/// Describes the hardware of `threshold`: the square `(n/2·(cos γ − 1) + 1)²`, which a comparator with ROM(n) sets to 0 if it is
+/// too small.
 pub fn describe(d: &Designer, config: &Config) {
     let keys = Keys::of(config);
     let f = keys.f.format();

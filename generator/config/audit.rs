@@ -1,4 +1,5 @@
-//! Finds mistakes in a schema itself, for the tests of devices. For example, a default may be outside the range of its key.
+//! Finds mistakes in a device's schema, the list of its configuration keys. Tests of devices call it. For example, it reports a
+//! default that is outside the range of its key.
 
 use super::problems::Problems;
 use super::schema::{Condition, Key, KeyKind, Schema};

@@ -10,8 +10,9 @@ use super::problems::Problems;
 use super::schema::{Key, KeyKind, Schema};
 use super::values::{Config, Value};
 
-/// Returns the configuration with adjusted defaults: every key outside `given` moves, one after the other, to the value that meets
-/// the most conditions of the device. Only a change of the keys in `given` can mend a condition that still fails.
+/// Returns the configuration with adjusted defaults. Each key that is not in `given` moves, one after the other, to the value
+/// that satisfies the most conditions of the device. If a condition still fails afterwards, only a change of a key in `given` can
+/// satisfy it.
 pub fn follow(schema: &Schema, config: &Config, given: &BTreeSet<&str>) -> Config {
     let mut config = config.clone();
     let mut left = complaints(schema, &config);

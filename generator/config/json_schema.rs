@@ -1,12 +1,12 @@
-//! Writes the keys as JSON Schema, for editors and validators.
+//! Writes the configuration keys of devices as JSON Schema, with which editors complete and check configuration files.
 
 use serde_json::{Map, Value as Json, json};
 
 use super::schema::{Key, KeyKind, Schema};
 use super::values::Value;
 
-/// Returns a JSON Schema (draft 7) of a configuration of any of these devices: names, types, ranges, defaults and the
-/// meaning of each key. Only the descriptions mention conditions between keys; reading the file checks them.
+/// Returns a JSON Schema (draft 7) for configurations of any of these devices: names, types, ranges, defaults and the meaning of
+/// each key. Conditions between keys are only mentioned in descriptions; Glint checks them when it reads a file.
 pub fn json_schema(schemas: &[Schema]) -> Json {
     let names: Vec<&str> = schemas.iter().map(|schema| schema.device).collect();
     // Not `oneOf`: if a file is wrong, editors then say only that no alternative fits. With `if` and `then` they name the

@@ -1,10 +1,11 @@
-//! Declares keys as the fields of a struct. The hardware description and the golden model of a device both read this struct.
+//! Declares configuration keys as the fields of a struct. The hardware description and the golden model of a device both read
+//! this struct. For example, the key `exponent.bits` is the field `exponent_bits`.
 
 use super::schema::Key;
 use super::values::{Config, TableEntries};
 use glint_base::fixed::Rounding;
 
-/// A type of field in a table of [`keys!`](macro@crate::keys).
+/// A type that a field of a struct declared by [`keys!`](macro@crate::keys) can have.
 pub trait Setting: Sized {
     /// Reads the value that a configuration has for the keys of the field.
     fn read(config: &Config, keys: &[Key]) -> Self;
@@ -96,7 +97,7 @@ impl From<Key> for Vec<Key> {
 }
 
 impl Key {
-    /// Makes a choice between `"truncate"` and `"nearest"`.
+    /// Makes a key whose value is `"truncate"` or `"nearest"`.
     pub fn rounding(name: &'static str, default: &'static str, doc: &'static str) -> Self {
         Self::choice(name, default, &["truncate", "nearest"], doc)
     }

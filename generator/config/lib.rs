@@ -1,8 +1,9 @@
-//! Reads configurations: converts TOML to validated values, and reports all problems of a file at once.
+//! Reads configurations, which are TOML files with the choices for one device, such as the width of an operand.
 //!
 //! A device declares its keys as a [`Schema`]; this crate knows no device. [`read()`] and [`parse()`] turn a file into a
-//! [`Config`], whose values need no further checks, or into [`Problems`], each with its location and a remedy. [`brief`] and
-//! [`commented`] write files to start from, and [`sample()`] draws valid configurations for tests.
+//! [`Config`], whose values need no further checks, or into [`Problems`], which list every mistake of the file with its location
+//! and a remedy. [`brief`] and [`commented`] write files from which a user can start, and [`sample()`] draws random valid
+//! configurations for tests.
 
 mod audit;
 mod follow;

@@ -1,4 +1,5 @@
-//! Checks names of Verilog modules, and explains the fault of an illegal name. For example, `2fast` begins with a digit.
+//! Checks whether a name can be the name of a Verilog module, and says why if it cannot. For example, `2fast` begins with a
+//! digit.
 
 use super::problems::quoted;
 use glint_base::key_error::KeyError;

@@ -1,8 +1,11 @@
-//! Finds the valid word that a user meant, and lists words in a sentence. For example, `colour` is near `colours`.
+//! Suggests the valid word that a user meant by a misspelt one, and joins words for a sentence. For example, it suggests
+//! `colours` for `colour`.
 
-/// Returns the candidate closest to `word`, if it is close enough to be a slip of the pen; else the first that begins with `word`.
+/// Returns the candidate that is most similar to `word`, if it is similar enough for a misspelling; otherwise the first candidate
+/// that begins with `word`.
 ///
-/// Case and the choice between `-` and `_` do not count. Among equals the first wins.
+/// The comparison ignores case and the difference between `-` and `_`. If several candidates are equally similar, the first one
+/// is returned.
 pub fn nearest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     let fold = |text: &str| text.to_lowercase().replace('-', "_");
     // Nothing that long is a slip of the pen, and the distance takes quadratic time.
@@ -20,7 +23,7 @@ pub fn nearest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) ->
     slip.or_else(|| candidates.iter().find(begins)).copied()
 }
 
-/// Returns words for a sentence: `a, b and c`.
+/// Joins words for a sentence. For example, `a`, `b` and `c` become `a, b and c`.
 pub fn listed<S: AsRef<str>>(words: &[S]) -> String {
     match words {
         [] => String::new(),

@@ -1,4 +1,4 @@
-//! Parses the text of a TOML file to a [`Config`].
+//! Parses the text of a TOML file, which a user writes for one device, to a [`Config`] with valid values.
 
 use std::collections::BTreeSet;
 use std::ops::Range;
@@ -18,7 +18,7 @@ use super::values::{Config, TableEntries, TableEntry, Value};
 use glint_base::key_error::KeyError;
 use glint_base::program::Program;
 
-/// Reads a configuration from its text.
+/// Parses a configuration from the text of a TOML file.
 ///
 /// Messages show `file_name`. Its stem (with `_` for `-`) is the module name unless the text gives one. `schemas` must
 /// contain the schemas of all devices.

@@ -1,4 +1,4 @@
-//! Reads measured points from a CSV file.
+//! Reads samples, which are measured points, from a CSV file that a configuration of the device `function` names.
 
 use std::path::Path;
 use std::{fs, io};

@@ -1,4 +1,4 @@
-//! Collects all problems of a configuration, with a location and a remedy for each.
+//! Collects all mistakes of a configuration file, each with its location and a remedy, so that a user can correct them at once.
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -9,9 +9,9 @@ use serde_json::{Value as Json, json};
 
 use glint_base::key_error::KeyError;
 
-/// All problems of one configuration file, in the order of their locations.
+/// All mistakes of one configuration file, in the order of their locations.
 ///
-/// Displays each as a snippet of the file in plain text; [`Problems::to_json`] is for scripts.
+/// `Display` shows each with the lines of the file in plain text; [`Problems::to_json`] writes JSON for scripts.
 #[derive(Clone, Debug, Default)]
 pub struct Problems {
     file: String,
@@ -19,7 +19,7 @@ pub struct Problems {
     /// The location of each key in the file. [`Problems::push`] points at it.
     locations: BTreeMap<String, Range<usize>>,
     list: Vec<Problem>,
-    /// Problems beyond the limit, which are counted only.
+    /// The number of mistakes beyond the limit of the list.
     further: usize,
     /// Whether the file has others than these.
     refused: bool,
@@ -31,14 +31,14 @@ pub(super) const STANDARD_INPUT: &str = "standard input";
 /// The number of problems that a list may keep: a file that is no configuration at all has no end of them.
 const LIMIT: usize = 200;
 
-/// A key error with its location in the file.
+/// A mistake in a configuration key, with its location in the file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Problem {
     /// The error.
     pub error: KeyError,
-    /// The bytes of the key's text that it is about, if it is about a part of a text.
+    /// The range of bytes in the text of the key, if the mistake concerns a part of a text.
     pub place: Option<Range<usize>>,
-    /// The bytes of the file that it is about, if the file has any such.
+    /// The range of bytes in the file, if the file contains what is wrong.
     span: Option<Range<usize>>,
 }
 
@@ -48,19 +48,20 @@ impl Problems {
         Problems { file: file.to_owned(), text: text.to_owned(), ..Problems::default() }
     }
 
-    /// Adds a problem of a key. It is shown where the file gives the key; if the file does not,
-    /// then with the file's name alone.
+    /// Adds a mistake of a key. The report shows the place at which the file gives the key, or only the file's name if the file
+    /// does not give it.
     pub fn push(&mut self, key: &str, message: impl Into<String>, remedy: impl Into<String>) {
         self.push_error(KeyError::new(key, message, remedy));
     }
 
-    /// Adds an error of a key, as [`Problems::push`] does.
+    /// Adds the mistake of a key as [`Problems::push`] does.
     pub fn push_error(&mut self, error: KeyError) {
         let span = self.locations.get(&error.key).cloned();
         self.insert(Problem { error, place: None, span });
     }
 
-    /// Adds a problem of some bytes of a key's text: it is shown under them where the file gives the text as it is.
+    /// Adds a mistake that concerns some bytes of a key's text. The report marks these bytes if the file contains the text
+    /// literally.
     pub fn push_within(
         &mut self,
         key: &str,
@@ -106,7 +107,7 @@ impl Problems {
         Problems { list: Vec::new(), further: 0, refused: self.is_refused(), ..self.clone() }
     }
 
-    /// Returns whether Glint must refuse the file, whatever else a check finds. A check can then skip work that takes long.
+    /// Returns whether the file already has a mistake for which Glint must refuse it. A check may then skip work that takes long.
     pub fn is_refused(&self) -> bool {
         self.refused || !self.is_empty()
     }
@@ -129,32 +130,32 @@ impl Problems {
         }
     }
 
-    /// Returns whether there are none.
+    /// Returns whether there are no mistakes.
     pub fn is_empty(&self) -> bool {
         self.list.is_empty()
     }
 
-    /// Returns how many there are.
+    /// Returns the number of mistakes.
     pub fn len(&self) -> usize {
         self.list.len() + self.further
     }
 
-    /// Returns the problems, in the order of their locations; those without one last.
+    /// Returns the mistakes in the order of their locations; mistakes without a location come last.
     pub fn iter(&self) -> impl Iterator<Item = &Problem> {
         self.list.iter()
     }
 
-    /// Returns the name of the file, as it was given; empty if there is none.
+    /// Returns the name of the file as the caller gave it, or an empty text.
     pub fn file(&self) -> &str {
         &self.file
     }
 
-    /// Returns line and column of a problem of this list, both counted from 1, columns in characters.
+    /// Returns the line and the column of a mistake in this list, both counted from 1; columns count characters.
     pub fn position(&self, problem: &Problem) -> Option<(usize, usize)> {
         self.line_and_column(problem.start()?)
     }
 
-    /// Returns line and column where the file gives a key, counted as by [`Problems::position`].
+    /// Returns the line and the column at which the file gives a key, counted as in [`Problems::position`].
     pub fn place(&self, key: &str) -> Option<(usize, usize)> {
         self.line_and_column(self.locations.get(key)?.start)
     }
@@ -184,7 +185,7 @@ impl Problems {
         Json::Array(self.list.iter().map(each).collect())
     }
 
-    /// Returns the human report; a styled renderer adds colours.
+    /// Returns the report for people. The renderer decides about colours.
     pub fn render(&self, renderer: &Renderer) -> String {
         let each = |problem: &Problem| {
             let title = Level::ERROR.primary_title(&problem.error.message);

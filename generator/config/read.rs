@@ -1,4 +1,4 @@
-//! Reads a configuration file from disk.
+//! Reads a configuration file from disk or from standard input, and parses it.
 
 use std::io::{self, Read};
 use std::path::Path;
@@ -24,8 +24,8 @@ pub fn read(path: &Path, schemas: &[Schema]) -> Result<Config, Problems> {
     read_located(path, schemas).map(|(config, _)| config)
 }
 
-/// Reads a file as [`read`] does. It also returns the location of each key in the file, so that later checks can add problems
-/// there.
+/// Reads a file as [`read`] does. It also returns [`Problems`] that know the location of each key in the file, so that later
+/// checks can report mistakes there.
 ///
 /// # Errors
 /// Fails as [`read`] does.

@@ -1,4 +1,4 @@
-//! Draws random valid configurations, for tests of everything that accepts one.
+//! Draws random valid configurations of a device, for tests. The same seed always draws the same configuration.
 
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{RngCore, SeedableRng};
@@ -12,12 +12,12 @@ const DRAWS: usize = 1000;
 /// Attempts to mend one draw by drawing again the keys that the check complains about.
 const REPAIRS: usize = 100;
 
-/// Returns a valid configuration drawn from the whole stated ranges; the same for the same seed.
+/// Returns a random valid configuration of a device. The same seed gives the same configuration.
 ///
-/// Ends of ranges come up far more often than a uniform draw would give. Keys that do not apply keep their defaults.
-/// Combinations that the device refuses are drawn again, the offending key first, so that keys with narrow conditions vary too.
-/// Its name is the device's, with `_` for `-`, and the seed. For example, seed 7 of `dot-product` gives the name
-/// `dot_product_7`.
+/// Every key is drawn from its whole range, the ends of the range more often than other values. Keys that do not apply keep their
+/// defaults. If the device refuses a combination, the offending key is drawn again, so that keys with narrow conditions vary too.
+/// The name of the configuration is the device's name, with `_` for `-`, and the seed. For example, seed 7 of `dot-product` gives
+/// the name `dot_product_7`.
 ///
 /// # Panics
 /// Panics if the device refuses every draw. The ranges of a schema must not be invalid almost everywhere.

@@ -1,4 +1,4 @@
-//! The schema of a device: its configuration keys, with kinds, ranges, defaults, conditions and descriptions.
+//! Defines the schema of a device: the list of its configuration keys, with types, ranges, defaults, conditions and descriptions.
 
 use std::ops::RangeInclusive;
 
@@ -15,60 +15,59 @@ pub struct Schema {
     /// The device's own keys, in the order in which a written file shows them. The keys that every device shares
     /// ([`super::shared_keys`]) are not among them.
     pub keys: Vec<Key>,
-    /// Conditions between keys. It is called with every value inside its own range, in any
-    /// combination, and must not panic on any. It pushes each violated condition under the key
-    /// that is best changed, because that is where the reader of the message is sent.
+    /// Checks the conditions between keys. It gets configurations in which every value is inside its own range, in any
+    /// combination, and must not panic. It reports each violated condition under the key that the user should change.
     pub check: fn(&Config, &mut Problems),
 }
 
 impl Schema {
-    /// Returns the default name of the module: the name of the device, or `my_` and that name if it is a keyword. For example,
-    /// a device `table` would have the module `my_table`, because `table` is a keyword.
+    /// Returns the default name of the Verilog module. It is the name of the device, or `my_` and that name if that is a Verilog
+    /// keyword. For example, a device `table` would have the module `my_table`.
     pub fn module(&self) -> String {
         let name = self.device.replace('-', "_");
         if is_keyword(&name) { format!("my_{name}") } else { name }
     }
 }
 
-/// One configuration key.
+/// One configuration key of a device.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Key {
     /// The dotted name, as `cosine.fraction`: everything before the last dot is a TOML table.
     pub name: &'static str,
-    /// Type and range.
+    /// The type and the range of the values.
     pub kind: KeyKind,
-    /// The value when a file does not give one.
+    /// The value if a file does not give the key.
     pub default: Value,
-    /// The meaning, in one or two sentences.
+    /// The meaning of the key, in one or two sentences.
     pub doc: &'static str,
-    /// The key applies only where this holds. Elsewhere it must have its default, if it is given at all.
+    /// The condition under which the key applies. Otherwise a file may give the key only with its default.
     pub condition: Option<Condition>,
-    /// At its default it is not written, as a shared key: digests of configurations from before there was the key hold.
+    /// Whether the key was added later: it is not written while it has its default, so that digests of older configurations stay
+    /// valid.
     pub joined_later: bool,
-    /// Random configurations draw an integer from this range rather than from the whole one, and it follows no other key: elsewhere
-    /// a configuration is costly.
+    /// The range from which random configurations draw an integer, if larger values would make a configuration too slow to test.
     pub drawn: Option<(i64, i64)>,
 }
 
-/// The value that another key must have for a key to apply.
+/// The condition under which a key applies: another key has, or does not have, a certain value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Condition {
     /// The name of the other key.
     pub key: &'static str,
-    /// A value of it, without quotes.
+    /// A value of the other key, without quotes.
     pub value: &'static str,
-    /// Whether the other key must have this value, or any other than this.
+    /// Whether the other key must have this value; otherwise it must have a different one.
     pub is_equal: bool,
 }
 
 impl Condition {
-    /// Returns whether the condition holds where the other key has a value.
+    /// Returns whether the condition holds if the other key has the value `value`.
     pub fn holds(&self, value: &Value) -> bool {
         (value.bare() == self.value) == self.is_equal
     }
 
-    /// Returns the condition in words, as in `architecture = "pipelined"`. `value` is any value of the other key: it tells whether the
-    /// values have quotes.
+    /// Returns the condition as text, such as `architecture = "pipelined"`. `value` is any value of the other key; it tells
+    /// whether its values have quotes.
     pub fn words(&self, value: &Value) -> String {
         let needed = match value {
             Value::Text(_) => Value::Text(self.value.to_owned()).toml(),
@@ -82,27 +81,28 @@ impl Condition {
 /// The type of a key, and the values that it may have.
 #[derive(Clone, Debug, PartialEq)]
 pub enum KeyKind {
-    /// An integer, both limits included.
+    /// An integer between two limits, both included.
     Integer { min: i64, max: i64 },
-    /// A finite number, both limits included, or 0 too. A file may write it as an integer.
+    /// A finite number between two limits, both included. `or_zero` allows 0 too. A file may write it as an integer.
     Number { min: f64, max: f64, or_zero: bool },
-    /// A key whose value is one of some texts. If all of them are decimal integers, a file writes an integer.
+    /// One of several texts. If all of them are decimal integers, a file writes an integer.
     Choice(&'static [&'static str]),
     /// `true` or `false`.
     Flag,
-    /// Text of a pattern.
+    /// A text that matches a pattern.
     Text(TextPattern),
     /// A list of integers; its entries and its length have limits. For example, `visibility.levels = [50, 100, 200, 400, 800]`.
     Integers { min: i64, max: i64, len_min: usize, len_max: usize },
-    /// A table whose entries have names of the user's own.
+    /// A table whose entries have names that the user chooses, such as `operands` of the device `expression`.
     Table {
-        /// The fields that an entry can have. Their defaults are examples: a field that is not given has no value.
+        /// The fields that an entry can have. The defaults of these keys are only examples: a field that is not given has no
+        /// value.
         fields: Vec<Key>,
-        /// The field whose value can be given in the place of a whole entry, as `s = "x^2"` for `s = { formula = "x^2" }`.
+        /// The field whose value may replace a whole entry. For example, `s = "x^2"` means `s = { formula = "x^2" }`.
         shorthand: Option<&'static str>,
-        /// The number of entries, from this.
+        /// The smallest number of entries.
         least: usize,
-        /// The number of entries, to this.
+        /// The largest number of entries.
         most: usize,
     },
 }
@@ -112,8 +112,8 @@ impl Key {
         Key { name, kind, default, doc, condition: None, joined_later: false, drawn: None }
     }
 
-    /// Makes a key of an integer in a range. For example, `Key::integer("cosine.fraction", 20, 6..=24, "…")` accepts 6 to 24
-    /// and has the default 20.
+    /// Makes a key for an integer in a range. For example, `Key::integer("cosine.fraction", 20, 6..=24, "…")` accepts 6 to 24 and
+    /// has the default 20.
     pub fn integer(
         name: &'static str,
         default: i64,
@@ -124,7 +124,7 @@ impl Key {
         Self::new(name, KeyKind::Integer { min, max }, Value::Integer(default), doc)
     }
 
-    /// Makes a key of a number in a range. The default must be in the range.
+    /// Makes a key for a number in a range. The default must be in the range.
     pub fn number(
         name: &'static str,
         default: f64,
@@ -135,7 +135,7 @@ impl Key {
         Self::new(name, KeyKind::Number { min, max, or_zero: false }, Value::Number(default), doc)
     }
 
-    /// Makes a key of a number in a range above 0, or 0, its default, which says that none is given.
+    /// Makes a key for a number in a range above 0, or 0. The default is 0, which means that no number is given.
     pub fn number_or_zero(
         name: &'static str,
         range: RangeInclusive<f64>,
@@ -145,8 +145,8 @@ impl Key {
         Self::new(name, KeyKind::Number { min, max, or_zero: true }, Value::Number(0.0), doc)
     }
 
-    /// Makes a key whose value is one of some texts. With options that are all decimal integers, as `["2", "4"]`, a file writes
-    /// an integer, and [`Config::integer`] reads it as one. The default must be one of the options.
+    /// Makes a key whose value is one of several texts. The default must be one of them. If all of them are decimal integers,
+    /// such as `["2", "4"]`, a file writes an integer, and [`Config::integer`] reads it as one.
     pub fn choice(
         name: &'static str,
         default: &'static str,
@@ -157,12 +157,12 @@ impl Key {
         Self::new(name, KeyKind::Choice(options), default, doc)
     }
 
-    /// Makes a key that is `true` or `false`.
+    /// Makes a key whose value is `true` or `false`.
     pub fn flag(name: &'static str, default: bool, doc: &'static str) -> Self {
         Self::new(name, KeyKind::Flag, Value::Flag(default), doc)
     }
 
-    /// Makes a key of text of a pattern. The default must have the pattern.
+    /// Makes a key for a text that matches a pattern. The default must match it.
     pub fn text(
         name: &'static str,
         default: &'static str,
@@ -172,7 +172,7 @@ impl Key {
         Self::new(name, KeyKind::Text(pattern), Value::Text(default.to_owned()), doc)
     }
 
-    /// Makes a key of a list of `len` integers, each in a range.
+    /// Makes a key for a list of integers, each in a range. `len` limits the length of the list.
     pub fn integers(
         name: &'static str,
         default: &[i64],
@@ -186,7 +186,7 @@ impl Key {
         Self::new(name, kind, Value::Integers(default.to_vec()), doc)
     }
 
-    /// Makes a key of a table of records.
+    /// Makes a key for a table whose entries have names that the user chooses.
     pub fn records(
         name: &'static str,
         default: &[TableEntry],
@@ -209,7 +209,7 @@ impl Key {
         self
     }
 
-    /// Restricts the key to configurations in which the key `other` has another value than this.
+    /// Restricts the key to configurations in which the key `other` has a different value than `value`.
     pub fn unless(mut self, other: &'static str, value: &'static str) -> Self {
         self.condition = Some(Condition { key: other, value, is_equal: false });
         self
@@ -220,18 +220,18 @@ impl Key {
         Self { joined_later: true, ..self }
     }
 
-    /// Lets random configurations draw an integer from a range: beyond it they take long.
+    /// Sets the range from which random configurations draw the integer, since larger values take long to test.
     pub fn drawn(self, min: i64, max: i64) -> Self {
         Self { drawn: Some((min, max)), ..self }
     }
 
-    /// Returns the whole name of a field of an entry of this table. For example, `operands.x.fraction`.
+    /// Returns the full name of a field in an entry of this table. For example, `operands.x.fraction`.
     pub fn field_name(&self, entry: &str, field: &str) -> String {
         format!("{}.{entry}.{field}", self.name)
     }
 
-    /// Returns the table and the last part of the name: `("cosine", "fraction")`. The table of a key at
-    /// the top is empty. A key that is a table itself has no last part.
+    /// Returns the table and the last part of the key's name, such as `("cosine", "fraction")`. The table is empty for a key at
+    /// the top level. The last part is empty for a key that is itself a table.
     pub fn table_and_leaf(&self) -> (&'static str, &'static str) {
         if matches!(self.kind, KeyKind::Table { .. }) {
             return (self.name, "");

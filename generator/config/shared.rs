@@ -1,8 +1,8 @@
-//! Declares the keys that every device has, including a user's own device. They choose the architecture
-//! and the surroundings of a core, not the function that it computes.
+//! Declares the configuration keys that every device has, including devices that a user adds. They choose the architecture of the
+//! hardware and its interface, not the function that it computes. For example, `architecture = "pipelined"` asks for a pipeline.
 //!
-//! They are declared and read as a device's own keys, and [`Schema::key`] finds them. A configuration that leaves them at
-//! their defaults is written without them, so that the digests in older records stay valid.
+//! [`Schema::key`] finds these keys like the keys of a device. A configuration in which they have their defaults is written
+//! without them, so that the digests in older records stay valid.
 
 use std::sync::LazyLock;
 
@@ -26,7 +26,7 @@ static INTERVALS: [&str; 65] = [
 ];
 
 keys! {
-    /// The shared keys of a configuration.
+    /// The values of the shared keys in a configuration.
     pub struct Shared {
         architecture: String = Key::choice("architecture", "sequential", &["sequential", "pipelined"],
             "A microprogram on one set of arithmetic, or the same unrolled: a point every clock."),

@@ -1,12 +1,12 @@
-//! Checks texts in a configuration by patterns. A text that fits needs no escapes in Tcl, XML, YAML and TOML, except for `<`
-//! and `>` of a formula in XML.
+//! Patterns that texts in a configuration must match. A text that matches needs no escapes in Tcl, XML, YAML and TOML, except for
+//! `<` and `>` of a formula in XML.
 
-/// The pattern of a text.
+/// A pattern that a text in a configuration must match.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TextPattern {
-    /// Who makes or sells something: a letter, then letters, digits, `.`, `-` and `_`.
+    /// The name of a vendor: a letter, followed by letters, digits, `.`, `-` and `_`.
     Name,
-    /// Three numbers without leading zeros and with dots between them. For example, `0.1.0`.
+    /// A version: three numbers without leading zeros, separated by dots. For example, `0.1.0`.
     Version,
     /// An SPDX licence expression. Only the characters are checked: letters, digits, blanks, `.`, `-`, `+` and parentheses,
     /// beginning with a letter or a parenthesis. For example, `MIT OR Apache-2.0`.
@@ -14,8 +14,7 @@ pub enum TextPattern {
     /// Letters, digits, blanks and the signs of a formula. The formula parser decides whether the text is a formula. Only
     /// this pattern allows signs that XML must escape.
     Formula,
-    /// Measured points `x,y x,y`, or nothing. A file may write the path of a CSV file, whose points are read. For example, `0,0
-    /// 0.5,0.25 1,1`.
+    /// Samples as pairs `x,y x,y`, or nothing. A file may write the path of a CSV file instead. For example, `0,0 0.5,0.25 1,1`.
     Samples,
 }
 
@@ -32,7 +31,7 @@ const LONGEST: usize = 60;
 const DIGITS: usize = 4;
 
 impl TextPattern {
-    /// Returns whether a text has this pattern.
+    /// Returns whether a text matches the pattern.
     pub fn fits(self, text: &str) -> bool {
         let more = |also: &str| {
             let good = |c: char| c.is_ascii_alphanumeric() || also.contains(c);
@@ -59,7 +58,7 @@ impl TextPattern {
         }
     }
 
-    /// Returns the pattern as a regular expression that JavaScript and Rust know.
+    /// Returns the pattern as a regular expression that both JavaScript and Rust understand.
     pub fn regex(self) -> &'static str {
         match self {
             TextPattern::Name => "^[A-Za-z][A-Za-z0-9._-]{0,59}$",
@@ -72,7 +71,7 @@ impl TextPattern {
         }
     }
 
-    /// Returns the pattern in words.
+    /// Returns a description of the pattern for messages.
     pub fn text(self) -> &'static str {
         match self {
             TextPattern::Name => {

@@ -1,5 +1,5 @@
-//! Checks values and builds a [`Config`] from them. It checks ranges, the conditions of keys, and the device's own
-//! conditions.
+//! Checks the values of a configuration, and builds a [`Config`] from valid ones. It checks ranges, the conditions under which
+//! keys apply, and the conditions of the device between keys.
 
 use std::collections::BTreeSet;
 
@@ -132,7 +132,7 @@ impl Key {
         }
     }
 
-    /// Returns the values that the key accepts, in words: `an integer from 4 to 30`.
+    /// Returns a description of the values that the key accepts. For example, `an integer from 4 to 30`.
     pub fn accepts(&self) -> String {
         match &self.kind {
             KeyKind::Integer { min, max } => format!("an integer from {min} to {max}"),
@@ -214,11 +214,11 @@ impl Value {
 
 /// A configuration in the making.
 pub(super) struct Draft<'a> {
-    /// The values so far; defaults where none was given, or none that is in range.
+    /// The values so far. A key has its default if no value was given, or only a value out of range.
     pub config: Config,
-    /// The keys that were given.
+    /// The keys that the user gave.
     pub given: BTreeSet<&'a str>,
-    /// The keys among them whose true value is not known, since the given one is wrong.
+    /// The given keys whose intended value is unknown, since the given value is wrong.
     pub doubtful: BTreeSet<&'a str>,
 }
 
@@ -345,7 +345,7 @@ fn trials(schema: &Schema, draft: &Draft) -> Vec<Config> {
 }
 
 impl Config {
-    /// Returns the defaults of a device.
+    /// Returns the configuration in which every key of the device has its default.
     pub fn defaults(schema: &Schema, name: &str) -> Self {
         Config {
             name: name.to_owned(),
@@ -355,7 +355,7 @@ impl Config {
         }
     }
 
-    /// Returns the defaults with some values replaced, under the same rules as a file.
+    /// Returns the configuration with the given values, and defaults for all other keys. The same rules apply as to a file.
     ///
     /// # Errors
     /// Fails if a file with these values would have problems. The error lists them without positions.
@@ -384,7 +384,7 @@ impl Config {
         draft.finish(schema, problems)
     }
 
-    /// Returns whether the key of this name has an effect with the other values as they are.
+    /// Returns whether the key has an effect, given the values of the other keys.
     pub fn applies(&self, schema: &Schema, key: &str) -> bool {
         match schema.key(key).and_then(|key| key.condition) {
             None => true,

@@ -1,7 +1,7 @@
-//! Holds the values of keys, and a configuration of them.
+//! Defines configurations and the values of their keys.
 //!
-//! The value of most keys is a number, a word or a text. The value of a key such as `operands` of the device `expression` is
-//! a table, whose entries have names of the user's own:
+//! The value of most keys is a number, a word or a text. The value of some keys, such as `operands` of the device `expression`,
+//! is a table whose entries have names that the user chooses. For example:
 //!
 //! ```toml
 //! [operands]
@@ -11,7 +11,7 @@
 
 use serde::ser::{Serialize, SerializeMap, Serializer};
 
-/// The value of a key. It is serialised as the value alone. For example, `Value::Integer(20)` is serialised as `20`.
+/// The value of a configuration key. `Value::Integer(20)` is serialised as `20`.
 #[derive(Clone, Debug, PartialEq, serde::Serialize)]
 #[serde(untagged)]
 pub enum Value {
@@ -56,7 +56,7 @@ impl Value {
     }
 }
 
-/// One entry of a table: its name, and the fields that the user gave.
+/// One entry of a table: the name that the user chose, and the fields that the user gave.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TableEntry {
     /// The name of the entry.
@@ -70,17 +70,17 @@ pub struct TableEntry {
 pub struct TableEntries(pub Vec<TableEntry>);
 
 impl TableEntry {
-    /// Makes an entry from the TOML of its fields. For example, `TableEntry::new("x", &[("fraction", Value::Integer(15))])`.
+    /// Makes an entry with these fields. For example, `TableEntry::new("x", &[("fraction", Value::Integer(15))])`.
     pub fn new(name: &str, fields: &[(&'static str, Value)]) -> Self {
         Self { name: name.to_owned(), fields: fields.to_vec() }
     }
 
-    /// Returns the value of a field; `None` if it is not given.
+    /// Returns the value of a field, or `None` if the user did not give it.
     pub fn field(&self, name: &str) -> Option<&Value> {
         self.fields.iter().find(|(own, _)| *own == name).map(|(_, value)| value)
     }
 
-    /// Returns the text of a field; `None` if it is not given.
+    /// Returns the text of a field, or `None` if the user did not give it.
     pub fn text(&self, name: &str) -> Option<&str> {
         match self.field(name)? {
             Value::Text(text) => Some(text),
@@ -88,7 +88,7 @@ impl TableEntry {
         }
     }
 
-    /// Returns the number of bits that a field states; `None` if it is not given.
+    /// Returns the number of bits in a field, or `None` if the user did not give it.
     pub fn bits(&self, name: &str) -> Option<u32> {
         match self.field(name)? {
             Value::Integer(value) => u32::try_from(*value).ok(),
@@ -96,7 +96,7 @@ impl TableEntry {
         }
     }
 
-    /// Returns the number of a field; `None` if it is not given.
+    /// Returns the number in a field, or `None` if the user did not give it.
     pub fn number(&self, name: &str) -> Option<f64> {
         match self.field(name)? {
             Value::Number(value) => Some(*value),
@@ -104,7 +104,7 @@ impl TableEntry {
         }
     }
 
-    /// Returns whether a field is given as `true`.
+    /// Returns whether the user gave the field as `true`.
     pub fn flag(&self, name: &str) -> bool {
         self.field(name) == Some(&Value::Flag(true))
     }
@@ -155,16 +155,16 @@ impl Serialize for TableEntry {
     }
 }
 
-/// A configuration whose every value is in range and whose combination the device accepts.
+/// A valid configuration: every value is in the range of its key, and the device accepts the combination.
 ///
-/// Keys that do not apply (see [`super::Key::condition`]) hold their defaults.
+/// Keys that do not apply (see [`super::Key::condition`]) have their defaults.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Config {
-    /// The name of the Verilog module and of its files: a legal identifier.
+    /// The name of the Verilog module and of its files, a legal Verilog identifier.
     pub name: String,
     /// The name of the device.
     pub device: String,
-    /// Whether Glint must refuse a configuration outside the accuracy contract, rather than warn of it.
+    /// Whether Glint must refuse a configuration that violates the accuracy contract, instead of warning about it.
     pub strict: bool,
     /// In the order of the schema.
     pub(super) values: Vec<(&'static str, Value)>,

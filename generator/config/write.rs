@@ -1,4 +1,4 @@
-//! Writes configurations as TOML text.
+//! Writes configurations as TOML: the files from which a user starts, and files that read back as the same configuration.
 
 use super::schema::{Key, KeyKind, Schema};
 use super::shared::shared_keys;

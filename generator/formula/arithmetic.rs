@@ -1,4 +1,5 @@
-//! Declares the arithmetic in which formulas are evaluated: intervals of `f64`, or of numbers of any precision.
+//! Declares the interval arithmetic in which formulas are evaluated. There are two kinds of numbers: `f64`, which is fast, and
+//! numbers of any precision.
 
 use std::cmp::Ordering;
 

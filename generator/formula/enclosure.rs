@@ -1,4 +1,5 @@
-//! Interval arithmetic: computes limits that are guaranteed to contain the value of a real number. Every rounding is outward.
+//! Interval arithmetic in `f64`: computes limits between which the exact value of a real number certainly lies. Every rounding
+//! goes outward.
 
 /// Far more than any function of `libm` is off: musl's, from which they come, state errors below 1.5 units in the last
 /// place, and this is at least four of them.
@@ -10,27 +11,27 @@ const SMALL: f64 = 1e-280;
 /// The largest `f64` that is not above π.
 const HALF_TURN: f64 = std::f64::consts::PI;
 
-/// A lower and an upper limit of a real number. For example, the limits of π can be two neighbouring `f64` numbers.
+/// An interval that contains a real number. For example, π lies between two neighbouring `f64` numbers.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Enclosure {
-    /// The number is not below this.
+    /// The lower limit.
     pub low: f64,
-    /// The number is not above this.
+    /// The upper limit.
     pub high: f64,
 }
 
 impl Enclosure {
-    /// Makes the enclosure of a number that is known exactly.
+    /// Returns the interval of a number that is known exactly.
     pub const fn exactly(value: f64) -> Self {
         Self { low: value, high: value }
     }
 
-    /// Makes the enclosure from one number to another.
+    /// Returns the interval from `low` to `high`.
     pub const fn between(low: f64, high: f64) -> Self {
         Self { low, high }
     }
 
-    /// Returns the middle.
+    /// Returns the middle of the interval.
     pub fn middle(self) -> f64 {
         self.low + (self.high - self.low) / 2.0
     }
@@ -40,12 +41,12 @@ impl Enclosure {
         self.low.is_finite() && self.high.is_finite()
     }
 
-    /// Returns whether it holds a number.
+    /// Returns whether the interval contains a number.
     pub fn holds(self, value: f64) -> bool {
         (self.low..=self.high).contains(&value)
     }
 
-    /// Returns the smallest enclosure that contains both. For example, the hull of 0 to 1 and 3 to 4 is 0 to 4.
+    /// Returns the smallest interval that contains both. For example, the hull of 0 to 1 and 3 to 4 is 0 to 4.
     #[must_use]
     pub fn hull(self, other: Self) -> Self {
         Self { low: self.low.min(other.low), high: self.high.max(other.high) }

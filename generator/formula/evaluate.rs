@@ -15,9 +15,9 @@ const LARGEST_PRODUCT: u32 = 64;
 const PRECISIONS: [usize; 3] = [128, 320, 1024];
 
 impl Expression {
-    /// Evaluates the formula in `f64` for operands within intervals. Errors of rounding are inside the returned interval.
+    /// Evaluates the formula in `f64`, for operands within intervals. The returned interval includes all rounding errors.
     ///
-    /// Where a comparison or a step is undecided, the interval contains the values on both sides.
+    /// If a comparison or a jump such as `floor` is undecided, the interval contains the values on both sides.
     ///
     /// # Errors
     /// Fails at a part that may have no value: a pole, the root of a number that may be negative, an operand that is not
@@ -141,8 +141,8 @@ impl Expression {
 }
 
 impl Comparison {
-    /// Returns whether the comparison holds for operands within intervals; `None` where it holds for some of them. For
-    /// example, for x from 0 to 1 `x < 2` holds, and `x < 0.5` is undecided.
+    /// Returns whether the comparison holds for all operands within intervals; `None` if it holds for some of them only, or is
+    /// undecided. For example, for x from 0 to 1, `x < 2` holds, and `x < 0.5` is undecided.
     ///
     /// # Errors
     /// Fails as [`Expression::enclose`] does.

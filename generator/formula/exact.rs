@@ -1,9 +1,8 @@
-//! Computes values of formulas without rounding, where they are rational numbers, multiples of π, or logarithms of rational
-//! numbers.
+//! Computes formulas without rounding if their values are rational numbers, multiples of π, or logarithms of rational numbers.
 //!
-//! For example, `0.1 * 10` is 1, `16 ^ (1 / 2)` is 4, and `sin(pi * 0.5)` is 1, although no step of floating-point arithmetic shows it.
-//! Intervals decide everything else. Exact values decide a question that no interval can: if a value lies exactly on a jump,
-//! they say on which side it counts.
+//! For example, `0.1 * 10` is 1, `16 ^ (1 / 2)` is 4, and `sin(pi * 0.5)` is 1, which floating-point arithmetic cannot show.
+//! Interval arithmetic decides everything except one question: on which side of a jump a value counts that lies exactly on the
+//! jump. This module answers it.
 
 use dashu_base::{Abs, BitTest, Signed, SquareRootRem};
 use dashu_int::{IBig, UBig};

@@ -1,8 +1,8 @@
-//! Parses formulas from text to a tree, evaluates the tree to intervals that contain its value, and prints it as Python
-//! and C.
+//! Parses formulas such as `1 / sqrt(x)` to trees, evaluates the trees with interval arithmetic, and prints them as Python and C.
 //!
-//! The text comes from a configuration or a contract, for example `1 / sqrt(x)` or `max(x, 0) if x > 1 else 2 ** -x`. Every
-//! part of the tree stores the bytes of the text that it came from, so that a message can point at the mistake.
+//! The formulas come from configurations and from accuracy contracts; another example is `max(x, 0) if x > 1 else 2 ** -x`. An
+//! evaluation gives an interval that certainly contains the exact value. Each node of a tree knows its bytes in the text, so that
+//! a message can point at a mistake.
 
 mod arithmetic;
 mod enclosure;
@@ -22,14 +22,14 @@ pub use enclosure::Enclosure;
 pub use literal::Literal;
 pub use parse::{FUNCTIONS, parse};
 
-/// A part of a formula. Two parts are equal if their kinds are equal, wherever they come from.
+/// A formula, or a part of one, as a tree. Two are equal if their kinds are equal, wherever they come from.
 #[derive(Clone, Debug)]
 pub struct Expression {
-    /// The kind of the part.
+    /// The operation, operand or number at the root of the tree.
     pub kind: Kind,
-    /// The bytes of the text that it came from.
+    /// The range of bytes in the text from which this part was parsed.
     pub span: Range<usize>,
-    /// The value, if the part has no operand and no word of a ROM. It is computed once, because formulas are evaluated at
+    /// The value, if the part contains no operand and no word of a ROM. It is computed once, because formulas are evaluated at
     /// millions of operands.
     constant: Option<Enclosure>,
 }
@@ -39,32 +39,32 @@ pub struct Expression {
 pub enum Kind {
     /// A number, exactly as the text states it.
     Number(Literal),
-    /// A constant by its name, and the number below it.
+    /// A named constant such as `pi`, with the largest `f64` below its value.
     Constant(&'static str, f64),
-    /// An operand, as a value and not raw.
+    /// An operand, by its name. Its value is a real number, not a raw integer.
     Operand(String),
-    /// A word of a ROM, as a value: the name of the ROM, and the formula of the word's number.
+    /// A word of a ROM, as a real number: the name of the ROM, and the formula for the index of the word.
     Word(String, Box<Expression>),
     /// A function of one number.
     Unary(Function, Box<Expression>),
-    /// A function of two.
+    /// A function of two numbers.
     Binary(Operator, Box<Expression>, Box<Expression>),
-    /// The first where the comparison holds, else the second.
+    /// The first formula if the comparison holds, otherwise the second.
     If(Comparison, Box<Expression>, Box<Expression>),
 }
 
-/// Whether one number exceeds another.
+/// A comparison: whether the left number exceeds the right one.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Comparison {
-    /// The number that may exceed the other.
+    /// The number on the left of `>`.
     pub left: Box<Expression>,
-    /// The number that it is compared with.
+    /// The number on the right of `>`.
     pub right: Box<Expression>,
-    /// Whether the comparison also holds of equal numbers.
+    /// Whether the comparison also holds for equal numbers (`>=`).
     pub or_equal: bool,
 }
 
-/// The functions of one number that are no combination of others.
+/// The elementary functions of one number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[expect(missing_docs, reason = "the names are those of mathematics")]
 pub enum Function {
@@ -91,21 +91,21 @@ pub enum Operator {
     Sub,
     Mul,
     Div,
-    /// The rest of the first when multiples of the second are taken away, between 0 and the second.
+    /// The remainder of the first number divided by the second. It lies between 0 and the second number.
     Mod,
     Power,
     Min,
     Max,
-    /// The direction of a point, an angle from −π to π. The first number is the point's y, the second its x.
+    /// The direction of a point as an angle from −π to π. The first number is the y coordinate, the second the x coordinate.
     Atan2,
 }
 
-/// A mistake in a formula, with its place.
+/// A mistake in a formula, with its location in the text.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Fault {
-    /// The bytes of the text.
+    /// The range of bytes in the text.
     pub span: Range<usize>,
-    /// The mistake, in words.
+    /// The message.
     pub message: String,
 }
 
@@ -122,8 +122,8 @@ impl Fault {
         Self { span, message: message.into() }
     }
 
-    /// Returns the text on one line. The next line has carets under the mistake, and the message after the carets. For example,
-    /// in `sqrt(y)` the operand y has the fault "there is no `y`: the operand is `x`", and the next line has a caret under y.
+    /// Returns the text on one line, and on the next line carets under the mistake and the message. For example, in `sqrt(y)` the
+    /// operand y has the fault "there is no `y`: the operand is `x`", and the carets are under y.
     pub fn under(&self, text: &str) -> String {
         let count = |range: Range<usize>| text.get(range).map_or(0, |it| it.chars().count());
         let carets = count(self.span.clone()).max(1);
@@ -139,12 +139,12 @@ impl PartialEq for Expression {
 }
 
 impl Expression {
-    /// Makes the operand of this name, which comes from no text.
+    /// Makes an operand with this name, which comes from no text.
     pub fn operand(name: &str) -> Self {
         Self::new(Kind::Operand(name.to_owned()), 0..0)
     }
 
-    /// Makes a part of this kind, which came from the bytes `span` of a text.
+    /// Makes a formula of this kind, which was parsed from the bytes `span` of a text.
     pub fn new(kind: Kind, span: Range<usize>) -> Self {
         let mut formula = Self { kind, span, constant: None };
         let is_constant = formula.parts().iter().all(|part| part.constant.is_some())
@@ -155,7 +155,7 @@ impl Expression {
         formula
     }
 
-    /// Returns the parts that it is made of.
+    /// Returns the formulas directly below the root of the tree.
     pub fn parts(&self) -> Vec<&Self> {
         match &self.kind {
             Kind::Number(..) | Kind::Constant(..) | Kind::Operand(_) => Vec::new(),
@@ -165,7 +165,7 @@ impl Expression {
         }
     }
 
-    /// Visits the formula and all parts within it. The operands of a part are visited before the part.
+    /// Visits the formula and all its parts, operands before the operations that use them.
     pub fn walk<'f>(&'f self, visit: &mut dyn FnMut(&'f Self)) {
         self.parts().into_iter().for_each(|part| part.walk(visit));
         visit(self);
@@ -189,7 +189,7 @@ impl Expression {
         count
     }
 
-    /// Returns the formula if it has no names other than `operand`, and no words of ROMs.
+    /// Returns the formula if its only operand is `operand` and it has no words of ROMs.
     ///
     /// # Errors
     /// Fails at the first such name.
@@ -225,8 +225,8 @@ impl Expression {
         is(&self.kind) || self.parts().into_iter().any(|part| part.has(is))
     }
 
-    /// Puts formulas in the place of operands. `replacement` gives the formula of a name, or nothing for an operand that
-    /// stays. Every part keeps its place in the text, and all of a replacement has the place of the operand.
+    /// Replaces operands by formulas. `replacement` returns the formula for a name, or `None` for an operand that stays. A
+    /// replacement gets the place of the operand in the text; all other parts keep their places.
     pub fn with_operands(&self, replacement: &dyn Fn(&str) -> Option<Self>) -> Self {
         let inner = |part: &Self| Box::new(part.with_operands(replacement));
         let kind = match &self.kind {
@@ -255,7 +255,7 @@ impl Expression {
         Self { span: place.clone(), ..moved }
     }
 
-    /// Puts `new` in the place of every `old`; every other part has the span of `call`.
+    /// Replaces every part that equals `old` by `new`. Every other part gets the bytes `call` as its place.
     pub fn substitute(&self, old: &Self, new: &Self, call: &Range<usize>) -> Self {
         if self == old {
             return new.clone();

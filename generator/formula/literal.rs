@@ -1,4 +1,4 @@
-//! Reads decimal numbers without rounding them: `1.25e-3` is the fraction 1/800.
+//! Reads decimal numbers without rounding. For example, `1.25e-3` becomes the fraction 1/800.
 
 use dashu_int::{IBig, UBig};
 use dashu_ratio::RBig;
@@ -6,10 +6,10 @@ use dashu_ratio::RBig;
 /// The largest power of ten that a number may have, up or down. More digits than that are a mistake in every formula.
 const LARGEST_EXPONENT: i32 = 400;
 
-/// A number of a formula, exactly as its text states it.
+/// A number in a formula, exactly as its text states it.
 ///
-/// For example, `0.1` is the fraction 1/10, which no `f64` is; the nearest `f64` is kept beside it.
-/// Two are equal that state the same number, as `1` and `1.0e0` do.
+/// For example, `0.1` is the fraction 1/10, which no `f64` represents; the nearest `f64` is stored with it. Two literals are
+/// equal if they state the same number, such as `1` and `1.0e0`.
 #[derive(Clone, Debug)]
 pub struct Literal {
     text: String,
@@ -25,7 +25,7 @@ impl PartialEq for Literal {
 }
 
 impl Literal {
-    /// Reads digits with an optional decimal point and an optional power of ten: `3`, `.5`, `1.52587890625e-05`.
+    /// Reads digits with an optional decimal point and an optional power of ten, such as `3`, `.5` or `1.52587890625e-05`.
     ///
     /// Returns `None` if the text is no such number, or if its power of ten is beyond ±400.
     pub fn read(text: &str) -> Option<Self> {
@@ -55,22 +55,22 @@ impl Literal {
         Some(Self { text, value, nearest, is_exact })
     }
 
-    /// Makes the number 0.
+    /// Returns the literal 0.
     pub fn zero() -> Self {
         Self { text: "0".to_owned(), value: RBig::ZERO, nearest: 0.0, is_exact: true }
     }
 
-    /// Returns the number without any rounding.
+    /// Returns the exact number.
     pub fn value(&self) -> &RBig {
         &self.value
     }
 
-    /// Returns the `f64` that is nearest to the number.
+    /// Returns the `f64` that is nearest to the exact number.
     pub fn nearest(&self) -> f64 {
         self.nearest
     }
 
-    /// Returns whether the nearest `f64` is the number itself.
+    /// Returns whether the nearest `f64` equals the exact number.
     pub fn is_exact(&self) -> bool {
         self.is_exact
     }
@@ -83,7 +83,7 @@ impl Literal {
         from_first.bytes().filter(u8::is_ascii_digit).count()
     }
 
-    /// Returns decimal digits that state the number exactly, as C and Python read them. For example, `1.25e-3` gives `0.00125`.
+    /// Returns the decimal digits of the exact number, in a form that C and Python read. For example, `1.25e-3` gives `0.00125`.
     pub fn digits(&self) -> String {
         let shortest = format!("{:?}", self.nearest);
         match Self::read(&shortest) {

@@ -1,10 +1,10 @@
-//! Parses the text of a formula to a tree.
+//! Parses the text of a formula, such as `1 / sqrt(x)`, to a tree.
 
 use std::ops::Range;
 
 use super::{Comparison, Expression, Fault, Function, Kind, Literal, Operator};
 
-/// The functions of one number, by the names that a formula may use.
+/// The functions of one number that a formula may call, with their names.
 pub const FUNCTIONS: [(&str, Function); 13] = [
     ("abs", Function::Abs),
     ("sqrt", Function::Sqrt),
@@ -75,8 +75,8 @@ const DEEPEST: usize = 200;
 /// x, and names x twice, so that each `silu` around another doubles the parts.
 const MOST_PARTS: usize = 4096;
 
-/// Reads a formula: sums, products, powers (`^` or `**`), parentheses, numbers, pi, e, operands by their names,
-/// functions, `if(a < b, x, y)`, and `x if a < b else y` as Python writes it.
+/// Parses a formula: sums, products, powers (`^` or `**`), parentheses, numbers, `pi`, `e`, names of operands, functions, `if(a <
+/// b, x, y)`, and the same in Python's notation, `x if a < b else y`.
 ///
 /// # Errors
 /// Fails at the first mistake. The error has its place.

@@ -1,7 +1,7 @@
-//! Interval arithmetic of any precision, which also stores a value exactly if it is known exactly.
+//! Interval arithmetic of any precision. It stores a value exactly if the value is known exactly.
 //!
-//! It is slow, and decides only questions that intervals of `f64` leave open: the side of a step on which a value lies, or a
-//! value beyond the range of `f64`. For example, `exp(1000)` within `1 / (1 + exp(1000))` is beyond that range.
+//! It is slow, so it only decides questions that `f64` intervals leave open: on which side of a jump a value lies, or a value
+//! beyond the range of `f64`. For example, `exp(1000)` in `1 / (1 + exp(1000))` is beyond that range.
 
 use std::cmp::Ordering;
 

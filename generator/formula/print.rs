@@ -10,15 +10,15 @@ const POWER: u8 = 3;
 const ATOM: u8 = 4;
 
 impl Expression {
-    /// Returns the text as [`super::parse()`] reads it, and Python with `from math import *`. For example, `x^2 + 1` becomes `x
-    /// ** 2.0 + 1.0`.
+    /// Returns the formula as Python, to be evaluated after `from math import *`; [`super::parse()`] reads it too. For example,
+    /// `x^2 + 1` becomes `x ** 2.0 + 1.0`.
     pub fn python(&self) -> String {
         python(self).0
     }
 }
 
 impl Expression {
-    /// Returns the calls of the functions of `templates/recompute.c`, which take and give limits.
+    /// Returns the formula as C: calls of the interval functions in `templates/recompute.c`.
     pub fn c(&self) -> String {
         let call = |name: &str, parts: &[&Self]| {
             let parts: Vec<String> = parts.iter().map(|it| it.c()).collect();
@@ -101,7 +101,7 @@ fn python(formula: &Expression) -> (String, u8) {
 }
 
 impl Function {
-    /// Returns the name as formulas have it.
+    /// Returns the name of the function in formulas.
     pub fn name(self) -> &'static str {
         super::FUNCTIONS.iter().find(|(_, own)| *own == self).map_or("-", |(name, _)| name)
     }

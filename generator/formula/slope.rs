@@ -1,4 +1,4 @@
-//! Differentiates a formula: computes limits that are guaranteed to contain its derivative.
+//! Differentiates a formula: computes limits between which its derivative certainly lies, for an operand in an interval.
 
 use super::arithmetic::Double;
 use super::evaluate::{binary, unary};

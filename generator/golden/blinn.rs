@@ -1,18 +1,21 @@
-//! The golden model and the accuracy contract of `blinn`: cⁿ itself (seeds 000–002).
+//! The golden model and the accuracy contract of the device `blinn`, which computes f = cⁿ.
 //!
-//! [`decay`] makes both: they compute 2^(−n·decay) with the decay −log₂ c.
+//! c = cos γ, where γ is the angle between the surface normal and the half vector; n is the specular exponent; f is the
+//! reflectance, the factor by which the device multiplies colours. All seeds (000–002, the source documents) start from this
+//! formula of Blinn. The module [`decay`] makes both for `blinn` and `gauss`: they compute 2^(−n·decay), and the decay of `blinn`
+//! is −log₂ c.
 
 use super::decay;
 use super::{Contract, Model};
 use glint_config::Config;
 use glint_keys::decay::Decay;
 
-/// Returns the golden model.
+/// Returns the golden model of the device `blinn` for a configuration.
 pub fn model(config: &Config) -> Box<dyn Model> {
     decay::model(config, Decay::Logarithm)
 }
 
-/// Returns the accuracy contract.
+/// Returns the accuracy contract of the device `blinn` for a configuration.
 pub fn contract(config: &Config) -> Box<dyn Contract> {
     decay::contract(config, Decay::Logarithm)
 }

@@ -1,40 +1,45 @@
-//! Makes the parts that the accuracy contracts of several devices share: control operands, the error bound from its terms,
-//! and Python expressions.
+//! Helpers for the accuracy contracts of several devices: the operands `cos_gamma` and `exponent`, the error bound of a device
+//! that multiplies colours, and Python expressions.
+//!
+//! An accuracy contract states the operands, the exact formula and the proven error bound of one device.
 
 use super::{Bound, Operand, Term};
 use glint_base::fixed::{Format, Rounding, exp2};
 
-/// The operand cos γ, where a device has it.
+/// The name of the operand cos γ in every device that has it. γ is the angle between the surface normal and the half vector.
 pub const COSINE: &str = "cos_gamma";
 
-/// The operand n, where a device has it.
+/// The name of the operand n, the specular exponent, in every device that has it.
 pub const EXPONENT: &str = "exponent";
 
-/// One contribution to the error of `f`: its configuration key, its description, and its size.
+/// One contribution to the error of the reflectance `f`: the configuration key that governs it, its description, and its size as
+/// a value. For example, the table of sines of `rough` contributes to the error of its `f`.
 pub type ErrorShare = (&'static str, &'static str, f64);
 
-/// Returns the operand cos γ.
+/// Returns the operand `cos_gamma` with a format and a domain of raw values, for an accuracy contract.
 pub fn cosine_operand(format: Format, domain: (i64, i64)) -> Operand {
     let doc = "cosine of the angle between the normal and the half vector";
     control(COSINE, format, domain, doc)
 }
 
-/// Returns the operand n.
+/// Returns the operand `exponent` with a format and a domain of raw values, for an accuracy contract.
 pub fn exponent_operand(format: Format, domain: (i64, i64)) -> Operand {
     control(EXPONENT, format, domain, "specular exponent n")
 }
 
-/// Returns an operand that f depends on.
+/// Returns a control operand, which is an operand that determines the reflectance `f`. Colour operands, which `f` multiplies, are
+/// no control operands.
 pub fn control(name: &str, format: Format, domain: (i64, i64), doc: &str) -> Operand {
     Operand { name: name.to_owned(), format, domain, colour: false, doc: doc.to_owned() }
 }
 
-/// Returns the bound from the errors of `f`, a word with `frac` fraction bits.
+/// Returns the error bound of a device that multiplies colours by a reflectance `f` with `frac` fraction bits. `shares` are the
+/// contributions to the error of `f`.
 ///
-/// `f` and the formula both lie in 0 … 1, so that no word is off by more than 1.0: where the shares
-/// exceed it, they are scaled down to it. An output is `f` times a colour, which multiplies the error
-/// by the largest colour, and a rounding. It never saturates, for `f` < 1. The rounding's share is
-/// attributed to a key `output.rounding`, which the device must have. Without shares no bound is stated.
+/// An output is `f` times a colour of `colour_bits` bits, rounded by `output_rounding`. The bound of an output is therefore the
+/// error of `f` times the largest colour, plus the error of that rounding. Both `f` and the formula lie in 0 … 1, so shares whose
+/// sum exceeds 1.0 are scaled down to 1.0. The term of the rounding names the key `output.rounding`, so the device must have this
+/// key. Without shares the bound is not stated.
 pub fn bound(
     shares: &[ErrorShare],
     frac: u32,
@@ -64,18 +69,20 @@ pub fn bound(
     Bound { f, ..Bound::of(terms) }
 }
 
-/// Returns an expression of Python, 0 where it would be negative. For example, `x - 1` becomes `max(x - 1, 0)`.
+/// Returns a Python expression that has the value of `expression`, or 0 if `expression` is negative. For example, `x - 1` becomes
+/// `max(x - 1, 0)`.
 pub fn clamped_at_0(expression: &str) -> String {
     format!("max({expression}, 0)")
 }
 
-/// Returns an expression of Python, 0 where the surface faces away. For example, `f` becomes `f if cos_gamma > 0 else 0`.
+/// Returns a Python expression that has the value of `expression`, or 0 if `cos_gamma` is 0 or negative (the surface faces away).
+/// For example, `f` becomes `f if cos_gamma > 0 else 0`.
 pub fn where_it_faces(expression: &str) -> String {
     format!("{expression} if {COSINE} > 0 else 0")
 }
 
-/// Returns the raw value of the operand for the exponent `n`; `None` where its domain or its format has none. For example,
-/// n = 20 gives 20 in `u10.0`, and 20.5 gives `None`.
+/// Returns the raw value of `operand` that represents the specular exponent `n` exactly. Returns `None` if the format or the
+/// domain of the operand has no such value. For example, n = 20 gives 20 in `u10.0`, and n = 20.5 gives `None`.
 pub fn exponent_at(operand: &Operand, n: f64) -> Option<i64> {
     let raw = operand.format.quantise(n);
     let held = operand.format.to_f64(raw) == n;

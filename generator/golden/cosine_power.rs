@@ -1,5 +1,8 @@
-//! The golden model and the accuracy contract of `cosine-power`: the paper's
-//! W(n, γ) = (n/m·(cos γ − 1) + 1)^m (seed 002).
+//! The golden model and the accuracy contract of the device `cosine-power`, which computes f = (n/m·(c − 1) + 1)^m.
+//!
+//! c = cos γ, where γ is the angle between the surface normal and the half vector; n is the specular exponent; the configuration
+//! chooses m = 2, 4, 8 or 16; f is the reflectance, the factor by which the device multiplies colours. f is 0 if the base is
+//! negative. The source is a paper (seed 002), which calls the function W(n, γ) and proposes it as an approximation of cⁿ.
 
 use std::sync::Arc;
 
@@ -17,7 +20,7 @@ use glint_keys::cosine_power::Keys;
 struct PowerArithmetic {
     keys: Keys,
     squarings: u32,
-    /// 1.0 − ulp of the accumulator.
+    /// The accumulator's largest fraction: 1.0 minus one unit in the last place.
     largest: i64,
     scaled: Narrow,
     square: Narrow,
@@ -55,7 +58,7 @@ impl PowerArithmetic {
     }
 }
 
-/// Returns the golden model.
+/// Returns the golden model of the device `cosine-power` for a configuration.
 pub fn model(config: &Config) -> Box<dyn Model> {
     let it = Arc::new(PowerArithmetic::new(Keys::of(config)));
     let mut frame = Frame::default();
@@ -86,7 +89,7 @@ pub fn model(config: &Config) -> Box<dyn Model> {
     Box::new(products.behind(frame, accumulator, program))
 }
 
-/// Returns the accuracy contract. Control operands: `cos_gamma`, `exponent`.
+/// Returns the accuracy contract of the device `cosine-power`. Its control operands are `cos_gamma` and `exponent`.
 pub fn contract(config: &Config) -> Box<dyn Contract> {
     let it = PowerArithmetic::new(Keys::of(config));
     let operands = highlight::operands(&it.keys.operands, &it.keys.domain);

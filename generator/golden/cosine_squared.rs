@@ -1,6 +1,10 @@
-//! The golden model and the accuracy contract of `cosine-squared` (seed 000, the prototype): cos²(a·δ) along a line.
+//! The golden model and the accuracy contract of the device `cosine-squared`, which computes f = cos²(a·δ) for the points of a
+//! scan line.
 //!
-//! The model reads the cosine's square from a table, ROM 12; the contract compares it with the formula.
+//! δ is the angle at a point of the line; a = √(n/2) with the specular exponent n; f is the reflectance, the factor by which the
+//! device multiplies an amplitude. The host multiplies its angles by a, so the device only sees the product a·δ. The golden model
+//! reads cos² from its own copy of the device's table, ROM 12; the contract compares the result with the exact formula. The
+//! source is the prototype that seed 000 cites (Abbas, Szirmay-Kalos, Horváth 2000).
 
 use std::f64::consts::FRAC_PI_2;
 
@@ -17,7 +21,7 @@ use glint_keys::cosine_squared::Keys;
 /// The arithmetic of the device, one operation a method.
 struct SquaredArithmetic {
     keys: Keys,
-    /// ROM 12.
+    /// The table of cos², ROM 12 by the numbers of blocks in seed 000.
     table: CosineTable,
 }
 
@@ -46,7 +50,7 @@ fn products(keys: &Keys) -> Products {
         .at_edges(keys.stages > 2)
 }
 
-/// Returns the golden model.
+/// Returns the golden model of the device `cosine-squared` for a configuration.
 pub fn model(config: &Config) -> Box<dyn Model> {
     let keys = Keys::of(config);
     let mut frame = Frame::default();
@@ -73,8 +77,9 @@ pub fn model(config: &Config) -> Box<dyn Model> {
     Box::new(frame.model(program))
 }
 
-/// Returns the accuracy contract. The control operands are `delta_zeta`, `zeta_start` and `length`. For a point of a line,
-/// `zeta_start` is the angle of that point.
+/// Returns the accuracy contract of the device `cosine-squared`. Its control operands are `delta_zeta` (the angle from a point to
+/// the next), `zeta_start` (the first angle) and `length` (the number of intervals). To state a single point of a line, the
+/// contract sets `zeta_start` to the angle of that point.
 pub fn contract(config: &Config) -> Box<dyn Contract> {
     let keys = Keys::of(config);
     let mut operands = line::angle_operands(keys.angle_format()).to_vec();

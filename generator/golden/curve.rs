@@ -1,11 +1,13 @@
-//! Builds the table of an increasing, concave function from straight segments, independently of the hardware's table.
+//! Builds a table that interpolates an increasing, concave function linearly between the ends of segments.
 //!
-//! The operand u is an integer of C bits. Each range is a quarter of the range before it. Each range, and the tail below the
-//! ranges, is cut into segments of equal length. A value is a raw u0.S.
+//! The golden model of a device uses it to check a table in the hardware, which other code computes. The operand u is an unsigned
+//! integer of C bits. The upper three quarters of the operands are the first range; the upper three quarters of the remaining
+//! quarter are the second range, and so on; the operands below all ranges are the tail. Every range, and the tail, is cut into
+//! segments of equal length. A value of the table is a raw number in the format u0.S.
 
 use glint_base::fixed::exp2;
 
-/// The parameters of the table.
+/// The parameters of a [`SegmentedCurve`].
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct CurveParams {
     /// Bits of the operand, C.
@@ -14,9 +16,10 @@ pub struct CurveParams {
     pub fraction: u32,
     /// Fraction bits of a slope, D; a slope is the rise over a whole segment.
     pub slope_fraction: u32,
-    /// log₂ of the number of prefixes in each range; a quarter of them lies below it.
+    /// log₂ of the number of prefixes in each range. A prefix is the leading bits of u that select a segment; a quarter of the
+    /// prefixes belongs to the operands below the range.
     pub segments: Vec<u32>,
-    /// log₂ of the number of segments of the tail.
+    /// log₂ of the number of segments of the tail, the operands below all ranges.
     pub tail: u32,
 }
 
@@ -29,20 +32,20 @@ struct CurveSegment {
     slope: i64,
 }
 
-/// A segment and how far its values are from the function's.
+/// One segment of a [`SegmentedCurve`], with the largest difference between its values and the function.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Piece {
-    /// The smallest of its operands.
+    /// The smallest operand of the segment.
     pub start: u64,
-    /// The largest of them.
+    /// The largest operand of the segment.
     pub last: u64,
-    /// The largest `|value − function|` among its operands.
+    /// The largest `|value − function|` among the operands of the segment.
     pub error: f64,
-    /// The error of the best straight line with words of unlimited width.
+    /// The error that would remain if words had unlimited width: the largest distance of the straight line from the function.
     pub shape: f64,
 }
 
-/// The table.
+/// A table of straight segments that approximates a function, built by [`SegmentedCurve::new`].
 #[derive(Clone, Debug)]
 pub struct SegmentedCurve {
     params: CurveParams,
@@ -55,7 +58,7 @@ pub struct SegmentedCurve {
 }
 
 impl SegmentedCurve {
-    /// Returns the table of `function`, which takes u as an integer and must increase from 0 to 1.
+    /// Returns the table of `function`. `function` gets the operand u as an integer, and must increase from 0 to 1.
     pub fn new(params: &CurveParams, function: impl Fn(f64) -> f64) -> Self {
         let mut curve = Self {
             params: params.clone(),
@@ -136,12 +139,12 @@ impl SegmentedCurve {
         self.pieces.push(Piece { start, last: start + steps - 1, error, shape });
     }
 
-    /// Returns every segment.
+    /// Returns all segments of the table.
     pub fn pieces(&self) -> &[Piece] {
         &self.pieces
     }
 
-    /// Returns the value for u.
+    /// Returns the raw value of the table at the operand u.
     #[inline]
     pub fn at(&self, u: i64) -> i64 {
         let length = 64 - (u as u64).leading_zeros();

@@ -1,5 +1,9 @@
-//! The golden model and the accuracy contract that `blinn` and `gauss` share: f = 2^(−n·decay), where the decay is a
-//! function of cos γ.
+//! The golden model and the accuracy contract that the devices `blinn` and `gauss` share: f = 2^(−n·decay(c)).
+//!
+//! c = cos γ, where γ is the angle between the surface normal and the half vector; n is the specular exponent; f is the
+//! reflectance, the factor by which the devices multiply colours. The decay is a function of c alone: −log₂ c in `blinn`, which
+//! makes f = cⁿ, and γ²/(2 ln 2) in `gauss`, which makes f = exp(−n·γ²/2). For example, c = 0.5 and n = 2 give the decay 1 in
+//! `blinn`, and f = 0.25.
 
 #[cfg(test)]
 mod tests;
@@ -26,7 +30,7 @@ const PARTS: i64 = 32;
 struct DecayArithmetic {
     of: Decay,
     keys: Keys,
-    /// The decay over the distance, and 2^−x: data.
+    /// Tables of polynomials: `ratio` is the decay divided by the distance 1 − c, and `power` is 2^−x.
     ratio: Arc<Piecewise>,
     power: Arc<Piecewise>,
     to_decay: Narrow,
@@ -166,7 +170,7 @@ impl DecayArithmetic {
     }
 }
 
-/// Returns the golden model of one of the devices.
+/// Returns the golden model of `blinn` or `gauss`; `of` says which.
 pub fn model(config: &Config, of: Decay) -> Box<dyn Model> {
     let it = Arc::new(DecayArithmetic::new(of, Keys::of(config)));
     let keys = &it.keys;
@@ -202,7 +206,7 @@ pub fn model(config: &Config, of: Decay) -> Box<dyn Model> {
     Box::new(products.behind(frame, reflectance, program))
 }
 
-/// Returns the accuracy contract of one of the devices. Control operands: `cos_gamma`, `exponent`.
+/// Returns the accuracy contract of `blinn` or `gauss`; `of` says which. The control operands are `cos_gamma` and `exponent`.
 pub fn contract(config: &Config, of: Decay) -> Box<dyn Contract> {
     let it = DecayArithmetic::new(of, Keys::of(config));
     let operands = highlight::operands(&it.keys.operands, &it.keys.domain);

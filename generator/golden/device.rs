@@ -1,7 +1,9 @@
-//! Makes the golden model and the accuracy contract of a device from the operations of its microinstructions.
+//! Makes the golden model and the accuracy contract of a device from one list of its microinstructions.
 //!
-//! The contract takes its results from the model, so the [`Frame`] and the microinstructions state names, formats and
-//! arithmetic only once. A device only adds its formula and a bound on its error. For example:
+//! The author of a device declares operands and registers in a [`Frame`] and states the operation of each microinstruction. The
+//! golden model executes these operations clock by clock. The contract runs the golden model to get the results of the device,
+//! and compares them with a [`Formula`], which the author adds together with a bound on the error. For example, this device
+//! squares its operand:
 //!
 //! ```
 //! use glint_base::fixed::Format;
@@ -39,13 +41,13 @@
 use super::frame::{ClockedModel, Frame, FrameStep, idle};
 use super::{ANY_VALUE, Bound, Contract, Model, Operand, Output, Sweep, Term};
 
-/// The number of clocks that a computation may take.
+/// The largest number of clocks that a computation may take.
 const LONGEST: u32 = 1 << 20;
 
-/// In the place of a result that is never shown.
+/// The value that replaces a result which the device never shows.
 const NEVER: i64 = i64::MAX >> 1;
 
-/// A device that is described by its microinstructions.
+/// A device whose golden model is a list of microinstructions. [`Frame::device`] makes it.
 pub struct Device {
     model: ClockedModel,
     operands: Vec<Operand>,
@@ -53,7 +55,8 @@ pub struct Device {
 }
 
 impl Frame {
-    /// Returns the device at power-up, as [`Frame::model`] takes it.
+    /// Returns the device with this program of microinstructions, in the state after power-up. [`Frame::model`] describes the
+    /// program.
     ///
     /// # Panics
     /// Panics if there is no microinstruction. A program must have at least one.
@@ -71,10 +74,11 @@ impl Frame {
         Device { model: self.model(program), operands, outputs }
     }
 
-    /// Returns the device that executes its parts in the order in which they were stated, and has its outputs in registers.
+    /// Returns the device that runs the parts of the frame one after the other, in the order in which [`Frame::part`] added them,
+    /// and holds its outputs in registers.
     ///
     /// # Panics
-    /// Never: registers can be put behind a program without conditions on its results.
+    /// Never: registers can be put behind a program that ends with its results, as a program of parts does.
     pub fn dataflow(mut self) -> Device {
         let device = match std::mem::take(&mut self.parts) {
             parts if parts.is_empty() => self.device([idle(), idle().valid().end()]),
@@ -86,12 +90,12 @@ impl Frame {
 }
 
 impl Device {
-    /// Returns its clock model.
+    /// Returns the golden model of the device.
     pub fn model(self) -> Box<dyn Model> {
         Box::new(self.model)
     }
 
-    /// States the contract for fewer values of an operand than its register holds.
+    /// Restricts the contract to the raw values `low ..= high` of an operand, if the operand's register can hold more values.
     ///
     /// # Panics
     /// Panics if there is no such operand.
@@ -102,7 +106,7 @@ impl Device {
         self
     }
 
-    /// Returns the contract of the device. The model computes the results of the contract.
+    /// Returns the accuracy contract of the device: the golden model computes the results, and `formula` states the exact values.
     pub fn contract(self, formula: impl Formula + 'static) -> Box<dyn Contract> {
         let shown = |output: &Output| self.model.signals().iter().position(|it| *it == output.name);
         let shown = self.outputs.iter().filter_map(shown).collect();
@@ -110,78 +114,79 @@ impl Device {
     }
 }
 
-/// The formula that a device approximates, with the proved bound of its error.
+/// The exact formula that a device approximates, with the proved bound of the device's error.
 pub trait Formula: Send + Sync {
-    /// Returns the outputs in f64, unrounded, for the values (not raw) of the operands, in the order of the frame.
+    /// Returns the exact outputs in f64, unrounded, for the values (not raw) of the operands, which are in the order of the
+    /// frame.
     fn exact(&self, operands: &[f64]) -> Vec<f64>;
 
-    /// Returns whether the contract promises something of an output, by its number, for the values of the operands.
+    /// Returns whether the contract promises anything about the output with this number, for these values of the operands.
     fn is_promised(&self, operands: &[f64], output: usize) -> bool {
         let _ = (operands, output);
         true
     }
 
-    /// Appends the raw outputs at raw operands, where they are had without going through the microprogram: quickly, for pictures
-    /// and tables. Returns whether it did. A run of the model has the same.
+    /// Appends the raw outputs for raw operands, if they can be computed without the microprogram, which is faster. Returns
+    /// whether it did. They must equal the results of the golden model.
     fn results(&self, operands: &[i64], raw: &mut Vec<i64>) -> bool {
         let _ = (operands, raw);
         false
     }
 
-    /// Returns the terms of an output's error, each a proven upper limit; none where the bound is not known yet.
+    /// Returns the contributions to the error of an output, each a proven upper limit; nothing if the bound is not known yet.
     fn terms(&self) -> Vec<Term> {
         Vec::new()
     }
 
-    /// Returns the bound of an output by its number, where outputs have bounds of their own, as [`Contract::output_bound`].
+    /// Returns the bound of the output with this number if the outputs have different bounds, as [`Contract::output_bound`] does.
     fn output_bound(&self, output: usize) -> Option<f64> {
         let _ = output;
         None
     }
 
-    /// Returns the error, in units, below which the accuracy contract wants it, as [`Bound::limit`].
+    /// Returns the bound that the contract demands, in units, as [`Bound::limit`] states it.
     fn limit(&self) -> f64 {
         1.0
     }
 
-    /// Returns the formula of each output as an expression of Python, as [`Contract::expressions`].
+    /// Returns the formula of each output as a Python expression, as [`Contract::expressions`] does.
     fn expressions(&self) -> Vec<String> {
         Vec::new()
     }
 
-    /// Returns operands at which results say much, as [`Contract::hint`].
+    /// Returns operands at which an error is likely to show, as [`Contract::hint`] does.
     fn hint(&self, unit: &mut dyn FnMut() -> f64) -> Option<Vec<i64>> {
         let _ = unit;
         None
     }
 
-    /// Returns the places of an exhaustive check, as [`Contract::sweep`]; none for every combination of the operands.
+    /// Returns the cases of an exhaustive check, as [`Contract::sweep`] does, or `None` for all combinations of the operands.
     fn sweep(&self) -> Option<Sweep> {
         None
     }
 
-    /// Returns the error at a place of the sweep, as [`Contract::sweep_error`]; none where a place has the operands.
+    /// Returns the error in one case of the check, as [`Contract::sweep_error`] does, or `None` if a case is a set of operands.
     fn sweep_error(&self, place: &[i64]) -> Option<f64> {
         let _ = place;
         None
     }
 
-    /// Returns facts about the formula that a user should know, as [`Contract::remarks`].
+    /// Returns remarks about the formula for a user, as [`Contract::remarks`] does.
     fn remarks(&self) -> Vec<String> {
         Vec::new()
     }
 }
 
-/// A contract whose results a model computes.
+/// A contract whose results the golden model computes.
 struct OfModel<F> {
     device: Device,
-    /// Where the outputs are among the signals of the model.
+    /// The positions of the outputs among the signals of the golden model.
     shown: Vec<usize>,
     formula: F,
 }
 
 impl<F> OfModel<F> {
-    /// Returns the raw outputs with the result of a number, from power-up; none if it is never shown.
+    /// Returns the raw outputs of the result with this number, after power-up; `None` if the device never shows it.
     fn shown(&self, operands: &[i64], index: u64) -> Option<Vec<i64>> {
         let mut model = self.device.model.clone();
         let strobes = |strobe: u64| {

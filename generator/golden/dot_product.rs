@@ -1,5 +1,8 @@
-//! The golden model and the accuracy contract of `dot-product`: the cosine, in 0 … 1, between a vector of any length
-//! and a unit vector.
+//! The golden model and the accuracy contract of the device `dot-product`, which computes cos γ = max(0, N·H / |N|).
+//!
+//! N is a vector of any length, such as an interpolated normal (operands `nx`, `ny`, `nz`); H is a unit vector, such as the half
+//! vector (`hx`, `hy`, `hz`); γ is the angle between them. With the key `two_sided` the result is |N·H| / |N|. The device
+//! multiplies N·H by 1/√(N·N), which it interpolates in a table. For example, N = (0, 0, 0.5) and H = (0, 0, 1) give 1.
 
 use std::sync::Arc;
 
@@ -58,12 +61,12 @@ fn device(config: &Config) -> device::Device {
     ["hx", "hy", "hz"].into_iter().fold(device, |device, name| device.domain(name, -one, one))
 }
 
-/// Returns the golden model.
+/// Returns the golden model of the device `dot-product` for a configuration.
 pub fn model(config: &Config) -> Box<dyn Model> {
     device(config).model()
 }
 
-/// Returns the function that the device computes, and its error bound.
+/// Returns the accuracy contract of the device `dot-product`: the exact cosine, and the proven bound of its error.
 pub fn contract(config: &Config) -> Box<dyn Contract> {
     device(config).contract(CosineFormula::new(config))
 }

@@ -1,7 +1,8 @@
-//! The golden model and the accuracy contract of `expression`: formulas of several operands, computed by a plan.
+//! The golden model and the accuracy contract of the device `expression`, which computes formulas of several operands.
 //!
-//! The model executes the operations of the plan in integers, from their definitions. The proof of the plan against the
-//! formulas vouches for the plan itself.
+//! A configuration states the formulas; for example, `a / b` or `sqrt(x*x + y*y)`. The planner ([`glint_plan`]) translates them
+//! into a plan, a list of fixed-point operations with formats, and proves a bound on its error against the formulas. The golden
+//! model executes the operations of the plan in integers. It takes the plan from the planner, because that proof covers the plan.
 
 use std::sync::Arc;
 
@@ -18,7 +19,7 @@ use glint_plan::{ExpressionPlan, NodeId, Operation, PlanStep, ProvedPlan};
 struct PlanModel {
     found: Arc<ProvedPlan>,
     operands: Vec<Slot>,
-    /// The register of each node that is held.
+    /// The slot of the register of each node of the plan, or `None` for a node without a register.
     registers: Vec<Option<Slot>>,
 }
 
@@ -121,7 +122,7 @@ fn sum_steps(model: &Arc<PlanModel>, id: NodeId, sums: &Polynomial) -> Vec<Frame
     sums.steps(operand).map(super::frame::step).collect()
 }
 
-/// Returns the golden model.
+/// Returns the golden model of the device `expression` for a configuration.
 ///
 /// # Panics
 /// Panics if the check of the schema has not accepted the configuration. The caller must check it first.
@@ -129,7 +130,7 @@ pub fn model(config: &Config) -> Box<dyn Model> {
     device(&found(config).expect("a configuration that is checked")).model()
 }
 
-/// Returns the accuracy contract.
+/// Returns the accuracy contract of the device `expression` for a configuration.
 ///
 /// # Panics
 /// Panics as [`model`] does.

@@ -1,21 +1,23 @@
-//! The formulas of the seeds (the documents that the devices come from), computed in f64 without rounding to fixed point. The
-//! hardware approximates these formulas.
+//! The exact formulas of the devices, computed in f64 without rounding to fixed point.
 //!
-//! Operands are plain numbers; angles are in radians. A reflectance `f` is in 0 … 1. A surface that faces away (`c ≤ 0`)
-//! reflects nothing. Transcendental functions come from `libm`, so a figure is the same on every machine.
+//! The formulas come from the seeds, which are source documents: seed 000 is a patent on shading along scan lines, seed 001 is
+//! the patent UA 60139, and seed 002 is a paper on the function W. In all of them c = cos γ, where γ is the angle between the
+//! surface normal and the half vector; n is the specular exponent; the result f, in 0 … 1, is the reflectance by which a device
+//! multiplies colours. A surface that faces away (c ≤ 0) has f = 0. Angles are in radians. Transcendental functions come from
+//! `libm`, so that every machine computes the same values.
 
 use std::f64::consts::FRAC_PI_2;
 
-/// Returns Blinn's function `cⁿ` itself (seeds 000–002), which all the others approximate.
+/// Returns Blinn's function `cⁿ` (device `blinn`), which the formulas of all other highlight devices approximate.
 ///
-/// `c` is the cosine of the angle between the normal and the half vector, `n` the exponent. For example, c = 0.5 and n = 2 give
-/// 0.25.
+/// `c` is the cosine of the angle γ between the surface normal and the half vector, and `n` the specular exponent. For example, c
+/// = 0.5 and n = 2 give 0.25.
 pub fn blinn(c: f64, n: f64) -> f64 {
     if c <= 0.0 { 0.0 } else { libm::pow(c, n) }
 }
 
-/// Returns the cosine of `γ + dγ`, or of `γ − dγ` when `dgamma_negative`, from `c = cos γ` and `cd = cos dγ`
-/// with both angles in 0 … 90°.
+/// Returns cos(γ + dγ), or cos(γ − dγ) if `dgamma_negative`. `c` is cos γ and `cd` is cos dγ; both angles are in 0 … 90°. The
+/// device `rough` tilts γ by dγ, the deviation of the normal on a rough surface.
 #[inline]
 pub fn turned_cosine(c: f64, cd: f64, dgamma_negative: bool) -> f64 {
     let sines = ((1.0 - c * c) * (1.0 - cd * cd)).max(0.0).sqrt();
@@ -33,9 +35,11 @@ fn rough_base(c: f64, cd: f64, dgamma_negative: bool, n: f64) -> f64 {
     n / 2.0 * (turned_cosine(c, cd, dgamma_negative) - 1.0) + 1.0
 }
 
-/// Returns the formula of UA 60139 (seed 001): `(n/2·(cos(γ ± dγ) − 1) + 1)²`, 0 where the base is negative.
+/// Returns the formula of the device `rough` (patent UA 60139, seed 001): `(n/2·(cos(γ ± dγ) − 1) + 1)²`, or 0 if the base is
+/// negative.
 ///
-/// `c = cos γ`, `cd = cos dγ`; `dgamma_negative` is trigger 4 (false: `cos(γ + dγ)`).
+/// `c` is cos γ and `cd` is cos dγ, where dγ is the deviation of the normal on a rough surface. `dgamma_negative` selects cos(γ −
+/// dγ), as trigger 4 in the patent's figure does; otherwise the formula uses cos(γ + dγ).
 #[inline]
 pub fn rough(c: f64, cd: f64, dgamma_negative: bool, n: f64) -> f64 {
     if c <= 0.0 {
@@ -45,8 +49,8 @@ pub fn rough(c: f64, cd: f64, dgamma_negative: bool, n: f64) -> f64 {
     base * base
 }
 
-/// Returns [`rough`] without the clamp of the base: the parabola rises again beyond its zero, and stays at 1 where it would
-/// exceed it.
+/// Returns the formula of [`rough`] without setting a negative base to 0: beyond its zero the parabola rises again. The result is
+/// limited to 1.
 #[inline]
 pub fn rough_unclamped(c: f64, cd: f64, dgamma_negative: bool, n: f64) -> f64 {
     if c <= 0.0 {
@@ -56,31 +60,34 @@ pub fn rough_unclamped(c: f64, cd: f64, dgamma_negative: bool, n: f64) -> f64 {
     (base * base).min(1.0)
 }
 
-/// Returns `(n/2·(c − 1) + 1)²`, or 0 if the base is negative. UA 30041 (seed 001) compares this value with its level.
+/// Returns the parabola `(n/2·(c − 1) + 1)²`, or 0 if the base is negative. The device `threshold` (UA 30041, cited in seed 001)
+/// compares this value with a level.
 #[inline]
 pub fn parabola(c: f64, n: f64) -> f64 {
     rough(c, 1.0, false, n)
 }
 
-/// Returns a reflectance where it reaches UA 30041's level of visibility, otherwise 0. For example, the level 0.5 makes 0 of
-/// 0.3.
+/// Returns `square` if it is at least `level`, otherwise 0. UA 30041 has such a level of visibility. For example, a level of
+/// 0.5 turns 0.3 into 0 and leaves 0.6 unchanged.
 #[inline]
 pub fn threshold(square: f64, level: f64) -> f64 {
     if square < level { 0.0 } else { square }
 }
 
-/// Returns the formula of US 5 739 820 (seed 000): `(1 − β·D²)^m`, 0 where β·D² is 1 or more, with D² = |N − H|².
+/// Returns the formula of the device `lyon` (US 5 739 820, cited in seed 000): `(1 − β·D²)^m`, or 0 if β·D² is 1 or more.
 ///
-/// `m` is a power of two; with β = n/(2·m) and unit vectors it is [`cosine_power`], save for surfaces that face away.
+/// `distance` is D² = |N − H|², the squared distance of the normal N and the half vector H. `m` is a power of two. If N and H are
+/// unit vectors and β = n/(2·m), the formula equals [`cosine_power`], except on surfaces that face away.
 #[inline]
 pub fn lyon(distance: f64, beta: f64, m: u32) -> f64 {
     let base = (1.0 - beta * distance).max(0.0);
     (0..m.ilog2()).fold(base, |power, _| power * power)
 }
 
-/// Returns the formula of UA 20998 (seed 001): `c + a·(c² − c)` with a = a(n), 0 where that is negative.
+/// Returns the formula of the device `quadratic` (UA 20998, cited in seed 001): `c + a·(c² − c)`, or 0 if that is negative.
 ///
-/// For a < 0, which no table has, it would exceed c. For example, c = 0.5 and a = 1 give 0.25.
+/// The coefficient a = a(n) depends on the exponent n and comes from a table; it is never negative. For example, c = 0.5 and a =
+/// 1 give 0.25.
 #[inline]
 pub fn quadratic(c: f64, a: f64) -> f64 {
     if c <= 0.0 {
@@ -89,9 +96,10 @@ pub fn quadratic(c: f64, a: f64) -> f64 {
     (c * (1.0 - a * (1.0 - c))).max(0.0)
 }
 
-/// Returns the paper's W (seed 002): `(n/m·(c − 1) + 1)^m`, 0 where the base is negative.
+/// Returns the formula of the device `cosine-power`, the function W of the paper (seed 002): `(n/m·(c − 1) + 1)^m`, or 0 if the
+/// base is negative.
 ///
-/// `m` is a power of two, 2 … 16 in the seed. For example, c = 0.5, n = 1 and m = 2 give 0.5625.
+/// `m` is a power of two; the paper uses 2 to 16. For example, c = 0.5, n = 1 and m = 2 give 0.5625.
 #[inline]
 pub fn cosine_power(c: f64, n: f64, m: u32) -> f64 {
     if c <= 0.0 {
@@ -101,8 +109,8 @@ pub fn cosine_power(c: f64, n: f64, m: u32) -> f64 {
     (0..m.ilog2()).fold(base, |power, _| power * power)
 }
 
-/// Returns the power k with which `quad-cosine` (seed 000) serves an exponent: 1, 2 and 4 for n = 1, n = 2 and
-/// n = 3 to 6, 16 for all others, 0 among them.
+/// Returns the power k that the device `quad-cosine` (seed 000) uses for the exponent `n`: 1 for n = 1, 2 for n = 2, 4 for n = 3
+/// to 6, and 16 for every other n, including 0.
 #[inline]
 pub fn quad_power(n: i64) -> u32 {
     match n {
@@ -123,8 +131,8 @@ fn lobe(angle: f64, k: u32) -> f64 {
     (0..k.ilog2()).fold(libm::cos(angle), |power, _| power * power)
 }
 
-/// Returns seed 000's `cosᵏ(√(n/k)·δ)`, with k of [`quad_power`]; δ in radians. 0 where `√(n/k)·δ` is a right angle or more, and
-/// where δ itself is beyond one: the surface faces away.
+/// Returns the formula of the device `quad-cosine` (seed 000): `cosᵏ(√(n/k)·δ)`, where [`quad_power`] gives k. `delta` is the
+/// angle δ in radians. The result is 0 if `√(n/k)·δ` or δ is beyond a right angle, since the surface then faces away.
 #[inline]
 pub fn quad_cosine(delta: f64, n: i64) -> f64 {
     if delta.abs() > FRAC_PI_2 {
@@ -134,14 +142,15 @@ pub fn quad_cosine(delta: f64, n: i64) -> f64 {
     lobe((n as f64 / f64::from(k)).sqrt() * delta, k)
 }
 
-/// Returns Abbas, Szirmay-Kalos and Horváth's `cos²(a·δ)` (seed 000) for the stretched angle `a·δ` in radians. It is 0 if the
-/// angle is a right angle or more.
+/// Returns the formula of the device `cosine-squared`: `cos²(a·δ)`. `stretched` is the product a·δ in radians, with a = √(n/2).
+/// The result is 0 if a·δ is a right angle or more. The source is the prototype cited in seed 000 (Abbas, Szirmay-Kalos and
+/// Horváth).
 #[inline]
 pub fn cosine_squared(stretched: f64) -> f64 {
     lobe(stretched, 2)
 }
 
-/// Returns the Gaussian of the angle (seed 002): `exp(−n·γ²/2)`, γ = arccos c.
+/// Returns the formula of the device `gauss` (seed 002): `exp(−n·γ²/2)` with the angle γ = arccos c.
 #[inline]
 pub fn gauss(c: f64, n: f64) -> f64 {
     if c <= 0.0 {
@@ -151,16 +160,16 @@ pub fn gauss(c: f64, n: f64) -> f64 {
     libm::exp(-n * gamma * gamma / 2.0)
 }
 
-/// Returns Schlick's function (seed 002): `c / (n − n·c + c)`, 0 where `c ≤ 0`, `n = 0` included. For example, c = 0.5 and
-/// n = 1 give 0.5.
+/// Returns the formula of the device `schlick` (seed 002): `c / (n − n·c + c)`, or 0 if `c ≤ 0`, also for n = 0. For example, c =
+/// 0.5 and n = 1 give 0.5.
 #[inline]
 pub fn schlick(c: f64, n: f64) -> f64 {
     // Near c = 1, n − n·c loses digits to cancellation, and n·(1 − c) does not.
     if c <= 0.0 { 0.0 } else { c / (n * (1.0 - c) + c) }
 }
 
-/// Returns seed 000's approximation with any power: `cosᵏ(√(n/k)·δ)`, δ in radians; 0 where `√(n/k)·δ` is a right angle or more.
-/// k = 2 is the prototype's `cos²(aδ)`.
+/// Returns the approximation of seed 000 for any power k: `cosᵏ(√(n/k)·δ)`, or 0 if `√(n/k)·δ` is a right angle or more. `delta`
+/// is the angle δ in radians. With k = 2 it is `cos²(a·δ)`, the formula of the device `cosine-squared`.
 #[inline]
 pub fn stretched_cosine(delta: f64, n: f64, k: u32) -> f64 {
     let angle = (n / f64::from(k)).sqrt() * delta.abs();

@@ -1,5 +1,7 @@
-//! The golden model and the accuracy contract of `function`: a formula of one operand, or the curve through samples,
-//! computed by a piecewise polynomial.
+//! The golden model and the accuracy contract of the device `function`, which computes y = g(x) for one operand x.
+//!
+//! A configuration states g as a formula, such as `sqrt(x)`, or as samples of a curve. The device approximates g by a piecewise
+//! polynomial: the operand selects a segment, and Horner's rule evaluates the segment's polynomial.
 
 use std::sync::Arc;
 
@@ -40,7 +42,7 @@ fn device(it: &Arc<Piecewise>) -> device::Device {
     frame.device(program.collect::<Vec<_>>()).domain("x", first, last)
 }
 
-/// Returns the golden model.
+/// Returns the golden model of the device `function` for a configuration.
 ///
 /// # Panics
 /// Panics if the check of the schema has not accepted the configuration. The caller must check it first.
@@ -48,7 +50,7 @@ pub fn model(config: &Config) -> Box<dyn Model> {
     device(&found(config).expect("a configuration that is checked").1).model()
 }
 
-/// Returns the accuracy contract.
+/// Returns the accuracy contract of the device `function` for a configuration.
 ///
 /// # Panics
 /// Panics as [`model`] does.

@@ -1,18 +1,20 @@
-//! The golden model and the accuracy contract of `gauss`: exp(−n·γ²/2) (seed 002).
+//! The golden model and the accuracy contract of the device `gauss`, which computes f = exp(−n·γ²/2).
 //!
-//! [`decay`] makes both: they compute 2^(−n·decay) with the decay γ²/(2 ln 2).
+//! γ = arccos c is the angle between the surface normal and the half vector; n is the specular exponent; f is the reflectance,
+//! the factor by which the device multiplies colours. The source is a paper (seed 002). The module [`decay`] makes both for
+//! `blinn` and `gauss`: they compute 2^(−n·decay), and the decay of `gauss` is γ²/(2 ln 2).
 
 use super::decay;
 use super::{Contract, Model};
 use glint_config::Config;
 use glint_keys::decay::Decay;
 
-/// Returns the golden model.
+/// Returns the golden model of the device `gauss` for a configuration.
 pub fn model(config: &Config) -> Box<dyn Model> {
     decay::model(config, Decay::Angle)
 }
 
-/// Returns the accuracy contract.
+/// Returns the accuracy contract of the device `gauss` for a configuration.
 pub fn contract(config: &Config) -> Box<dyn Contract> {
     decay::contract(config, Decay::Angle)
 }

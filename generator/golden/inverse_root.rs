@@ -1,5 +1,8 @@
-//! Computes the inverse root of a sum of squares by a table, as the golden models of `normaliser` and `dot-product` do,
-//! bounds its error, and computes the exact unit vector of a direction.
+//! Computes the inverse square root 1/√S of a sum of three squares S by a table, with a proven error bound.
+//!
+//! The golden models of the devices `normaliser` and `dot-product` use it to scale a vector to length 1. The sum is shifted by
+//! pairs of bits to a mantissa m from 1.0 to 4.0; the table interpolates 1/√m linearly. The module also computes the exact unit
+//! vector of a direction for their accuracy contracts.
 
 use super::Sweep;
 use glint_base::fixed::{exp2, mask};
@@ -7,19 +10,19 @@ use glint_base::fixed::{exp2, mask};
 /// The most that the sum of squares can be: each component is at least −2.0.
 const FARTHEST: i64 = 12;
 
-/// The inverse root of a sum of three squares, by a table.
+/// A table that gives the inverse square root of a sum of three squares.
 pub(super) struct Root {
-    /// Bits of the sum.
+    /// The number of bits of the sum.
     pub width: u32,
     address: u32,
     fraction: u32,
-    /// 1/√m at the ends of the segments, from m = 1.0 on, raw.
+    /// The raw values of 1/√m at the ends of the segments, from m = 1.0 to m = 4.0.
     ends: Vec<i64>,
 }
 
 impl Root {
-    /// Returns the table for components with `components` fraction bits: `address` leading bits of the sum choose a segment,
-    /// and an inverse root has `fraction` fraction bits.
+    /// Returns the table for vectors whose components have `components` fraction bits. The `address` leading bits of the mantissa
+    /// choose a segment; an inverse root has `fraction` fraction bits.
     pub fn new(components: u32, address: u32, fraction: u32) -> Self {
         let segments = 1i64 << address;
         let scale = exp2(fraction as i32);
@@ -30,7 +33,8 @@ impl Root {
         Self { width: 2 * components + 4, address, fraction, ends }
     }
 
-    /// Returns the pairs of leading zeros, as many as the shifter counts.
+    /// Returns the number of pairs of leading zeros of a sum. For 0 it returns the largest number that the shifter's count can
+    /// represent.
     pub fn pairs(&self, sum: i64) -> i64 {
         match sum {
             0 => (1 << self.pair_bits()) - 1,
@@ -38,7 +42,7 @@ impl Root {
         }
     }
 
-    /// Returns the bits of that count.
+    /// Returns the number of bits of the count that [`Self::pairs`] returns.
     pub fn pair_bits(&self) -> u32 {
         (self.width - 1).ilog2()
     }
@@ -48,7 +52,7 @@ impl Root {
         if sum == 0 { 0 } else { sum << (2 * pairs) }
     }
 
-    /// Returns 1/√m by the chord of the segment.
+    /// Returns the raw 1/√m of a mantissa m, interpolated linearly in its segment.
     pub fn inverse(&self, mantissa: i64) -> i64 {
         if mantissa == 0 {
             return 0;
@@ -80,12 +84,12 @@ impl Root {
         [chord, 4.0 * exp2(-(self.fraction as i32))]
     }
 
-    /// Returns every sum of squares, which determines the inverse root.
+    /// Returns the places of an exhaustive check: every sum of squares. The sum alone determines the inverse root.
     pub fn sweep(&self) -> Sweep {
         Sweep::ranges([("sum of squares", (1, FARTHEST << (self.width - 4)))])
     }
 
-    /// Returns |√m·r − 1| of a sum of squares.
+    /// Returns the relative error |√m·r − 1| of the inverse root r that the table gives for a sum with the mantissa m.
     pub fn relative_error(&self, sum: i64) -> f64 {
         let mantissa = self.mantissa(sum, self.pairs(sum));
         let root = (mantissa as f64 * exp2(2 - self.width as i32)).sqrt();

@@ -1,12 +1,14 @@
-//! The golden models and the accuracy contracts of the devices. A golden model is a second implementation of a device, from
-//! its formula and the source's narrative.
+//! The golden models and the accuracy contracts of the devices.
 //!
-//! A golden model uses only [`glint_base::fixed`] and [`glint_config`]. It never sees the description, the netlist or the
-//! microcode, and it computes its own tables. This independence makes the comparison with the simulated hardware meaningful.
-//! Four devices are exceptions. Description and golden model of `function`, `blinn` and `gauss` read the same polynomials
-//! ([`glint_keys::function`], [`glint_keys::decay`]). The comparison of every control operand with the formula checks these
-//! polynomials. Description and golden model of `expression` read the same plan ([`glint_plan`]), whose error against the
-//! formulas is proved.
+//! A golden model is a second implementation of a device, written from the formula and the text of its source; it predicts every
+//! register and output on every clock. An accuracy contract states the exact formula of the device and a proven bound on its
+//! error.
+//!
+//! A golden model uses only [`glint_base::fixed`] and [`glint_config`], and computes its own tables. It never sees the hardware
+//! description, the netlist or the microcode, so that an error in one of them shows as a difference in simulation. Four devices
+//! are exceptions. In `function`, `blinn` and `gauss` the description and the golden model read the same polynomials
+//! ([`glint_keys::function`], [`glint_keys::decay`]); an exhaustive comparison with the formula checks these polynomials. In
+//! `expression` both read the same plan ([`glint_plan`]), whose error against the formulas is proved.
 
 pub mod blinn;
 pub mod contract;
@@ -44,46 +46,48 @@ pub use highlight::Highlight;
 use glint_base::fixed::{Format, exp2};
 use glint_base::text;
 
-/// A clock-by-clock model of a device.
+/// A golden model of a device, which predicts every register and output clock by clock.
 ///
-/// Values are bit patterns. All state is zero before the first clock, as the built-in simulator's is.
-/// A run has many instances; tables are best shared among them (`Arc`).
+/// The values are bit patterns. All state is zero before the first clock, as in the built-in simulator. A simulation runs many
+/// copies of a model, so the copies should share large tables in an `Arc`.
 pub trait Model: CloneModel + Send + Sync {
     /// Returns the names of the inputs, in the order in which [`Model::clock`] takes them: `rst_n`, `start`,
     /// and `<operand>` and `<operand>_write` for each operand. The order is the model's own.
     fn inputs(&self) -> &[String];
 
-    /// Returns the names of everything predicted, in any order.
+    /// Returns the names of all signals that the model predicts, in any order.
     ///
-    /// Nothing that a device shows may be missing: the outputs (`valid`, `busy`, `done`, results and
-    /// flags); the sequencer's registers `run` and `word_address`; the register `<operand>_reg` of each
-    /// operand; and the registers and counters of the description by their names. Registers inside a
-    /// block (pipeline stages, synchronous ROMs) need not be there.
+    /// It must predict everything that a device shows: the outputs (`valid`, `busy`, `done`, results and flags); the sequencer's
+    /// registers `run` and `word_address`; the register `<operand>_reg` of each operand; and the registers and counters that the
+    /// description names. It may leave out registers inside a block, such as pipeline stages and synchronous ROMs.
     fn signals(&self) -> &[String];
 
-    /// Takes one rising edge. `inputs` are the values just before the edge. They must be in the order of [`Model::inputs`].
+    /// Performs one rising edge. `inputs` are the bit patterns of the inputs just before the edge, in the order of
+    /// [`Model::inputs`].
     fn clock(&mut self, inputs: &[u64]);
 
-    /// Returns the device at power-up with a register `<output>_reg` behind each result that is logic, loaded in the
-    /// microinstruction that was to set `valid`; one after it sets `valid`. Other outputs stay as they are.
+    /// Returns the model, in the state after power-up, of a variant of the device: each result that is combinational logic has a
+    /// register `<output>_reg` behind it. The microinstruction that raised `valid` loads these registers, and one more after it
+    /// raises `valid`. Other outputs do not change.
     ///
-    /// A device of a [`frame::Frame`] has it, unless it goes on by a condition from such a microinstruction; for any other
-    /// its author writes it, or there is none.
+    /// A model made from a [`frame::Frame`] has this variant, unless a condition decides what follows the microinstruction with
+    /// `valid`. Any other model has it only if its author wrote it; otherwise the result is `None`.
     fn with_output_registers(&self) -> Option<Box<dyn Model>> {
         None
     }
 
-    /// Returns the device at power-up with a register `<operand>_buffer` in front of each operand register. The environment
-    /// may write the buffers at any time. `start` loads the operand registers from the buffers; an operand that is written in
-    /// the same clock gets the new value. The last clock of a computation also accepts `start`, so that the next computation
-    /// follows at once.
+    /// Returns the model, in the state after power-up, of a variant of the device: each operand register has a register
+    /// `<operand>_buffer` in front. The environment may write the buffers at any time. `start` loads the operand registers from
+    /// the buffers; an operand that is written in the same clock gets the new value. The last clock of a computation also accepts
+    /// `start`, so that the next computation follows at once.
     ///
-    /// A device of a [`frame::Frame`] has this model. For any other device its author must write it, or there is none.
+    /// A model made from a [`frame::Frame`] has this variant. Any other model has it only if its author wrote it; otherwise the
+    /// result is `None`.
     fn with_operand_buffers(&self) -> Option<Box<dyn Model>> {
         None
     }
 
-    /// Returns the model of a [`frame::Frame`], which alone can be a part of another.
+    /// Returns the model if it was made from a [`frame::Frame`]. Only such a model can be a part of another one.
     fn clocked(&self) -> Option<&frame::ClockedModel> {
         None
     }
@@ -98,7 +102,7 @@ pub trait Model: CloneModel + Send + Sync {
     }
 }
 
-/// The clone of a [`Model`], which it has by being [`Clone`].
+/// Clones a boxed [`Model`]. Every model that implements [`Clone`] has it.
 pub trait CloneModel {
     /// Returns a copy, with the state that it has now.
     fn boxed_clone(&self) -> Box<dyn Model>;
@@ -119,13 +123,14 @@ impl Clone for Box<dyn Model> {
 /// An operand of a device as its accuracy contract sees it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Operand {
-    /// The input port.
+    /// The name of the input port.
     pub name: String,
-    /// Its format.
+    /// The format of the port.
     pub format: Format,
     /// The smallest and largest raw value for which the contract is stated.
     pub domain: (i64, i64),
-    /// A colour operand of a highlight multiplies `f`; the others determine it.
+    /// Whether this is a colour operand of a highlight device, which multiplies the reflectance `f`. The other operands determine
+    /// `f`.
     pub colour: bool,
     /// The meaning of the operand, in one line.
     pub doc: String,
@@ -134,16 +139,17 @@ pub struct Operand {
 /// An output of a device as its accuracy contract sees it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Output {
-    /// The output port.
+    /// The name of the output port.
     pub name: String,
-    /// Its format. Its unit, in which errors are stated, is the last place.
+    /// The format of the port. The weight of its last bit is the unit in which errors are stated.
     pub format: Format,
 }
 
-/// The accuracy contract of a device: each output is within a proven bound of a formula.
+/// The accuracy contract of a device: the exact formula of each output, and a proven bound on the difference of the output from
+/// it.
 ///
-/// It may have any number of outputs, with or without a sign. A device that multiplies by a reflectance has
-/// a [`Highlight`] for its contract.
+/// A device may have any number of outputs, signed or unsigned. A device that multiplies colours by a reflectance f uses a
+/// [`Highlight`] as its contract.
 pub trait Contract: Send + Sync {
     /// Returns the operands, in the order in which values are passed.
     fn operands(&self) -> &[Operand];
@@ -151,65 +157,69 @@ pub trait Contract: Send + Sync {
     /// Returns the outputs, in the order in which results are given.
     fn outputs(&self) -> &[Output];
 
-    /// Appends the raw outputs that the device computes from raw operands: of result number `index` (from 0), where a
-    /// computation has several. The operands must be in the order of [`Contract::operands`].
+    /// Appends the raw outputs that the device computes from raw operands, which must be in the order of [`Contract::operands`].
+    /// If a computation has several results, such as the points of a scan line, `index` is the number of the result, from 0.
     fn results(&self, operands: &[i64], index: u64, raw: &mut Vec<i64>);
 
-    /// Refuses a contract whose results are never shown.
+    /// Checks that the device shows its results at all.
     ///
     /// # Errors
-    /// Fails if the results are never shown. The error says why, with a remedy.
+    /// Fails if the device never shows its results. The error says why, with a remedy.
     fn check(&self) -> Result<(), String> {
         Ok(())
     }
 
-    /// Appends a pair of values for each output: the formula in f64, unrounded, at the raw (that is, quantised) operands.
-    /// Both values are normally the same. If the formula jumps and fixed point may come out on its other side, they are the
-    /// values on both sides. An error is measured from the nearer value. [`ANY_VALUE`] says that nothing is promised.
+    /// Appends the exact values of each output: the formula in f64, unrounded, at the values that the raw operands represent.
+    ///
+    /// There are two values for each output, normally equal. If the formula jumps and rounding may lead to either side of the
+    /// jump, they are the values on both sides, and an error is measured from the nearer one. [`ANY_VALUE`] means that the
+    /// contract promises nothing.
     fn exact(&self, operands: &[i64], index: u64, values: &mut Vec<[f64; 2]>);
 
-    /// Returns a proven bound on the error, stated before anything is simulated. One without terms is not stated:
-    /// `glint certify` may find one.
+    /// Returns a proven bound on the error, which is known before any simulation. A bound without terms is not stated; `glint
+    /// certify` may then find one.
     fn bound(&self) -> Bound;
 
-    /// Returns the formula of each output, as an expression of Python, as in
-    /// [`highlight::Reflectance::expressions`]; none where nobody wrote them. A [`Highlight`] has its own.
+    /// Returns the formula of each output as a Python expression ([`highlight::Reflectance::expressions`] has the rules), or
+    /// nothing if nobody has written them. A [`Highlight`] has its own.
     fn expressions(&self) -> Vec<String> {
         Vec::new()
     }
 
-    /// Returns the contract of a device that multiplies by a reflectance.
+    /// Returns the contract as a [`Highlight`] if the device multiplies colours by a reflectance f.
     fn highlight(&self) -> Option<&Highlight> {
         None
     }
 
-    /// Returns operands at which results say much: where the formula is steep, bends or ends. Half of the points of a test
-    /// are such points. `unit` gives numbers from 0 to below 1, drawn evenly. A value outside the domain is moved to its end.
+    /// Returns operands at which an error is likely to show: where the formula is steep, bends or ends. Half of the points of a
+    /// test are such points. `unit` returns random numbers from 0 to below 1. A value outside the domain is moved to the nearest
+    /// end of the domain.
     ///
-    /// `None`: points are drawn over the whole domain, its ends more often than the rest. The points of a [`Highlight`] are
-    /// drawn by the value of its formula.
+    /// With `None`, tests draw points from the whole domain, its ends more often than other values. For a [`Highlight`] they draw
+    /// points by the value of its formula.
     fn hint(&self, unit: &mut dyn FnMut() -> f64) -> Option<Vec<i64>> {
         let _ = unit;
         None
     }
 
-    /// Returns the operand that says how many results a computation has, when one does.
+    /// Returns the name of the operand that states how many results a computation has, if there is one. For example, it is
+    /// `length` in `quad-cosine`.
     fn length(&self) -> Option<&str> {
         None
     }
 
-    /// Returns the places of an exhaustive check: by default every combination of the operands.
+    /// Returns the cases of an exhaustive check. By default these are all combinations of the operands.
     fn sweep(&self) -> Sweep {
         Sweep::all(self.operands().iter())
     }
 
-    /// Returns the error at a place of the sweep: by default a place has the operands, and the error is the largest of an
-    /// output, in units.
+    /// Returns the error in one case of [`Contract::sweep`]. By default a case is a set of operands, and the error is the largest
+    /// error of any output, in units.
     fn sweep_error(&self, place: &[i64]) -> f64 {
         self.largest_error(place)
     }
 
-    /// Returns the bound of the error of one output, by its number, in units of its last place. It is never above
+    /// Returns the bound on the error of the output with this number, in units of the output's last bit. It never exceeds
     /// [`Contract::bound`].
     fn output_bound(&self, output: usize) -> f64 {
         let _ = output;
@@ -229,16 +239,16 @@ pub trait Contract: Send + Sync {
         errors.fold(0.0, f64::max)
     }
 
-    /// Returns facts about the formula itself that a user of this configuration should know, with figures. For example,
-    /// another choice of the same device may come closer to the function that it approximates in some part of the domain.
+    /// Returns remarks about the formula of this configuration for a user, with numbers. For example, a remark may say that
+    /// another configuration of the device comes closer to the function that it approximates.
     fn remarks(&self) -> Vec<String> {
         Vec::new()
     }
 }
 
-/// Returns the distance of `value` from the nearer of two right values. It is infinite if either is no finite number, since a
-/// formula without a value cannot confirm a result. Every value is right where the contract promises none, as [`ANY_VALUE`]
-/// says. For example, 2.5 is 0.5 away from the nearer of 2.0 and 4.0.
+/// Returns the distance of `value` from the nearer one of the two values in `right`; both are correct results. It is
+/// infinite if one of them is not finite, since a formula without a value cannot confirm a result. It is 0 if `right` is
+/// [`ANY_VALUE`]. For example, 2.5 is 0.5 away from the nearer of 2.0 and 4.0.
 #[inline]
 pub fn nearer(value: f64, right: [f64; 2]) -> f64 {
     let [a, b] = right.map(|right| (value - right).abs());
@@ -252,17 +262,17 @@ pub fn nearer(value: f64, right: [f64; 2]) -> f64 {
     }
 }
 
-/// In the place of the right values of an output for operands for which the contract promises nothing.
+/// The exact values of an output for operands for which the contract promises nothing: every value counts as correct.
 pub const ANY_VALUE: [f64; 2] = [f64::NEG_INFINITY, f64::INFINITY];
 
-/// The places that an exhaustive check visits: the product of its axes.
+/// The cases that an exhaustive check of a contract visits: every combination of the values on its axes.
 ///
-/// A device with too many operands for all combinations may name the values that determine the result (in a highlight, `f`).
-/// For example, an axis may be an intermediate word, if [`Contract::sweep_error`] takes the worst error over everything that
-/// rounds to it. An axis may also be a list of settings. `omits` must say which operands are left to random points.
+/// An axis is usually an operand. A device with too many combinations of operands may use intermediate values that determine the
+/// result as axes instead; [`Contract::sweep_error`] then returns the largest error over all operands that lead to them. An axis
+/// may also be a list of settings. `omits` says which operands the check leaves to random tests.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sweep {
-    /// The outermost first.
+    /// The axes, the outermost loop first.
     pub axes: Vec<Axis>,
     /// The operands that the sweep leaves out, in a sentence; empty when every combination is covered.
     pub omits: String,
@@ -271,9 +281,9 @@ pub struct Sweep {
 /// One axis of a [`Sweep`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct Axis {
-    /// The operand, or the value that replaces it.
+    /// The name of the operand, or of the intermediate value that replaces operands.
     pub name: String,
-    /// Its values.
+    /// The values that the check visits.
     pub values: Values,
 }
 
@@ -287,12 +297,12 @@ pub enum Values {
 }
 
 impl Sweep {
-    /// Makes the sweep of every combination of some operands.
+    /// Returns the sweep of every combination of values of these operands.
     pub fn all<'a>(operands: impl Iterator<Item = &'a Operand>) -> Self {
         Self::ranges(operands.map(|operand| (operand.name.as_str(), operand.domain)))
     }
 
-    /// Makes the sweep of every combination of values by name, each from the first to the last.
+    /// Returns the sweep of every combination of named values; each value runs from the first to the last number of its range.
     pub fn ranges<'a>(ranges: impl IntoIterator<Item = (&'a str, (i64, i64))>) -> Self {
         let axes = ranges.into_iter().map(|(name, (low, high))| Axis {
             name: name.to_owned(),
@@ -301,7 +311,8 @@ impl Sweep {
         Self { axes: axes.collect(), omits: String::new() }
     }
 
-    /// Returns its axes in a sentence. For example, two axes give `cos_gamma = 0 to 1048576 x exponent = 1 to 1000`.
+    /// Returns a sentence with the axes and their values. For example, two axes give `cos_gamma = 0 to 1048576 x exponent = 1 to
+    /// 1000`.
     pub fn words(&self) -> String {
         let axes: Vec<String> = self.axes.iter().map(Axis::to_string).collect();
         axes.join(" x ")
@@ -320,7 +331,7 @@ impl fmt::Display for Axis {
 }
 
 impl Values {
-    /// Returns how many.
+    /// Returns the number of values.
     pub fn count(&self) -> u64 {
         match self {
             Self::Range(low, high) => low.abs_diff(*high) + 1,
@@ -328,7 +339,7 @@ impl Values {
         }
     }
 
-    /// Returns value number `at`.
+    /// Returns value number `at`, counted from 0.
     #[inline]
     pub fn value(&self, at: u64) -> i64 {
         match self {
@@ -338,19 +349,18 @@ impl Values {
     }
 }
 
-/// A bound on the error of an output over the domain, and its contributions.
+/// A proven bound on the error of an output for all operands of the domain, with the contributions that add up to it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Bound {
     /// The bound on the quantity that a sweep measures: the error of `f` of a highlight, otherwise the error of an output, in
     /// units.
     pub f: f64,
-    /// The bound on the error of an output, in its units. A highlight states it for the largest colour operand.
+    /// The bound on the error of an output, in units of its last bit. A highlight states it for the largest colour operand.
     pub units: f64,
-    /// The accuracy contract is kept if `units` is below this limit, in units. It is 1, or the error that a configuration
-    /// allows.
+    /// The bound that the contract demands, in units: the contract is kept if `units` is below it. It is 1, or the error that the
+    /// configuration allows.
     pub limit: f64,
-    /// The contributions, in output units, each with the configuration key that governs it. They
-    /// add up to `units`.
+    /// The contributions, in units of the output, each with the configuration key that governs it. Their sum is `units`.
     pub terms: Vec<Term>,
 }
 
@@ -358,16 +368,16 @@ pub struct Bound {
 /// rounding of the colour outputs.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Term {
-    /// The configuration key that governs it.
+    /// The configuration key that governs the contribution.
     pub key: &'static str,
     /// The operation that rounds or approximates.
     pub what: &'static str,
-    /// Its share, in output units.
+    /// The size of the contribution, in units of the last bit of an output.
     pub units: f64,
 }
 
 impl Bound {
-    /// Makes the bound of a device that is no highlight: the sum of its terms; infinite without any.
+    /// Returns the bound of a device that is no highlight. It is the sum of the terms, or infinite if there are no terms.
     pub fn of(terms: Vec<Term>) -> Self {
         let sum: f64 = terms.iter().map(|term| term.units).sum();
         // A sum that is NaN limits nothing.
@@ -375,23 +385,23 @@ impl Bound {
         Self { f: units, units, limit: 1.0, terms }
     }
 
-    /// Returns the bound in units, or says that there is none. For example, `rough` has `0.969`.
+    /// Returns the bound in units as text, or says that no bound is stated. For example, `rough` has `0.969`.
     pub fn words(&self) -> String {
         if self.is_stated() { text::rounded_up(self.units, 3) } else { "not stated".to_owned() }
     }
 
-    /// Returns whether the accuracy contract is kept.
+    /// Returns whether the bound is small enough: whether `units` is below `limit`.
     pub fn keeps(&self) -> bool {
         self.units < self.limit
     }
 
-    /// Returns whether its author has stated one.
+    /// Returns whether the author of the device has stated a bound.
     pub fn is_stated(&self) -> bool {
         self.units.is_finite()
     }
 
-    /// Returns the largest contribution: the key to change first. For example, it is `output.rounding` for `rough`, with 0.5 of
-    /// 0.969 units.
+    /// Returns the largest contribution, whose key a user should change first to reduce the error. For example, it is
+    /// `output.rounding` for `rough`, with 0.5 of 0.969 units.
     pub fn limiting(&self) -> Option<&Term> {
         self.terms.iter().max_by(|a, b| a.units.total_cmp(&b.units))
     }

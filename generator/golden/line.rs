@@ -1,6 +1,8 @@
-//! Models the parts that the devices of seed 000 share: the walk along a scan line, and tables of powers of a cosine.
+//! Models two blocks that the devices `quad-cosine` and `cosine-squared` (seed 000) share: the accumulator that walks along a
+//! scan line and the table of powers of a cosine.
 //!
-//! Angles are in right angles: a raw value of `2^F` is 90°.
+//! The accumulator starts at the operand `zeta_start` and adds `delta_zeta` for every further point of the line. Angles are in
+//! right angles: with F fraction bits, the raw value 2^F is 90°.
 
 use std::f64::consts::FRAC_PI_2;
 
@@ -9,17 +11,18 @@ use super::contract::control;
 use super::frame::{Frame, FrameStep, Slot, idle, step};
 use glint_base::fixed::{Format, MAX_WIDTH, exp2};
 
-/// Returns the raw value of an angle operand that is nearest to `angle`, in radians, or the end of its domain. For example, π/4
-/// gives 32768 with 16 fraction bits.
+/// Returns the raw value of an angle operand that is nearest to `angle`, in radians, limited to the domain of the operand. For
+/// example, π/4 gives 32768 with 16 fraction bits.
 pub fn raw_angle(operand: &Operand, angle: f64) -> i64 {
     let (low, high) = operand.domain;
     let raw = operand.format.quantise(angle / FRAC_PI_2) as i64;
     raw.clamp(low, high)
 }
 
-/// Adds control block 14 with the accumulator: counter 5, adder 6, mux 7, register 8, and the operand registers that they use,
-/// with angles of `format`. Returns the slot of register 8, and the microinstructions; the outputs show a point `stages` clocks
-/// after the pulse on output 37.
+/// Adds the accumulator that walks along a scan line to `frame`: control block 14, counter 5, adder 6, mux 7 and register 8 of
+/// seed 000, and the operands `delta_zeta`, `zeta_start` and `length`. The angles have the format `format`. Returns the slot of
+/// register 8, the angle of the current point, and the microinstructions. The outputs show a point `stages` clocks after the
+/// pulse on output 37 (`write_angle`) that loads its angle.
 pub fn walker(
     frame: &mut Frame,
     format: Format,
@@ -69,19 +72,20 @@ fn wrapped(format: Format, raw: i64) -> i64 {
     raw << above >> above
 }
 
-/// Returns the angle of point number `index` of a line, as the accumulator holds it.
+/// Returns the angle of point number `index` of a line, wrapped to `format` as in the accumulator. `start` is the first angle and
+/// `delta` the step.
 #[inline]
 pub fn angle_at(format: Format, start: i64, delta: i64, index: u64) -> i64 {
     wrapped(format, start.wrapping_add(delta.wrapping_mul(index as i64)))
 }
 
-/// Returns the step of a line of `length` intervals from an angle to another; of none that given. For example, 3 intervals from
-/// 0 to 300 give 100.
+/// Returns the step with which a line of `length` intervals goes from the angle `first` to the angle `last`; `given` if `length`
+/// is 0. For example, 3 intervals from 0 to 300 give 100.
 pub fn interval(first: i64, last: i64, length: i64, given: i64) -> i64 {
     if length == 0 { given } else { (last - first) / length }
 }
 
-/// Returns the angle of the point `index` of a line, in right angles, as an expression of Python. For example, `s1.16` gives
+/// Returns a Python expression for the angle of point number `index` of a line, in right angles. For example, `s1.16` gives
 /// `((zeta_start + index * delta_zeta + 2) % 4 - 2)`.
 pub fn angle_expression(format: Format) -> String {
     let turn = exp2(format.width() as i32 - format.frac);
@@ -89,7 +93,8 @@ pub fn angle_expression(format: Format) -> String {
     format!("((zeta_start + index * delta_zeta + {half}) % {turn} - {half})")
 }
 
-/// Returns `delta_zeta` and `zeta_start` as the contract sees them: every value is in the domain.
+/// Returns the operands `delta_zeta` and `zeta_start` as an accuracy contract sees them, with every value of `format` in their
+/// domain.
 pub fn angle_operands(format: Format) -> [Operand; 2] {
     let domain = (format.min_raw() as i64, format.max_raw() as i64);
     let operand = |name: &str, doc: &str| control(name, format, domain, doc);
@@ -99,15 +104,16 @@ pub fn angle_operands(format: Format) -> [Operand; 2] {
     ]
 }
 
-/// Returns `length` as the contract sees it: every value is in the domain.
+/// Returns the operand `length` as an accuracy contract sees it, with every value of `length_bits` bits in its domain.
 pub fn length_operand(length_bits: u32) -> Operand {
     let format = length_format(length_bits);
     let doc = "intervals of the line: one less than its points";
     control("length", format, (0, format.max_raw() as i64), doc)
 }
 
-/// Returns the leading `kept` fraction bits of an angle's magnitude, complement for a negative one; `None` outside −90° ≤ angle
-/// < 90°. For example, with `fraction` 4 and `kept` 4, 5 gives 5, −6 gives 5, and 16 gives `None`.
+/// Returns the leading `kept` fraction bits of the magnitude of an angle, or `None` if the angle is not in −90° ≤ angle < 90°.
+/// The magnitude of a negative angle is its bitwise complement. For example, with `fraction` 4 and `kept` 4, 5 gives 5, −6 gives
+/// 5, and 16 gives `None`.
 #[inline]
 pub fn magnitude(angle: i64, fraction: u32, kept: u32) -> Option<i64> {
     let right = 1i64 << fraction;
@@ -121,21 +127,23 @@ pub fn magnitude(angle: i64, fraction: u32, kept: u32) -> Option<i64> {
 /// Values are computed in f64, and less off than this: a bound on errors has room for it.
 const SLACK: f64 = 1.0 / (1u64 << 40) as f64;
 
-/// ROM 12's table of `cosᵏ`: for each step the middle of the values at its ends; the last one 0.
+/// A table of `cosᵏ` over a right angle, ROM 12 of seed 000. The word of each step is the middle of the values of `cosᵏ` at both
+/// ends of the step; the last word is 0.
 #[derive(Clone, Debug)]
 pub struct CosineTable {
-    /// Raw words of `fraction` bits.
+    /// The raw words, as fractions of `fraction` bits.
     pub words: Vec<i64>,
-    /// How far the formula at the ends of a step is from the middle at most.
+    /// The largest distance of `cosᵏ` at the ends of a step from the middle of these two values.
     pub step: f64,
-    /// How far the formula at the ends of a step is from the step's word at most. This includes the rounding of the word.
+    /// The largest distance of `cosᵏ` at the ends of a step from the word of the step, which is rounded.
     pub total: f64,
-    /// The steepest slope, per right angle.
+    /// The largest slope of `cosᵏ`, as a difference per right angle.
     pub slope: f64,
 }
 
 impl CosineTable {
-    /// Makes the table of `cosᵏ`: k is a power of two; 2^`address` steps.
+    /// Returns the table of `cosᵏ` with 2^`address` steps, whose words have `fraction` fraction bits. k is `power`, a power of
+    /// two.
     pub fn new(power: u32, address: u32, fraction: u32) -> Self {
         let steps = 1u64 << address;
         let one = exp2(fraction as i32);

@@ -1,4 +1,8 @@
-//! The golden model and the accuracy contract of `lyon`: `max(0, 1 − β·D²)^m` from a difference vector (US 5 739 820).
+//! The golden model and the accuracy contract of the device `lyon`, which computes f = max(0, 1 − β·D²)^m.
+//!
+//! D = N − H is the difference of the unit normal N and the unit half vector H (operands `dx`, `dy`, `dz`); D² is its squared
+//! length; β = n/(2·m) with the specular exponent n; the configuration chooses m, a power of two; f is the reflectance, the
+//! factor by which the device multiplies colours. The source is the patent US 5 739 820, which seed 000 cites.
 
 mod contract;
 #[cfg(test)]
@@ -75,13 +79,13 @@ impl Keys {
 struct LyonArithmetic {
     keys: Keys,
     squarings: u32,
-    /// 1.0 in the point of f.
+    /// The value 1.0 as a raw value with the fraction bits of f.
     one: i64,
-    /// The largest word of the shift register.
+    /// The largest value of the shift register, which multiplies D² by a power of two.
     shifted_most: i64,
-    /// From the sum of the squares.
+    /// Rounds the sum of the squares to the register of D².
     distance: Narrow,
-    /// β·D², saturated below 2.0, from the product or the shift register's word.
+    /// Rounds β·D² from the product, or from the shift register, and limits it to less than 2.0.
     scaled: Narrow,
     square: Narrow,
 }
@@ -152,7 +156,7 @@ impl LyonArithmetic {
     }
 }
 
-/// Returns the golden model.
+/// Returns the golden model of the device `lyon` for a configuration.
 pub fn model(config: &Config) -> Box<dyn Model> {
     let it = Arc::new(LyonArithmetic::new(Keys::of(config)));
     let (keys, squarings) = (&it.keys, it.squarings);

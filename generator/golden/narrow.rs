@@ -1,16 +1,16 @@
-//! Rounds raw values to a format and saturates them. The constants of a conversion are computed beforehand.
+//! Rounds raw values to a format and saturates them.
 //!
-//! The golden models call it in their inner loop.
+//! Golden models do this in their inner loop, so [`Narrow`] computes the constants of a conversion once.
 
 use glint_base::fixed::{Format, Rounding};
 
-/// Brings raw values of a fixed number of fraction bits to one format, saturating.
+/// A conversion of raw values with a fixed number of fraction bits to one format. It rounds, and limits the result to the format.
 ///
-/// It computes [`Format::narrow`] with `Overflow::Saturate`, on `i64`. For example, from 3 fraction bits to a rounded `s0.1`
-/// the raw value 5 gives 1, and so does 12.
+/// It returns the same value as [`Format::narrow`] with `Overflow::Saturate`, but works on `i64`. For example, from 3 fraction
+/// bits to a rounded `s0.1` the raw value 5 gives 1, and so does 12.
 #[derive(Clone, Copy, Debug)]
 pub struct Narrow {
-    /// Added before the shift: half an ulp of the result, or 0.
+    /// The number that is added before the shift: half a unit in the last place of the result, or 0.
     half: i64,
     right: u32,
     left: u32,
@@ -19,7 +19,7 @@ pub struct Narrow {
 }
 
 impl Narrow {
-    /// Makes the conversion of values with `from_frac` fraction bits to `format`, which may be at most 63 bits wide.
+    /// Returns the conversion of values with `from_frac` fraction bits to `format`, which may be at most 63 bits wide.
     pub fn new(from_frac: u32, format: Format, rounding: Rounding) -> Self {
         let places = from_frac as i32 - format.frac;
         let right = places.max(0) as u32;
@@ -35,15 +35,15 @@ impl Narrow {
         }
     }
 
-    /// Returns the raw value of the result.
+    /// Returns the raw value in the new format.
     #[inline]
     pub fn apply(&self, raw: i64) -> i64 {
         (((raw + self.half) >> self.right) << self.left).clamp(self.min, self.max)
     }
 }
 
-/// Returns the largest error of rounding away fraction bits, in the value's own unit: from `from_frac` fraction bits to `frac`,
-/// saturation not counted. For example, 5 to 4 fraction bits give 1/16 if truncated, and 1/32 if rounded to the nearest.
+/// Returns an upper limit of the error, as a value, of a conversion from `from_frac` to `frac` fraction bits without saturation.
+/// For example, 5 to 4 fraction bits give 1/16 if truncated, and 1/32 if rounded to the nearest.
 pub fn rounding_error(from_frac: u32, frac: u32, rounding: Rounding) -> f64 {
     let ulp = glint_base::fixed::exp2(-(frac as i32));
     match rounding {

@@ -1,4 +1,7 @@
-//! The golden model and the accuracy contract of `normaliser`: the unit vector of a vector of any length.
+//! The golden model and the accuracy contract of the device `normaliser`, which computes the unit vector v/|v| of a vector v.
+//!
+//! v has any length and the components `x`, `y`, `z`. The device shifts v, interpolates 1/√(v·v) in a table, and multiplies each
+//! component by it. For example, v = (0, 0, 0.5) gives (0, 0, 1).
 
 use std::sync::Arc;
 
@@ -14,7 +17,7 @@ use glint_keys::normaliser::Keys;
 struct Normaliser {
     keys: Keys,
     root: Root,
-    /// To a result, from a shifted component times an inverse root.
+    /// Rounds a shifted component times the inverse root to a component of the unit vector.
     rounded: Narrow,
 }
 
@@ -89,12 +92,12 @@ fn device(config: &Config) -> device::Device {
     ])
 }
 
-/// Returns the golden model.
+/// Returns the golden model of the device `normaliser` for a configuration.
 pub fn model(config: &Config) -> Box<dyn Model> {
     device(config).model()
 }
 
-/// Returns the function that the device computes, and its error bound.
+/// Returns the accuracy contract of the device `normaliser`: the exact unit vector, and the proven bound of its error.
 pub fn contract(config: &Config) -> Box<dyn Contract> {
     device(config).contract(Normaliser::new(config))
 }

@@ -1,27 +1,28 @@
-//! Models the handshake of a pipeline clock by clock: which stage has which point, and when points move.
+//! Models which point each stage of a pipeline holds, clock by clock. A point is one set of operands, on its way to its results.
 
 use std::collections::VecDeque;
 
-/// The points in the stages of a pipeline, and when they move.
+/// The points in the stages of a pipeline.
 ///
-/// All points move on together. They do not while the last stage has one that is not taken. A point is
-/// taken when it is offered, all points move and the slot is 0: every `interval` clocks in which they move.
+/// At a rising edge either all points move to the next stage or none does. They stay if the last stage holds a point whose
+/// results nobody takes (`out_ready` is low). A pipeline with an interval of more than 1 accepts a new point only at every
+/// `interval`-th move.
 #[derive(Clone, Debug)]
 pub struct Occupancy<P> {
-    /// From stage 1 on; the last has the results.
+    /// The point of each stage, from stage 1 on, or `None`. The last stage has the results.
     stages: VecDeque<Option<P>>,
     interval: usize,
     slot: usize,
 }
 
 impl<P> Occupancy<P> {
-    /// Makes a pipeline of `latency` stages without any point, which takes one every `interval` clocks. For example, a point
-    /// that `empty(2, 1)` takes has its results on the outputs after two rising edges, the taking one included.
+    /// Returns an empty pipeline of `latency` stages that accepts a point every `interval` clocks. For example, the results of a
+    /// point that `empty(2, 1)` accepts are on the outputs after two rising edges, counting the edge that accepts the point.
     pub fn empty(latency: usize, interval: usize) -> Self {
         Self { stages: (0..latency).map(|_| None).collect(), interval, slot: 0 }
     }
 
-    /// Returns whether a point that is offered is taken: `in_ready`.
+    /// Returns whether the pipeline accepts a point that is offered now: the value of `in_ready`.
     pub fn takes(&self, out_ready: bool) -> bool {
         self.moves(out_ready) && self.slot == 0
     }
@@ -31,23 +32,24 @@ impl<P> Occupancy<P> {
         out_ready || self.last().is_none()
     }
 
-    /// Returns the point whose results are on the outputs; there is one exactly if `out_valid` is high.
+    /// Returns the point whose results are on the outputs. It is `None` exactly if `out_valid` is low.
     pub fn last(&self) -> Option<&P> {
         self.stages.back().and_then(Option::as_ref)
     }
 
-    /// Returns the point in a stage, which counts from 1.
+    /// Returns the point in a stage. Stages are numbered from 1.
     pub fn stage(&self, stage: usize) -> Option<&P> {
         self.stages.get(stage.checked_sub(1)?).and_then(Option::as_ref)
     }
 
-    /// Returns the points with their stages, from 1 on.
+    /// Returns every point in the pipeline with the number of its stage, from 1 on.
     pub fn points(&self) -> impl Iterator<Item = (usize, &P)> {
         let stages = self.stages.iter().enumerate();
         stages.filter_map(|(at, point)| point.as_ref().map(|point| (at + 1, point)))
     }
 
-    /// Performs a rising edge, and returns the point whose results were taken.
+    /// Performs a rising edge with `offered` as the offered point, if any. Returns the point whose results were taken at this
+    /// edge.
     pub fn clock(&mut self, rst_n: bool, offered: Option<P>, out_ready: bool) -> Option<P> {
         let taken = if self.moves(out_ready) {
             self.stages.push_front(offered.filter(|_| self.slot == 0));

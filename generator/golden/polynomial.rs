@@ -1,34 +1,34 @@
-//! Computes a piecewise polynomial in a golden model: by Horner's rule in integers, with a register for each sum.
+//! Evaluates a piecewise polynomial in a golden model by Horner's rule in integers. Each partial sum has a register.
 //!
-//! The hardware uses the same table of coefficients. The proof of the approximation checks this table: it compares
-//! the result of every operand with the formula.
+//! The golden models of `function`, `blinn` and `gauss` use it. They read the same table of coefficients as the hardware, because
+//! a proof checks this table: it compares the result of every operand with the formula.
 
 use std::sync::Arc;
 
 use super::frame::{Frame, Slot, State};
 use glint_approximate::Piecewise;
 
-/// The registers of a polynomial's sums.
+/// The registers of the partial sums of a piecewise polynomial in a golden model.
 pub struct Polynomial {
     it: Arc<Piecewise>,
-    /// The sums from each coefficient on, the polynomial first.
+    /// The slot of the partial sum from each coefficient on; the first is the whole polynomial.
     sums: Vec<Slot>,
 }
 
 impl Polynomial {
-    /// Gives a frame the registers, by these names, the polynomial's first.
+    /// Adds the registers of the partial sums to `frame`. `names` starts with the name of the register of the whole polynomial.
     pub fn new(frame: &mut Frame, names: &[&str], it: &Arc<Piecewise>) -> Self {
         let registers = names.iter().zip(&it.sums).take(it.degree().max(1));
         let sums = registers.map(|(name, format)| frame.register(name, *format)).collect();
         Self { it: it.clone(), sums }
     }
 
-    /// Returns the polynomial's register.
+    /// Returns the slot of the register with the value of the polynomial.
     pub fn q(&self) -> Slot {
         self.sums[0]
     }
 
-    /// Returns the operations of the steps, in their order. `raw` gives the raw operand of the table.
+    /// Returns the operations of Horner's rule in their order, one for each step. `raw` gives the raw operand of the polynomial.
     pub fn steps<R>(
         &self,
         raw: R,

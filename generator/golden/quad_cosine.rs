@@ -1,5 +1,9 @@
-//! The golden model and the accuracy contract of `quad-cosine` (seed 000, the claimed device): cosᵏ(√(n/k)·δ) along a
+//! The golden model and the accuracy contract of the device `quad-cosine`, which computes f = cosᵏ(√(n/k)·δ) for the points of a
 //! scan line.
+//!
+//! δ is the angle at a point of the line; n is the specular exponent, which decides whether k is 1, 2, 4 or 16; f is the
+//! reflectance, the factor by which the device multiplies an amplitude. f approximates cosⁿδ: for example, n = 4 gives k = 4 and
+//! exactly cos⁴δ. The source is seed 000, a patent that claims this device.
 
 mod contract;
 #[cfg(test)]
@@ -33,9 +37,9 @@ const POWERS: [i64; 4] = [1, 2, 4, 16];
 /// The arithmetic of the device, one operation a method.
 struct QuadCosineArithmetic {
     keys: Keys,
-    /// ROM 9, a word for each n.
+    /// The words of ROM 9, one for each n: the factor √(n/k).
     roots: Vec<i64>,
-    /// ROM 12, a table for each range of n.
+    /// The tables of cosᵏ in ROM 12, one for each k.
     tables: [CosineTable; 4],
 }
 
@@ -92,7 +96,7 @@ fn products(keys: &Keys) -> Products {
         .at_edges(keys.stages > 2)
 }
 
-/// Returns the golden model.
+/// Returns the golden model of the device `quad-cosine` for a configuration.
 pub fn model(config: &Config) -> Box<dyn Model> {
     let keys = Keys::of(config);
     let mut frame = Frame::default();

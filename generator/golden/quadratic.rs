@@ -1,4 +1,8 @@
-//! The golden model and the accuracy contract of `quadratic`: `c + a(n)·(c² − c)`, not below 0 (UA 20998).
+//! The golden model and the accuracy contract of the device `quadratic`, which computes f = max(0, c + a(n)·(c² − c)).
+//!
+//! c = cos γ, where γ is the angle between the surface normal and the half vector; n is the specular exponent; a(n) is a
+//! coefficient that the device reads from a table, ROM(n); f is the reflectance, the factor by which the device multiplies
+//! colours. The source is the patent UA 20998, which seed 001 cites.
 
 pub mod coefficient;
 #[cfg(test)]
@@ -20,10 +24,10 @@ use glint_keys::quadratic::{Keys, Scheme};
 struct QuadraticArithmetic {
     keys: Keys,
     difference: Narrow,
-    /// ROM(n), unrounded and as words.
+    /// The coefficients a(n) in ROM(n), as exact values and as raw words.
     exact: Vec<f64>,
     words: Vec<i64>,
-    /// Zeros to append to c and to the product, so that their points agree.
+    /// The numbers of zero bits that are appended to c and to the product, so that both have the same number of fraction bits.
     pads: (u32, u32),
     sum: Narrow,
 }
@@ -64,7 +68,7 @@ fn difference_format(fraction: u32) -> Format {
     Format::signed(-2, fraction as i32)
 }
 
-/// Returns the golden model.
+/// Returns the golden model of the device `quadratic` for a configuration.
 pub fn model(config: &Config) -> Box<dyn Model> {
     let it = Arc::new(QuadraticArithmetic::new(Keys::of(config)));
     let mut frame = Frame::default();
@@ -82,7 +86,7 @@ pub fn model(config: &Config) -> Box<dyn Model> {
     Box::new(products.behind(frame, intensity, program))
 }
 
-/// Returns the accuracy contract. Control operands: `cos_gamma`, `exponent`.
+/// Returns the accuracy contract of the device `quadratic`. Its control operands are `cos_gamma` and `exponent`.
 pub fn contract(config: &Config) -> Box<dyn Contract> {
     let it = QuadraticArithmetic::new(Keys::of(config));
     let operands = highlight::operands(&it.keys.operands, &it.keys.domain);

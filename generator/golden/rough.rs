@@ -1,6 +1,9 @@
-//! The golden model and the accuracy contract of `rough`: (n/2·(cos(γ ± dγ) − 1) + 1)² (UA 60139, seed 001).
+//! The golden model and the accuracy contract of the device `rough`, which computes f = (n/2·(cos(γ ± dγ) − 1) + 1)².
 //!
-//! The model follows the patent's narrative.
+//! γ is the angle between the surface normal and the half vector; dγ is the deviation of the normal on a rough surface; n is the
+//! specular exponent; f is the reflectance, the factor by which the device multiplies colours. The operands are cos γ and cos dγ,
+//! and a table gives the sines. The source is the patent UA 60139 (seed 001); the golden model follows the steps that the patent
+//! describes.
 
 mod analysis;
 mod bound;
@@ -124,7 +127,7 @@ struct RoughArithmetic {
 
 enum RoughBlocks {
     Exact {
-        /// 1.0 of registers 11 and 12, and of register 13.
+        /// 1.0 in the fraction bits of registers 11 and 12 (the products), and of register 13 (the base and its square).
         product_one: i64,
         result_one: i64,
         clamp: bool,

@@ -1,4 +1,8 @@
-//! The golden model and the accuracy contract of `schlick`: c / (n − n·c + c), c = cos γ (seed 002).
+//! The golden model and the accuracy contract of the device `schlick`, which computes f = c / (n − n·c + c).
+//!
+//! c = cos γ, where γ is the angle between the surface normal and the half vector; n is the specular exponent; f is the
+//! reflectance, the factor by which the device multiplies colours. This is Schlick's approximation of cⁿ; the source is a paper
+//! (seed 002). For example, c = 0.5 and n = 1 give 0.5.
 
 use super::contract::{self, ErrorShare};
 use super::frame::{Frame, idle, step};
@@ -37,10 +41,11 @@ fn products(keys: &Keys) -> Products {
         .in_turn(colours.in_turn())
 }
 
-/// Returns the golden model.
+/// Returns the golden model of the device `schlick` for a configuration.
 ///
-/// The divider's registers are predicted from the division as a whole. After k steps the quotient register ends in the first
-/// k bits of the true quotient, and the remainder register holds the remainder after these bits.
+/// The hardware divides one bit a clock; the model divides once and derives the divider's registers from that division. After k
+/// clocks the low bits of the quotient register are the first k bits of the quotient, and the remainder register holds the
+/// remainder after these bits.
 pub fn model(config: &Config) -> Box<dyn Model> {
     let it = SchlickArithmetic(Keys::of(config));
     let (bits, cosine_fraction) = (it.0.fraction, it.0.operands.cosine.fraction);
@@ -76,7 +81,7 @@ pub fn model(config: &Config) -> Box<dyn Model> {
     Box::new(products.behind(frame, quotient, program))
 }
 
-/// Returns the accuracy contract. Control operands: `cos_gamma`, `exponent`.
+/// Returns the accuracy contract of the device `schlick`. Its control operands are `cos_gamma` and `exponent`.
 pub fn contract(config: &Config) -> Box<dyn Contract> {
     let keys = Keys::of(config);
     let operands = highlight::operands(&keys.operands, &keys.domain);

@@ -1,8 +1,11 @@
-//! The golden model and the accuracy contract of `shading`: ambient, diffuse and specular light of a normal of any length.
+//! The golden model and the accuracy contract of the device `shading`, which computes a colour as
+//! ambient + Σ (diffuse·cos α + specular·f(cos γ)).
 //!
-//! `shading` is composed of other devices, its parts. Each light has three: a `dot-product` for its diffuse cosine, another for
-//! its specular cosine, and a highlight, such as `blinn` or a `function`. The golden model runs the models of the parts and sums
-//! the light. The contract combines the proved error bounds of the parts.
+//! The sum runs over the lights. α is the angle between the surface normal and the direction of a light, γ the angle between the
+//! normal and the half vector of the light; f is the highlight's formula, for example cⁿ with c = cos γ. `shading` consists of
+//! other devices, called its parts: for each light two `dot-product` devices compute the cosines from a normal of any length, and
+//! a highlight device such as `blinn` or `function` computes f. The golden model runs the golden models of the parts and adds
+//! their light. The contract combines the proved error bounds of the parts.
 
 use std::sync::Arc;
 
@@ -124,7 +127,7 @@ fn parts(keys: &Keys) -> PartConfigs {
     keys.parts().unwrap_or_else(|(part, _)| panic!("`{part}` is checked"))
 }
 
-/// Returns the golden model.
+/// Returns the golden model of the device `shading` for a configuration.
 ///
 /// # Panics
 /// Panics if the check of the schema has not accepted the configuration. The caller must check it first.
@@ -133,7 +136,7 @@ pub fn model(config: &Config) -> Box<dyn Model> {
     device(&keys, &parts(&keys)).model()
 }
 
-/// Returns the accuracy contract.
+/// Returns the accuracy contract of the device `shading` for a configuration.
 ///
 /// # Panics
 /// Panics as [`model`] does.
@@ -165,20 +168,20 @@ fn error(contract: &dyn Contract) -> f64 {
 
 /// The proved errors of the parts.
 struct PartErrors {
-    /// The error of the cosine between normal and light.
+    /// The error bound of the cosine between normal and light.
     facing: f64,
-    /// The error of the cosine between normal and half vector.
+    /// The error bound of the cosine between normal and half vector.
     cosine: f64,
-    /// The error of a colour's highlight, in units of a result.
+    /// The error bound of the highlight of a colour, in units of a result.
     highlight: f64,
-    /// How the highlight's formula follows the cosine.
+    /// How much the formula of the highlight changes with the cosine, if that is known.
     variation: Option<Variation>,
 }
 
 /// The formula.
 struct Shading {
     keys: Keys,
-    /// The contract of the highlight.
+    /// The accuracy contract of the highlight device, which is a part of `shading`.
     highlight: Box<dyn Contract>,
     errors: PartErrors,
 }

@@ -1,22 +1,25 @@
-//! Makes the sine table `x ↦ √(1 − x²)` of ROM 18, direct or in octave segments, independently of the hardware's table.
+//! Makes the table of sines of the device `rough`, ROM 18, for its golden model. The hardware description computes its own table.
 //!
-//! Operands are raw values with C fraction bits, 0 … 2^C; a sine is a raw u0.S.
+//! The table maps a cosine x to the sine √(1 − x²). It has one entry for each bucket of x, or straight segments that become
+//! shorter toward x = 1. x is a raw value with C fraction bits from 0 to 2^C; a sine has the format u0.S.
 
 use super::curve::{self, SegmentedCurve};
 use glint_base::fixed::exp2;
 
-/// The organisation of the sine table: an entry for each bucket of operands, or segments with linear interpolation.
+/// The organisation of the table of sines.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum TableScheme {
-    /// One entry per value of the `address` leading fraction bits of the operand.
+    /// One entry for each value of the `address` leading fraction bits of x. For example, 12 bits make 4096 entries.
     Direct {
-        /// Address bits, A.
+        /// The number A of address bits.
         address: u32,
     },
-    /// Ranges of `u = 1.0 − x`, each a quarter of the range before it, cut uniformly and interpolated linearly. The rest,
-    /// next to u = 0, has an entry for every operand.
+    /// Straight segments over u = 1.0 − x, interpolated linearly. The upper three quarters of the values of u are the first
+    /// range, the upper three quarters of the remaining quarter the second, and so on. Each range is cut into segments of equal
+    /// length; the values of u below all ranges have an entry each.
     Segmented {
-        /// log₂ of the number of prefixes in each range, k_j; a quarter of them lies below it.
+        /// log₂ of the number of prefixes (leading bits of u) in each range; a quarter of the prefixes belongs to the values
+        /// below the range.
         segments: Vec<u32>,
         /// Fraction bits of a slope, D; a slope is the rise over a whole segment.
         slope_fraction: u32,
@@ -26,27 +29,27 @@ pub enum TableScheme {
 /// The parameters of the sine table.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct SineParams {
-    /// Fraction bits of the operand, C.
+    /// The number C of fraction bits of the operand x.
     pub operand_fraction: u32,
-    /// Fraction bits of the sine, S.
+    /// The number S of fraction bits of the sine.
     pub fraction: u32,
     /// The organisation of the sine table.
     pub scheme: TableScheme,
 }
 
-/// A contiguous set of operands over which the table's error is bounded.
+/// A set of adjacent operands of the table, with the table's largest error among them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ErrorRange {
-    /// The smallest and largest operand, as cosines.
+    /// The smallest and the largest operand of the set, as cosines.
     pub cosines: (f64, f64),
-    /// The largest `|table − √(1 − x²)|` among its operands.
+    /// The largest `|table − √(1 − x²)|` among the operands of the set.
     pub error: f64,
-    /// The error that is left with words of unlimited width: how far a bucket's or a segment's sine is from
-    /// constant or straight.
+    /// The error that would remain if words had unlimited width: the distance of √(1 − x²) from the constant of the bucket, or
+    /// from the straight line of the segment.
     pub shape: f64,
 }
 
-/// The sine as the hardware computes it.
+/// The table of sines, as the golden model of `rough` reads it.
 #[derive(Clone, Debug)]
 pub struct Sine {
     operand_fraction: u32,
@@ -60,7 +63,8 @@ enum SineTable {
         address: u32,
         entries: Vec<i64>,
     },
-    /// A segmented table of u = 1.0 − x; the tail has an entry for each, so many of them.
+    /// A table of straight segments over u = 1.0 − x. `rest` is the number of values of u below all ranges, each with its own
+    /// entry.
     Segmented {
         curve: SegmentedCurve,
         rest: i64,
@@ -68,7 +72,7 @@ enum SineTable {
 }
 
 impl Sine {
-    /// Builds the table.
+    /// Returns the table with these parameters.
     pub fn new(params: &SineParams) -> Self {
         let (operand, fraction) = (params.operand_fraction, params.fraction);
         let table = match &params.scheme {
@@ -107,9 +111,8 @@ impl Sine {
         }
     }
 
-    /// Visits sets of operands that together are all of 0 … 2^C, with the error of each.
-    ///
-    /// A bucket's sine is monotonic, and so is worst at an end.
+    /// Calls `visit` with sets of adjacent operands that together contain every operand from 0 to 2^C, and with the error of each
+    /// set. The sine is monotonic in a bucket, so the error of a bucket is largest at one of its ends.
     pub fn for_each_piece(&self, mut visit: impl FnMut(ErrorRange)) {
         let operand = self.operand_fraction;
         let (one, ulp) = (1i64 << operand, exp2(-(self.fraction as i32)));

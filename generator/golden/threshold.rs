@@ -1,5 +1,9 @@
-//! The golden model and the accuracy contract of `threshold`: `(n/2·(cos γ − 1) + 1)²` where it reaches ROM(n),
-//! otherwise 0 (UA 30041).
+//! The golden model and the accuracy contract of the device `threshold`, which computes f = (n/2·(c − 1) + 1)² where that reaches
+//! a level.
+//!
+//! c = cos γ, where γ is the angle between the surface normal and the half vector; n is the specular exponent; f is the
+//! reflectance, the factor by which the device multiplies colours. f is 0 if the square is below the level of n, a word of the
+//! table ROM(n), since such a dark highlight is invisible. The source is the patent UA 30041, which seed 001 cites.
 
 #[cfg(test)]
 mod tests;
@@ -19,13 +23,14 @@ use glint_keys::threshold::Keys;
 /// The arithmetic of the device, one operation a method.
 struct ThresholdArithmetic {
     keys: Keys,
-    /// 1.0 as a base.
+    /// The value 1.0 in the fraction bits of the base.
     base_one: i64,
     scaled: Narrow,
     square: Narrow,
-    /// By octave of n.
+    /// The words of ROM(n), one for each octave of n.
     thresholds: Vec<i64>,
-    /// The distance from ROM(n) within which the comparison may have either outcome: the bound of f.
+    /// The largest error of the square. If the exact square is nearer to the level than this, the comparison may have either
+    /// outcome.
     margin: f64,
 }
 
@@ -89,7 +94,7 @@ impl ThresholdArithmetic {
     }
 }
 
-/// Returns the golden model.
+/// Returns the golden model of the device `threshold` for a configuration.
 pub fn model(config: &Config) -> Box<dyn Model> {
     let it = Arc::new(ThresholdArithmetic::new(Keys::of(config)));
     let mut frame = Frame::default();
@@ -106,7 +111,7 @@ pub fn model(config: &Config) -> Box<dyn Model> {
     Box::new(products.behind(frame, intensity, program))
 }
 
-/// Returns the accuracy contract. Control operands: `cos_gamma`, `exponent`.
+/// Returns the accuracy contract of the device `threshold`. Its control operands are `cos_gamma` and `exponent`.
 pub fn contract(config: &Config) -> Box<dyn Contract> {
     Box::new(highlight(ThresholdArithmetic::new(Keys::of(config))))
 }

@@ -1,5 +1,7 @@
-//! An HDL in Rust: a datapath with a microprogrammed control unit is described ([`dsl`]), becomes a [`netlist`], is simulated
-//! by rust_hdl ([`sim`]), made a [`pipeline`] of a point every clock, and written as [`verilog`].
+//! A hardware description language in Rust, for devices with a datapath and a microprogrammed control unit.
+//!
+//! A description in the language ([`dsl`]) becomes a [`netlist`]. A built-in simulator runs the netlist ([`sim`]), a scheduler
+//! turns it into a [`pipeline`] that accepts a point every clock, and an emitter writes it as [`verilog`]. For example:
 //!
 //! ```
 //! use glint_base::fixed::{Format, Overflow, Rounding};

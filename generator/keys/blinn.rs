@@ -1,11 +1,12 @@
-//! Declares the configuration keys of `blinn`: the keys of [`super::decay`], checked for the decay −log₂ c of this device.
+//! Declares the configuration keys of the device `blinn`, which computes cⁿ with c = cos γ. They are the keys of
+//! [`super::decay`], checked for the decay −log₂ c.
 
 pub use super::decay::Keys;
 
 use super::decay::{self, Decay};
 use glint_config::Schema;
 
-/// Returns the keys of the device.
+/// Returns the schema of the device `blinn`: its configuration keys, and the check of their combinations.
 pub fn schema() -> Schema {
     decay::schema("blinn", |config, problems| decay::check(config, Decay::Logarithm, problems))
 }

@@ -1,10 +1,11 @@
-//! Declares and checks configuration keys that several devices share, so that one name means one thing everywhere.
+//! Declares and checks configuration keys that several devices share, so that a key means the same in all of them. For example,
+//! `blinn` and `rough` both have the key `exponent.bits`, the width of the specular exponent n.
 
 use glint_base::fixed::{Format, Rounding, exp2};
 use glint_config::{Key, Problems};
 
 glint_config::keys! {
-    /// The operand cos γ.
+    /// The keys of the operand `cos_gamma`, the cosine of the angle γ between the surface normal and the half vector.
     pub struct Cosine {
         fraction: u32 = Key::integer("cosine.fraction", 20, 6..=24,
             "Fraction bits of the cosine operands; 1.0 is representable."),
@@ -14,28 +15,30 @@ glint_config::keys! {
 }
 
 impl Cosine {
-    /// Returns the format of cos γ. For example, `cosine.fraction = 20` gives `u1.20`, or `s1.20` with `cosine.signed`.
+    /// Returns the format of the operand `cos_gamma`. For example, `cosine.fraction = 20` gives `u1.20`, or `s1.20` with
+    /// `cosine.signed`.
     pub fn format(&self) -> Format {
         Format { signed: self.signed, int: 1, frac: self.fraction as i32 }
     }
 
-    /// Returns 1.0 as a raw cosine. For example, it is 1048576 for 20 fraction bits.
+    /// Returns the raw value of the cosine 1.0. For example, it is 1048576 for 20 fraction bits.
     pub fn one(&self) -> i64 {
         1 << self.fraction
     }
 
-    /// Returns an ulp of the cosine. For example, it is 2^−20 for `cosine.fraction = 20`.
+    /// Returns the weight of the last bit of a cosine (an ulp). For example, it is 2^−20 for `cosine.fraction = 20`.
     pub fn ulp(&self) -> f64 {
         exp2(-(self.fraction as i32))
     }
 
-    /// Returns a raw cosine as the register takes it. For example, a negative cosine becomes 0.
+    /// Returns the raw cosine that the operand's register loads for `raw`, limited to 0 … 1.0. For example, a negative cosine
+    /// becomes 0.
     #[inline]
     pub fn clamped(&self, raw: i64) -> i64 {
         raw.clamp(0, self.one())
     }
 
-    /// Returns its value.
+    /// Returns the value of a raw cosine, limited to 0 … 1.0.
     #[inline]
     pub fn value(&self, raw: i64) -> f64 {
         self.clamped(raw) as f64 * self.ulp()
@@ -43,7 +46,7 @@ impl Cosine {
 }
 
 glint_config::keys! {
-    /// The colours that f multiplies.
+    /// The keys of the colour operands, which the reflectance f multiplies.
     pub struct ColourKeys {
         bits: u32 = colour_bits(),
         multipliers: u32 = Key::choice("colour.multipliers", "3", &["1", "3"],
@@ -53,7 +56,7 @@ glint_config::keys! {
 }
 
 impl ColourKeys {
-    /// Returns whether one multiplier makes the products with all colours.
+    /// Returns whether one multiplier makes the products with all colours, one after the other.
     pub fn in_turn(&self) -> bool {
         self.multipliers == 1
     }
@@ -66,7 +69,7 @@ impl ColourKeys {
 }
 
 glint_config::keys! {
-    /// The operands of a device that has cos γ, n and colours.
+    /// The keys of the operands that most highlight devices have: cos γ, the specular exponent n, and the colours.
     pub struct Operands {
         cosine: Cosine = Cosine::keys(),
         exponent_bits: u32 = exponent_bits(),
@@ -75,7 +78,7 @@ glint_config::keys! {
 }
 
 impl Operands {
-    /// Returns the format of n. For example, `exponent.bits = 10` gives `u10.0`.
+    /// Returns the format of the operand `exponent`. For example, `exponent.bits = 10` gives `u10.0`.
     pub fn exponent_format(&self) -> Format {
         Format::unsigned(self.exponent_bits as i32, 0)
     }
@@ -92,7 +95,8 @@ impl Operands {
 }
 
 glint_config::keys! {
-    /// The reflectance f, and its products with the colours.
+    /// The keys of the reflectance f, the factor by which a highlight device multiplies colours, and of the roundings of f and of
+    /// the products.
     pub struct Intensity {
         fraction: u32 = intensity_fraction(16),
         rounding: Rounding = Key::rounding("intensity.rounding", "truncate",
@@ -102,7 +106,7 @@ glint_config::keys! {
 }
 
 impl Intensity {
-    /// Returns the format of f.
+    /// Returns the format of the reflectance f. For example, `intensity.fraction = 16` gives `u0.16`.
     pub fn format(&self) -> Format {
         Format::unsigned(0, self.fraction as i32)
     }
@@ -116,7 +120,7 @@ impl Intensity {
 }
 
 glint_config::keys! {
-    /// The exponents for which the contract is stated.
+    /// The keys of the specular exponents n for which a device's accuracy contract is stated.
     pub struct Domain {
         least: i64 = Key::integer("domain.exponent_min", 1, 0..=4095,
             "The smallest n for which the accuracy contract is stated."),
@@ -126,7 +130,7 @@ glint_config::keys! {
 }
 
 impl Domain {
-    /// Returns the smallest and the largest.
+    /// Returns the smallest and the largest exponent of the domain.
     pub fn exponents(&self) -> (i64, i64) {
         (self.least, self.most)
     }
@@ -138,12 +142,12 @@ impl Domain {
     }
 }
 
-/// Makes the key `exponent.bits`.
+/// Makes the key `exponent.bits`, the width of the specular exponent n.
 pub fn exponent_bits() -> Key {
     Key::integer("exponent.bits", 10, 1..=12, "Bits of the specular exponent n.")
 }
 
-/// Makes the key `power`.
+/// Makes the key `power`, the power m of the devices `cosine-power` and `lyon`.
 pub fn power() -> Key {
     Key::choice(
         "power",
@@ -153,12 +157,12 @@ pub fn power() -> Key {
     )
 }
 
-/// Makes the key `colour.bits`.
+/// Makes the key `colour.bits`, the width of a colour.
 pub fn colour_bits() -> Key {
     Key::integer("colour.bits", 8, 1..=12, "Bits of a colour operand, and of an output.")
 }
 
-/// Makes the key `intensity.fraction`.
+/// Makes the key `intensity.fraction`, the fraction bits of the reflectance f.
 pub fn intensity_fraction(default: i64) -> Key {
     Key::integer(
         "intensity.fraction",
@@ -168,12 +172,12 @@ pub fn intensity_fraction(default: i64) -> Key {
     )
 }
 
-/// Makes the key `output.rounding`.
+/// Makes the key `output.rounding`, the rounding of the outputs.
 pub fn output_rounding() -> Key {
     Key::rounding("output.rounding", "nearest", "Rounding of the colour outputs to integers.")
 }
 
-/// Makes the key `angle.fraction`.
+/// Makes the key `angle.fraction`, the fraction bits of an angle along a scan line.
 pub fn angle_fraction(default: i64) -> Key {
     Key::integer(
         "angle.fraction",
@@ -183,7 +187,7 @@ pub fn angle_fraction(default: i64) -> Key {
     )
 }
 
-/// Makes the key `table.address`.
+/// Makes the key `table.address`, the address bits of a table of cosines.
 pub fn table_address(default: i64) -> Key {
     Key::integer(
         "table.address",
@@ -193,7 +197,7 @@ pub fn table_address(default: i64) -> Key {
     )
 }
 
-/// Makes the key `length.bits`.
+/// Makes the key `length.bits`, the width of the length of a scan line.
 pub fn length_bits() -> Key {
     Key::integer(
         "length.bits",
@@ -203,7 +207,7 @@ pub fn length_bits() -> Key {
     )
 }
 
-/// Makes the key `line.stages`.
+/// Makes the key `line.stages`, the number of clocks from the angle of a point to its output.
 pub fn line_stages(choices: &'static [&'static str]) -> Key {
     Key::choice(
         "line.stages",
@@ -214,7 +218,8 @@ pub fn line_stages(choices: &'static [&'static str]) -> Key {
     .joined_later()
 }
 
-/// Checks that the domain of n is not empty and fits the operand. For example, `exponent.bits = 8` cannot hold n = 1000.
+/// Checks that the domain of the exponent n is not empty, and that the operand `exponent` of `bits` bits can represent it. For
+/// example, `exponent.bits = 8` cannot represent n = 1000.
 pub fn check_exponents(domain: &Domain, bits: u32, problems: &mut Problems) {
     let (min, max) = domain.exponents();
     if min > max {
@@ -231,8 +236,8 @@ pub fn check_exponents(domain: &Domain, bits: u32, problems: &mut Problems) {
 /// The number of bits that a ROM may have: a megabit.
 const ROM_LIMIT: i64 = 1 << 20;
 
-/// Checks that a ROM has at most 2^20 bits. For example, 15 address bits may have words of up to 32 bits. `key` governs its
-/// size.
+/// Checks that a ROM has at most 2^20 bits. For example, a ROM with 15 address bits may have words of up to 32 bits. The problem
+/// is reported under the key `key`, which governs the size.
 pub fn check_rom_size(
     key: &str,
     rom: &str,
@@ -248,9 +253,10 @@ pub fn check_rom_size(
     }
 }
 
-/// Checks that every range of `key` has the bits of 1 − cos that it is cut by. Range j has `bits` − 2·j of them, because each
-/// range is a quarter of the range before. Returns the largest number of bits that a segment keeps, up to the first range that
-/// has too few. For example, 20 bits and prefixes of 6 and 5 bits give 14.
+/// Checks the segments of a table over 1 − cos: range j of the table has `bits` − 2·j operand bits, because each range is a
+/// quarter of the range before, and the prefix that selects a segment may not have more. `key` gives the numbers of prefix bits.
+/// Returns the largest number of bits that a segment keeps, up to the first range that has too few. For example, 20 bits and
+/// prefixes of 6 and 5 bits give 14.
 pub fn check_segments(segments: &[u32], key: &str, bits: u32, problems: &mut Problems) -> u32 {
     let mut most = 0;
     for (range, &prefix) in (0u32..).zip(segments) {

@@ -1,11 +1,14 @@
-//! Declares the configuration keys of `cosine-squared`, and checks that their values make a device.
+//! Declares the configuration keys of the device `cosine-squared`, and checks that their values are valid together.
+//!
+//! `cosine-squared` computes f = cos²(a·δ) for the points of a scan line. For example, the key `angle.fraction` states the
+//! fraction bits of an angle.
 
 use super::common;
 use glint_base::fixed::{Format, Rounding};
 use glint_config::{Config, Key, Problems, Schema};
 
 glint_config::keys! {
-    /// The keys of a configuration.
+    /// The values of a configuration of the device `cosine-squared`, one field for each of its keys.
     pub struct Keys {
         angle_integer: u32 = Key::integer("angle.integer", 7, 1..=8,
             "Integer bits of the stretched angles, which are in right angles and signed."),
@@ -31,7 +34,7 @@ impl Keys {
     }
 }
 
-/// Returns the keys of the device.
+/// Returns the schema of the device `cosine-squared`: its configuration keys, and the check of their combinations.
 pub fn schema() -> Schema {
     Schema { device: "cosine-squared", keys: Keys::keys(), check }
 }

@@ -1,4 +1,7 @@
-//! Declares the configuration keys of `blinn` and `gauss`, and finds the tables of polynomials that they state.
+//! Declares the configuration keys of the devices `blinn` and `gauss`, and computes their tables of polynomials.
+//!
+//! Both devices compute f = 2^(−n·decay(c)), where c = cos γ and n is the specular exponent. The decay is −log₂ c in `blinn` and
+//! γ²/(2 ln 2) in `gauss`. One table gives the decay divided by the distance 1 − c, the other gives 2^−x.
 
 use std::sync::Arc;
 
@@ -9,7 +12,7 @@ use glint_config::{Config, Key, Problems, Schema, Value};
 use glint_formula::parse;
 
 glint_config::keys! {
-    /// The keys of a configuration.
+    /// The values of a configuration of the device `blinn` or `gauss`, one field for each of its keys.
     pub struct Keys {
         operands: Operands = Operands::keys(),
         ratio_fraction: u32 = Key::integer("ratio.fraction", 16, 5..=20,
@@ -38,7 +41,7 @@ fn degree(name: &'static str) -> Key {
     )
 }
 
-/// The decay as a function of c = cos γ.
+/// The decay of a device as a function of c = cos γ: the device computes f = 2^(−n·decay).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Decay {
     /// `blinn`: −log₂ c, for a cosine from one half on. Each octave below one half adds 1 to it.
@@ -56,8 +59,9 @@ impl Decay {
         }
     }
 
-    /// Returns the most that the decay over the distance rises for a rise of the distance: its slope at the last distance, since
-    /// it is convex. That is 1/(ln 2·(1 − v)·v) + log₂(1 − v)/v² at v = ½, and (π − π²/4)/(2 ln 2) at 1.
+    /// Returns the largest slope of the ratio decay/(1 − c) as a function of the distance v = 1 − c. The ratio is convex, so the
+    /// slope is largest at the largest distance: 1/(ln 2·(1 − v)·v) + log₂(1 − v)/v² at v = ½ in `blinn`, and (π − π²/4)/(2 ln 2)
+    /// at v = 1 in `gauss`.
     pub fn steepest(self) -> f64 {
         match self {
             Self::Logarithm => 1.771,
@@ -72,13 +76,13 @@ impl Decay {
 }
 
 impl Keys {
-    /// Returns the number of bits of u, the distance 1 − c less an ulp of the cosine. For example, a cosine of 20 fraction bits
-    /// has 19 of them in `blinn`, and 20 in `gauss`.
+    /// Returns the number of bits of u, which is the distance 1 − c less one unit in the last place of the cosine. For example,
+    /// for a cosine with 20 fraction bits u has 19 bits in `blinn` and 20 in `gauss`.
     pub fn distance(&self, decay: Decay) -> u32 {
         self.operands.cosine.fraction - decay.known()
     }
 
-    /// Returns the format of the decay, or of the part to which octaves are added. Its values are below 2.0. For example, the
+    /// Returns the format of the decay; in `blinn` of the decay without the octaves. Its values are below 2.0. For example, the
     /// default `decay.fraction = 26` gives `u1.26`.
     pub fn decay_format(&self) -> Format {
         Format::unsigned(1, self.decay_fraction as i32)
@@ -90,26 +94,26 @@ impl Keys {
         1 + octave * decay.known()
     }
 
-    /// Returns the number of bits of a decay as a factor. A small decay, below ¼, keeps all bits that are not 0. A larger
-    /// decay keeps the integer and the coarse fraction.
+    /// Returns the number of bits of the decay as a factor of n·decay. A decay below ¼ keeps all its bits; a larger one keeps its
+    /// integer bits and `decay.coarse_fraction` fraction bits.
     pub fn factor_bits(&self, decay: Decay) -> u32 {
         (self.decay_fraction - 2).max(self.whole_bits(decay) + self.coarse_fraction)
     }
 
-    /// Returns the format of n·decay. For example, the defaults of `gauss` give `u11.18`.
+    /// Returns the format of the product n·decay. For example, the defaults of `gauss` give `u11.18`.
     pub fn halvings(&self, decay: Decay) -> Format {
         let whole = self.operands.exponent_bits + self.whole_bits(decay);
         Format::unsigned(whole as i32, self.argument as i32)
     }
 
-    /// Returns the number of low bits of u that the table of the ratio does not read. The table reads one bit more of 1 − c
-    /// than the ratio has. For example, the defaults of 20 cosine and 16 ratio bits leave 3 of them.
+    /// Returns the number of low bits of u that do not address the table of the ratio, which reads one bit more of 1 − c than the
+    /// ratio has. For example, the defaults of 20 cosine bits and 16 ratio bits leave 3 bits.
     pub fn unseen(&self) -> u32 {
         self.operands.cosine.fraction.saturating_sub(self.ratio_fraction + 1)
     }
 
-    /// Returns the table of the decay over the distance. Its operand is u without the low bits that the table does not read.
-    /// Its value is the value in the middle of the distances that share an operand.
+    /// Returns the table of the ratio, the decay divided by the distance 1 − c. Its operand is u without the low bits that the
+    /// table does not read. Its value is the ratio at the middle of the distances that have the same operand.
     ///
     /// # Errors
     /// Fails if no approximation can be found. The error says why.
@@ -124,8 +128,8 @@ impl Keys {
         table(&formula, (last, of), self.ratio_fraction, &self.ratio_degree, "ratio.fraction")
     }
 
-    /// Returns the table of 2^−x for the fraction x of n·decay. Its value is the value in the middle of the fractions that
-    /// are cut to x.
+    /// Returns the table of 2^−x, where x is the fraction of n·decay. Its value is the power at the middle of the fractions that
+    /// are truncated to the same x.
     ///
     /// # Errors
     /// Fails if no approximation can be found. The error says why.

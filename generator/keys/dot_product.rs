@@ -1,11 +1,14 @@
-//! Declares the configuration keys of `dot-product`, and checks that their values make a device.
+//! Declares the configuration keys of the device `dot-product`, and checks that their values are valid together.
+//!
+//! `dot-product` computes the cosine between a vector of any length and a unit vector. For example, the key `two_sided` makes it
+//! |cos γ|.
 
 use super::normaliser;
 use glint_base::fixed::{Format, Rounding};
 use glint_config::{Config, Key, Problems, Schema};
 
 glint_config::keys! {
-    /// The keys of a configuration.
+    /// The values of a configuration of the device `dot-product`, one field for each of its keys.
     pub struct Keys {
         fraction: u32 = Key::integer("vector.fraction", 14, 2..=14,
             "Fraction bits of a component of the normal, s1.F, which need not be a unit vector."),
@@ -30,23 +33,23 @@ pub(super) fn two_sided() -> Key {
 }
 
 impl Keys {
-    /// Returns the fraction bits of a product of components.
+    /// Returns the number of fraction bits of the product of two components.
     pub fn products(&self) -> u32 {
         self.fraction + self.other
     }
 
-    /// Returns the format of the product of both vectors where the normal's length is from 1 to 2.
+    /// Returns the format of N·H, after N is shifted so that its length lies between 1 and 2.
     pub fn distance(&self) -> Format {
         Format::unsigned(1, self.factor as i32 - 1)
     }
 
-    /// Returns the format of the inverse of that length.
+    /// Returns the format of 1/|N|, after N is shifted so that its length lies between 1 and 2.
     pub fn shortened(&self) -> Format {
         Format::unsigned(0, self.factor as i32)
     }
 }
 
-/// Returns the keys of the device.
+/// Returns the schema of the device `dot-product`: its configuration keys, and the check of their combinations.
 pub fn schema() -> Schema {
     Schema { device: "dot-product", keys: Keys::keys(), check }
 }

@@ -1,4 +1,8 @@
-//! Declares the configuration keys of `expression`, and finds the plan of the formulas that they state.
+//! Declares the configuration keys of the device `expression`, and finds the plan of its formulas.
+//!
+//! The tables `operands`, `let` and `results` of a configuration state operands, named parts and formulas. For example, the
+//! result `r` has the formula `sqrt(x^2 + y^2)`. A plan is a list of fixed-point operations that computes the formulas
+//! ([`glint_plan`]).
 
 use std::ops::Range;
 use std::sync::Arc;
@@ -13,7 +17,7 @@ use glint_plan::{ExpressionStatement, ProvedPlan, StatedOperand, StatedResult, f
 use super::function::End;
 
 glint_config::keys! {
-    /// The keys of a configuration.
+    /// The values of a configuration of the device `expression`, one field for each of its keys.
     pub struct Keys {
         operands: TableEntries = Key::records("operands", &example_operands(), operand_fields(), None, 1..=8,
             "The operands, in the order of the ports. Each has a whole format, by bits, or a domain, by from and to."),
@@ -78,7 +82,7 @@ fn example_results() -> Vec<TableEntry> {
     vec![TableEntry::new("r", &fields)]
 }
 
-/// Returns the keys of the device.
+/// Returns the schema of the device `expression`: its configuration keys, and the check of their combinations.
 pub fn schema() -> Schema {
     Schema { device: "expression", keys: Keys::keys(), check }
 }
@@ -89,12 +93,12 @@ fn check(config: &Config, problems: &mut Problems) {
     }
 }
 
-/// An error of a key, with the bytes of the key's text that it is about.
+/// An error in a key of the device `expression`, with the place in the text of the key.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StatementError {
-    /// The error. Its key has the entry and the field, as `results.r.formula`.
+    /// The error. Its key names the entry and the field, for example `results.r.formula`.
     pub error: KeyError,
-    /// The bytes of the formula, if the error is about a place in it.
+    /// The range of bytes in the formula, if the error concerns a part of it.
     pub place: Option<Range<usize>>,
 }
 
@@ -109,7 +113,7 @@ impl StatementError {
     }
 }
 
-/// Returns the plan of the formulas that a configuration states, with proved errors.
+/// Returns the plan for the formulas of a configuration, with a proven bound for each result.
 ///
 /// # Errors
 /// Fails if an operand or a formula is wrong, or if there is no plan. The error says why.

@@ -1,4 +1,7 @@
-//! Declares the configuration keys of `function`, and finds the function that they state and its approximation.
+//! Declares the configuration keys of the device `function`, and finds the piecewise polynomial for its function.
+//!
+//! The keys state a function g of one operand x, as a formula such as `1 / sqrt(x)` or as samples; its domain; and the allowed
+//! error.
 
 use std::sync::Arc;
 
@@ -46,7 +49,7 @@ glint_config::keys! {
     }
 }
 
-/// Returns the keys of the device.
+/// Returns the schema of the device `function`: its configuration keys, and the check of their combinations.
 pub fn schema() -> Schema {
     Schema { device: "function", keys: Keys::keys(), check }
 }
@@ -70,7 +73,7 @@ fn check(config: &Config, problems: &mut Problems) {
     }
 }
 
-/// Returns the function that a configuration states, and its approximation.
+/// Returns the function that a configuration states, and the piecewise polynomial that approximates it.
 ///
 /// # Errors
 /// Fails if the formula or the domain is wrong, or if there is no approximation. The error says why.

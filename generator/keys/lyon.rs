@@ -1,4 +1,6 @@
-//! Declares the configuration keys of `lyon`, and checks that their values make a device.
+//! Declares the configuration keys of the device `lyon`, and checks that their values are valid together.
+//!
+//! `lyon` computes f = max(0, 1 − β·D²)^m from the difference D of normal and half vector. For example, the key `power` states m.
 
 use super::common::{self, ColourKeys, Domain, Intensity};
 use glint_base::fixed::Rounding;
@@ -15,7 +17,7 @@ glint_config::choices! {
 }
 
 glint_config::keys! {
-    /// The keys of a configuration.
+    /// The values of a configuration of the device `lyon`, one field for each of its keys.
     pub struct Keys {
         power: u32 = common::power(),
         scale: Scale = Key::choice("scale", "shift", Scale::WORDS,
@@ -48,7 +50,7 @@ impl Keys {
     }
 }
 
-/// Returns the keys of the device.
+/// Returns the schema of the device `lyon`: its configuration keys, and the check of their combinations.
 pub fn schema() -> Schema {
     Schema { device: "lyon", keys: Keys::keys(), check }
 }

@@ -1,10 +1,13 @@
-//! Declares the configuration keys of `normaliser`, and checks that their values make a device.
+//! Declares the configuration keys of the device `normaliser`, and checks that their values are valid together.
+//!
+//! `normaliser` computes the unit vector of a vector of any length. For example, the key `vector.fraction` states the fraction
+//! bits of a component.
 
 use glint_base::fixed::Rounding;
 use glint_config::{Config, Key, Problems, Schema};
 
 glint_config::keys! {
-    /// The keys of a configuration.
+    /// The values of a configuration of the device `normaliser`, one field for each of its keys.
     pub struct Keys {
         fraction: u32 = Key::integer("vector.fraction", 14, 2..=14,
             "Fraction bits of a component, s1.F."),
@@ -27,7 +30,7 @@ pub(super) fn inverse() -> Key {
     Key::integer("inverse.fraction", 20, 6..=24, "Fraction bits of the inverse root, u1.R.")
 }
 
-/// Returns the keys of the device.
+/// Returns the schema of the device `normaliser`: its configuration keys, and the check of their combinations.
 pub fn schema() -> Schema {
     Schema { device: "normaliser", keys: Keys::keys(), check }
 }

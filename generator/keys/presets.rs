@@ -1,17 +1,19 @@
-//! Holds configurations to start from: of `function` by the name of the function (`exp2`, `sqrt`, `sigmoid`, …), and of
-//! `expression` by the thing computed (`divide`, `polar`, `rotate`, …).
+//! Lists the configurations from which a user can start, by name.
+//!
+//! For the device `function` a name is a function, such as `exp2`, `sqrt` or `sigmoid`. For the device `expression` it is a
+//! computation, such as `divide`, `polar` or `rotate`. A preset states some keys of the device; the others have their defaults.
 
 use glint_config::{TableEntries, TableEntry, Value};
 
-/// The device of the formulas of one operand.
+/// The name of the device that computes a function of one operand.
 pub const FUNCTION: &str = "function";
 
-/// A configuration to start from.
+/// A named configuration from which a user can start.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Preset {
-    /// The device that it is a configuration of.
+    /// The name of the device.
     pub device: &'static str,
-    /// The values of some keys. The others have their defaults.
+    /// The keys that the preset states, with their values. The other keys have their defaults.
     pub values: Vec<(String, Value)>,
 }
 
@@ -45,7 +47,8 @@ struct ExpressionPreset {
     name: &'static str,
     operands: &'static [(&'static str, OperandFormat)],
     parts: &'static [(&'static str, &'static str)],
-    /// The name, the formula, the fraction bits, and the condition of the promise or nothing.
+    /// The results: the name, the formula, the fraction bits, and the condition under which the error bound holds (empty for
+    /// always).
     results: &'static [(&'static str, &'static str, i64, &'static str)],
 }
 
@@ -124,18 +127,18 @@ const EXPRESSIONS: [ExpressionPreset; 10] = [
     },
 ];
 
-/// Returns all names.
+/// Returns the names of all presets.
 pub fn names() -> impl Iterator<Item = &'static str> {
     names_of_functions().chain(EXPRESSIONS.iter().map(|preset| preset.name))
 }
 
-/// Returns the names of the configurations of `function`.
+/// Returns the names of the presets for the device `function`.
 pub fn names_of_functions() -> impl Iterator<Item = &'static str> {
     FUNCTIONS.iter().map(|preset| preset.0)
 }
 
-/// Returns the configuration of a name. For example, `sqrt` is one of `function`, with `function.formula = "sqrt(x)"`,
-/// `function.to = "256"` and five more.
+/// Returns the preset with this name. For example, `sqrt` is a preset for the device `function`, with `function.formula =
+/// "sqrt(x)"`, `function.to = "256"` and five more keys.
 pub fn find(name: &str) -> Option<Preset> {
     if let Some(preset) = FUNCTIONS.iter().find(|preset| preset.0 == name) {
         return Some(Preset { device: FUNCTION, values: of_function(preset) });

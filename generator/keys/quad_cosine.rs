@@ -1,11 +1,14 @@
-//! Declares the configuration keys of `quad-cosine`, and checks that their values make a device.
+//! Declares the configuration keys of the device `quad-cosine`, and checks that their values are valid together.
+//!
+//! `quad-cosine` computes f = cosᵏ(√(n/k)·δ) for the points of a scan line. For example, the key `exponent.bits` states the width
+//! of n.
 
 use super::common::{self, Domain};
 use glint_base::fixed::{Format, Rounding};
 use glint_config::{Config, Key, Problems, Schema};
 
 glint_config::keys! {
-    /// The keys of a configuration.
+    /// The values of a configuration of the device `quad-cosine`, one field for each of its keys.
     pub struct Keys {
         angle_fraction: u32 = common::angle_fraction(26),
         angle_multiplied: u32 = Key::integer("angle.multiplied", 17, 4..=24,
@@ -35,7 +38,7 @@ impl Keys {
     }
 }
 
-/// Returns the keys of the device.
+/// Returns the schema of the device `quad-cosine`: its configuration keys, and the check of their combinations.
 pub fn schema() -> Schema {
     Schema { device: "quad-cosine", keys: Keys::keys(), check }
 }

@@ -1,4 +1,6 @@
-//! Declares the configuration keys of `quadratic`, and checks that their values make a device.
+//! Declares the configuration keys of the device `quadratic`, and checks that their values are valid together.
+//!
+//! `quadratic` computes f = max(0, c + a(n)·(c² − c)) with c = cos γ.
 
 use super::common::{self, Domain, Intensity, Operands};
 use glint_base::fixed::Rounding;
@@ -15,7 +17,7 @@ glint_config::choices! {
 }
 
 glint_config::keys! {
-    /// The keys of a configuration.
+    /// The values of a configuration of the device `quadratic`, one field for each of its keys.
     pub struct Keys {
         scheme: Scheme = Key::choice("coefficient.scheme", "minimax", Scheme::WORDS,
             "ROM(n) holds a(n) = n - 1, which agrees with cos^n to the slope at its peak, or the a(n) whose largest error is least."),
@@ -38,7 +40,7 @@ impl Keys {
     }
 }
 
-/// Returns the keys of the device.
+/// Returns the schema of the device `quadratic`: its configuration keys, and the check of their combinations.
 pub fn schema() -> Schema {
     Schema { device: "quadratic", keys: Keys::keys(), check }
 }

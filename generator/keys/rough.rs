@@ -1,11 +1,14 @@
-//! Declares the configuration keys of `rough`, and checks which of their combinations make a device.
+//! Declares the configuration keys of the device `rough`, and checks which of their combinations are valid.
+//!
+//! `rough` computes f = (n/2·(cos(γ ± dγ) − 1) + 1)². For example, the key `sine.scheme` chooses the organisation of its table of
+//! sines, ROM 18.
 
 use super::common::{self, Domain, Intensity, Operands};
 use glint_base::fixed::Rounding;
 use glint_config::{Config, Key, Problems, Schema};
 
 glint_config::choices! {
-    /// How sums and products are kept.
+    /// The number system in which `rough` computes its sums and products.
     pub enum ArithmeticMode {
         /// With integer bits and signs.
         Exact = "exact",
@@ -15,7 +18,7 @@ glint_config::choices! {
 }
 
 glint_config::choices! {
-    /// How ROM 18 is organised.
+    /// The organisation of ROM 18, the table of sines.
     pub enum RomLayout {
         /// Ranges that shrink toward cos = 1, in straight segments.
         Segmented = "segmented",
@@ -25,7 +28,7 @@ glint_config::choices! {
 }
 
 glint_config::keys! {
-    /// The keys of a configuration.
+    /// The values of a configuration of the device `rough`, one field for each of its keys.
     ///
     /// In the patent's arithmetic all words have `cosine.fraction` bits; `cosine.signed`, `clamp`,
     /// `product.*`, `intensity.*` and `sine.fraction` do not apply.
@@ -71,13 +74,13 @@ fn exact_of(keys: Vec<Key>, names: &[&str]) -> Vec<Key> {
 }
 
 impl Keys {
-    /// Returns whether numbers are kept as the patent does.
+    /// Returns whether the configuration asks for the arithmetic of the patent UA 60139.
     pub fn patent(&self) -> bool {
         self.arithmetic == ArithmeticMode::Patent
     }
 }
 
-/// Returns the keys of the device.
+/// Returns the schema of the device `rough`: its configuration keys, and the check of their combinations.
 pub fn schema() -> Schema {
     Schema { device: "rough", keys: Keys::keys(), check }
 }

@@ -1,11 +1,13 @@
-//! Declares the configuration keys of `schlick`, and checks that their values make a device.
+//! Declares the configuration keys of the device `schlick`, and checks that their values are valid together.
+//!
+//! `schlick` computes f = c / (n − n·c + c) with c = cos γ. For example, the key `exponent.bits` states the width of n.
 
 use super::common::{self, Domain, Operands};
 use glint_base::fixed::{Format, Rounding};
 use glint_config::{Config, Key, Problems, Schema};
 
 glint_config::keys! {
-    /// The keys of a configuration.
+    /// The values of a configuration of the device `schlick`, one field for each of its keys.
     pub struct Keys {
         operands: Operands = Operands::keys(),
         fraction: u32 = Key {
@@ -25,7 +27,7 @@ impl Keys {
     }
 }
 
-/// Returns the keys of the device.
+/// Returns the schema of the device `schlick`: its configuration keys, and the check of their combinations.
 pub fn schema() -> Schema {
     Schema { device: "schlick", keys: Keys::keys(), check }
 }

@@ -1,4 +1,7 @@
-//! Declares the configuration keys of `shading`, and derives the configurations of its parts from them.
+//! Declares the configuration keys of the device `shading`, and derives the configurations of its parts from them.
+//!
+//! `shading` computes colours from a normal, lights and a material. Its parts are other devices: `dot-product` for the cosines,
+//! and a highlight device such as `blinn`.
 
 use super::common;
 use super::{blinn, cosine_power, dot_product, function, gauss, quadratic, schlick, threshold};
@@ -6,7 +9,7 @@ use glint_base::fixed::Format;
 use glint_config::{Config, Key, Problems, Schema, TextPattern, Value};
 
 glint_config::choices! {
-    /// The device that makes the highlight of a cosine.
+    /// The device that computes the highlight from the cosine c = cos γ and the specular exponent n.
     pub enum HighlightDevice {
         /// W(n, γ).
         CosinePower = "cosine-power",
@@ -26,7 +29,7 @@ glint_config::choices! {
 }
 
 glint_config::keys! {
-    /// The keys of a configuration.
+    /// The values of a configuration of the device `shading`, one field for each of its keys.
     pub struct Keys {
         highlight: HighlightDevice = Key::choice("highlight", "cosine-power", HighlightDevice::WORDS,
             "The device that makes the highlight of the cosine."),
@@ -52,7 +55,7 @@ glint_config::keys! {
     }
 }
 
-/// Returns the keys of the device.
+/// Returns the schema of the device `shading`: its configuration keys, and the check of their combinations.
 pub fn schema() -> Schema {
     Schema { device: "shading", keys: Keys::keys(), check }
 }
@@ -98,48 +101,51 @@ const FORMULA: &str = "function.formula";
 /// The suffixes of the operands of each light.
 const SUFFIXES: [&str; 4] = ["", "2", "3", "4"];
 
-/// The configurations of the parts.
+/// The configurations of the devices that are the parts of `shading`.
 pub struct PartConfigs {
-    /// The part that computes the cosine between normal and light.
+    /// The `dot-product` that computes the cosine between the normal and the light.
     pub facing: Config,
-    /// The part that computes the cosine between normal and half vector.
+    /// The `dot-product` that computes the cosine between the normal and the half vector.
     pub cosine: Config,
-    /// The part that computes the highlight.
+    /// The device that computes the highlight.
     pub highlight: Config,
 }
 
 impl Keys {
-    /// Returns the format of a component of the normal.
+    /// Returns the format of a component of the normal vector.
     pub fn normal_format(&self) -> Format {
         Format::signed(1, self.normal as i32)
     }
 
-    /// Returns the format of a component of the light and the half vector.
+    /// Returns the format of a component of the light vector and of the half vector.
     pub fn light_format(&self) -> Format {
         Format::signed(1, self.light as i32)
     }
 
-    /// Returns the format of a coefficient of the material, and of a result.
+    /// Returns the format of a material coefficient and of a result. For example, `colour.bits = 8` gives `u8.0`.
     pub fn colour_format(&self) -> Format {
         Format::unsigned(self.colour_bits as i32, 0)
     }
 
-    /// Returns the format of n.
+    /// Returns the format of the operand `exponent`.
     pub fn exponent_format(&self) -> Format {
         Format::unsigned(self.exponent_bits as i32, 0)
     }
 
-    /// Returns the fraction bits of a highlight in units of a result, as far as its colours have bits.
+    /// Returns the number of extra low bits that the highlight computes beyond the bits of a result, as far as its colour
+    /// operands have room.
     pub fn guard(&self) -> u32 {
         (12 - self.colour_bits).min(4)
     }
 
-    /// Returns the fraction bits of the cosine between normal and light, whose slope in a colour is the smaller.
+    /// Returns the number of fraction bits of the cosine between normal and light. It needs fewer than the cosine of the
+    /// highlight, because a colour changes less with it.
     pub fn facing(&self) -> u32 {
         self.cosine.min(self.colour_bits + 6)
     }
 
-    /// Returns the smallest n for which the accuracy contract is stated: below it the formula jumps at a right angle.
+    /// Returns the smallest exponent n for which the accuracy contract is stated. For a smaller n the highlight's formula jumps
+    /// at a right angle.
     pub fn least(&self) -> i64 {
         match self.highlight {
             HighlightDevice::CosinePower => self.power.into(),
@@ -149,17 +155,17 @@ impl Keys {
         }
     }
 
-    /// Returns whether the highlight has an exponent.
+    /// Returns whether the highlight device has an operand `exponent`. The device `function` has none.
     pub fn has_exponent(&self) -> bool {
         self.highlight != HighlightDevice::Function
     }
 
-    /// Returns the suffix of the operands and parts of each light.
+    /// Returns the suffixes that the names of operands and parts have, one for each light.
     pub fn suffixes(&self) -> impl Iterator<Item = &'static str> + use<> {
         SUFFIXES.into_iter().take(self.lights as usize)
     }
 
-    /// Returns the parts.
+    /// Returns the configurations of the parts.
     ///
     /// # Errors
     /// Fails if a part refuses its configuration. The error names the part and says why.

@@ -1,10 +1,13 @@
-//! Declares the configuration keys of `threshold`, and checks that their values make a device.
+//! Declares the configuration keys of the device `threshold`, and checks that their values are valid together.
+//!
+//! `threshold` computes f = (n/2·(cos γ − 1) + 1)², or 0 below a level of visibility. For example, the key `visibility.levels`
+//! states the levels.
 
 use super::common::{self, Domain, Intensity, Operands};
 use glint_config::{Config, Key, Problems, Schema};
 
 glint_config::keys! {
-    /// The keys of a configuration.
+    /// The values of a configuration of the device `threshold`, one field for each of its keys.
     pub struct Keys {
         operands: Operands = Operands::keys(),
         f: Intensity = Intensity::keys(),
@@ -14,7 +17,7 @@ glint_config::keys! {
     }
 }
 
-/// Returns the keys of the device.
+/// Returns the schema of the device `threshold`: its configuration keys, and the check of their combinations.
 pub fn schema() -> Schema {
     Schema { device: "threshold", keys: Keys::keys(), check }
 }

@@ -1,7 +1,7 @@
-//! Shares the allowed error out among the places where a plan rounds.
+//! Distributes the allowed error of an expression among the operations of its plan that round.
 //!
-//! Each place begins with few fraction bits. The place with the largest share of the error gets a bit more, until every
-//! result keeps its error. Bits that turn out not to be needed are taken away again.
+//! Each such operation starts with few fraction bits. The operation with the largest share of the error gets one more bit, until
+//! every result is within its allowed error. Afterwards the module removes bits that are not needed.
 
 use super::boxes::{BoxError, ResultProof};
 use super::lower::{FoundPolynomials, Guards, lowered};
@@ -65,7 +65,7 @@ fn with_guards(
 /// A result that does not keep its error yet.
 pub(super) struct ExcessiveResult {
     result: usize,
-    /// The operands at which the error is largest.
+    /// The box of operands in which the error is largest.
     worst: BoxError,
 }
 

@@ -1,12 +1,11 @@
-//! Encloses the error of a plan's nodes for all operands within a box.
+//! Encloses the error of the nodes of a plan for all operands in a box. A box is an interval of values for each operand.
 //!
-//! Each node gets two intervals. Its *ideal* contains the value that real-number arithmetic gives, if every choice and every
-//! shift is as the hardware makes it. Its *error* contains the hardware's value minus the ideal. An operation adds its own
-//! rounding to the errors of its inputs, enlarged as the operation enlarges them. For example, a product a · b has the error
-//! a · εb + b · εa + εa · εb.
+//! Each node gets two intervals. Its *ideal* contains its value in real-number arithmetic, if every choice and every shift is as
+//! the hardware makes it. Its *error* contains the hardware's value minus the ideal. An operation adds its own rounding to the
+//! errors of its inputs, as it magnifies them. For example, a product a · b has the error a · εb + b · εa + εa · εb.
 //!
-//! A shift that normalises a word depends on the word, so the analysis follows each possible shift by itself, with the word
-//! limited to the values that have this shift.
+//! The shift that normalises a word depends on the word. The analysis therefore treats each possible shift separately, with the
+//! word limited to the values that have this shift.
 
 use glint_base::fixed::{Format, Rounding, exp2};
 use glint_formula::Enclosure;

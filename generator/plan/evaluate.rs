@@ -1,10 +1,12 @@
-//! Computes the values of a plan in integers, from the definitions of its operations.
+//! Computes the values of all nodes of a plan in integers, from the definitions of their operations. The golden model of the
+//! device `expression` uses it.
 
 use super::node::{NodeId, Operation, PlanNode, normalising_shifts};
 use super::plan::ExpressionPlan;
 
 impl ExpressionPlan {
-    /// Returns the raw value of each node for raw operands. For example, the plan of `x * y` gives 6 for 2 and 3.
+    /// Returns the raw value of each node for raw operands. For example, the plan of `x * y` has a node with the value 6 for x =
+    /// 2 and y = 3.
     ///
     /// # Panics
     /// Panics if there are fewer values than operands, or if the polynomials of the plan are not known yet.
@@ -17,7 +19,7 @@ impl ExpressionPlan {
         values
     }
 
-    /// Returns the raw value of a node. `known` gives the values of the nodes that it reads.
+    /// Returns the raw value of one node for raw operands. `known` returns the values of the nodes that it reads.
     ///
     /// # Panics
     /// Panics as [`ExpressionPlan::values`] does.

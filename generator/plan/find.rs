@@ -1,4 +1,5 @@
-//! Finds the plan of a statement, and proves its error.
+//! Finds the plan for the formulas of a statement, and proves the error of each result. It remembers the plans that it found
+//! before.
 
 use std::collections::HashMap;
 use std::sync::{Arc, LazyLock, Mutex};
@@ -25,17 +26,17 @@ const BITS_OF_A_CELL: f64 = 16.0;
 /// The look-up tables that a degree more takes: the sum, and delays beside it.
 const CELLS_OF_A_DEGREE: f64 = 50.0;
 
-/// How a bound was proved.
+/// The method by which an error bound was proved.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ProofKind {
     /// The result of every combination of operands was computed and compared with the formula.
     EveryCombination,
-    /// The error was enclosed, from parts that are proved at every operand of theirs.
+    /// Interval arithmetic enclosed the error. The tables of polynomials within the plan were proved at each of their operands.
     Enclosed,
 }
 
 impl ProofKind {
-    /// Returns the kind of proof in words.
+    /// Returns a description of the method.
     pub fn words(self) -> &'static str {
         match self {
             Self::EveryCombination => "every combination of operands was computed",
@@ -44,22 +45,23 @@ impl ProofKind {
     }
 }
 
-/// A plan with the proved error of each result.
+/// A plan for the formulas of a statement, with a proven error bound for each result.
 #[derive(Clone, Debug)]
 pub struct ProvedPlan {
-    /// The formulas that it computes.
+    /// The formulas that the plan computes.
     pub statement: ExpressionStatement,
-    /// How it is computed.
+    /// The operations that compute the formulas.
     pub plan: ExpressionPlan,
-    /// For each result, the proved bound of its error in units of its last place.
+    /// The proven error bound of each result, in units of the result's last place.
     pub bounds: Vec<f64>,
-    /// How the bounds were proved.
+    /// The method by which the bounds were proved.
     pub proof: ProofKind,
 }
 
 type FindResult = Result<Arc<ProvedPlan>, PlanRefusal>;
 
-/// Returns the plan of a statement, with proved errors. A plan that was already found is not searched again.
+/// Returns the plan for a statement, with proven error bounds. If the same plan was found before, it is returned without a new
+/// search.
 ///
 /// # Errors
 /// Fails if a formula has no plan, or if the plan does not keep the errors. The refusal says why.

@@ -1,7 +1,7 @@
-//! Rewrites the formulas of a statement as a plan, for a given choice of fraction bits.
+//! Rewrites the formulas of a statement as a plan, with given numbers of fraction bits.
 //!
-//! A part of a formula that depends on one number alone, wherever that number comes from, is one table of polynomials. For
-//! example, `sqrt(x^2 + y^2)` is a root of the part `x^2 + y^2`. Sums and products of parts are computed as they are.
+//! If a part of a formula is a function of one number, it becomes a table of polynomials, wherever that number comes from. For
+//! example, `sqrt(x^2 + y^2)` is the square root of the one number `x^2 + y^2`. Sums and products become operations of their own.
 
 mod direction;
 mod exponential;
@@ -81,11 +81,11 @@ pub(super) struct Lowering<'s> {
     guards: &'s Guards,
     found: &'s FoundPolynomials,
     plan: ExpressionPlan,
-    /// The parts that have a node already.
+    /// The parts of formulas that have a node already, with their nodes.
     known: Vec<(Expression, NodeId)>,
-    /// The number of places where the plan rounds, so far.
+    /// The number of operations that round, so far.
     sources: usize,
-    /// The fraction bits of the result that has the most of them.
+    /// The largest number of fraction bits among the results.
     finest: i32,
 }
 

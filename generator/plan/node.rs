@@ -1,4 +1,5 @@
-//! Defines the operations of a plan and the formats of their results.
+//! Defines the operations of a plan, and the format of each result. For example, a plan contains sums, products,
+//! shifts and tables of polynomials.
 
 use std::mem::{Discriminant, discriminant};
 use std::sync::Arc;
@@ -8,110 +9,110 @@ use glint_base::fixed::{Format, Rounding};
 use glint_base::interval::Interval;
 use glint_formula::Enclosure;
 
-/// A node of a plan, by its place in [`super::ExpressionPlan::nodes`]. A node reads only nodes that are before it.
+/// The index of a node in [`super::ExpressionPlan::nodes`]. A node reads only nodes with a smaller index.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct NodeId(pub usize);
 
-/// One integer operation with the format of its result.
+/// One operation of a plan, with the format of its result.
 #[derive(Clone, Debug)]
 pub struct PlanNode {
-    /// The name of the net in the hardware. No other node has it.
+    /// The name of the node's net in the hardware, unique in the plan.
     pub name: String,
     /// The operation on earlier nodes.
     pub operation: Operation,
     /// The format of the result.
     pub format: Format,
-    /// The smallest and the largest raw value, whatever the operands are.
+    /// The smallest and the largest raw value that the node can have.
     pub range: Interval,
-    /// Limits of the value in real-number arithmetic, for all operands for which something is promised. The rewriting of the
-    /// formula knows them, as that the smaller of two numbers divided by the larger is at most 1.
+    /// An interval that contains the node's value in real-number arithmetic, for all operands for which a result is promised. The
+    /// rewriting of the formula knows it; for example, the smaller of two numbers divided by the larger is at most 1.
     pub limits: Enclosure,
-    /// The number of the choice of fraction bits that this node's error depends on; `None` for an exact operation.
+    /// The index of the number of fraction bits on which the node's rounding depends; `None` for an exact operation.
     pub source: Option<usize>,
 }
 
-/// An operation on raw values. Operands with different points are aligned first: the one with fewer fraction bits gets
-/// zeros at its end.
+/// An operation on raw values. If two operands have different numbers of fraction bits, zeros are appended to the one with fewer.
 #[derive(Clone, Debug)]
 pub enum Operation {
-    /// The operand of this number.
+    /// The operand of the expression with this index.
     Operand(usize),
-    /// A raw constant, for a real number that lies within limits.
+    /// A constant, which rounds a real number to a raw value.
     Constant {
         /// The raw value.
         raw: i128,
-        /// Limits of the real number.
+        /// An interval that contains the real number.
         value: Enclosure,
     },
-    /// a + b, whole.
+    /// a + b, exact.
     Add(NodeId, NodeId),
-    /// a − b, whole.
+    /// a − b, exact.
     Subtract(NodeId, NodeId),
-    /// a · b, whole.
+    /// a · b, exact.
     Multiply(NodeId, NodeId),
     /// |a|. The result has no sign.
     Absolute(NodeId),
-    /// The smaller of two.
+    /// The smaller of two values.
     Minimum(NodeId, NodeId),
-    /// The larger of two.
+    /// The larger of two values.
     Maximum(NodeId, NodeId),
     /// 1 where a < b, else 0.
     Less(NodeId, NodeId),
     /// 1 where a is not 0, else 0.
     NonZero(NodeId),
-    /// The second where the condition is 1, else the first.
+    /// The second of two cases if a condition is 1, otherwise the first.
     Choose {
-        /// A bit.
+        /// The condition, a node of one bit.
         condition: NodeId,
-        /// The result where the bit is 0, and where it is 1.
+        /// The result if the condition is 0, and the result if it is 1.
         cases: [NodeId; 2],
-        /// Whether both cases have the same value in real numbers where the condition changes, as in |a|. A condition that
-        /// rounding errors decide wrongly then does no harm.
+        /// Whether both cases have equal real values where the condition changes, as in |a|. If so, a wrong decision due to
+        /// rounding errors does no harm.
         is_continuous: bool,
     },
-    /// The same bits, read as the value times a power of two: the format of the result says which.
+    /// The same bits with another weight: the value times a power of two. The format of the result says which power.
     Scale(NodeId),
-    /// The value in the format of the result: low bits are rounded off, and high bits are dropped. The proof shows that
-    /// the dropped bits are copies of the sign.
+    /// The value, converted to the format of the result: low bits are rounded off, and high bits are dropped. The proof shows
+    /// that the dropped high bits are copies of the sign.
     Narrow(NodeId, Rounding),
-    /// The bit of this number of an integer, 0 for the lowest.
+    /// One bit of an integer, by its number; bit 0 is the lowest.
     Bit(NodeId, u32),
     /// The greatest integer that is not above a.
     IntegerPart(NodeId),
-    /// a minus its integer part, which is the second node: from 0 to below 1.
+    /// a minus its integer part, from 0 to below 1. The second node is the integer part.
     FractionPart(NodeId, NodeId),
-    /// The value, or the largest of the format of the result where the value is above it. The value is never below 0.
+    /// The value, or the largest value of the format if it exceeds that. The value is never negative.
     Saturate(NodeId),
-    /// The bits of an unsigned word, shifted left until the top one is 1, read as a fraction from 1/2 to below 1. By
-    /// pairs, the shift is even, and the fraction from 1/4 to below 1. A word of zeros stays so.
+    /// An unsigned word, shifted left until its top bit is 1, and read as a fraction from 1/2 to below 1. With `by_pairs` the
+    /// shift is even and the fraction goes from 1/4 to below 1. A word of zeros stays zero.
     Normalise {
-        /// The word.
+        /// The word to shift.
         word: NodeId,
-        /// Whether the shift is by pairs of places.
+        /// Whether the word is shifted by pairs of bits.
         by_pairs: bool,
     },
-    /// The places, or the pairs of places, by which a [`Operation::Normalise`] shifted. For a word of zeros it is all ones.
+    /// The number of bits, or of pairs of bits, by which an [`Operation::Normalise`] has shifted. For a word of zeros all bits of
+    /// it are 1.
     Places(NodeId),
-    /// a · 2^places. High bits are dropped, as by [`Operation::Narrow`].
+    /// a · 2^b, where b is the second node. High bits are dropped, as by [`Operation::Narrow`].
     ShiftLeft(NodeId, NodeId),
-    /// a / 2^places, rounded down to the fraction bits of a, which has no sign.
+    /// a / 2^b, where b is the second node, rounded down to the fraction bits of a. a is unsigned.
     ShiftRight(NodeId, NodeId),
-    /// A function of one number, by piecewise polynomials.
+    /// A function of one number, computed by a table of polynomials.
     Polynomial(NodeId, Box<Approximation>),
 }
 
-/// A function of one number within a plan.
+/// A function of one number that a plan computes by a table of polynomials.
 #[derive(Clone, Debug)]
 pub struct Approximation {
-    /// The function, with its domain and the error that it may have.
+    /// The function, with its domain and its allowed error.
     pub function: TargetFunction,
-    /// The polynomials; `None` while the plan only estimates errors.
+    /// The table of polynomials; `None` while the planner only estimates errors.
     pub polynomials: Option<Arc<Piecewise>>,
 }
 
 impl Approximation {
-    /// Returns the largest error of the result, as a value: the proved one if the polynomials are known, otherwise the one
-    /// that is allowed.
+    /// Returns the largest error of the result, as a value. It is the proven error if the polynomials are known, and the allowed
+    /// error otherwise.
     pub fn error(&self) -> f64 {
         let units = self.polynomials.as_ref().map_or(self.function.error, |it| it.bound);
         units * glint_base::fixed::exp2(-(self.function.fraction as i32))
@@ -161,8 +162,8 @@ impl Operation {
     }
 }
 
-/// Returns the shifts that normalise a word of `width` bits, the largest first, in places. For example, 8 bits have the
-/// shifts 4, 2 and 1, and by pairs 4 and 2.
+/// Returns the shifts with which hardware normalises a word of `width` bits, from the largest to the smallest. For example, 8
+/// bits need the shifts 4, 2 and 1; by pairs, 4 and 2.
 pub fn normalising_shifts(width: u32, by_pairs: bool) -> Vec<u32> {
     let least = if by_pairs { 2 } else { 1 };
     let mut shifts = Vec::new();

@@ -1,4 +1,4 @@
-//! Holds a plan, and builds one node after the other with the format that each result needs.
+//! Defines the plan of an expression, and appends its nodes with the formats that their results need.
 
 use glint_base::fixed::{Format, MAX_WIDTH, Rounding};
 use glint_base::interval::{self, Interval};
@@ -10,12 +10,12 @@ use super::refusal::PlanRefusal;
 /// The limits of a value before the rewriting limits it.
 const ANYTHING: Enclosure = Enclosure::between(f64::NEG_INFINITY, f64::INFINITY);
 
-/// An expression as a list of integer operations.
+/// The plan of an expression: a list of fixed-point operations that computes all results.
 #[derive(Clone, Debug, Default)]
 pub struct ExpressionPlan {
-    /// The operations, in an order in which they can be computed.
+    /// The operations. Each reads only operations before it.
     pub nodes: Vec<PlanNode>,
-    /// The node of each result, in the order in which the results are stated.
+    /// The node of each result, in the order of the statement.
     pub results: Vec<NodeId>,
 }
 
@@ -25,7 +25,7 @@ impl ExpressionPlan {
         &self.nodes[id.0]
     }
 
-    /// Returns, for each node, whether a result of this number reads it, directly or through other nodes.
+    /// Returns for each node whether the result number `result` depends on it.
     pub fn needed_for(&self, result: usize) -> Vec<bool> {
         let mut needed = vec![false; self.nodes.len()];
         needed[self.results[result].0] = true;
@@ -39,7 +39,7 @@ impl ExpressionPlan {
         needed
     }
 
-    /// Returns how many nodes read each node.
+    /// Returns for each node the number of operations that read it.
     pub fn readers(&self) -> Vec<usize> {
         let mut readers = vec![0; self.nodes.len()];
         for node in &self.nodes {
@@ -413,7 +413,7 @@ impl ExpressionPlan {
         self.insert(name, operation, format, format.range())
     }
 
-    /// Returns the functions of one number that the plan approximates, in the order of their nodes.
+    /// Returns the functions that the plan computes by tables of polynomials, in the order of their nodes.
     pub fn approximations(&self) -> Vec<&Approximation> {
         let mut all = Vec::new();
         for node in &self.nodes {

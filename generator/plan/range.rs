@@ -1,4 +1,5 @@
-//! Encloses the values of a part of the formulas over all operands for which a result with this part is promised.
+//! Computes an interval that contains the values of a part of a formula, for all operands for which a result with this part is
+//! promised. It divides the operands' domain to make the interval narrower.
 
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;

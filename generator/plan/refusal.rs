@@ -1,19 +1,19 @@
-//! Says why an expression has no plan, in words that name the part of the expression and a remedy.
+//! Defines the reason why an expression has no plan, with the part of the expression that causes it and a remedy.
 
 use std::ops::Range;
 
 use glint_base::fixed::MAX_WIDTH;
 
-/// The reason why there is no plan for an expression.
+/// The reason why there is no plan for an expression, with a remedy.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PlanRefusal {
-    /// The number of the result that it concerns, if it concerns one.
+    /// The index of the result that it concerns, if it concerns one result.
     pub result: Option<usize>,
-    /// The bytes of the result's formula that it concerns, if it concerns one place.
+    /// The range of bytes in the formula of that result, if it concerns a part of the formula.
     pub place: Option<Range<usize>>,
-    /// The fault, in words.
+    /// The reason, as a message.
     pub message: String,
-    /// What to change, in words.
+    /// The remedy, as a message.
     pub remedy: String,
 }
 

@@ -1,41 +1,40 @@
-//! Orders a plan as a microprogram: a product at a time, with registers for the values that later steps read.
+//! Turns a plan into a microprogram for one multiplier, with registers for the values that later microinstructions read.
 //!
-//! The hardware has one multiplier. Each product, each step of Horner's rule and each normalised word has a
-//! microinstruction of its own, and a register that holds its value from then on. All other operations are logic between
-//! registers.
+//! Each product, each step of Horner's rule and each normalised word has its own microinstruction, and a register that keeps its
+//! value. All other operations are combinational logic between these registers.
 
 use super::node::{NodeId, Operation};
 use super::plan::ExpressionPlan;
 
-/// A microinstruction of a plan.
+/// One microinstruction of a plan's microprogram.
 #[derive(Clone, Debug, PartialEq)]
 pub enum PlanStep {
-    /// A product is computed. The register of `held` takes what follows from it.
+    /// The multiplier computes a product, and a register loads it or a value that follows from it.
     Product {
         /// The node of the product.
         product: NodeId,
-        /// The node whose register is loaded: the product, or the same value with fewer bits.
+        /// The node whose register is loaded: the product itself, or the product with fewer bits.
         held: NodeId,
     },
     /// The registers of these nodes are loaded.
     Hold(Vec<NodeId>),
-    /// The table of a polynomial's coefficients is addressed, and no register is loaded.
+    /// The table of this node's polynomial gets its address; no register is loaded.
     Address(NodeId),
-    /// A sum of Horner's rule is computed: that with the coefficient of this number.
+    /// One partial sum of Horner's rule is computed.
     Sum {
         /// The node of the polynomial.
         polynomial: NodeId,
-        /// The number of the coefficient, 0 for the constant.
+        /// The index of the coefficient that is added, 0 for the constant.
         coefficient: usize,
     },
 }
 
-/// The microprogram of a plan.
+/// The microprogram of a plan, with the nodes that have registers.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PlanSchedule {
-    /// For each node, whether a register holds its value.
+    /// Whether each node has a register.
     pub held: Vec<bool>,
-    /// The microinstructions, in order.
+    /// The microinstructions in the order of execution.
     pub steps: Vec<PlanStep>,
 }
 

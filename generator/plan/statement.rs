@@ -1,10 +1,10 @@
-//! States an expression: its operands with their domains, and its results with their formulas and the errors that they
-//! may have.
+//! Defines the statement of an expression: the operands with their domains, and the results with their formulas and allowed
+//! errors.
 
 use glint_base::fixed::Format;
 use glint_formula::{Comparison, Enclosure, Expression, RBig};
 
-/// The formulas that a user asks for: results as formulas of operands, each with the error that it may have.
+/// The formulas that a user asks for, as formulas of operands, each with its allowed error.
 #[derive(Clone, Debug)]
 pub struct ExpressionStatement {
     /// The operands, in the order of the ports.
@@ -13,7 +13,7 @@ pub struct ExpressionStatement {
     pub results: Vec<StatedResult>,
 }
 
-/// An operand with the values that it can have.
+/// An operand, with the values for which results are promised.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StatedOperand {
     /// The name of the port.
@@ -24,23 +24,23 @@ pub struct StatedOperand {
     pub domain: (i64, i64),
 }
 
-/// A result with its formula.
+/// A result: its formula, and its allowed error.
 #[derive(Clone, Debug)]
 pub struct StatedResult {
     /// The name of the port, without `_out`.
     pub name: String,
     /// The formula, in terms of operands alone.
     pub formula: Expression,
-    /// Fraction bits of the result.
+    /// The number of fraction bits of the result.
     pub fraction: u32,
-    /// The largest error, in units of the last place.
+    /// The largest error that is allowed, in units of the last place of the result.
     pub error: f64,
-    /// The operands for which the error is promised; `None` for all of the domain.
+    /// The condition on the operands under which the error is promised; `None` if it is promised for the whole domain.
     pub promise: Option<Comparison>,
 }
 
 impl ExpressionStatement {
-    /// Returns the exact values of raw operands, by their names.
+    /// Returns the exact value of each operand with its name, from the raw values.
     pub fn exact_operands(&self, raw: &[i64]) -> Vec<(&str, RBig)> {
         let mut values = Vec::with_capacity(raw.len());
         for (operand, &raw) in self.operands.iter().zip(raw) {
@@ -50,7 +50,7 @@ impl ExpressionStatement {
         values
     }
 
-    /// Returns the values of operands within raw limits, by their names.
+    /// Returns an interval of values for each operand with its name, from intervals of raw values.
     pub fn enclosed_operands(&self, limits: &[(i64, i64)]) -> Vec<(&str, Enclosure)> {
         let mut values = Vec::with_capacity(limits.len());
         for (operand, (low, high)) in self.operands.iter().zip(limits) {
@@ -61,7 +61,7 @@ impl ExpressionStatement {
         values
     }
 
-    /// Returns the operands within raw limits in words. For example, `x from 0 to 0.5 and y = 1`.
+    /// Returns the values of the operands in intervals of raw values, as text. For example, `x from 0 to 0.5 and y = 1`.
     pub fn place(&self, limits: &[(i64, i64)]) -> String {
         let mut place = Vec::new();
         for (name, value) in self.enclosed_operands(limits) {
@@ -74,7 +74,7 @@ impl ExpressionStatement {
         place.join(" and ")
     }
 
-    /// Returns the domain: the smallest and the largest raw value of each operand.
+    /// Returns the smallest and the largest raw value of each operand.
     pub fn domain(&self) -> Vec<(i64, i64)> {
         self.operands.iter().map(|operand| operand.domain).collect()
     }
@@ -90,7 +90,8 @@ impl ExpressionStatement {
 }
 
 impl StatedResult {
-    /// Returns whether the error is promised for operands within limits; `None` where it is promised for some of them.
+    /// Returns whether the error is promised for all operands within intervals. Returns `None` if it is promised for some of
+    /// them, or if that is undecided.
     pub fn is_promised(&self, operands: &[(&str, Enclosure)]) -> Option<bool> {
         let Some(promise) = &self.promise else { return Some(true) };
         promise.holds(operands).unwrap_or(None)

@@ -1,4 +1,8 @@
-//! Builds the range reduction of `function`: from operands of a whole format to the polynomial's, and back to results.
+//! Builds the range reduction of the device `function`: logic before and after its polynomial.
+//!
+//! The polynomial covers only a short domain. The logic before it maps an operand x into that domain, and the logic after it
+//! restores the result for x. For example, an odd function needs a polynomial for x ≥ 0 only: the logic takes |x|, and negates
+//! the result if x is negative.
 
 use super::whole;
 use glint_approximate::{Piecewise, Reduction, Rule};
@@ -10,13 +14,13 @@ use glint_rtl::dsl::{Designer, Signal};
 /// The steps from the polynomial to the result, in this order.
 #[derive(Default)]
 pub(super) struct Restoring<'d> {
-    /// Added to it, in places of its own.
+    /// A value that is added to the polynomial. It has its own fraction bits.
     addend: Option<Signal<'d>>,
-    /// The places by which the sum is shifted to the right.
+    /// The number of bits by which the sum is shifted to the right.
     places: Option<Signal<'d>>,
-    /// The bit that is 0 where the result is 0.
+    /// A bit that is 0 if the result must be 0.
     nonzero: Option<Signal<'d>>,
-    /// The bit that is 1 where the result is subtracted from a raw value, and that value.
+    /// A bit and a raw value: if the bit is 1, the result is the raw value minus the result so far.
     negative: Option<(Signal<'d>, i64)>,
 }
 

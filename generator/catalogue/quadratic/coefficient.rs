@@ -1,17 +1,18 @@
-//! Computes the coefficient a(n) of `quadratic`, with which `max(0, c + a·(c² − c))` is near `cⁿ`.
+//! Computes the coefficients a(n) of the device `quadratic`, with which `max(0, c + a·(c² − c))` approximates `cⁿ`.
 //!
-//! With x = 1 − c the parabola is `(1 − x)·(1 − a·x)`, zero at x = 1/a. For 1 < a < n − 1 the parabola is above cⁿ near the
-//! peak; the distance is largest where the slopes agree. Farther away it is below cⁿ; the distance is largest at the
-//! parabola's own zero.
+//! c is the cosine of the angle between the surface normal and the half vector, and n the specular exponent. With x = 1 − c the
+//! parabola is `(1 − x)·(1 − a·x)`, with a zero at x = 1/a. For 1 < a < n − 1 it lies above cⁿ near the peak, and the distance is
+//! largest where both have the same slope. Farther from the peak it lies below cⁿ, and the distance is largest at its zero.
 
-/// Returns n − 1: value and slope agree with cⁿ at c = 1. For n = 0, where that is negative, 0. For example, n = 20 gives 19.
+/// Returns the coefficient n − 1, with which the parabola and cⁿ have the same value and slope at c = 1; for n = 0 it returns 0.
+/// For example, n = 20 gives 19.
 pub fn taylor(n: u32) -> f64 {
     f64::from(n.max(1) - 1)
 }
 
-/// Returns the a(n) with the least largest error over 0 ≤ c ≤ 1: the one with both errors equal.
+/// Returns the coefficient a(n) with the smallest maximum error over 0 ≤ c ≤ 1. Its largest errors above and below cⁿ are equal.
 ///
-/// Each place x where the slopes agree belongs to one a; the equal errors are found by bisecting x.
+/// Every place x at which the slopes agree belongs to one a, so the function bisects x until the two errors are equal.
 pub fn minimax(n: u32) -> f64 {
     // The parabola is cⁿ itself for n = 1 and n = 2.
     if n <= 2 {
@@ -40,8 +41,8 @@ fn touching(n: f64, x: f64) -> f64 {
     (n * libm::exp((n - 1.0) * libm::log1p(-x)) - 1.0) / (1.0 - 2.0 * x)
 }
 
-/// Returns the error at the zero of the parabola: the largest below cⁿ, and for [`taylor`] and [`minimax`] the
-/// largest of all. 0 for n ≤ 2 and for a ≤ 1, whose zero is not within 0 < c < 1.
+/// Returns the error of the parabola at its zero. It is the largest error below cⁿ, and for the coefficients of [`taylor`] and
+/// [`minimax`] the largest of all. It is 0 for n ≤ 2 and for a ≤ 1, because the zero is then not within 0 < c < 1.
 pub fn error(a: f64, n: u32) -> f64 {
     if n <= 2 || a <= 1.0 { 0.0 } else { libm::exp(f64::from(n) * libm::log1p(-1.0 / a)) }
 }

@@ -1,4 +1,4 @@
-//! Runs the golden model that a [`Frame`] makes, clock by clock: its handshake, microinstructions and registers.
+//! Runs the golden model that a [`Frame`] describes, clock by clock: the handshake, the microinstructions and the registers.
 
 use std::mem;
 use std::sync::Arc;
@@ -23,9 +23,9 @@ pub(super) struct ModelConstants {
     pub(super) edges: Vec<Does>,
     /// Results with the registers that take them.
     pub(super) taken: Vec<(Slot, Slot)>,
-    /// The slots that take the writes of the operands: their registers, or the buffers in front of them.
+    /// The slots that the operand strobes write: the operand registers, or the buffers in front of them.
     written: Vec<Slot>,
-    /// Whether there are buffers in front of the operand registers.
+    /// Whether each operand register has a buffer in front of it.
     buffered: bool,
     flags: Vec<Slot>,
     pub(super) valid_delay: u32,
@@ -33,27 +33,27 @@ pub(super) struct ModelConstants {
     signals: Vec<String>,
 }
 
-/// A device, clock by clock.
+/// A golden model that executes microinstructions clock by clock.
 ///
-/// It idles in microinstruction 0, and executes it once more in the clock after `start`: 1 and on follow. A register
-/// that a microinstruction loads takes its value at the rising edge that ends it, whether `rst_n` is low at that edge or
-/// not.
+/// An idle device executes microinstruction 0. After `start`, it executes microinstruction 0 once more and then continues with
+/// number 1. A register that a microinstruction loads takes its value at the rising edge that ends the microinstruction, even if
+/// `rst_n` is low at that edge.
 #[derive(Clone)]
 pub struct ClockedModel {
     pub(super) fixed: Arc<ModelConstants>,
-    /// A point is in flight: also the output `busy`.
+    /// Whether a computation is running; this is also the output `busy`.
     run: bool,
-    /// The microinstruction in force; 0 when idle.
+    /// The number of the microinstruction that is being executed; 0 when idle.
     address: usize,
-    /// Whether the microinstructions of the latest clocks said `valid`, the latest in bit 0.
+    /// Whether the microinstructions of the latest clocks raised `valid`, one bit a clock; bit 0 is the latest clock.
     pulses: u64,
     pub(super) state: Box<State>,
     values: Box<[u64]>,
 }
 
 impl Frame {
-    /// Returns the model at power-up. The first microinstruction is the one in which the device idles, the last ends
-    /// the program.
+    /// Returns the golden model in the state after power-up. The first microinstruction of `program` is the idle one; the last
+    /// must end the program.
     ///
     /// # Panics
     /// Panics if there is no microinstruction. A program must have at least one.
@@ -114,7 +114,7 @@ impl ClockedModel {
         model
     }
 
-    /// Returns whether `valid` is high.
+    /// Returns whether the output `valid` is high.
     pub fn is_valid(&self) -> bool {
         self.values[0] == 1
     }

@@ -1,9 +1,9 @@
-//! Builds golden models that run clock by clock. It supplies the parts that every device has: reset, `start`, strobes, the
-//! sequence of microinstructions, `busy`, `valid` and `done`.
+//! Builds golden models that run clock by clock. A golden model predicts every register and output of a device.
 //!
-//! A device names its operands, registers and outputs once, in a [`Frame`], and gets a [`Slot`] for each. It defines the
-//! operation of each microinstruction on them ([`step`]) and the values of its outputs. The order of the microinstructions
-//! numbers them. [`Frame::model`] makes a [`Model`](super::Model) from the frame.
+//! The author of a device declares its operands, registers and outputs in a [`Frame`] and gets a [`Slot`] for each. The author
+//! then states the operation of each microinstruction with [`step`], in the order of execution. [`Frame::model`] makes a
+//! [`Model`](super::Model) from them, and adds the behaviour that all devices share: reset, `start`, the strobes that write
+//! operands, `busy`, `valid` and `done`. For example, this device doubles its operand:
 //!
 //! ```
 //! use glint_base::fixed::Format;
@@ -38,12 +38,12 @@ pub use part::Part;
 
 use glint_base::fixed::Format;
 
-/// A place in the [`State`] of a model.
+/// The position of one value in the [`State`] of a golden model.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Slot(usize);
 
-/// The raw values of operands, registers and outputs. The values of a part are adjacent, in the order of the part's own
-/// model.
+/// The raw values of all operands, registers and outputs of a golden model. If a device contains parts, the values of a part are
+/// adjacent and in the order of the part's own golden model.
 pub type State = [i64];
 
 impl Index<Slot> for State {
@@ -75,14 +75,14 @@ enum Next {
     End,
 }
 
-/// One microinstruction.
+/// One microinstruction: the operation on the registers, the flags that it sets, and its successor.
 #[derive(Clone)]
 pub struct FrameStep {
     does: Option<Does>,
     next: Next,
     valid: bool,
     asserts: Vec<Slot>,
-    /// Registers behind the results take them.
+    /// Whether the registers behind the outputs load the results in this microinstruction.
     takes_results: bool,
 }
 
@@ -97,12 +97,13 @@ pub fn idle() -> FrameStep {
     }
 }
 
-/// Returns a microinstruction whose rising edge applies `does` to the registers.
+/// Returns a microinstruction that applies the operation `does` to the registers at the rising edge that ends it.
 pub fn step(does: impl Fn(&mut State) + Send + Sync + 'static) -> FrameStep {
     FrameStep { does: Some(Arc::new(does)), ..idle() }
 }
 
-/// Returns a microinstruction as [`step`], by an arithmetic that several share.
+/// Returns a microinstruction like [`step`], whose operation also gets `arithmetic`, data that several microinstructions share.
+/// For example, `arithmetic` holds the tables of the device.
 pub fn step_by<A: Send + Sync + 'static>(
     arithmetic: &Arc<A>,
     does: impl Fn(&A, &mut State) + Send + Sync + 'static,
@@ -112,22 +113,23 @@ pub fn step_by<A: Send + Sync + 'static>(
 }
 
 impl FrameStep {
-    /// States that the results are on the outputs.
+    /// Returns the microinstruction, which now also raises `valid`: the outputs have a result.
     pub fn valid(self) -> Self {
         Self { valid: true, ..self }
     }
 
-    /// Ends the program here.
+    /// Returns the microinstruction, which now ends the program.
     pub fn end(self) -> Self {
         Self { next: Next::End, ..self }
     }
 
-    /// Repeats the microinstruction while this holds of the values before the edge.
+    /// Returns the microinstruction, which is now repeated as long as `holds` is true of the values before its rising edge.
     pub fn repeat_while(self, holds: impl Fn(&State) -> bool + Send + Sync + 'static) -> Self {
         Self { next: Next::RepeatWhile(Arc::new(holds)), ..self }
     }
 
-    /// Skips the next `count` microinstructions if this holds of the values before the edge.
+    /// Returns the microinstruction, which now skips the next `count` microinstructions if `holds` is true of the values before
+    /// its rising edge.
     pub fn skip_if(
         self,
         count: u32,
@@ -136,7 +138,7 @@ impl FrameStep {
         Self { next: Next::SkipIf(count, Arc::new(holds)), ..self }
     }
 
-    /// Sets a flag to 1 in this microinstruction.
+    /// Returns the microinstruction, which now sets the flag to 1. [`Frame::flag`] declares the flag.
     pub fn asserts(mut self, flag: Slot) -> Self {
         self.asserts.push(flag);
         self
@@ -169,7 +171,7 @@ struct FrameSignal {
     format: Format,
 }
 
-/// The state of a device, and its operations.
+/// The declarations from which [`Frame::model`] makes a golden model: operands, registers, outputs and operations.
 #[derive(Default)]
 pub struct Frame {
     operands: Vec<FrameOperand>,
@@ -184,7 +186,7 @@ pub struct Frame {
 }
 
 impl Frame {
-    /// Adds state that no signal of the design shows.
+    /// Adds a state value that corresponds to no signal of the hardware, and returns its slot.
     pub fn hidden(&mut self) -> Slot {
         self.slots += 1;
         Slot(self.slots - 1)
@@ -196,12 +198,12 @@ impl Frame {
         slot
     }
 
-    /// Adds a register. The outside sees its low bits, as many as `format` has.
+    /// Adds a register and returns its slot. Checks see only the low bits of its value, as many as `format` has.
     pub fn register(&mut self, name: &str, format: Format) -> Slot {
         self.shown(name.to_owned(), format, false)
     }
 
-    /// Adds an output that is logic: a function of operands and registers.
+    /// Adds an output that is combinational logic: a function of operands and registers.
     pub fn output(
         &mut self,
         name: &str,
@@ -212,7 +214,7 @@ impl Frame {
         self.logic.push((slot, Arc::new(value)));
     }
 
-    /// Adds an output that shows a register.
+    /// Adds an output that has the value of a register.
     ///
     /// # Panics
     /// Panics if the slot is no register. An output that is logic must use [`Frame::output`].
@@ -227,45 +229,46 @@ impl Frame {
         });
     }
 
-    /// Adds an output of one bit that is 1 in the microinstructions that assert it. A microinstruction must assert it by
-    /// [`FrameStep::asserts`].
+    /// Adds an output of one bit, and returns its slot. The bit is 1 during every microinstruction that asserts it with
+    /// [`FrameStep::asserts`], and 0 otherwise.
     pub fn flag(&mut self, name: &str) -> Slot {
         let slot = self.shown(name.to_owned(), Format::BIT, true);
         self.flags.push(slot);
         slot
     }
 
-    /// Adds an operand with its register, which holds whatever `format` can denote.
+    /// Adds an operand and its register, which holds every value of `format`. Returns the register's slot.
     pub fn operand(&mut self, name: &str, format: Format) -> Slot {
         self.clamped(name, format, format.min_raw() as i64, format.max_raw() as i64)
     }
 
-    /// Adds an operand whose register clamps each loaded value to `min ..= max`, raw.
+    /// Adds an operand whose register limits each loaded value to the raw values `min ..= max`. Returns the register's slot.
     pub fn clamped(&mut self, name: &str, format: Format, min: i64, max: i64) -> Slot {
         let slot = self.shown(format!("{name}_reg"), format, false);
         self.operands.push(FrameOperand { name: name.to_owned(), slot, format, min, max });
         slot
     }
 
-    /// Adds an operation of every rising edge, whatever microinstruction is in force: for example, a synchronous ROM reads.
-    /// It runs before the operation of the microinstruction and after the operations of earlier calls. It sees the values
-    /// before the edge, except for slots that were already written at this edge.
+    /// Adds an operation that runs at every rising edge, whatever microinstruction is executed. For example, a synchronous ROM
+    /// reads its word at every edge. The operation runs before the operation of the microinstruction, and after the operations
+    /// that earlier calls added. It sees the values before the edge, except in slots that an earlier operation wrote at the same
+    /// edge.
     pub fn every_edge(&mut self, does: impl Fn(&mut State) + Send + Sync + 'static) {
         self.edges.push(Arc::new(does));
     }
 
-    /// Returns the operands: name, format, and the smallest and largest raw value that the register holds.
+    /// Returns the operands: the name, the format, and the smallest and largest raw value that the register holds.
     pub fn operands(&self) -> impl Iterator<Item = (&str, Format, (i64, i64))> {
         self.operands.iter().map(|it| (it.name.as_str(), it.format, (it.min, it.max)))
     }
 
-    /// Returns the outputs but for flags: name and format.
+    /// Returns the name and the format of every output that is not a flag.
     pub fn results(&self) -> impl Iterator<Item = (&str, Format)> {
         let results = self.shown.iter().filter(|it| it.output && !self.flags.contains(&it.slot));
         results.map(|it| (it.name.as_str(), it.format))
     }
 
-    /// Delays `valid` by this number of clocks after the microinstructions that say it, through registers that a reset clears.
+    /// Delays `valid` by `clocks` clocks after the microinstructions that raise it. A reset clears the registers of this delay.
     pub fn delay_valid(&mut self, clocks: u32) {
         self.valid_delay = clocks;
     }

@@ -1,8 +1,8 @@
-//! Builds a golden model from the models of its parts. The parts share one state and one microprogram.
+//! Builds the golden model of a device that contains other devices as parts, from the golden models of the parts.
 //!
-//! The parts run one after the other, and each executes its own microinstructions on its own registers. A part's
-//! operand registers are loaded in the microinstruction before its first. Its results are in registers from its last
-//! microinstruction on. For example:
+//! The parts run one after the other in one microprogram, and each works on its own registers. The device loads the operand
+//! registers of a part in the microinstruction before the part's first one. The results of a part remain in registers after its
+//! last microinstruction. For example, here a device uses two copies of a doubler:
 //!
 //! ```
 //! use glint_base::fixed::Format;
@@ -34,14 +34,14 @@ use super::{Condition, Does, Frame, FrameSignal, FrameStep, Next, Slot, State, i
 use crate::Model;
 use glint_base::fixed::Format;
 
-/// The results of a part, in the state of the whole.
+/// The outputs of a part, as slots in the state of the whole device.
 pub struct Part {
     name: String,
     outputs: Vec<(String, Slot)>,
 }
 
 impl Part {
-    /// Returns the result of this name.
+    /// Returns the slot of the part's output with this name.
     ///
     /// # Panics
     /// Panics if the part has no such output.
@@ -52,8 +52,9 @@ impl Part {
 }
 
 impl Frame {
-    /// Returns a part. `operands` gives each operand of the part by its name, as a function of values that were computed
-    /// before. The names of the part's registers get `name` in front.
+    /// Adds a part, and returns its outputs. `operands` pairs the name of each operand of the part with a function that computes
+    /// its value from values that are already known. `name` becomes the prefix of the part's registers, for example
+    /// `twice_doubled`.
     ///
     /// # Panics
     /// Panics if a [`Frame`] did not make the model. Panics if the model gives several results, or has no operand of one of the

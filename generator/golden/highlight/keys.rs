@@ -1,18 +1,19 @@
-//! Converts configuration keys to the products, the operands and the register slots of a highlight.
+//! Converts configuration keys to the operands, the register slots and the colour products of a highlight device.
 //!
-//! Golden models and accuracy contracts of devices with the operands cos γ, n and colours share it.
+//! A highlight device multiplies colours by a reflectance f. Golden models and accuracy contracts of the devices with the
+//! operands `cos_gamma`, `exponent` and colours share these functions; for example, `blinn` and `schlick` use them.
 
 use super::Products;
 use crate::frame::{Frame, Slot};
 use crate::{Operand, contract};
 use glint_keys::common::{ColourKeys, Domain, Intensity, Operands};
 
-/// Returns the products of f with the colours.
+/// Returns the products of the reflectance f with the colour operands, as the configuration keys state them.
 pub fn products(keys: &ColourKeys, f: &Intensity) -> Products {
     Products::colours(f.format(), keys.bits, f.output_rounding).in_turn(keys.in_turn())
 }
 
-/// Returns the operands cos γ and n.
+/// Returns the control operands `cos_gamma` and `exponent` as the accuracy contract sees them, in this order.
 pub fn operands(keys: &Operands, domain: &Domain) -> Vec<Operand> {
     let one = keys.cosine.one();
     let lowest = if keys.cosine.signed { -one } else { 0 };
@@ -22,7 +23,7 @@ pub fn operands(keys: &Operands, domain: &Domain) -> Vec<Operand> {
     ]
 }
 
-/// Returns the slots of the operands cos γ, which is taken for 0 … 1.0, and n.
+/// Adds the operands `cos_gamma`, whose register limits it to 0 … 1.0, and `exponent` to `frame`, and returns their slots.
 pub fn slots(keys: &Operands, frame: &mut Frame) -> [Slot; 2] {
     let cosine = frame.clamped("cos_gamma", keys.cosine.format(), 0, keys.cosine.one());
     [cosine, frame.operand("exponent", keys.exponent_format())]

@@ -1,4 +1,8 @@
-//! The accuracy contract of highlights, which are devices that multiply colours by a reflectance `f`.
+//! The accuracy contract of highlight devices, which multiply colours by a reflectance `f` from 0 to 1.
+//!
+//! Such a device computes f from its control operands, for example f = cⁿ from `cos_gamma` and `exponent`. Each colour output is
+//! K·f, rounded, where K is a colour operand. A device implements [`Reflectance`] for its f; [`Highlight`] makes the whole
+//! contract from it.
 
 mod keys;
 mod multiplied;
@@ -14,138 +18,138 @@ use super::contract::{self, COSINE, ErrorShare};
 use super::{Bound, Contract, Operand, Output, Sweep, nearer};
 use glint_base::fixed::{Format, exp2};
 
-/// The reflectance by a highlight's control operands: a number f in 0 … 1.
+/// The computation of the reflectance f of one highlight device, by its control operands. f is a number from 0 to 1.
 pub trait Reflectance: Send + Sync {
     /// Returns the raw f that the device computes from the raw control operands.
     fn f(&self, control: &[i64]) -> i64;
 
-    /// Returns the source's formula in f64, unrounded, at the raw (that is, quantised) control operands.
+    /// Returns the exact f: the source's formula in f64, unrounded, at the values that the raw control operands represent.
     fn reference(&self, control: &[i64]) -> f64;
 
-    /// Returns the values that are right for `f` at the raw control operands: the formula's, twice. Where the formula
-    /// jumps and fixed point may come out on its other side, the values on both sides. An error is
-    /// taken from the nearer.
+    /// Returns the two values that count as correct for `f` at the raw control operands. Both are normally the exact f. If the
+    /// formula jumps and rounding may lead to either side of the jump, they are the values on both sides. An error is measured
+    /// from the nearer one.
     fn references(&self, control: &[i64]) -> [f64; 2] {
         [self.reference(control); 2]
     }
 
-    /// Returns the values of [`Reflectance::references`] as expressions of Python, for benches that have no other second
-    /// opinion; none where nobody wrote them.
+    /// Returns the values of [`Reflectance::references`] as Python expressions, or nothing if nobody has written them. Test
+    /// benches use them as an independent second opinion.
     ///
-    /// The expressions may use the control operands by name, as values and not raw, the result's number (from 0) as `index`,
-    /// the words of a ROM as values by its name, and the functions of `math`.
+    /// The expressions may use the names of control operands (as values, not raw), `index` (the number of the result, from 0),
+    /// the words of a ROM (as values, by the ROM's name), and the functions of `math`.
     fn expressions(&self) -> Vec<String> {
         Vec::new()
     }
 
-    /// Moves the control operands to the point that result number `index` (from 0) of a computation shows.
+    /// Changes the control operands of a computation to the control operands of its result number `index`, counted from 0.
     ///
-    /// A device with one result per `start` shows the point of its operands. A device that walks a line of points from one
-    /// `start` must say here where the walk is at that result.
+    /// A device with one result for each `start` leaves them as they are. A device that walks along a line, such as
+    /// `quad-cosine`, must set the angle of that point.
     fn point(&self, control: &mut [i64], index: u64) {
         let _ = (control, index);
     }
 
-    /// Returns where the formula is largest: these control operands with those changed that lead there (a cosine to 1, an
-    /// angle or a vector to 0). Points for tests are drawn between there and anywhere, by the value of the formula;
-    /// it should not rise on the straight way from there to `control`.
+    /// Returns control operands at which the formula is largest, near `control`: for example, a cosine becomes 1, and an angle or
+    /// a vector becomes 0. Tests draw points between the peak and other operands, so the formula should not rise on the straight
+    /// way from the peak to `control`.
     ///
-    /// `None`: the operands with a fraction are each taken to an end of their domain or to 0, to those where the
-    /// formula turns out to be largest. A device whose peak lies elsewhere says so here.
+    /// With `None`, each operand with fraction bits is set to an end of its domain or to 0, whichever gives the largest value. A
+    /// device whose peak lies elsewhere must return it here.
     fn peak(&self, control: &[i64]) -> Option<Vec<i64>> {
         let _ = control;
         None
     }
 
-    /// Returns the control operands of a computation of several results that goes from the point `first` to the point
-    /// `last`, as far as `first` says how many there are: the inverse of [`Reflectance::point`].
+    /// Returns the control operands of a computation whose results go from the point `first` to the point `last`; `first` states
+    /// the number of results. This is the inverse of [`Reflectance::point`].
     ///
-    /// A device with one result per `start` shows `first`.
+    /// A device with one result for each `start` returns `first`.
     fn line(&self, first: &[i64], last: &[i64]) -> Vec<i64> {
         let _ = last;
         first.to_vec()
     }
 
-    /// Returns the formula at a cosine that is not quantised, and a raw exponent. Returns `None` if the device has other
-    /// control operands.
+    /// Returns the exact f at a cosine that is not rounded to the operand's format, and at a raw exponent. Returns `None` if the
+    /// device has other control operands.
     fn at_cosine(&self, cosine: f64, exponent: i64) -> Option<f64> {
         let _ = (cosine, exponent);
         None
     }
 
-    /// Returns how far the formula follows the cosine over the domain; none where nobody stated it.
+    /// Returns limits on how much the formula changes with the cosine over the domain, or `None` if nobody has stated them.
     fn variation(&self) -> Option<Variation> {
         None
     }
 
-    /// Returns the operand that says how many results a computation has, as [`Contract::length`].
+    /// Returns the name of the operand that states how many results a computation has, as [`Contract::length`] does.
     fn length(&self) -> Option<&str> {
         None
     }
 
-    /// Returns the control operands, as [`Reflectance::f`] takes them, that come nearest to the angle `gamma`, in radians
-    /// from 0 to π/2, and the exponent `n`. Returns `None` if no operands of the domain denote that exponent. `operands` are
-    /// the operands of the contract.
+    /// Returns the control operands that come nearest to the angle `gamma`, in radians from 0 to π/2, and to the specular
+    /// exponent `n`. They are in the order that [`Reflectance::f`] expects. Returns `None` if no operand in the domain represents
+    /// that exponent. `operands` are the operands of the contract.
     ///
-    /// By default these are the operands `cos_gamma` and `exponent`, if the device has them. Any other operand is as near to
-    /// 0 as its domain allows. A device with other operands, or for whose operands 0 means something, must say so here.
+    /// By default the device must have the operands `cos_gamma` and `exponent`; any other operand gets the value of its domain
+    /// that is nearest to 0. A device with other operands must override this.
     fn at(&self, operands: &[Operand], gamma: f64, n: f64) -> Option<Vec<i64>> {
         contract::operands_at(operands, gamma, n, &[])
     }
 
-    /// Returns the cosine of the angle γ that the control operands denote once they are quantised. By default this is the
-    /// operand `cos_gamma`, if the device has one. `operands` are the operands of the contract.
+    /// Returns cos γ, as the control operands represent it. By default it is the value of the operand `cos_gamma`, if the device
+    /// has one. `operands` are the operands of the contract.
     fn cosine(&self, operands: &[Operand], control: &[i64]) -> Option<f64> {
         let (operand, raw) =
             operands.iter().zip(control).find(|(operand, _)| operand.name == COSINE)?;
         Some(operand.format.to_f64(i128::from(*raw)).clamp(0.0, 1.0))
     }
 
-    /// Returns the places of an exhaustive check of `f`; none for every combination of the control operands.
+    /// Returns the cases of an exhaustive check of `f`, or `None` for all combinations of the control operands.
     fn sweep(&self) -> Option<Sweep> {
         None
     }
 
-    /// Returns the error of `f` at a place of the sweep, absolute; none where a place is a point.
+    /// Returns the absolute error of `f` in one case of the check, or `None` if a case is a set of control operands.
     #[inline]
     fn sweep_error(&self, place: &[i64]) -> Option<f64> {
         let _ = place;
         None
     }
 
-    /// Returns the terms of f's error, each a proven upper limit; none where the bound is not known yet.
+    /// Returns the contributions to the error of f, each a proven upper limit; nothing if the bound is not known yet.
     fn shares(&self) -> Vec<ErrorShare> {
         Vec::new()
     }
 
-    /// Returns facts about the formula that a user should know, as [`Contract::remarks`].
+    /// Returns remarks about the formula for a user, as [`Contract::remarks`] does.
     fn remarks(&self) -> Vec<String> {
         Vec::new()
     }
 }
 
-/// Proven limits of how far values of a formula are apart: the slope times the distance of two cosines from −1 to 1, and a jump
-/// that may lie between them.
+/// Proven limits on the difference of two values of a formula, at two cosines from −1 to 1. The difference is at most `slope`
+/// times the distance of the cosines, plus `jump`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Variation {
-    /// The largest slope beside the jump.
+    /// The largest slope of the formula, apart from the jump.
     pub slope: f64,
-    /// The largest jump. Most formulas jump at a right angle, from their value there to 0 beyond it.
+    /// The largest jump of the formula. Most formulas jump at a right angle: there they have some value, and beyond it 0.
     pub jump: f64,
 }
 
-/// The accuracy contract of a device that multiplies by a reflectance.
+/// The accuracy contract of a device that multiplies colours by a reflectance f.
 pub struct Highlight {
     reflectance: Box<dyn Reflectance>,
-    /// A computation has one result, at the point of its operands.
+    /// Whether a computation has one result, at the point that the operands state. A device that walks a line has several.
     single: bool,
     products: Products,
     operands: Vec<Operand>,
-    /// Once it was asked for: it may take a search.
+    /// The error bound, stored at the first request, because a search may be needed to compute it.
     bound: OnceLock<Bound>,
 }
 
-/// The contract answers for its reflectance wherever only control operands matter.
+/// A highlight gives access to the methods of its reflectance, which need only the control operands.
 impl Deref for Highlight {
     type Target = dyn Reflectance;
 
@@ -155,7 +159,8 @@ impl Deref for Highlight {
 }
 
 impl Highlight {
-    /// Makes the contract of a reflectance with these control operands, in the order in which it takes them.
+    /// Makes the contract of a device from its `Reflectance`, and from its control operands in the order in which the
+    /// `Reflectance` takes them.
     pub fn new(
         reflectance: impl Reflectance + 'static,
         control: Vec<Operand>,
@@ -168,28 +173,29 @@ impl Highlight {
         Self { reflectance: Box::new(reflectance), single, products, operands, bound }
     }
 
-    /// Returns the number of control operands, which come first.
+    /// Returns the number of control operands. They come before the colour operands.
     pub fn control(&self) -> usize {
         self.operands.len() - self.products.operands.len()
     }
 
-    /// Returns the format of f.
+    /// Returns the format of the reflectance f.
     pub fn f_format(&self) -> Format {
         self.products.f
     }
 
-    /// Returns the raw output for a raw f and a raw colour operand.
+    /// Returns the raw colour output for a raw reflectance f and a raw colour operand.
     #[inline]
     pub fn colour(&self, f: i64, colour: i64) -> i64 {
         self.products.narrow.apply(f * colour)
     }
 
-    /// Returns [`Reflectance::expressions`] of the reflectance.
+    /// Returns the Python expressions of [`Reflectance::expressions`].
     pub fn expressions(&self) -> Vec<String> {
         self.reflectance.expressions()
     }
 
-    /// Returns the control operands of a point, as [`Reflectance::point`]: those given where a computation has one result.
+    /// Returns the control operands of result number `index`, as [`Reflectance::point`] gives them. If a computation has one
+    /// result, they are `control` itself.
     #[inline]
     pub fn point<'c>(&self, control: &'c [i64], index: u64) -> Cow<'c, [i64]> {
         let mut point = Cow::Borrowed(control);
@@ -199,8 +205,8 @@ impl Highlight {
         point
     }
 
-    /// Returns the f of result number `index` (from 0) of raw operands. It writes the values of [`Contract::exact`] into
-    /// `exact`, and the control operands of the point into `point`.
+    /// Returns the raw f of result number `index` (from 0) for raw operands. It writes the exact values, as [`Contract::exact`]
+    /// gives them, into `exact`, and the control operands of that point into `point`.
     #[inline]
     pub fn measured(
         &self,
@@ -227,12 +233,12 @@ impl Highlight {
         }));
     }
 
-    /// Returns [`Reflectance::at`] with the operands of the contract.
+    /// Returns the control operands for an angle and an exponent: [`Reflectance::at`] with the operands of this contract.
     pub fn at(&self, gamma: f64, n: f64) -> Option<Vec<i64>> {
         self.reflectance.at(&self.operands, gamma, n)
     }
 
-    /// Returns [`Reflectance::cosine`] with the operands of the contract.
+    /// Returns the cosine that the control operands represent: [`Reflectance::cosine`] with the operands of this contract.
     pub fn cosine(&self, control: &[i64]) -> Option<f64> {
         self.reflectance.cosine(&self.operands, control)
     }
@@ -266,13 +272,13 @@ impl Contract for Highlight {
         self.reflectance.length()
     }
 
-    /// Returns the sweep of f alone; every product is checked beside it.
+    /// Returns the cases of an exhaustive check of f alone. The products with colours are checked in addition.
     fn sweep(&self) -> Sweep {
         let control = &self.operands[..self.control()];
         self.reflectance.sweep().unwrap_or_else(|| Sweep::all(control.iter()))
     }
 
-    /// Returns the error of f, absolute.
+    /// Returns the absolute error of f.
     #[inline]
     fn sweep_error(&self, place: &[i64]) -> f64 {
         self.reflectance.sweep_error(place).unwrap_or_else(|| {

@@ -1,11 +1,11 @@
-//! Makes the products of a reflectance f with the colour operands, for golden models and accuracy contracts.
+//! Multiplies the reflectance f by the colour operands, in the golden models and accuracy contracts of highlight devices.
 
 use crate::frame::{ClockedModel, Frame, FrameStep, Slot, State, idle, step};
 use crate::narrow::Narrow;
 use crate::{Operand, Output};
 use glint_base::fixed::{Format, Rounding};
 
-/// The operands that are multiplied by f: three colours, or one amplitude.
+/// The products of the reflectance f with the operands that it multiplies: three colours, or one amplitude.
 #[derive(Clone, Debug)]
 pub struct Products {
     /// The format of f.
@@ -21,16 +21,17 @@ pub struct Products {
 /// When products are made.
 #[derive(Clone, Copy, Debug)]
 enum ProductOrder {
-    /// Whatever f and the colours are: outputs are logic.
+    /// All products are combinational logic behind f and the colours.
     AtOnce,
-    /// Each in a microinstruction.
+    /// One multiplier makes the products, each in a microinstruction of its own.
     InTurn,
-    /// At every rising edge.
+    /// Registers take the products at every rising edge.
     AtEdges,
 }
 
 impl Products {
-    /// Makes the products with the colours of the building block `Colours`; every value is in the domain.
+    /// Returns the products with the three operands of the building block `Colours`. The contract covers all values of these
+    /// operands.
     pub fn colours(f: Format, bits: u32, rounding: Rounding) -> Self {
         let colours = ["red", "green", "blue"];
         let doc =
@@ -39,14 +40,14 @@ impl Products {
         Self::new(f, bits, rounding, colours.map(|it| (it, doc(it))).into(), outputs.into())
     }
 
-    /// Makes the product with the amplitude of the building block `Colours::amplitude`; every value is in the domain.
+    /// Returns the product with the operand of the building block `Colours::amplitude`. The contract covers all its values.
     pub fn amplitude(f: Format, bits: u32, rounding: Rounding) -> Self {
         let doc = "intensity of the light times the surface's specular coefficient, at the peak";
         let operand = vec![("amplitude", doc.to_owned())];
         Self::new(f, bits, rounding, operand, vec!["intensity_out".to_owned()])
     }
 
-    /// Makes no product: the contract is on f alone.
+    /// Returns no products: the accuracy contract covers f alone.
     pub fn none(f: Format) -> Self {
         Self::new(f, 1, Rounding::Nearest, Vec::new(), Vec::new())
     }
@@ -77,13 +78,13 @@ impl Products {
         }
     }
 
-    /// Makes the products one after the other, a microinstruction each, if `in_turn`; each at once otherwise.
+    /// Returns the products; if `in_turn`, one multiplier makes them one after the other, each in a microinstruction of its own.
     #[must_use]
     pub fn in_turn(self, in_turn: bool) -> Self {
         Self { schedule: if in_turn { ProductOrder::InTurn } else { ProductOrder::AtOnce }, ..self }
     }
 
-    /// Makes the products at every rising edge if `at_edges`; at once otherwise.
+    /// Returns the products; if `at_edges`, registers take them at every rising edge.
     #[must_use]
     pub fn at_edges(self, at_edges: bool) -> Self {
         Self {
@@ -92,8 +93,9 @@ impl Products {
         }
     }
 
-    /// Adds their operands and outputs to a clock model that has the raw f in a slot. Returns the microinstructions that make the
-    /// products, before the one with the result; none where they are made at once.
+    /// Adds the colour operands and the outputs to a golden model that has the raw f in the slot `f`. Returns the
+    /// microinstructions that compute the products before the microinstruction with the result; none if the products are
+    /// combinational logic.
     pub fn slots(&self, frame: &mut Frame, f: Slot) -> Vec<FrameStep> {
         let mut program = Vec::new();
         for (operand, output) in self.operands.iter().zip(&self.outputs) {
@@ -117,8 +119,8 @@ impl Products {
         program
     }
 
-    /// Returns the device at power-up. The products of the value that `program` leaves in the slot `f` are made and shown in
-    /// the last microinstruction.
+    /// Returns the golden model that executes `program`, which leaves f in the slot `f`, then computes the products and shows
+    /// them in its last microinstruction.
     pub fn behind(&self, mut frame: Frame, f: Slot, mut program: Vec<FrameStep>) -> ClockedModel {
         program.extend(self.slots(&mut frame, f));
         program.push(idle().valid().end());

@@ -1,4 +1,5 @@
-//! The accuracy contract of `lyon`: its formula, the terms of its error bound, and the exhaustive check.
+//! The accuracy contract of the device `lyon`: its formula max(0, 1 − β·D²)^m, the terms of its error bound, and the exhaustive
+//! check.
 
 use super::{Derived as _, Keys, LyonArithmetic, Scale};
 use crate::contract::{self as shared, ErrorShare};
@@ -12,7 +13,7 @@ use glint_config::Config;
 /// The most that D² can be: each component is at least −2.0.
 const FARTHEST: i64 = 12;
 
-/// Returns the accuracy contract. Control operands: `dx`, `dy`, `dz`, and `shift` or `exponent`.
+/// Returns the accuracy contract of the device `lyon`. Its control operands are `dx`, `dy`, `dz`, and `shift` or `exponent`.
 pub fn contract(config: &Config) -> Box<dyn Contract> {
     Box::new(of_keys(Keys::of(config)))
 }

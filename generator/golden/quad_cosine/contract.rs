@@ -1,4 +1,5 @@
-//! The accuracy contract of `quad-cosine`: its formula, the terms of its error bound, and the exhaustive check.
+//! The accuracy contract of the device `quad-cosine`: its formula cosᵏ(√(n/k)·δ), the terms of its error bound, and the
+//! exhaustive check.
 
 use std::f64::consts::FRAC_PI_2;
 
@@ -11,8 +12,9 @@ use crate::{Contract, Operand, Sweep};
 use glint_base::fixed::{Format, exp2};
 use glint_config::Config;
 
-/// Returns the accuracy contract. The control operands are `delta_zeta`, `zeta_start`, `exponent` and `length`. For a point
-/// on a line, `zeta_start` is the angle of that point.
+/// Returns the accuracy contract of the device `quad-cosine`. Its control operands are `delta_zeta` (the angle from a point to
+/// the next), `zeta_start` (the first angle), `exponent` and `length` (the number of intervals). To state a single point of a
+/// line, the contract sets `zeta_start` to the angle of that point.
 pub fn contract(config: &Config) -> Box<dyn Contract> {
     let keys = Keys::of(config);
     let mut operands = line::angle_operands(keys.angle_format()).to_vec();

@@ -1,11 +1,12 @@
-//! Computes the coefficients a(n) in ROM(n) of `quadratic`, independently of the hardware description.
+//! Computes the coefficients a(n) of the device `quadratic` (its table ROM(n)), independently of the hardware description.
 //!
-//! With x = 1 − c, the parabola exceeds cⁿ by `h(x) = (1 − x)·(1 − a·x) − (1 − x)ⁿ` up to its zero at
-//! 1/a, beyond which cⁿ exceeds 0. The minimax a makes the maximum of h equal to (1 − 1/a)ⁿ.
+//! The device computes c + a·(c² − c), a parabola in c = cos γ that approximates cⁿ. With x = 1 − c, the parabola exceeds cⁿ by
+//! `h(x) = (1 − x)·(1 − a·x) − (1 − x)ⁿ` up to its zero at x = 1/a; beyond the zero the result is 0 and cⁿ exceeds it. The
+//! minimax a makes the maximum of h equal to the error at the zero, (1 − 1/a)ⁿ.
 
 use glint_keys::quadratic::Scheme;
 
-/// Returns a(n) for n = 0 … `count` − 1, unrounded. n = 0 is as n = 1.
+/// Returns the exact a(n) for n = 0 … `count` − 1. The entry for n = 0 equals the entry for n = 1.
 pub fn table(scheme: Scheme, count: u32) -> Vec<f64> {
     (0..count)
         .map(|n| match scheme {

@@ -1,4 +1,7 @@
-//! Bounds the error of f of `rough` for each pair of bins of the angles γ and dγ. [`super::bound`] takes the largest.
+//! Bounds the error of f of the device `rough` for every pair of bins of the angles γ and dγ.
+//!
+//! The quarter circle is cut into 512 bins of equal size. [`super::bound`] takes the largest of these bounds, and explains the
+//! symbols.
 
 use std::f64::consts::FRAC_PI_2;
 
@@ -9,15 +12,15 @@ use glint_base::fixed::{Rounding, exp2};
 
 /// Bins of the quarter circle: fine against the narrowest highlight, 3.6° at n = 1000.
 const BINS: usize = 512;
-/// The angle of a bin.
+/// The width of a bin, in radians.
 pub const BIN: f64 = FRAC_PI_2 / BINS as f64;
 
-/// A slack that covers the rounding of angles in f64.
+/// A margin, in radians, that covers the rounding of angles in f64.
 pub const SLACK: f64 = 1e-9;
 
-/// The table's error by angle.
+/// The errors of the table of sines (ROM 18 of `rough`), by bins of the angle.
 pub struct Errors {
-    /// The largest error of an operand in each bin, with its shape (as in [`ErrorRange`]).
+    /// The largest error of the table in each bin, and the part of it that words of unlimited width would leave ([`ErrorRange`]).
     errors: Vec<(f64, f64)>,
     /// The largest sine in each bin.
     sines: Vec<f64>,
@@ -46,8 +49,8 @@ impl Errors {
         self.part(i, j, |error, _| error)
     }
 
-    /// Returns the part of [`Self::product`] that comes from a part of each entry's error, which `part` takes
-    /// from the error and its shape.
+    /// Returns the share of [`Self::product`] that comes from one part of every table entry's error. `part` gets the error of an
+    /// entry and its shape, and returns that part.
     pub fn part(&self, i: usize, j: usize, part: impl Fn(f64, f64) -> f64) -> f64 {
         let (gamma, dgamma) = (self.errors[i], self.errors[j]);
         self.sines[i] * part(dgamma.0, dgamma.1)
@@ -55,9 +58,9 @@ impl Errors {
     }
 }
 
-/// The weight of an error when γ and dγ are a number of bins apart.
+/// The factor by which an error of cos(γ ± dγ) counts in f, if γ and dγ lie a certain number of bins apart.
 pub struct Weight {
-    /// The largest n·b.
+    /// The largest n·b, where b is the base of the square.
     pub linear: f64,
     /// The largest n for which the square is not constant.
     exponent: f64,
@@ -93,25 +96,25 @@ fn bin(angle: f64) -> usize {
     ((angle.max(0.0) / BIN) as usize).min(BINS - 1)
 }
 
-/// The bounds of pairs of bins.
+/// Bounds on the error of f for all pairs of bins of γ and dγ.
 pub struct Analysis {
     pub errors: Errors,
-    /// By distance of the bins, or by the sum of their numbers.
+    /// The weights, indexed by the distance of the two bins (for γ − dγ), or by the sum of their numbers (for γ + dγ).
     pub weights: Vec<Weight>,
-    /// The last bin of dγ.
+    /// The number of the last bin that dγ can reach.
     deviation: usize,
-    /// The rounding of registers 11 and 12 together.
+    /// The largest rounding error of registers 11 and 12 together: the products of the cosines and of the sines.
     pub products: f64,
-    /// The rounding of the base in register 13.
+    /// The largest rounding error of the base in register 13.
     pub base: f64,
-    /// An ulp of the square in register 13.
+    /// One unit in the last place of the square in register 13.
     pub ulp: f64,
-    /// The largest error of the base before its rounding, where the square is not constant.
+    /// The largest error of the base before it is rounded, among operands for which the square is not constant.
     pub square: f64,
 }
 
 impl Analysis {
-    /// Makes the bounds with the errors of a table.
+    /// Returns the bounds for the configuration `keys` with the errors of the table `sine`.
     pub fn new(keys: &Keys, sine: &Sine) -> Self {
         let errors = Errors::new(sine);
         let deviation = bin(keys.deviation.to_radians() + SLACK);
@@ -145,7 +148,7 @@ impl Analysis {
         it
     }
 
-    /// Returns every bin of γ with every bin of dγ.
+    /// Returns all pairs of a bin of γ and a bin of dγ.
     pub fn pairs(&self) -> impl Iterator<Item = (usize, usize)> + use<> {
         let deviation = self.deviation;
         (0..BINS).flat_map(move |i| (0..=deviation).map(move |j| (i, j)))
@@ -156,18 +159,18 @@ impl Analysis {
         self.errors.sines[bin]
     }
 
-    /// Returns the largest error of f in two bins.
+    /// Returns the bound on the error of f for γ in bin `i` and dγ in bin `j`; `negative` selects γ − dγ.
     pub fn bound(&self, i: usize, j: usize, negative: bool) -> f64 {
         self.bound_of(i, j, negative, self.errors.product(i, j))
     }
 
-    /// Returns the bound where register 12 is off by `error` from the table.
+    /// Returns the bound as [`Self::bound`] does, if the errors of the table change register 12 by at most `error`.
     pub fn bound_of(&self, i: usize, j: usize, negative: bool, error: f64) -> f64 {
         let apart = if negative { i.abs_diff(j) } else { i + j };
         self.rounded(self.weights[apart].linear * (error + self.products))
     }
 
-    /// Returns the largest error of f. `linear` is n·b times the error of adder 15.
+    /// Returns the bound on the error of f with all roundings. `linear` is n·b times the error of the sum in adder 15.
     pub fn rounded(&self, linear: f64) -> f64 {
         let base = self.square + self.base;
         linear + 2.0 * self.base + self.ulp + base * base

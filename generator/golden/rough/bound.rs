@@ -1,4 +1,4 @@
-//! Computes the terms of the error bound of `rough`. This is the proof of the bound:
+//! Computes the terms of the error bound of the device `rough`, which computes (n/2·(cos(γ ± dγ) − 1) + 1)². This is the proof:
 //!
 //! **Notation.** b = n/2·(cos(γ ± dγ) − 1) + 1 is the formula's base, b′ the hardware's (adder 16 in
 //! word 6), and E ≥ |b′ − b|. Operands are exact, for the formula is taken at the quantised ones.
@@ -26,7 +26,7 @@ use super::{Keys, Kind, RomLayout, RoughArithmetic, pairs};
 use crate::contract::ErrorShare;
 use glint_base::fixed::exp2;
 
-/// Returns the terms of f's error.
+/// Returns the contributions to the error of f of the device `rough`, each with the key that governs it.
 pub fn shares(it: &RoughArithmetic) -> Vec<ErrorShare> {
     match it.keys.arithmetic {
         Kind::Patent => {

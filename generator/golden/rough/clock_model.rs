@@ -1,4 +1,4 @@
-//! Builds the golden model of `rough`, which runs clock by clock: its registers and its microinstructions.
+//! Builds the golden model of the device `rough` clock by clock: its registers and its microinstructions.
 
 use std::sync::Arc;
 
@@ -8,10 +8,10 @@ use crate::frame::{Frame, idle, step_by};
 use glint_base::fixed::Format;
 use glint_config::Config;
 
-/// Returns the golden model.
+/// Returns the golden model of the device `rough` for a configuration.
 ///
-/// A synchronous ROM 18 is addressed a microinstruction before its sine is taken, with operands that do not change in
-/// between, so that it shows the same as another would.
+/// The model has no address register for a synchronous ROM 18 (the table of sines). The hardware sets the ROM's address one
+/// microinstruction before it uses the sine, and the operands do not change in between, so both kinds of ROM show the same sine.
 pub fn model(config: &Config) -> Box<dyn Model> {
     let it = Arc::new(RoughArithmetic::new(keys_of(config)));
     let keys = &it.keys;

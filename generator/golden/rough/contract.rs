@@ -1,4 +1,5 @@
-//! The accuracy contract of `rough`: its formula, its peak, the terms of its error bound, and the exhaustive check.
+//! The accuracy contract of the device `rough`: its formula, the operands at which f is largest, its error bound and its
+//! exhaustive check.
 
 use super::{Derived as _, Kind, RoughArithmetic, bound, keys_of};
 use crate::contract::{self as shared, ErrorShare};
@@ -10,7 +11,8 @@ use glint_config::Config;
 /// The settings of dγ, in degrees, that an exhaustive check visits beside the largest of the domain.
 const SWEPT_DEVIATIONS: [f64; 4] = [0.0, 1.0, 5.0, 15.0];
 
-/// Returns the accuracy contract. Control operands: `cos_gamma`, `cos_dgamma`, `exponent`, `dgamma_negative`.
+/// Returns the accuracy contract of the device `rough`. Its control operands are `cos_gamma`, `cos_dgamma`, `exponent` and
+/// `dgamma_negative`.
 pub fn contract(config: &Config) -> Box<dyn Contract> {
     let keys = keys_of(config);
     let (control, products) = (keys.control(), keys.products());

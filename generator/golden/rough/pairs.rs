@@ -1,4 +1,4 @@
-//! Finds a bound on the error of f of `rough`, by branch and bound over pairs of angles.
+//! Finds a bound on the error of f of the device `rough` by branch and bound over pairs of angles γ and dγ.
 //!
 //! **Bounds.** A pair of bins has the bound of the analysis in [`super::bound`]. A pair of operands in these bins has the
 //! same bound, but with the errors of the table at these very operands. If adder 15 is computed too, its distance D from
@@ -29,7 +29,7 @@ const F64: f64 = 1e-15;
 /// A raw cosine.
 struct RawCosine {
     raw: i64,
-    /// Its exact sine, and the distance of the table's sine from it.
+    /// The exact sine of the operand, and the distance of the table's sine from it.
     sine: f64,
     error: f64,
 }
@@ -38,7 +38,7 @@ struct RawCosine {
 struct OperandPair {
     bound: f64,
     control: [i64; 4],
-    /// The distance of adder 15 from its exact value, and the amount by which the exact value is below 0.
+    /// The distance of the sum in adder 15 from its exact value, and the amount by which the exact value is below 0.
     distance: f64,
     below: f64,
 }
@@ -46,14 +46,14 @@ struct OperandPair {
 struct PairSearch<'a> {
     it: &'a RoughArithmetic,
     analysis: &'a Analysis,
-    /// Cosines by bin, those with the largest errors first.
+    /// The cosine operands in each bin of angles, ordered from the largest error of their sine to the smallest.
     cosines: BTreeMap<usize, Vec<RawCosine>>,
-    /// The largest error that was met, or half of the first bound.
+    /// The largest error found so far, or half of the first bound if that is larger.
     largest: f64,
     steps: u64,
 }
 
-/// Returns a bound on the error of f, which no pair of angles exceeds.
+/// Returns a proven bound on the error of f for all pairs of angles.
 pub fn largest_error(it: &RoughArithmetic, analysis: &Analysis) -> f64 {
     let mut bins: Vec<(f64, usize, usize, i64)> = Vec::new();
     let mut first = 0.0_f64;

@@ -1,17 +1,18 @@
-//! Folds signed angles to magnitudes, and makes tables of powers of their cosine. The unit is the right angle.
+//! Builds hardware for cosines of angles: it takes the magnitude of a signed angle and addresses a table of cosᵏ. The devices of
+//! scan lines, such as `quad-cosine`, use it.
 //!
-//! With this unit, the binary point does the work. A signed angle is outside −90° … 90° if its integer bits differ
-//! from its sign. The fraction bits of its magnitude are an address without any conversion.
+//! Angles are in right angles, so 90° is 1.0. A signed angle is therefore outside −90° … 90° exactly if its integer bits differ
+//! from its sign, and the fraction bits of its magnitude address a table without any conversion.
 
 use crate::dsl::{Designer, Signal};
 use glint_base::fixed::{Format, Overflow, Rounding, exp2};
 
-/// A signed angle without its sign.
+/// The magnitude of a signed angle, as hardware.
 #[derive(Clone, Copy)]
 pub struct Folded<'d> {
-    /// The leading bits of the angle's magnitude, when it is within a right angle.
+    /// The leading bits of the magnitude, if the angle is within a right angle.
     pub magnitude: Signal<'d>,
-    /// One bit: −90° ≤ angle < 90°.
+    /// A bit that is 1 if −90° ≤ angle < 90°.
     pub within: Signal<'d>,
 }
 

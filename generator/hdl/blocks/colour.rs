@@ -1,24 +1,27 @@
-//! Builds the colour operands of a device and the products of f with them, which are its outputs.
+//! Builds the colour operands of a device, and its outputs: the products of the colours with the reflectance f, rounded to
+//! integers.
 //!
-//! There is a multiplier for each colour, or one for all.
+//! Each colour has its own multiplier, or one multiplier makes all products one after the other. For example, `red_out` is f
+//! times the operand `red`.
 
 use crate::dsl::{Designer, InputOperand, Signal, Step, step};
 use glint_base::fixed::{Format, Overflow, Rounding};
 
-/// The numbers of one colour channel in the source's figure.
+/// The numbers that the figure of the device's source gives to the blocks of one colour.
 #[derive(Clone, Copy, Debug)]
 pub struct ChannelBlocks {
-    /// Data input and write strobe of the operand.
+    /// The data input and the write strobe of the operand.
     pub inputs: (u16, u16),
-    /// Operand register.
+    /// The operand register.
     pub register: u16,
-    /// Output multiplier.
+    /// The multiplier before the output.
     pub multiplier: u16,
-    /// Output.
+    /// The output.
     pub output: u16,
 }
 
-/// The colour operands: the intensity of the light times k_s, integers.
+/// The colour operands of a device, integers. A colour is the intensity of the light times the material's specular coefficient
+/// k_s.
 pub struct Colours<'d> {
     designer: &'d Designer,
     format: Format,
@@ -33,8 +36,8 @@ struct Channel<'d> {
 }
 
 impl<'d> Colours<'d> {
-    /// Makes the operands `red`, `green`, `blue` of `bits` bits. `blocks` are the source's numbers of them, if it has
-    /// some.
+    /// Adds the operands `red`, `green` and `blue` of `bits` bits. `blocks` are their numbers in the figure of the source, if it
+    /// has them.
     #[track_caller]
     pub fn new(designer: &'d Designer, bits: i32, blocks: Option<[ChannelBlocks; 3]>) -> Self {
         let format = Format::unsigned(bits, 0);
@@ -52,8 +55,8 @@ impl<'d> Colours<'d> {
         Self { designer, format, channels }
     }
 
-    /// Makes one operand, `amplitude`, of `bits` bits, for the output `intensity_out`: a device that is there once for each
-    /// colour, or whose light has none.
+    /// Adds a single operand `amplitude` of `bits` bits, for the output `intensity_out`. A device has it if it computes one
+    /// colour channel, or light without a colour.
     #[track_caller]
     pub fn amplitude(designer: &'d Designer, bits: i32, blocks: Option<ChannelBlocks>) -> Self {
         let format = Format::unsigned(bits, 0);
@@ -66,8 +69,8 @@ impl<'d> Colours<'d> {
         Self { designer, format, channels: vec![Channel { name: "intensity", operand, blocks }] }
     }
 
-    /// Makes the outputs by one multiplier, one after the other, and returns the microinstructions that do so. Each output is
-    /// a register, `<colour>_intensity`. `f` must hold meanwhile.
+    /// Adds outputs that one multiplier computes one after the other, and returns the microinstructions for that. Each output is
+    /// a register `<colour>_intensity`. `f` must not change meanwhile.
     #[must_use]
     #[track_caller]
     pub fn outputs_in_turn(&self, f: Signal<'d>, rounding: Rounding) -> Vec<Step> {
@@ -93,13 +96,13 @@ impl<'d> Colours<'d> {
         steps
     }
 
-    /// Makes the outputs, `<colour>_out` or `intensity_out`, each f times its operand, rounded to integers.
+    /// Adds the outputs `<colour>_out` or `intensity_out`, each f times its operand, rounded to an integer.
     #[track_caller]
     pub fn outputs(&self, f: Signal<'d>, rounding: Rounding) {
         self.outputs_of(f, rounding, false);
     }
 
-    /// Makes the outputs with a register behind every multiplier, loaded on every clock.
+    /// Adds the outputs with a register behind each multiplier, which loads on every clock.
     #[track_caller]
     pub fn outputs_staged(&self, f: Signal<'d>, rounding: Rounding) {
         self.outputs_of(f, rounding, true);

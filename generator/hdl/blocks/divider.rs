@@ -1,8 +1,8 @@
-//! An iterative divider: one bit of the quotient a clock, by trial subtraction (restoring).
+//! Builds an iterative divider, which computes one bit of the quotient a clock by trial subtraction (restoring division).
 //!
-//! The dividend becomes the first remainder. A step doubles the remainder and subtracts the divisor if the difference
-//! is not negative. The next bit of the quotient, the top bit first, says whether the step subtracted. The last
-//! remainder is exact, so the quotient is exact to its last bit.
+//! The first remainder is the dividend. A step doubles the remainder and subtracts the divisor if the difference is not negative.
+//! The next bit of the quotient, from the top bit down, is 1 if the step subtracted. The last remainder is exact, so every bit of
+//! the quotient is correct.
 
 use crate::dsl::{Counter, Designer, Mux, Register, Signal, StepSetting};
 use glint_base::codes;

@@ -1,4 +1,5 @@
-//! Builds 2^−y for y ≥ 0 from 2^−x, where x is the fraction of y: the integer of y becomes a shift to the right.
+//! Builds hardware for 2^−y with y ≥ 0: it shifts 2^−x to the right by the integer part of y, where x is the fraction of y. For
+//! example, 2^−2.5 is 2^−0.5 shifted by two bits.
 
 use super::shift;
 use crate::dsl::{Designer, Signal};

@@ -1,42 +1,43 @@
-//! Builds the hardware of a scan line: `angle` starts at `zeta_start` and grows by `delta_zeta` every clock.
+//! Builds the accumulator that walks along a scan line: the register `angle` starts at the operand `zeta_start` and grows by the
+//! operand `delta_zeta` every clock.
 //!
-//! [`Line`] holds the operands, the adder, the mux, the register and the counter of intervals. It also writes the
-//! microprogram of a device that does nothing else.
+//! The devices `quad-cosine` and `cosine-squared` use it. [`Line`] holds the operands, the adder, the mux, the register and the
+//! counter of intervals, and writes the microprogram of such a device.
 
 use crate::dsl::{Counter, Designer, Mux, Register, Signal, end, jump_if, loop_while, step};
 use glint_base::fixed::Format;
 
-/// The numbers of an operand in the source's figure: data input, write strobe, and register.
+/// The numbers of an operand in the figure of the source: of its data input, its write strobe and its register.
 #[derive(Clone, Copy, Debug)]
 pub struct OperandBlocks {
-    /// Data input and write strobe.
+    /// The data input and the write strobe.
     pub inputs: (u16, u16),
-    /// Register.
+    /// The register.
     pub register: u16,
 }
 
-/// The numbers of a line's parts in the source's figure.
+/// The numbers of the accumulator's blocks and lines in the figure of the source.
 #[derive(Clone, Copy, Debug)]
 pub struct LineBlocks {
-    /// The difference from point to point.
+    /// The operand `delta_zeta`, the difference of the angles of neighbouring points.
     pub delta: OperandBlocks,
-    /// The angle of the first point.
+    /// The operand `zeta_start`, the angle of the first point.
     pub start: OperandBlocks,
-    /// Data input and write strobe of the number of intervals.
+    /// The data input and the write strobe of the operand `length`, the number of intervals.
     pub length_inputs: (u16, u16),
     /// The counter of intervals.
     pub counter: u16,
     /// The adder.
     pub adder: u16,
-    /// The mux before the angle's register.
+    /// The mux before the register of the angle.
     pub mux: u16,
-    /// The angle's register.
+    /// The register of the angle.
     pub register: u16,
-    /// The line that counts.
+    /// The control line `count`, which makes the counter count.
     pub count: u16,
-    /// The line that selects.
+    /// The control line `accumulate`, which selects the input of the mux.
     pub select: u16,
-    /// The line that writes the angle's register.
+    /// The control line `write_angle`, which loads the register of the angle.
     pub write: u16,
 }
 
@@ -110,13 +111,14 @@ impl<'d> Line<'d> {
         Self { designer: d, start: start.q(), sum, next, angle, intervals, empty, more }
     }
 
-    /// Returns the angle of the point.
+    /// Returns the angle of the current point, the output of the register.
     pub fn angle(&self) -> Signal<'d> {
         self.angle.q()
     }
 
-    /// Sets the microprogram of a device that does nothing else: its results are on the outputs `clocks` clocks after the word
-    /// that writes their angle, one for the register itself and one for every register between it and the outputs.
+    /// Sets the microprogram of a device that only computes lines. Its results are on the outputs `clocks` clocks after the
+    /// microinstruction that loads their angle: one clock for the register of the angle, and one for every register between it
+    /// and the outputs.
     #[track_caller]
     pub fn microprogram(&self, clocks: u32) {
         let clocks = clocks.max(1);

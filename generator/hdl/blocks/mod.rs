@@ -1,4 +1,4 @@
-//! Hardware blocks for descriptions: several devices share them, and a device of your own can take them too.
+//! Hardware blocks that several devices share, such as a divider, shifters and tables. A user's own device can use them too.
 
 pub mod angle;
 pub mod colour;

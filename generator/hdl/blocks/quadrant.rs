@@ -1,14 +1,15 @@
-//! Reduces a turn to the first quadrant: to the distance from the nearer zero of its sine, and the sign of the sine.
+//! Builds hardware that maps an angle in any quadrant to the first quadrant. It gives the distance from the nearer zero of the
+//! sine, and the sign of the sine; a table of one quadrant then gives every sine.
 
 use crate::dsl::{Designer, Signal};
 use glint_base::fixed::Format;
 
-/// A turn in the first quadrant: its distance from the nearer zero of its sine, and the sign of the sine.
+/// An angle, mapped to the first quadrant.
 #[derive(Clone, Copy)]
 pub struct Quadrant<'d> {
-    /// The distance, a number of a quadrant's steps.
+    /// The distance from the nearer zero of the sine, in steps of the angle.
     pub way: Signal<'d>,
-    /// One bit: the sine is negative.
+    /// A bit that is 1 if the sine is negative.
     pub negative: Signal<'d>,
 }
 

@@ -1,46 +1,47 @@
-//! Builds a table that approximates a function of one operand by linear interpolation, in segments that shrink toward
-//! zero.
+//! Builds a table that approximates a function of one operand by linear interpolation, in segments that become shorter toward 0.
+//! For example, `rough` has such a table of sines.
 //!
-//! The operand u (an integer of C bits, or exactly 2^C) is cut into ranges by factors of four. Range j holds u in
-//! [2^(C−2j−2), 2^(C−2j)). The k_j top bits of the (C−2j)-bit number cut it into uniform segments. Below the last
-//! range, every value of u has an entry of its own. The segments are therefore fine where a function such as √u is
-//! steep. They cost one mux, a tree, and no shifter.
+//! The operand u, an integer of C bits or exactly 2^C, is cut into ranges by factors of four: range j holds u in [2^(C−2j−2),
+//! 2^(C−2j)). The k_j top bits of the (C−2j)-bit number select a segment of the range, all of equal length. Below the last range,
+//! every value of u has its own entry. Segments are therefore short where a function such as √u is steep. The hardware needs a
+//! tree of muxes and no shifter.
 
 use crate::dsl::{Designer, Signal};
 use glint_base::fixed::{Format, Overflow, Rounding, exp2};
 
-/// How the operand is cut.
+/// How the operand of a table is cut into segments.
 #[derive(Clone, Debug)]
 pub struct Segmentation {
-    /// Bits of the operand, C.
+    /// The number C of bits of the operand.
     pub operand_bits: u32,
-    /// k_j: log₂ of the segments into which range j would be cut if it reached down to 0.
+    /// For each range j, the number k_j of bits that select a segment: log₂ of the number of segments if the range reached down
+    /// to 0.
     pub segments: Vec<u32>,
 }
 
 /// A block of entries: a range, or the values below the last range.
 #[derive(Clone, Copy, Debug)]
 struct EntryBlock {
-    /// Bits of u within the range.
+    /// The number of bits of u within the range.
     bits: u32,
-    /// Bits of the address within the block.
+    /// The number of address bits within the block of the range.
     prefix: u32,
-    /// The first entry.
+    /// The index of the first entry of the range.
     base: u32,
 }
 
-/// One entry of the table: the value at the start of the segment and its rise over the segment, as
-/// raw values of the formats in [`SegmentedFormats`].
+/// One entry of the table: the value at the start of its segment, and the rise over the segment, as raw values in the formats of
+/// [`SegmentedFormats`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Entry {
-    /// At the start of the segment.
+    /// The value at the start of the segment.
     pub base: i128,
-    /// Over the whole segment; not negative.
+    /// The rise over the whole segment, which is not negative.
     pub slope: i128,
 }
 
-/// Returns the straight line through a segment with the least error, for a function that must be concave: the slope of the
-/// chord, and the base that puts the error of the segment's points symmetrically about 0.
+/// Returns the entry whose straight line approximates a concave function with the smallest error. The slope is the slope of the
+/// chord, and the base makes the largest errors above and below equal.
 pub fn chord(segment: Segment, shape: SegmentedFormats, function: impl Fn(f64) -> f64) -> Entry {
     let value = Format::unsigned(0, shape.fraction);
     let (from, length) = (segment.from as f64, segment.length as f64);
@@ -69,23 +70,23 @@ pub fn chord(segment: Segment, shape: SegmentedFormats, function: impl Fn(f64) -
     Entry { base, slope: slope as i128 }
 }
 
-/// A segment: the values of u that one entry is for.
+/// A segment: neighbouring values of u that one entry of the table serves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Segment {
     /// The first value of u.
     pub from: u64,
-    /// How many values.
+    /// The number of values of u.
     pub length: u64,
 }
 
-/// The formats of a table: value `u0.S`, slope with D fraction bits.
+/// The formats of a table: values have the format `u0.S`, slopes have D fraction bits.
 #[derive(Clone, Copy, Debug)]
 pub struct SegmentedFormats {
-    /// S: fraction bits of the value.
+    /// The number S of fraction bits of a value.
     pub fraction: i32,
-    /// D: fraction bits of the slope.
+    /// The number D of fraction bits of a slope.
     pub slope_fraction: i32,
-    /// Reads on the rising edge.
+    /// Whether the table is read at the rising edge.
     pub synchronous: bool,
 }
 

@@ -1,6 +1,6 @@
-//! Builds shifters from rows of muxes, for shift amounts that are known only at run time.
+//! Builds shifters whose shift amount is known only at run time, from rows of muxes.
 //!
-//! One shifter shifts to the right by an operand. The other shifts a word to the left until its top bit is 1.
+//! [`right_by`] shifts to the right by an operand, and [`normalise`] shifts a word to the left until its top bit is 1.
 
 use crate::dsl::{Designer, Signal};
 use glint_base::fixed::Format;
@@ -26,12 +26,12 @@ pub fn right_by<'d>(d: &'d Designer, name: &str, x: Signal<'d>, places: Signal<'
     })
 }
 
-/// A word without its leading zeros.
+/// A word that was shifted left until its top bit is 1, and the number of bits by which it was shifted.
 #[derive(Clone, Copy)]
 pub struct Normalised<'d> {
     /// The word shifted left until its top bit is 1, as an integer of the same width.
     pub word: Signal<'d>,
-    /// By how many places, an integer.
+    /// The number of leading zeros, by which the word was shifted.
     pub zeros: Signal<'d>,
 }
 

@@ -1,7 +1,8 @@
-//! Writes the microinstructions of repeated squaring, which raise a register to a power of two under a counter.
+//! Writes the microinstructions that raise a register to a power of two by repeated squaring. The devices `lyon` and
+//! `cosine-power` use it.
 //!
-//! The first squaring takes its operand from elsewhere and is a microinstruction of its own; all others are one
-//! microinstruction, executed again and again. The multiplier and the muxes before it are the device's.
+//! The first squaring has its own microinstruction, since its operand comes from elsewhere. One more microinstruction squares the
+//! register itself; a counter repeats it. The device provides the multiplier and the muxes in front of it.
 
 use crate::dsl::{Counter, Designer, Mux, Register, Signal, Step, StepSetting, loop_while, step};
 use glint_base::fixed::Format;

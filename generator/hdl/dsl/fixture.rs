@@ -1,9 +1,10 @@
-//! Builds designs from a few microinstructions, for unit tests.
+//! Builds small designs from a few microinstructions, for unit tests of the DSL.
 
 use super::{Designer, Step, end, step, valid};
 use crate::netlist::Design;
 
-/// Returns the design of a description that gives the microinstructions between the one that idles and the one with the result.
+/// Returns a design whose microprogram consists of an idle microinstruction, the microinstructions that `describe` returns, and
+/// one that raises `valid`.
 pub fn design(describe: impl FnOnce(&Designer) -> Vec<Step>) -> Design {
     let d = Designer::new("device");
     let mut steps = vec![step("idle", [])];

@@ -1,9 +1,10 @@
-//! Places a description in another one as a part, whose operands are signals, and makes the control unit of a design
-//! that consists of parts.
+//! Instantiates a hardware description within another one, as a part. The operands of the part are signals of the surrounding
+//! description.
 //!
-//! A part is a whole design. Its nets, registers and memories become part of the design that uses it, named after the
-//! instance. The parts are executed one after the other, in the order of their instances. The microinstruction before
-//! a part's first loads the operand registers of the part. A part has no ports, sequencer or handshake of its own.
+//! A part is a whole design: its nets, registers and memories become part of the surrounding design, with the name of the
+//! instance in front. The parts run one after the other, in the order of their instances. The operand registers of a part are
+//! loaded in the microinstruction before the part's first one. A part has no ports, sequencer or handshake of its own. For
+//! example, `shading` instantiates `dot-product`.
 
 use std::collections::HashMap;
 use std::panic::Location;
@@ -23,16 +24,16 @@ use glint_base::fixed::Format;
 /// The depth to which parts may contain parts. An instance of itself would have no end.
 const DEEPEST: u32 = 8;
 
-/// A part of a description: its results.
+/// The results of a part.
 pub struct Instance<'d> {
     designer: &'d Designer,
     name: String,
-    /// `None` if the part has mistakes, which have been reported.
+    /// The results of the part by name; `None` if the part has mistakes, which have been reported.
     outputs: Option<Vec<(String, Signal<'d>)>>,
 }
 
 impl<'d> Instance<'d> {
-    /// Returns the result of this name, held in a register until the part computes again.
+    /// Returns the result with this name. A register holds it until the part computes again.
     #[track_caller]
     pub fn out(&self, output: &str) -> Signal<'d> {
         let outputs = self.outputs.as_deref().unwrap_or_default();
@@ -50,8 +51,8 @@ impl<'d> Instance<'d> {
 }
 
 impl Designer {
-    /// Returns a part: the description `describe` under the name `name`, with a signal for each of its operands. Its results are
-    /// in registers. A description with parts has no microprogram of its own: [`Designer::dataflow`].
+    /// Instantiates the description `describe` as a part called `name`, with a signal for each of its operands. The results of
+    /// the part are in registers. A description with parts calls [`Designer::dataflow`] instead of writing a microprogram.
     ///
     /// ```
     /// use glint_rtl::dsl::{Designer, end, step, valid};
@@ -144,8 +145,8 @@ impl Designer {
         )
     }
 
-    /// States that the parts are the microprogram. They are executed in the order of their instances, and then the
-    /// outputs are loaded into registers. Anything between the parts is logic.
+    /// Makes the microprogram from the parts: it executes them in the order of their instances, and then loads the outputs into
+    /// registers. Everything between the parts is combinational logic.
     #[track_caller]
     pub fn dataflow(&self) {
         self.register_outputs();

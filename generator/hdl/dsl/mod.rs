@@ -35,21 +35,22 @@
 macro_rules! described {
     ($handle:ident, $net:ident) => {
         impl $handle<'_> {
-            /// States the block number in the source's figure.
+            /// Sets the number of this block in the figure of the device's source.
             #[must_use]
             pub fn block(self, number: u16) -> Self {
                 let _ = self.$net.block(number);
                 self
             }
 
-            /// States a comment of one line for the reader of the Verilog.
+            /// Sets a comment of one line, which the Verilog shows.
             #[must_use]
             pub fn doc(self, line: &str) -> Self {
                 let _ = self.$net.doc(line);
                 self
             }
 
-            /// States a comment on `topic`. A pipeline leaves out a comment on any topic but the device.
+            /// Sets a comment that belongs to `topic`. A pipeline shows a comment only if its topic is
+            /// [`Topic::Device`](crate::netlist::Topic::Device).
             #[must_use]
             pub fn doc_on(self, topic: crate::netlist::Topic, line: &str) -> Self {
                 let _ = self.$net.doc_on(topic, line);
@@ -116,7 +117,7 @@ const BUFFERED_NOTE: &str = "Operands have buffers: a write at any time is for t
                              was written, also in the clock of done. The outputs hold from valid at least until the next \
                              computation begins.";
 
-/// Builds a [`Design`]; see the [module documentation](self).
+/// Builds a [`Design`] from a hardware description; see the [module documentation](self).
 pub struct Designer {
     inner: RefCell<Inner>,
     /// Distinguishes the handles of this designer from the handles of another.
@@ -218,13 +219,13 @@ impl Designer {
         designer
     }
 
-    /// States the texts about the device for the header of the emitted Verilog, the manifest and the documentation.
+    /// Sets the texts about the device for the header of the Verilog, the manifest and the documentation.
     pub fn about(&self, about: About) {
         self.inner.borrow_mut().design.about = about;
     }
 
-    /// Returns a constant of the given format; `value` must be exactly representable. For example, 0.75 is representable in
-    /// `u0.8`, and 0.1 is not.
+    /// Returns a constant in the given format, which must be able to represent `value` exactly. For example, `u0.8` can represent
+    /// 0.75 but not 0.1.
     #[track_caller]
     pub fn constant(&self, name: &str, value: f64, format: Format) -> Signal<'_> {
         let format = self.sound(name, format);
@@ -249,7 +250,7 @@ impl Designer {
         self.signal(id)
     }
 
-    /// Returns a wire that [`Designer::drive`] connects later: a forward reference.
+    /// Returns a wire without a driver, for use before its driver exists. [`Designer::drive`] connects the driver later.
     #[track_caller]
     pub fn wire(&self, name: &str, format: Format) -> Signal<'_> {
         self.signal(self.add_named(name, format, Driver::Undriven))
@@ -272,7 +273,7 @@ impl Designer {
         }
     }
 
-    /// Returns a read-only memory: word `address` of `words` (raw values of `format`).
+    /// Adds a read-only memory. Its words are raw values of `format`; `address` selects the word that it reads.
     ///
     /// `doc` of the returned handle adds a line about the meaning of an entry. The address must be an integer that
     /// stays within the words. A `synchronous` ROM reads on the rising edge, as block RAM does: its output is the
@@ -318,7 +319,7 @@ impl Designer {
         self.output_as(name, source, Role::Result)
     }
 
-    /// Adds an output port that shows a signal of the control block.
+    /// Adds an output port for a signal of the control unit.
     #[track_caller]
     pub fn status<'d>(&'d self, name: &str, source: Signal<'d>) -> Signal<'d> {
         self.output_as(name, source, Role::Status)
@@ -372,21 +373,21 @@ impl Designer {
         self.inner.borrow_mut().sequencer_lines = Some([valid, go_on]);
     }
 
-    /// Puts registers behind results that are logic. The microinstruction that sets `valid` loads them, and one more after
-    /// it sets `valid`; other outputs stay as they are.
+    /// Adds a register behind every output that is combinational logic. The microinstruction that raised `valid` now loads these
+    /// registers, and a new one after it raises `valid`. Other outputs do not change.
     pub fn register_outputs(&self) {
         self.inner.borrow_mut().registers_outputs = true;
     }
 
-    /// Leaves logic that depends on operands alone as it is described. Otherwise [`Designer::finish`] puts registers
-    /// into it if there is a clock to spare.
+    /// Forbids [`Designer::finish`] to insert registers into logic that depends on operands alone, which it otherwise does if
+    /// there is a spare clock.
     pub fn keep_operand_logic(&self) {
         self.inner.borrow_mut().registers_operand_logic = false;
     }
 
-    /// Puts a buffer in front of every operand register. Writes go into the buffers, at any time; `start` takes them into the
-    /// registers, and is heard in the last clock of a computation too, so that no clock is lost between two. A description must
-    /// call this before it declares its first operand.
+    /// Adds a buffer in front of every operand register. A user may write the buffers at any time; `start` copies them into the
+    /// registers, and is accepted in the last clock of a computation too, so that no clock is lost between two computations. A
+    /// description must call this before it declares its first operand.
     #[track_caller]
     pub fn buffer_operands(&self) {
         if self.with(|inner| inner.design.ports.iter().any(|it| it.role == Role::Strobe)) {
@@ -411,8 +412,7 @@ impl Designer {
         });
     }
 
-    /// Returns the finished design, assembled and checked. Statements that no output needs become its
-    /// [`Design::warnings`].
+    /// Returns the finished and checked design. [`Design::warnings`] lists the logic that no output needs.
     ///
     /// # Errors
     /// Fails if the description has mistakes. The error lists every mistake, with the signals and the Rust source

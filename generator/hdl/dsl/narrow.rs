@@ -1,4 +1,4 @@
-//! Brings a signal to a given format: bits are given up here, with stated rounding and overflow.
+//! Converts a signal to a narrower format, with stated rounding and overflow. Only this operation of the DSL drops bits.
 
 use std::panic::Location;
 
@@ -8,7 +8,7 @@ use glint_base::fixed::{Format, Overflow, Rounding};
 use glint_base::interval;
 
 impl Designer {
-    /// Brings `a` to `format`.
+    /// Converts `a` to `format`. For example, it rounds a product `u0.16` to `u0.8`.
     ///
     /// It costs only the necessary logic. Truncation is wiring. Rounding to nearest is an incrementer. Saturation
     /// tests only those upper bits that can differ within the range of `a`. With [`Overflow::Wrap`] the upper bits

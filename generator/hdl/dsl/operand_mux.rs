@@ -1,10 +1,9 @@
 //! Builds a multiplier that several products share, and the muxes that select its operands.
 //!
-//! The formats of the operands differ from one microinstruction to another, so the muxes carry bits, not values: an
-//! [`OperandMux`] is as wide as its widest input. The product means something only together with the selection, and
-//! [`SharedProduct::of`] gives it back its format: exact, with its range, for one selection or for several that agree
-//! in their point. [`Designer::finish`] then proves for every word that a register which takes such a view is loaded
-//! under a selection that it is for.
+//! The operands have different formats, so an [`OperandMux`] carries bits without a binary point, as many as its widest input
+//! has. [`SharedProduct::of`] returns the product for a certain selection, exact and with its format and interval.
+//! [`Designer::finish`] proves that a register takes such a product only in microinstructions that select the operands of this
+//! product.
 
 use super::{Designer, Select, SelectedProduct, Signal, StepSetting};
 use crate::netlist::{Driver, FieldId, Op};
@@ -12,7 +11,7 @@ use glint_base::codes;
 use glint_base::fixed::Format;
 use glint_base::interval::{self, Interval, hull};
 
-/// A mux of operands of different formats.
+/// A mux whose inputs may have different formats, in front of a shared multiplier.
 #[derive(Clone)]
 pub struct OperandMux<'d> {
     designer: &'d Designer,
@@ -27,7 +26,7 @@ pub struct OperandMux<'d> {
 described!(OperandMux, out);
 
 impl Designer {
-    /// Returns a mux whose inputs may differ in format, under `select`.
+    /// Returns a mux whose inputs may have different formats. `select` are its select lines.
     #[track_caller]
     pub fn bus<'d>(
         &'d self,
@@ -57,7 +56,7 @@ impl Designer {
         }
     }
 
-    /// Returns the product of two buses under the same select lines.
+    /// Returns the shared product of two muxes that have the same select lines.
     ///
     /// If only one of the buses has negative inputs, the multiplier takes the bits of that bus below its sign as an
     /// unsigned number. Each factor then needs one bit less than in a product of signed numbers, which may save DSP
@@ -130,13 +129,13 @@ impl Designer {
 }
 
 impl<'d> OperandMux<'d> {
-    /// Returns the setting with which the mux passes `input` on. It must be one of the inputs.
+    /// Returns the setting with which a microinstruction selects `input`, which must be an input of the mux.
     #[track_caller]
     pub fn pick(&self, input: Signal<'d>) -> StepSetting {
         StepSetting::pick_of(self.designer, self.field, &self.name, input, &self.inputs)
     }
 
-    /// Holds in a register `<name>_held` behind the mux the operand that the microinstruction before selected.
+    /// Adds a register `<name>_held` behind the mux. It holds the operand that the previous microinstruction selected.
     ///
     /// For a program that settles the operands in one microinstruction and takes the product in the next,
     /// under the same selection: the multiplier then has the second of the two clocks to itself.
@@ -159,7 +158,7 @@ struct Excess<'d> {
     low: u32,
 }
 
-/// The product of two buses.
+/// The product of two muxes. A microinstruction selects the factors.
 #[derive(Clone)]
 pub struct SharedProduct<'d> {
     out: Signal<'d>,
@@ -173,8 +172,7 @@ pub struct SharedProduct<'d> {
 described!(SharedProduct, out);
 
 impl<'d> SharedProduct<'d> {
-    /// Returns the product of `first` and `second`, which must be the inputs of the two buses under the same
-    /// selection.
+    /// Returns the product of `first` and `second`, which must be the inputs of the two muxes under the same selection.
     #[track_caller]
     pub fn of(&self, first: Signal<'d>, second: Signal<'d>) -> Signal<'d> {
         self.of_any(&[(first, second)])

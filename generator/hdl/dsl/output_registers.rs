@@ -1,7 +1,7 @@
-//! Inserts registers behind results that are combinational logic, as [`Designer::register_outputs`] asks for.
+//! Adds registers behind outputs that are combinational logic. A description asks for this by [`Designer::register_outputs`].
 //!
-//! The microinstruction that set `valid` loads these registers, and a new microinstruction after it sets `valid`. A
-//! result therefore comes one clock later. If `valid` follows a signal, the registers are loaded in every clock.
+//! The microinstruction that raised `valid` now loads these registers, and a new microinstruction after it raises `valid`. A
+//! result therefore comes one clock later. If `valid` follows a signal instead, the registers load on every clock.
 
 use super::program::{MicroprogramSource, SettingKind, Step};
 use super::{Designer, StepSetting, hold, step, valid};

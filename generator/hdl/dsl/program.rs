@@ -1,4 +1,5 @@
-//! Defines microinstructions as lists of settings, and lowers a microprogram of them to the values of fields.
+//! Defines microinstructions as lists of settings, and translates a microprogram to the values of the fields of its control
+//! words.
 
 use std::collections::{BTreeSet, HashSet};
 use std::panic::Location;
@@ -11,7 +12,7 @@ use crate::netlist::{
 use glint_base::codes;
 use glint_base::diagnostic::{Diagnostic, SourceLocation};
 
-/// The setting of one field, or of the successor, in a microinstruction.
+/// The value that a microinstruction gives to one field, or its choice of a successor.
 #[derive(Clone)]
 pub struct StepSetting {
     pub(super) kind: SettingKind,
@@ -105,51 +106,50 @@ impl StepSetting {
     }
 }
 
-/// Returns the setting that keeps the selections of the previous microinstruction, except the selections that this
-/// microinstruction states.
+/// Returns the setting that keeps all selections of the previous microinstruction, except those which this microinstruction
+/// states itself.
 #[track_caller]
 pub fn hold() -> StepSetting {
     StepSetting::sequence(SettingKind::Hold)
 }
 
-/// Returns the setting that says that the results are on the outputs: `valid` is high in this microinstruction. No
-/// microinstruction may raise it before the results are loaded.
+/// Returns the setting that raises `valid`, which means that the results are on the outputs. A microinstruction may raise it only
+/// after the results are loaded.
 #[track_caller]
 pub fn valid() -> StepSetting {
     StepSetting::sequence(SettingKind::Valid)
 }
 
-/// Returns the setting that goes on to the next microinstruction, which is also the default.
+/// Returns the setting that continues with the next microinstruction. It is the default.
 #[track_caller]
 pub fn next() -> StepSetting {
     StepSetting::sequence(SettingKind::Next)
 }
 
-/// Returns the setting that stays in this microinstruction until `start` is high; the device is not busy meanwhile.
-/// Microinstruction 0 always does.
+/// Returns the setting that repeats this microinstruction until `start` is high. The device is not busy meanwhile.
+/// Microinstruction 0 always has this setting.
 #[track_caller]
 pub fn wait_for_start() -> StepSetting {
     StepSetting::sequence(SettingKind::WaitForStart)
 }
 
-/// Returns the setting that goes back to the microinstruction named `to` while `condition`, one bit, is 1; then on to the next
-/// microinstruction. The loop must change the condition: a loop cannot be endless.
+/// Returns the setting that jumps back to the microinstruction named `to` while the bit `condition` is 1, and then continues with
+/// the next one. The loop must change the condition, so that it ends.
 #[track_caller]
 pub fn loop_while(condition: Signal<'_>, to: &str) -> StepSetting {
     let kind = SettingKind::LoopWhile { condition: condition.id(), to: to.to_owned() };
     StepSetting { of: Some(origin(condition.designer())), ..StepSetting::sequence(kind) }
 }
 
-/// Returns the setting that goes on to the microinstruction named `to` when `condition`, one bit, is 1; else to the
-/// next microinstruction: a way around microinstructions
-/// that there may be nothing to do for, as a loop whose body need not run even once.
+/// Returns the setting that jumps ahead to the microinstruction named `to` if the bit `condition` is 1, and otherwise continues
+/// with the next one. For example, it skips a loop that need not run even once.
 #[track_caller]
 pub fn jump_if(condition: Signal<'_>, to: &str) -> StepSetting {
     // To the sequencer a jump is a jump, whichever way it goes.
     loop_while(condition, to)
 }
 
-/// Returns the setting of the last microinstruction: `done` is high in it, and the device is idle after it.
+/// Returns the setting of the last microinstruction, which raises `done`. The device is idle after it.
 #[track_caller]
 pub fn end() -> StepSetting {
     StepSetting::sequence(SettingKind::End)
@@ -163,8 +163,8 @@ pub struct Step {
     pub(super) location: SourceLocation,
 }
 
-/// Returns a microinstruction with its name and settings. Muxes that are not mentioned pass on their first input;
-/// registers that are not mentioned keep their value.
+/// Makes a microinstruction with a name and settings. Muxes without a setting pass on their first input; registers without one
+/// keep their value.
 #[track_caller]
 pub fn step(name: &str, settings: impl IntoIterator<Item = StepSetting>) -> Step {
     Step {
@@ -174,7 +174,7 @@ pub fn step(name: &str, settings: impl IntoIterator<Item = StepSetting>) -> Step
     }
 }
 
-/// A microprogram as it was written.
+/// A microprogram, as the description states it.
 pub struct MicroprogramSource {
     pub(crate) steps: Vec<Step>,
     /// Whether it executes the parts of the description.

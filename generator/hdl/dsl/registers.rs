@@ -1,4 +1,4 @@
-//! Builds registers, operands, flags, counters and select lines, and makes their settings for microinstructions.
+//! Builds registers, operands, flags, counters and select lines. Each has methods that return settings for microinstructions.
 
 use super::{Designer, Signal, StepSetting};
 use crate::netlist::{self, Driver, FieldId, FieldKind, NetId, Op, RegisterKind, Role};
@@ -7,15 +7,15 @@ use glint_base::fixed::Format;
 use glint_base::interval::Interval;
 
 impl Designer {
-    /// Returns an operand: the input port `name`, its write strobe `<name>_write` and the register
-    /// `<name>_reg`, which a write loads unless the device is busy.
+    /// Adds an operand: the input port `name`, its write strobe `<name>_write` and the register `<name>_reg`. A write loads the
+    /// register unless the device is busy.
     #[track_caller]
     pub fn operand(&self, name: &str, format: Format) -> InputOperand<'_> {
         self.operand_port(name, format, |port| port)
     }
 
-    /// Returns an operand whose register holds values from `low` to `high` only: a write of a smaller or
-    /// larger value loads the limit. Both must be representable.
+    /// Adds an operand whose register is limited to the values from `low` to `high`: a write of a smaller or larger value loads
+    /// the limit. The format must be able to represent both.
     #[track_caller]
     pub fn operand_clamped(
         &self,
@@ -105,8 +105,8 @@ impl Designer {
         InputOperand { port: self.signal(port), strobe: self.signal(strobe), q: self.signal(q) }
     }
 
-    /// Returns a register of the datapath, loaded in the microinstructions that say so; its field is `<name>_load`. For
-    /// example, the register `reg11_cos_cos` of `rough` has the field `reg11_cos_cos_load`.
+    /// Adds a register that certain microinstructions load; its field is `<name>_load`. For example, the register `reg11_cos_cos`
+    /// of `rough` has the field `reg11_cos_cos_load`.
     ///
     /// It has no reset, and an operand cannot have its name, because both would own `<name>_load`.
     #[track_caller]
@@ -119,7 +119,7 @@ impl Designer {
         Register { q: self.signal(q), field }
     }
 
-    /// Returns a register inside a block, loaded on every clock: it delays `source` by one.
+    /// Adds a register that loads on every clock. It delays `source` by one clock.
     #[track_caller]
     pub fn pipeline<'d>(&'d self, name: &str, source: Signal<'d>) -> Signal<'d> {
         let source = self.own(source);
@@ -131,8 +131,8 @@ impl Designer {
         self.signal(q)
     }
 
-    /// Makes select lines that several muxes share. `choices` names each value of the lines: all inputs that the muxes then
-    /// pass on together. For example, `select("operand_select", &["cosines", "sines", "half_n", "square"])` has two lines.
+    /// Adds select lines that several muxes share. `choices` names each value of the lines, which selects one input of every such
+    /// mux. For example, `select("operand_select", &["cosines", "sines", "half_n", "square"])` has two lines.
     #[track_caller]
     pub fn select(&self, name: &str, choices: &[&str]) -> Select<'_> {
         let width = usize::BITS - choices.len().saturating_sub(1).leading_zeros();
@@ -154,7 +154,7 @@ impl Designer {
         self.select(&format!("{line}_own"), &choices)
     }
 
-    /// Returns an output of the device that microinstructions raise.
+    /// Adds an output of one bit that microinstructions raise.
     #[track_caller]
     pub fn flag(&self, name: &str) -> Flag<'_> {
         let field = self.add_field(&format!("{name}_flag"), 1, FieldKind::Flag);
@@ -163,9 +163,9 @@ impl Designer {
         Flag { designer: self, field }
     }
 
-    /// Returns a counter that counts down, with fields `<name>_load` and `<name>_count`.
+    /// Adds a counter that counts down, with the fields `<name>_load` and `<name>_count`.
     ///
-    /// `load` takes the value of `start`; `count` subtracts one. Both in one microinstruction: `load` wins.
+    /// The field `load` loads the value of `start`, and `count` subtracts one. If a microinstruction sets both, `load` wins.
     #[track_caller]
     pub fn down_counter<'d>(&'d self, name: &str, start: Signal<'d>) -> Counter<'d> {
         let start = self.own(start);
@@ -199,7 +199,7 @@ impl Designer {
     }
 }
 
-/// An operand: port, write strobe and register.
+/// An operand: its port, its write strobe and its register.
 #[derive(Clone, Copy)]
 pub struct InputOperand<'d> {
     port: Signal<'d>,
@@ -208,19 +208,19 @@ pub struct InputOperand<'d> {
 }
 
 impl<'d> InputOperand<'d> {
-    /// Returns the register's output.
+    /// Returns the output of the register.
     pub fn q(self) -> Signal<'d> {
         self.q
     }
 
-    /// States the number of the register in the source's figure.
+    /// Sets the number of the register in the figure of the source.
     #[must_use]
     pub fn block(self, number: u16) -> Self {
         let _ = self.q.block(number);
         self
     }
 
-    /// States the numbers of the data input and of the write strobe in the source's figure.
+    /// Sets the numbers of the data input and of the write strobe in the figure of the source.
     #[must_use]
     pub fn inputs(self, data: u16, strobe: u16) -> Self {
         let _ = self.port.block(data);
@@ -228,7 +228,7 @@ impl<'d> InputOperand<'d> {
         self
     }
 
-    /// States a comment of one line for the reader of the Verilog.
+    /// Sets a comment of one line, which the Verilog shows.
     #[must_use]
     pub fn doc(self, line: &str) -> Self {
         let _ = self.port.doc(line);
@@ -237,7 +237,7 @@ impl<'d> InputOperand<'d> {
     }
 }
 
-/// A register of the datapath.
+/// A register that certain microinstructions load.
 #[derive(Clone, Copy)]
 pub struct Register<'d> {
     q: Signal<'d>,
@@ -247,7 +247,7 @@ pub struct Register<'d> {
 described!(Register, q, "load": field);
 
 impl<'d> Register<'d> {
-    /// Returns the register's output.
+    /// Returns the output of the register.
     pub fn q(self) -> Signal<'d> {
         self.q
     }
@@ -257,12 +257,12 @@ impl<'d> Register<'d> {
         self.q.format()
     }
 
-    /// Returns the load line: 1 in the microinstructions that load the register.
+    /// Returns the load enable, a bit that is 1 in the microinstructions that load the register.
     pub fn loading(self) -> Signal<'d> {
         self.q.designer().field_net(self.field)
     }
 
-    /// Connects the data input. Formats must agree; use [`Designer::narrow`] first to give up bits.
+    /// Connects the data input. The formats must agree; [`Designer::narrow`] converts a signal first.
     #[track_caller]
     pub fn takes(self, data: Signal<'d>) {
         let d = self.q.designer();
@@ -279,14 +279,14 @@ impl<'d> Register<'d> {
         }
     }
 
-    /// Returns the setting with which the register takes its data at the end of the microinstruction.
+    /// Returns the setting with which a microinstruction loads the register at its end.
     #[track_caller]
     pub fn load(self) -> StepSetting {
         StepSetting::field(self.q.designer(), self.field, 1, format!("{}.load", self.q.name()))
     }
 }
 
-/// Select lines.
+/// Select lines, which several muxes share.
 #[derive(Clone, Copy)]
 pub struct Select<'d> {
     designer: &'d Designer,
@@ -294,7 +294,7 @@ pub struct Select<'d> {
 }
 
 impl<'d> Select<'d> {
-    /// Returns the lines themselves, for a mux in the datapath that some of them control too.
+    /// Returns the select lines as a signal, for logic that also depends on them.
     pub fn out(self) -> Signal<'d> {
         self.designer.field_net(self.field)
     }
@@ -303,15 +303,15 @@ impl<'d> Select<'d> {
         self.field
     }
 
-    /// States the numbers of the lines in the source's figure, most significant first.
+    /// Sets the numbers of the lines in the figure of the source, the most significant first.
     #[must_use]
     pub fn lines(self, numbers: &[u16]) -> Self {
         self.designer.set_lines(self.field, numbers);
         self
     }
 
-    /// States that the microprogram may leave choices of these lines unused, for example choices for another
-    /// configuration. Otherwise [`Designer::finish`] warns of them.
+    /// Allows the microprogram to leave some choices of these lines unused, for example choices for other configurations.
+    /// Otherwise [`Designer::finish`] warns of them.
     #[must_use]
     pub fn partly_used(self) -> Self {
         self.designer.with(|inner| inner.partly_used.insert(self.field));
@@ -341,7 +341,7 @@ impl<'d> Select<'d> {
     }
 }
 
-/// An output of the device that microinstructions raise.
+/// An output of one bit that microinstructions raise.
 #[derive(Clone, Copy)]
 pub struct Flag<'d> {
     designer: &'d Designer,
@@ -349,7 +349,7 @@ pub struct Flag<'d> {
 }
 
 impl Flag<'_> {
-    /// Returns the setting with which the output is high in this microinstruction.
+    /// Returns the setting with which a microinstruction raises the output.
     #[track_caller]
     pub fn raise(self) -> StepSetting {
         let name = self.designer.field_net(self.field).name();
@@ -373,18 +373,18 @@ impl<'d> Counter<'d> {
         self.q
     }
 
-    /// Returns the count line: 1 in the microinstructions that count.
+    /// Returns the count enable, a bit that is 1 in the microinstructions that count.
     pub fn counting(self) -> Signal<'d> {
         self.q.designer().field_net(self.count)
     }
 
-    /// Returns the setting with which the counter takes its start value at the end of the microinstruction.
+    /// Returns the setting with which a microinstruction loads the counter's start value at its end.
     #[track_caller]
     pub fn load(self) -> StepSetting {
         StepSetting::field(self.q.designer(), self.load, 1, format!("{}.load", self.q.name()))
     }
 
-    /// Returns the setting with which the counter is one less at the end of the microinstruction.
+    /// Returns the setting with which a microinstruction decrements the counter at its end.
     #[track_caller]
     pub fn count(self) -> StepSetting {
         StepSetting::field(self.q.designer(), self.count, 1, format!("{}.count", self.q.name()))

@@ -1,4 +1,4 @@
-//! The handle of a read-only memory in a description: it gives the word read, and takes comments.
+//! The handle of a read-only memory (ROM) in a hardware description. It gives the word that the ROM reads, and sets comments.
 
 use super::{Designer, Signal};
 use crate::netlist::RomId;
@@ -11,13 +11,13 @@ pub struct Rom<'d> {
 }
 
 impl<'d> Rom<'d> {
-    /// Returns the word read.
+    /// Returns the word that the ROM reads.
     pub fn out(self) -> Signal<'d> {
         let data = self.designer.with(|inner| inner.design.rom(self.id).data);
         self.designer.signal(data)
     }
 
-    /// States the block number in the source's figure.
+    /// Sets the number of the ROM in the figure of the device's source.
     #[must_use]
     pub fn block(self, number: u16) -> Self {
         self.designer.with(|inner| inner.design.roms[self.id.index()].block = Some(number));
@@ -31,7 +31,7 @@ impl<'d> Rom<'d> {
         self
     }
 
-    /// States a comment for each word.
+    /// Sets a comment for each word.
     #[must_use]
     pub fn comments(self, comments: Vec<String>) -> Self {
         self.designer.with(|inner| inner.design.roms[self.id.index()].comments = comments);

@@ -1,4 +1,5 @@
-//! Builds the sequencer, which executes a microprogram: address counter, run flag, control ROM, handshake.
+//! Builds the sequencer of a device, which executes its microprogram: the address counter, the run flag, the control ROM and the
+//! handshake outputs.
 
 use super::Designer;
 use crate::netlist::microcode;
@@ -9,9 +10,9 @@ use crate::netlist::{
 use glint_base::diagnostic::SourceLocation;
 use glint_base::fixed::{Format, MAX_WIDTH};
 
-/// The fields that the sequencer uses, as far as the program needs them.
+/// The fields of the control word that the sequencer itself uses, as far as the microprogram needs them.
 pub struct SequenceFields {
-    /// None when `valid` follows a signal.
+    /// The field that raises `valid`; `None` if `valid` follows a signal.
     pub valid: Option<FieldId>,
     pub wait: Option<FieldId>,
     pub again: Option<FieldId>,
@@ -22,13 +23,13 @@ pub struct SequenceFields {
 
 /// The inputs from which a sequencer is made.
 pub struct Sequencer {
-    /// Its fields.
+    /// The fields that the sequencer uses.
     pub fields: SequenceFields,
-    /// The conditions of loops, each once.
+    /// The conditions of loops and jumps, each once.
     pub conditions: Vec<NetId>,
-    /// The microinstructions to which the loops lead, each once.
+    /// The microinstructions to which loops and jumps lead, each once.
     pub targets: Vec<usize>,
-    /// Bits of the address.
+    /// The number of bits of the address.
     pub address_width: u32,
 }
 

@@ -1,4 +1,4 @@
-//! Gives the parts of the DSL access to the state that they share: nets, registers, fields and mistakes of a designer.
+//! Gives the modules of the description language access to the state of a designer: its nets, registers, fields and mistakes.
 
 use std::panic::Location;
 

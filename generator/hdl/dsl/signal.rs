@@ -1,5 +1,4 @@
-//! Defines signals, the wiring that takes and joins their bits, and the arithmetic blocks and muxes that combine
-//! them.
+//! Defines signals, and the operations on them: wiring that takes and joins bits, arithmetic, comparisons and muxes.
 
 use std::cmp::Ordering;
 
@@ -9,7 +8,7 @@ use glint_base::codes;
 use glint_base::fixed::Format;
 use glint_base::interval::{self, Interval, hull};
 
-/// A net of the design, as a handle.
+/// A signal in a hardware description: the handle of a net.
 #[derive(Clone, Copy)]
 pub struct Signal<'d> {
     designer: &'d Designer,
@@ -39,12 +38,12 @@ impl<'d> Signal<'d> {
         self.designer.with(|inner| inner.design.net(self.id).format)
     }
 
-    /// Returns the smallest and the largest raw value that the signal can take.
+    /// Returns the interval of raw values that the signal can have.
     pub fn range(self) -> Interval {
         self.designer.with(|inner| inner.design.net(self.id).range)
     }
 
-    /// States the block number in the source's figure.
+    /// Sets the number of this block in the figure of the device's source.
     #[must_use]
     pub fn block(self, number: u16) -> Self {
         self.designer.with(|inner| inner.design.nets[self.id.index()].block = Some(number));
@@ -58,14 +57,14 @@ impl<'d> Signal<'d> {
         self
     }
 
-    /// States a comment on `topic`. A pipeline leaves out a comment on any topic but the device.
+    /// Sets a comment that belongs to `topic`. A pipeline shows a comment only if its topic is [`Topic::Device`].
     #[must_use]
     pub fn doc_on(self, topic: Topic, line: &str) -> Self {
         self.designer.with(|inner| inner.design.nets[self.id.index()].doc_topic = topic);
         self.doc(line)
     }
 
-    /// Gives a wiring net a name of its own, under which Verilog and waveforms show it.
+    /// Names a net that is mere wiring. Verilog and waveforms then show it under this name.
     #[must_use]
     pub fn named(self, name: &str) -> Self {
         self.designer.with(|inner| {
@@ -78,8 +77,7 @@ impl<'d> Signal<'d> {
         self
     }
 
-    /// Moves the point `places` to the left: the value divided by 2^places, by wiring. For example, 2 places make `u-2.10` of
-    /// `u0.8`.
+    /// Divides by 2^places by moving the binary point, without logic. For example, 2 places turn `u0.8` into `u-2.10`.
     #[must_use]
     #[track_caller]
     pub fn shift_right(self, places: i32) -> Self {
@@ -89,7 +87,7 @@ impl<'d> Signal<'d> {
         self.relabelled(format)
     }
 
-    /// Moves the point `places` to the right: the value times 2^places, by wiring.
+    /// Multiplies by 2^places by moving the binary point, without logic.
     #[must_use]
     #[track_caller]
     pub fn shift_left(self, places: i32) -> Self {
@@ -123,7 +121,7 @@ impl<'d> Signal<'d> {
         self.wiring("scaled", scaled, range, Op::Concat(vec![self.id, zeros.id]))
     }
 
-    /// Returns bits `low` … `low + width − 1`, read in `format` (which must be that wide).
+    /// Returns the bits `low` to `low + width − 1`, read as a number of `format`, which must be as wide.
     #[must_use]
     #[track_caller]
     pub fn bits(self, low: u32, format: Format) -> Self {
@@ -167,8 +165,7 @@ impl<'d> Signal<'d> {
         self.wiring("above", format, format.range(), op)
     }
 
-    /// Returns the signal as a signed number of the same value, one bit wider when it was unsigned. For example, `u0.8` becomes
-    /// `s0.8`.
+    /// Returns the same value as a signed signal. An unsigned signal becomes one bit wider. For example, `u0.8` becomes `s0.8`.
     #[must_use]
     #[track_caller]
     pub fn as_signed(self) -> Self {
@@ -216,14 +213,14 @@ impl<'d> Signal<'d> {
 
 /// The arithmetic blocks. Results are exact: their formats hold every value that the operands can give.
 impl Designer {
-    /// Returns `a + b`. Operands may differ in format: their points are aligned, and nothing is dropped. For example, two
-    /// operands `u0.8` that may have any value give `u1.8`.
+    /// Returns `a + b`, exact. Signals with different binary points are aligned first. For example, two `u0.8` signals that may
+    /// have any value give `u1.8`.
     #[track_caller]
     pub fn add<'d>(&'d self, name: &str, a: Signal<'d>, b: Signal<'d>) -> Signal<'d> {
         self.sum(name, a, b, None)
     }
 
-    /// Returns `a + b`, and one ulp (of the finer operand) more when `carry` is 1.
+    /// Returns `a + b`, plus one ulp of the finer signal if `carry` is 1.
     #[track_caller]
     pub fn add_carry<'d>(
         &'d self,
@@ -257,8 +254,8 @@ impl Designer {
         self.signal(self.add_net(name, format, range, Driver::Op(op), true))
     }
 
-    /// Returns `a + b` modulo the width, with the carry in when given: words without an integer position. Both must have the
-    /// same format.
+    /// Returns `a + b` modulo 2^width, plus the carry if there is one. Both signals must have the same format. The patent's
+    /// arithmetic of `rough` uses it.
     #[track_caller]
     pub fn add_modulo<'d>(
         &'d self,
@@ -294,7 +291,7 @@ impl Designer {
         self.signal(self.add_net(name, format, range, Driver::Op(op), true))
     }
 
-    /// Returns `a · b`, whole. For example, two operands `u0.8` give `u0.16`.
+    /// Returns `a · b`, exact. For example, two `u0.8` signals give `u0.16`.
     #[track_caller]
     pub fn mul<'d>(&'d self, name: &str, a: Signal<'d>, b: Signal<'d>) -> Signal<'d> {
         let (a, b) = (self.own(a), self.own(b));
@@ -348,8 +345,8 @@ impl Designer {
         self.signal(self.add_net(name, format, range, Driver::Op(op), true))
     }
 
-    /// Puts `low` in place of the low bits of the constant `high`, which must be zero there: an address made of a constant and a
-    /// prefix, by wiring.
+    /// Returns the constant `high` with `low` in place of its low bits, which must be 0. For example, this forms an address from
+    /// a constant and a prefix, without logic.
     #[track_caller]
     pub fn beside<'d>(&'d self, high: Signal<'d>, low: Signal<'d>, format: Format) -> Signal<'d> {
         let low_bits = low.format().width();
@@ -388,48 +385,48 @@ impl Designer {
         self.signal(self.add_wiring(name, format, range, Driver::Op(Op::Concat(parts))))
     }
 
-    /// Returns the signal that is 1 when both are 1. Both must have one bit.
+    /// Returns a bit that is 1 if both `a` and `b` are 1. Both must have one bit.
     #[track_caller]
     pub fn and<'d>(&'d self, name: &str, a: Signal<'d>, b: Signal<'d>) -> Signal<'d> {
         let (a, b) = (self.one_bit(a), self.one_bit(b));
         self.signal(self.add_named(name, Format::BIT, Driver::Op(Op::And(a, b))))
     }
 
-    /// Returns the signal that is 1 when either is 1. Both must have one bit.
+    /// Returns a bit that is 1 if `a` or `b` is 1. Both must have one bit.
     #[track_caller]
     pub fn or<'d>(&'d self, name: &str, a: Signal<'d>, b: Signal<'d>) -> Signal<'d> {
         let (a, b) = (self.one_bit(a), self.one_bit(b));
         self.signal(self.add_named(name, Format::BIT, Driver::Op(Op::Or(a, b))))
     }
 
-    /// Returns the signal that is 1 when `a < b`.
+    /// Returns a bit that is 1 if `a < b`.
     #[track_caller]
     pub fn less<'d>(&'d self, name: &str, a: Signal<'d>, b: Signal<'d>) -> Signal<'d> {
         let (a, b) = self.comparable(a, b);
         self.signal(self.add_named(name, Format::BIT, Driver::Op(Op::Less(a, b))))
     }
 
-    /// Returns the signal that is 1 when `a = b`.
+    /// Returns a bit that is 1 if `a = b`.
     #[track_caller]
     pub fn equal<'d>(&'d self, name: &str, a: Signal<'d>, b: Signal<'d>) -> Signal<'d> {
         let (a, b) = self.comparable(a, b);
         self.signal(self.add_named(name, Format::BIT, Driver::Op(Op::Equal(a, b))))
     }
 
-    /// Returns the signal that is 1 when any bit of `a` is 1: `a ≠ 0`.
+    /// Returns a bit that is 1 if any bit of `a` is 1.
     #[track_caller]
     pub fn any<'d>(&'d self, name: &str, a: Signal<'d>) -> Signal<'d> {
         self.signal(self.add_named(name, Format::BIT, Driver::Op(Op::Any(self.own(a).id()))))
     }
 
-    /// Returns the signal that is 1 when every bit of `a` is 1.
+    /// Returns a bit that is 1 if every bit of `a` is 1.
     #[track_caller]
     pub fn all<'d>(&'d self, name: &str, a: Signal<'d>) -> Signal<'d> {
         self.signal(self.add_named(name, Format::BIT, Driver::Op(Op::All(self.own(a).id()))))
     }
 
-    /// Returns input 0 or 1 by the one-bit signal `select`, a signal of the datapath. The inputs must have one binary point;
-    /// the result can hold both.
+    /// Returns input 0 or input 1, as the bit `select` says. `select` is a signal of the datapath. The inputs must have the same
+    /// binary point; the result can represent both.
     #[track_caller]
     pub fn choose<'d>(
         &'d self,
@@ -441,7 +438,7 @@ impl Designer {
         self.mux_of(name, select, &inputs)
     }
 
-    /// Returns a mux that the microprogram controls, with a select field of its own, `<name>_select`.
+    /// Returns a mux that the microprogram controls by its own select field, `<name>_select`.
     ///
     /// The inputs must have one binary point ([`Signal::with_fraction`] aligns them; [`Designer::bus`] carries any); integer
     /// bits and signs may differ.
@@ -454,7 +451,7 @@ impl Designer {
         self.mux_on(name, select, inputs)
     }
 
-    /// Returns a mux that shares its select field with others. It must have an input for each value of the field.
+    /// Returns a mux that is controlled by shared select lines. It must have an input for each value of the lines.
     #[track_caller]
     pub fn mux_on<'d>(
         &'d self,
@@ -556,7 +553,7 @@ impl<'d> Mux<'d> {
         self.out
     }
 
-    /// Returns the setting with which the mux passes `input` on. It must be one of the mux's inputs.
+    /// Returns the setting with which a microinstruction selects `input`, which must be an input of the mux.
     #[track_caller]
     pub fn pick(self, input: Signal<'d>) -> StepSetting {
         StepSetting::pick(self.out.designer(), self.field, &self.out.name(), input)

@@ -1,4 +1,4 @@
-//! Builds a design net by net: adds nets, registers and ROMs.
+//! Adds nets, registers and ROMs to a design. The description language and the pipeline builder use it.
 
 use super::{
     About, Control, Design, Driver, Net, NetId, NetlistRegister, NetlistRom, Partition, RegId,
@@ -8,7 +8,7 @@ use glint_base::diagnostic::SourceLocation;
 use glint_base::fixed::Format;
 
 impl Design {
-    /// Makes a design that has a name and nothing else.
+    /// Returns an empty design with this name.
     pub fn empty(name: &str) -> Self {
         Self {
             name: name.to_owned(),
@@ -23,13 +23,13 @@ impl Design {
         }
     }
 
-    /// Adds a net. Its name must be distinct in the design.
+    /// Adds a net, whose name must be unique in the design.
     pub fn add_net(&mut self, net: Net) -> NetId {
         self.nets.push(net);
         NetId(self.nets.len() as u32 - 1)
     }
 
-    /// Lets a new register, which takes nothing yet, drive a net. The caller must connect its data.
+    /// Makes a new register the driver of the net `q`. The register has no data input yet; the caller must connect one.
     pub fn add_register(&mut self, q: NetId, kind: RegisterKind) -> &mut NetlistRegister {
         let at = self.registers.len();
         self.nets[q.index()].driver = Driver::Register(RegId(at as u32));
@@ -37,7 +37,7 @@ impl Design {
         &mut self.registers[at]
     }
 
-    /// Adds a ROM, which drives its net from now on.
+    /// Adds a ROM, and makes it the driver of its data net.
     pub fn add_rom(&mut self, rom: NetlistRom) -> RomId {
         let id = RomId(self.roms.len() as u32);
         self.nets[rom.data.index()].driver = Driver::Rom(id);
@@ -47,7 +47,7 @@ impl Design {
 }
 
 impl Net {
-    /// Makes a named net of the datapath that can have every value of its format.
+    /// Returns a named net of the datapath whose interval is the whole range of its format.
     pub fn new(name: String, format: Format, driver: Driver, location: SourceLocation) -> Self {
         Self {
             name,
@@ -65,7 +65,7 @@ impl Net {
 }
 
 impl NetlistRom {
-    /// Makes a memory that is read at once.
+    /// Returns a ROM that is read without a clock.
     pub fn new(
         name: &str,
         address: NetId,

@@ -1,24 +1,25 @@
-//! Defines the combinational cells of a netlist: their operations, operands and widths.
+//! Defines the combinational cells of a netlist, with their operands and widths. For example, a cell is a sum, a mux or a slice
+//! of bits.
 
 use super::NetId;
 
-/// A combinational cell. Widths are the widths of the nets; "same width" includes the result. Operands are nets of a
-/// design, or other values of type `N`.
+/// A combinational cell, the driver of one net. "Same width" means that the operands and the result have equal widths. Operands
+/// are nets of a design, or other values of type `N`.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub enum Op<N = NetId> {
-    /// The operand's bits under another name or format; same width.
+    /// The bits of the operand, under another name or format; same width.
     Relabel(N),
     /// The operand with copies of its sign bit (signed operand) or zeros (unsigned) above it; the
     /// result is wider.
     Extend(N),
     /// The bits of the operand from `low` up, as many as the result is wide.
     Slice {
-        /// The operand.
+        /// The operand whose bits are taken.
         of: N,
         /// The lowest bit taken.
         low: u32,
     },
-    /// The operands side by side, the first in the top bits; the result is as wide as all together.
+    /// The bits of all operands joined, the first operand in the top bits; the result is as wide as all operands together.
     Concat(Vec<N>),
     /// Every bit inverted; same width.
     Not(N),
@@ -39,7 +40,7 @@ pub enum Op<N = NetId> {
     },
     /// Difference `a − b` modulo 2^width; same width.
     Sub(N, N),
-    /// The whole product; operands both signed or both unsigned, the result as wide as both together.
+    /// The exact product; the operands are both signed or both unsigned, and the result is as wide as both together.
     Mul(N, N),
     /// 1 when the operands, of one width, are equal; the result is one bit.
     Equal(N, N),
@@ -49,17 +50,19 @@ pub enum Op<N = NetId> {
     Any(N),
     /// 1 when every bit of the operand is 1; the result is one bit.
     All(N),
-    /// Input number `select`; inputs of the result's width. Beyond the last input: the last input.
+    /// The input with the number `select`; all inputs and the result have the same width. A number beyond the last input selects
+    /// the last input.
     Mux {
-        /// As wide as the number of inputs needs.
+        /// The select signal, as wide as the number of inputs needs.
         select: N,
-        /// Two or more.
+        /// Two or more inputs.
         inputs: Vec<N>,
     },
 }
 
 impl<N> Op<N> {
-    /// Returns the cell with other operands, which are asked for in order of writing.
+    /// Returns the same cell with other operands. `of` gives the new operand for each one, in the order in which the cell states
+    /// them.
     pub fn map<M>(&self, mut of: impl FnMut(&N) -> M) -> Op<M> {
         match self {
             Self::Relabel(a) => Op::Relabel(of(a)),
@@ -85,7 +88,7 @@ impl<N> Op<N> {
         }
     }
 
-    /// Returns every operand, in order of writing.
+    /// Returns the operands in the order in which the cell states them.
     pub fn operands(&self) -> Vec<N>
     where
         N: Copy,
@@ -95,7 +98,7 @@ impl<N> Op<N> {
         operands
     }
 
-    /// Returns the name of the cell in dumps and diagrams.
+    /// Returns the short name of the cell in dumps and diagrams.
     pub fn mnemonic(&self) -> &'static str {
         match self {
             Self::Relabel(_) => "relabel",

@@ -1,88 +1,88 @@
-//! Holds the control unit of a design: the fields of the control word, the microinstructions and their successors.
+//! Defines the control unit of a design: the fields of the control word, the microinstructions, and the rules for their order.
 
 use super::{Design, NetId, RegId, RomId};
 use glint_base::diagnostic::SourceLocation;
 
 /// The control unit: an address counter, a run flag and a ROM of microinstructions.
 ///
-/// Idle, the address is 0 and `run` is 0. `start` sets `run`; from then on every clock executes the
-/// microinstruction at the address and moves on as the microinstruction's [`Sequence`] says.
+/// An idle device has the address 0 and the run flag 0. `start` sets the flag. From then on the device executes one
+/// microinstruction a clock, and [`Sequence`] says which comes next.
 #[derive(Clone, Debug)]
 pub struct Control {
-    /// Most significant first, as in the ROM word.
+    /// The fields of the control word, the most significant first.
     pub fields: Vec<Field>,
-    /// One for each address, from 0.
+    /// The microinstructions, in the order of their addresses.
     pub microprogram: Vec<Microinstruction>,
-    /// The control ROM.
+    /// The ROM that stores the control words.
     pub rom: RomId,
-    /// The counter that addresses it.
+    /// The counter that addresses the control ROM.
     pub address: RegId,
-    /// 1 while a program runs.
+    /// The run flag, which is 1 during a computation.
     pub run: RegId,
-    /// Whether `start` is taken in the last clock of a computation too: operands are written into buffers.
+    /// Whether the device accepts `start` in the last clock of a computation too, because it has operand buffers.
     pub overlaps: bool,
 }
 
-/// A field of the control word. For example, `rough` has the field `operand_select` of two bits, which chooses among four pairs
-/// of factors.
+/// A field of the control word, which controls one thing. For example, `rough` has the field `operand_select` of two bits, which
+/// chooses among four pairs of factors.
 #[derive(Clone, Debug)]
 pub struct Field {
     /// The name, which must be a legal Verilog identifier.
     pub name: String,
-    /// The net that it drives in the datapath or the sequencer.
+    /// The net that the field drives.
     pub net: NetId,
-    /// The kind of thing that it controls.
+    /// The kind of thing that the field controls.
     pub kind: FieldKind,
-    /// The numbers of its lines in the source's figure, most significant first, or empty.
+    /// The numbers of the field's lines in the figure of the source, the most significant first, or nothing.
     pub lines: Vec<u16>,
 }
 
 /// The kind of thing that a field of the control word controls.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum FieldKind {
-    /// Select lines of muxes; the names of the choices, by value.
+    /// Select lines of muxes, with the name of each choice.
     Select(Vec<String>),
-    /// The enable of registers.
+    /// The load enable of registers.
     Enable,
     /// An output of the device.
     Flag,
-    /// Used by the sequencer itself.
+    /// A control line of the sequencer itself.
     Sequence,
 }
 
 /// A microinstruction of the microprogram.
 #[derive(Clone, Debug)]
 pub struct Microinstruction {
-    /// The name of the operation.
+    /// The name that the description gives to the microinstruction.
     pub name: String,
     /// The value of each field, in the order of [`Control::fields`].
     pub values: Vec<u64>,
     /// The rule for the next microinstruction.
     pub sequence: Sequence,
-    /// The place of the microinstruction in the description.
+    /// The place of the microinstruction in the Rust source.
     pub location: SourceLocation,
 }
 
-/// The rule that says which microinstruction follows.
+/// The rule that determines which microinstruction follows.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Sequence {
-    /// To the next microinstruction.
+    /// The next microinstruction follows.
     Next,
-    /// Stays until `start` is high, then to the next microinstruction. The device is not busy here.
+    /// The same microinstruction follows until `start` is high, and then the next one. The device is not busy here.
     WaitStart,
-    /// To microinstruction `to`, back or ahead, while `condition` is 1, else to the next microinstruction.
+    /// Microinstruction `to` follows if `condition` is 1, otherwise the next one. `to` may lie behind or ahead.
     LoopWhile {
-        /// One bit of the datapath.
+        /// A net of one bit in the datapath.
         condition: NetId,
-        /// The address of that microinstruction.
+        /// The address of the microinstruction to which control jumps.
         to: usize,
     },
-    /// To idle: the computation ends.
+    /// The computation ends, and the device is idle.
     End,
 }
 
 impl Control {
-    /// Makes the control of a pipeline: no microinstruction, and so neither fields nor a sequencer.
+    /// Returns the control unit of a pipeline, which has no microinstructions, fields or sequencer.
     pub fn none() -> Self {
         Self {
             fields: Vec::new(),
@@ -112,7 +112,8 @@ impl Control {
         successors
     }
 
-    /// Returns the microinstructions from which control comes to microinstruction `at` in `clocks` clocks, in ascending order.
+    /// Returns the microinstructions from which control reaches microinstruction `at` in exactly `clocks` clocks, in ascending
+    /// order.
     pub fn predecessors(&self, at: usize, clocks: u32) -> Vec<usize> {
         let leads = |from: usize, after: &[usize]| {
             self.successors(from).iter().any(|to| after.contains(to))
@@ -124,7 +125,7 @@ impl Control {
 }
 
 impl Design {
-    /// Returns the number of the lowest bit of each field in the control word. It is empty for a pipeline, which has no control
+    /// Returns the position of the lowest bit of each field in the control word. It is empty for a pipeline, which has no control
     /// word. For example, `rough` has 7 for `operand_select` and 0 for `go_on`.
     pub fn field_positions(&self) -> Vec<u32> {
         if self.control.fields.is_empty() {

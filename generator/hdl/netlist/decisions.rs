@@ -1,16 +1,15 @@
-//! Finds the microinstructions whose successor an operand decides, and the delay from the control word to `valid`.
+//! Finds the microinstructions whose successor depends on an operand, and the delay from the control word to `valid`.
 //!
-//! Up to the first microinstruction whose successor an operand decides, every computation executes the same
-//! microinstructions in the same clocks, whatever the operands. This follows by induction over the clocks, because
-//! until then no operand decides which microinstruction follows. It is assumed that each computation loads a deciding
-//! register before the register decides.
+//! Before the first such microinstruction, every computation executes the same microinstructions in the same clocks, whatever the
+//! operands are. This follows by induction over the clocks. The module assumes that a computation loads a register before the
+//! register decides about a successor. For example, the operand `shift` of `lyon` decides how often a loop runs.
 
 use std::collections::HashSet;
 
 use super::{Design, Driver, NetId, Role, Sequence};
 use glint_base::cone;
 
-/// Returns the microinstructions whose successor depends on an operand, by number.
+/// Returns the numbers of the microinstructions whose successor depends on an operand.
 pub fn decided_by_data(design: &Design) -> Vec<usize> {
     let microprogram = design.control.microprogram.iter().enumerate();
     let decided = microprogram.filter(|(_, microinstruction)| match microinstruction.sequence {
@@ -22,8 +21,8 @@ pub fn decided_by_data(design: &Design) -> Vec<usize> {
     decided.map(|(at, _)| at).collect()
 }
 
-/// Returns the number of registers between the control word and `valid`, on the shortest way. Returns `None` if an
-/// operand decides about `valid`, or if there is no `valid`.
+/// Returns the smallest number of registers on a path from the control word to `valid`. Returns `None` if an operand affects
+/// `valid`, or if the design has no `valid`.
 pub fn delay_of_valid(design: &Design) -> Option<u32> {
     let valid = design.port(|role| role == Role::Valid)?;
     registers_from_control(design, valid.net)

@@ -1,55 +1,55 @@
-//! Finds the delay lines of a pipeline: registers that pass on values which nothing else reads, so that a memory can
-//! replace them.
+//! Finds the delay lines of a pipeline: chains of registers that only pass a value on to a later stage. The Verilog may replace
+//! them by memories.
 
 use std::collections::BTreeMap;
 
 use super::{Design, Driver, NetId, Op, RegId};
 
-/// Values on the same way, from one stage to another.
+/// Values that travel from the same stage to the same later stage.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct DelayLine {
-    /// The stage that makes the values.
+    /// The stage that computes the values.
     pub from: usize,
-    /// The stage that reads them.
+    /// The stage that reads the values.
     pub to: usize,
-    /// The net that says when the values move on; `None` if they always do.
+    /// The net that says when the values move to the next stage; `None` if they always move.
     pub enable: Option<NetId>,
     /// The values, in the order of their registers.
     pub values: Vec<Delayed>,
 }
 
-/// A value on its way.
+/// A value that travels through the registers of several stages.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Delayed {
-    /// The data input.
+    /// The data input of the first register.
     pub data: NetId,
-    /// The registers that it goes through, one for each stage. Only the last is read by anything but the next.
+    /// The registers that the value passes, one for each stage. Only the last one has a reader besides the next register.
     pub registers: Vec<RegId>,
 }
 
 impl DelayLine {
-    /// Returns the number of words of a memory that does the same. A register behind the memory holds the value that comes out.
-    /// For example, five registers in a row become four words.
+    /// Returns the number of words of a memory that replaces the registers. One more register behind the memory holds its output.
+    /// For example, five registers become a memory of four words.
     pub fn words(&self) -> usize {
         self.values[0].passed().len()
     }
 }
 
 impl Delayed {
-    /// Returns the registers that a memory takes the place of: all but the last.
+    /// Returns the registers that the memory replaces: all except the last one.
     pub fn passed(&self) -> &[RegId] {
         &self.registers[..self.registers.len() - 1]
     }
 
-    /// Returns the register in which the value leaves.
+    /// Returns the last register, from which the value is read.
     pub fn last(&self) -> RegId {
         self.registers[self.registers.len() - 1]
     }
 }
 
 impl Design {
-    /// Returns the delay lines that the Verilog implements as memories: the lines that are smaller as memories, on a
-    /// target that has small memories.
+    /// Returns the delay lines that the Verilog writes as memories: the lines that are smaller as memories, if the target has
+    /// small memories.
     ///
     /// Points read the same values there as in the registers, whatever the enable does. After a reset, which drops
     /// all points, a memory begins with its first word again. The side channel stays in registers, because the proof

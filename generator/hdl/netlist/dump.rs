@@ -1,5 +1,5 @@
-//! Prints a netlist as text, a line for each net. For example, a register may have the line
-//! `y: u0.8 [0, 255] <= y_rounded when y_load`.
+//! Prints a netlist as text, one line for each net. For example, a register may have the line `y: u0.8 [0, 255] <= y_rounded when
+//! y_load`.
 
 use std::fmt::{self, Write as _};
 

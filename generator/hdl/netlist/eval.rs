@@ -1,7 +1,7 @@
-//! Evaluates a netlist: each cell as [`Op`] documents it, and a whole design clock by clock.
+//! Evaluates a netlist: each cell as [`Op`] defines it, and a whole design clock by clock.
 //!
-//! This is the definition of the meaning of a netlist, written for reading. The simulator is written for speed,
-//! shares no code with it and is compared with it.
+//! This interpreter defines the meaning of a netlist, and is written to be read. The simulator ([`crate::sim`]) is written for
+//! speed. Both share no code, and tests compare them.
 
 use super::{Design, Driver, NetId, Op, RomId};
 use glint_base::fixed::{Format, mask};
@@ -85,7 +85,7 @@ pub fn cell<'a, Operand: Copy, const N: usize>(
     }
 }
 
-/// A design with its state, evaluated net by net.
+/// A design with the state of its registers and ROMs, evaluated net by net.
 pub struct Interpreter<'a> {
     design: &'a Design,
     order: Vec<NetId>,
@@ -101,7 +101,7 @@ impl<'a> Interpreter<'a> {
         Ok(Self { design, order: design.levelise()?, values: vec![[0]; design.nets.len()] })
     }
 
-    /// Applies the bit patterns of all input ports, which must be in port order, and evaluates every net.
+    /// Applies the bit patterns of all input ports, in the order of the ports, and evaluates every net.
     pub fn settle(&mut self, inputs: &[u64]) {
         let design = self.design;
         for (port, &bits) in design.inputs().zip(inputs) {

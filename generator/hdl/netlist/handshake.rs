@@ -1,10 +1,10 @@
-//! Finds the ports that every device with a microprogram has: `rst_n`, `start`, `valid`, `busy` and `done`.
+//! Finds the handshake ports that every device with a microprogram has: `rst_n`, `start`, `valid`, `busy` and `done`.
 
 use anyhow::{Context, Result};
 
 use super::{Design, NetId, Role};
 
-/// The nets of the handshake.
+/// The handshake ports of a design.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Handshake {
     /// The input `rst_n`.
@@ -20,14 +20,14 @@ pub struct Handshake {
 }
 
 impl Role {
-    /// Returns whether the port is an output of the handshake.
+    /// Returns whether the net is an output of the handshake: `valid`, `busy` or `done`.
     pub fn is_status(self) -> bool {
         matches!(self, Self::Valid | Self::Busy | Self::Done | Self::InReady)
     }
 }
 
 impl Design {
-    /// Returns the position of a net among the inputs.
+    /// Returns the position of a net among the input ports.
     ///
     /// # Errors
     /// Fails if the net is no input.
@@ -36,7 +36,7 @@ impl Design {
         at.with_context(|| format!("`{}` is no input of `{}`", self.net(net).name, self.name))
     }
 
-    /// Returns the ports of the handshake.
+    /// Returns the handshake ports of the design.
     ///
     /// # Errors
     /// Fails if the design lacks one of these ports.

@@ -1,17 +1,17 @@
-//! Inserts registers into the logic that depends on operands alone, to shorten the critical path.
+//! Inserts registers into logic that depends only on operands, to shorten the longest path of a device.
 //!
-//! Operands cannot change while the device is busy. A net that is computed from operands and constants alone is
-//! *steady*: it may take all the clocks from the first microinstruction, which every computation executes once after
-//! `start`, to the one that first uses it. Registers in steady logic shorten its paths and add no latency. Outputs,
-//! which follow the operand registers in the same clock, and nets that the first microinstruction uses get no register.
+//! Operands cannot change while the device is busy. Logic that depends only on operands and constants is therefore *steady*: it
+//! may take all clocks from the first microinstruction after `start` to the microinstruction that first uses its value. A
+//! register in steady logic shortens a path without adding a clock. The module inserts none before outputs, which follow the
+//! operand registers at once, and none before nets that the first microinstruction uses.
 
 use std::collections::{BTreeMap, BTreeSet, HashSet};
 
 use super::needed::needed;
 use super::{Design, Driver, NetId, Op, RegId, RegisterKind, Sequence};
 
-/// Inserts registers, named `<name>_held`, so that the longest path from an operand becomes shortest. Among equally
-/// good places, it takes the places with the fewest bits.
+/// Inserts registers, named `<name>_held`, so that the longest path from an operand becomes as short as possible. Among equally
+/// good places it chooses those with the fewest bits.
 ///
 /// A device that waits for `start` in the middle of its program stays as it is: its operands change there.
 pub fn register_held(design: &mut Design) {
@@ -46,7 +46,7 @@ const TRIED: usize = 32;
 /// A cell or a register that reads a net.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum OperandReader {
-    /// The data input of a register.
+    /// The data input of this register.
     Register(RegId),
     /// The cell that drives this net.
     Cell(NetId),
@@ -75,24 +75,24 @@ fn clock(thresholds: Thresholds, places: CutPlaces) -> usize {
 /// A cell that reads nets.
 struct OperandCell {
     net: NetId,
-    /// In hundredths of a nanosecond.
+    /// The delay of the cell, in hundredths of a nanosecond.
     delay: u32,
-    /// Its operands, without constants.
+    /// The operands of the cell, without constants.
     operands: Vec<NetId>,
 }
 
 /// The nets that depend on operands alone, and their readers.
 struct Steady<'a> {
     design: &'a Design,
-    /// All cells, in an order in which each follows the cells that it depends on within a clock.
+    /// All cells, each after the cells on which it depends within a clock.
     cells: Vec<OperandCell>,
-    /// By number of the net.
+    /// The thresholds of each net.
     thresholds: Vec<Thresholds>,
-    /// The nets that a register may follow: they depend on operand registers and constants alone, and are more than wiring.
+    /// Whether a register may follow each net: the net depends only on operand registers and constants, and is more than wiring.
     holds: Vec<bool>,
-    /// The registers that read a net as their data.
+    /// The registers, each with the net that it loads.
     registers: Vec<(RegId, NetId, Thresholds)>,
-    /// The estimated delays from the operand registers to the nets that need not settle in clock 0, in ascending order.
+    /// The estimated delays from the operand registers to the nets that may settle later than in clock 0, in ascending order.
     places: Vec<u32>,
 }
 

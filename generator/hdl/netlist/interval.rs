@@ -1,5 +1,5 @@
-//! Computes the interval of raw values that a cell can give from the intervals of its operands. For example, the sum of two
-//! nets from 0 to 3 is from 0 to 6 if its format can hold 6.
+//! Computes the interval of raw values that a cell can produce, from the intervals of its operands. For example, the sum of two
+//! nets from 0 to 3 lies between 0 and 6, if its format can represent 6.
 
 use super::Op;
 use glint_base::fixed::{Format, mask};

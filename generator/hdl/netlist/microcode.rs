@@ -1,4 +1,4 @@
-//! Packs the values of fields into a control word of the microprogram, and unpacks them.
+//! Packs the values of the fields of a microinstruction into a control word, and unpacks them.
 
 /// Returns a control word from the values of its fields, the first field in the top bits. For example, widths 2 and 1 with the
 /// values 1 and 1 give `0b011`.

@@ -1,4 +1,5 @@
-//! Defines the netlist of a device. A description becomes a netlist, and everything else is derived from it.
+//! Defines the netlist of a device: its nets, registers, ROMs, ports and control unit. The description language builds it; the
+//! simulator, the pipeline builder and the Verilog emitter read it.
 //!
 //! A [`Design`] is a set of *nets* in an arena. Every net has a name, a [`Format`], the interval of
 //! raw values that it can take, and exactly one driver: an input port, a constant, a register, a ROM,
@@ -52,7 +53,7 @@ macro_rules! id {
         pub struct $name(pub u32);
 
         impl $name {
-            /// Returns the position in the arena.
+            /// Returns the index in the design's list.
             pub fn index(self) -> usize {
                 self.0 as usize
             }
@@ -78,12 +79,12 @@ id!(
     FieldId
 );
 
-/// The module of the emitted Verilog to which a net belongs.
+/// The Verilog module to which a net belongs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Partition {
-    /// The control unit: sequencer and control ROM.
+    /// The control unit: the sequencer and the control ROM.
     Control,
-    /// Operand registers, arithmetic, result registers.
+    /// The datapath: operand registers, arithmetic and result registers.
     Datapath,
 }
 
@@ -92,31 +93,31 @@ pub enum Partition {
 pub struct Net {
     /// The name, which must be a legal Verilog identifier and distinct in the design.
     pub name: String,
-    /// The place of the binary point, and whether the top bit is a sign.
+    /// The format: the place of the binary point, and whether the top bit is a sign.
     pub format: Format,
     /// The smallest and the largest raw value that the net can carry.
     pub range: Interval,
     /// The driver of the net.
     pub driver: Driver,
-    /// The number of the block in the source's figure whose output this is.
+    /// The number of the block that drives this net, in the figure of the device's source.
     pub block: Option<u16>,
-    /// One line for the reader of the Verilog; may be empty.
+    /// A comment of one line for the Verilog, or an empty text.
     pub doc: String,
-    /// The topic of that comment.
+    /// The topic of the comment.
     pub doc_topic: Topic,
-    /// Whether the author of the description named the net, so that waveforms and Verilog show it. Other nets are
-    /// wiring that the DSL adds (extensions, slices, rounding), named after the signal that they serve.
+    /// Whether the author of the description named the net, so that waveforms and Verilog show it. All other nets are wiring that
+    /// the description language adds (extensions, slices, rounding); they are named after the signal that they serve.
     pub named: bool,
-    /// The module that the net is in.
+    /// The Verilog module to which the net belongs.
     pub partition: Partition,
-    /// The place in the description where it was written.
+    /// The place in the Rust source of the description.
     pub location: SourceLocation,
 }
 
 /// The driver of a net.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Driver {
-    /// Nothing yet: an error that [`Design::verify`] reports.
+    /// No driver yet, an error that [`Design::verify`] reports.
     Undriven,
     /// An input port.
     Input,
@@ -132,16 +133,17 @@ pub enum Driver {
     Op(Op),
 }
 
-/// A register: takes `data` on a rising edge when `enable` is 1 or absent.
+/// A register, which loads `data` on a rising edge if `enable` is 1 or absent.
 #[derive(Clone, Debug)]
 pub struct NetlistRegister {
-    /// The net that it drives; the register has its name, format, block number and location.
+    /// The net that the register drives. Name, format, block number and location of the net are also the register's.
     pub q: NetId,
     /// The data input; `None` is an error that [`Design::verify`] reports.
     pub data: Option<NetId>,
-    /// The load enable, one bit; without it the register loads on every rising edge.
+    /// The load enable, one bit. Without it the register loads on every rising edge.
     pub enable: Option<NetId>,
-    /// The bit pattern after a clock with `rst_n` low; without it reset leaves the register alone.
+    /// The bit pattern that the register loads on a rising edge with `rst_n` low. Without it a reset does not affect the
+    /// register.
     pub reset: Option<u64>,
     /// The purpose of the register.
     pub kind: RegisterKind,
@@ -150,17 +152,16 @@ pub struct NetlistRegister {
 /// The purpose of a register.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RegisterKind {
-    /// Loaded from an input port by its write strobe, or from its buffer by `start`; stable while the device is busy. For
-    /// example, `cos_gamma_reg` of `rough`.
+    /// An operand register. The write strobe loads it from an input port, or `start` loads it from its buffer. It does not change
+    /// while the device is busy. For example, `cos_gamma_reg` of `rough`.
     Operand,
-    /// In front of such a register: takes writes at any time, for the next computation.
+    /// A buffer in front of an operand register, which accepts the next operand at any time.
     Buffer,
-    /// A register of the source's datapath; a golden model predicts it on every clock.
+    /// A register of the datapath that the description declares. The golden model predicts it on every clock.
     Architectural,
-    /// A register of the sequencer; a golden model predicts it too.
+    /// A register of the sequencer. The golden model predicts it on every clock too.
     Sequencer,
-    /// A pipeline register inside a block (behind a synchronous ROM or a multiplier); only its effects
-    /// are compared.
+    /// A register inside a block, for example behind a synchronous ROM or a multiplier. No golden model predicts it.
     Internal,
 }
 
@@ -170,72 +171,72 @@ pub struct NetlistRom {
     /// The name, which must be a legal Verilog identifier. The contents go to `<design>_<name>.mem`. For example, the ROM
     /// `sine` of `rough` is in `rough_sine.mem`.
     pub name: String,
-    /// The word number; its range must lie within the contents.
+    /// The net with the index of the word. Its interval must lie within the number of words.
     pub address: NetId,
-    /// The net that carries the word read; no word may be wider.
+    /// The net with the word that was read. It must be wide enough for every word.
     pub data: NetId,
-    /// Reads on the rising edge (block RAM) instead of at once (logic).
+    /// Whether the ROM is read at the rising edge (block RAM) rather than without a clock (logic).
     pub synchronous: bool,
-    /// One bit; while it is 0, a synchronous read keeps its word. Without an enable, every edge reads.
+    /// The read enable, one bit. A synchronous ROM keeps its output while it is 0; without it, the ROM reads at every edge.
     pub enable: Option<NetId>,
-    /// Another ROM, of the same words: this is the second read port of its memory.
+    /// A ROM with the same words, if this ROM is the second read port of its memory.
     pub shares: Option<RomId>,
-    /// Bit patterns.
+    /// The words, as bit patterns.
     pub words: Vec<u64>,
-    /// The meaning of one entry, in one or more lines.
+    /// The meaning of a word, in one or more lines.
     pub doc: Vec<String>,
-    /// A comment for each word, or empty.
+    /// A comment for each word, or an empty list.
     pub comments: Vec<String>,
-    /// The number of the block in the source's figure.
+    /// The number of the ROM in the figure of the device's source.
     pub block: Option<u16>,
-    /// The place in the description where it was written.
+    /// The place in the Rust source of the description.
     pub location: SourceLocation,
 }
 
-/// A port of the top module, other than `clk`.
+/// A port of the design, other than the clock `clk`.
 #[derive(Clone, Debug)]
 pub struct Port {
-    /// The port has the net's name, format, block number and comment.
+    /// The net of the port, which has its name, format, block number and comment.
     pub net: NetId,
     /// The role of the port.
     pub role: Role,
 }
 
-/// The part that a port plays in the handshake.
+/// The role of a port in the interface of the device.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Role {
-    /// Input `rst_n`: reset, active low, synchronous.
+    /// Input `rst_n`, the reset: active low, synchronous.
     Reset,
-    /// Input `start`: begins a computation when the device is not busy.
+    /// Input `start`, which begins a computation if the device is not busy.
     Start,
-    /// Input: the data of an operand register, and the strobe that writes it.
+    /// Input for the data of an operand register.
     Operand {
-        /// One-bit input port.
+        /// The write strobe of the operand register, an input of one bit.
         strobe: NetId,
     },
-    /// Input: a write strobe. For example, `cos_gamma_write` writes `cos_gamma_reg`.
+    /// Input, the write strobe of an operand register. For example, `cos_gamma_write` writes `cos_gamma_reg`.
     Strobe,
-    /// Input `in_valid`: the operands belong to a point, which the pipeline takes in this clock if `in_ready` is 1.
+    /// Input `in_valid` of a pipeline: the operand inputs hold a point. The pipeline accepts it in this clock if `in_ready` is 1.
     InValid,
-    /// Input: an operand of the point that is offered.
+    /// Input, an operand of the point that the environment offers to a pipeline.
     Point,
-    /// Input `side_in`: travels with the point.
+    /// Input `side_in` of a pipeline: data that travel with the point unchanged.
     SideIn,
-    /// Input `out_ready`: the results are taken in this clock.
+    /// Input `out_ready` of a pipeline: the environment takes the results in this clock.
     OutReady,
-    /// Output `in_ready`.
+    /// Output `in_ready` of a pipeline: it would accept a point in this clock.
     InReady,
-    /// Output `side_out`: the value of the side channel that came in with the point whose results are on the outputs.
+    /// Output `side_out` of a pipeline: the value of `side_in` that came with the point whose results are on the outputs.
     SideOut,
-    /// Output: high exactly in the microinstructions that set it; results are then on the outputs.
+    /// Output `valid`, high exactly in the microinstructions that raise it. The results are then on the outputs.
     Valid,
-    /// Output: high from the clock after start to the end.
+    /// Output `busy`, high from the clock after `start` to the end of the computation.
     Busy,
-    /// Output: high for the last clock of a computation.
+    /// Output `done`, high in the last clock of a computation.
     Done,
-    /// Output: a result.
+    /// Output, a result of the computation.
     Result,
-    /// Output: a signal of the source's control block that is none of the above.
+    /// Output, any other signal of the control unit.
     Status,
 }
 
@@ -256,18 +257,18 @@ impl Role {
     }
 }
 
-/// The description of a device in the header of the emitted Verilog, the manifest and the documentation.
+/// Texts about a device, for the header of the Verilog, the manifest and the documentation.
 #[derive(Clone, Debug, Default)]
 pub struct About {
-    /// The device as the registry knows it, `rough`.
+    /// The name of the device, such as `rough`.
     pub device: String,
     /// The title, one line.
     pub title: String,
     /// The formula.
     pub formula: String,
-    /// The document, and the part of it, that describes the device.
+    /// The document that describes the device, and the part of it.
     pub source: String,
-    /// Paragraphs on readings, formats and limits.
+    /// Paragraphs about interpretations, formats and limits.
     pub notes: Vec<Note>,
 }
 
@@ -287,21 +288,21 @@ pub struct Note {
     pub text: String,
 }
 
-/// The topic of a note: a pipeline has none of these but the first.
+/// The topic of a note. The notes of a pipeline are about the device only.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Topic {
-    /// The device, whatever its architecture.
+    /// The device itself, whatever its architecture.
     Device,
-    /// Parts that exist once and are used in turn: multipliers, the control ROM, the clocks of a loop.
+    /// Hardware that a microprogram uses several times: multipliers, the control ROM, the clocks of a loop.
     Microprogram,
-    /// Writes, and how long the outputs hold.
+    /// Writes to operands, and how long the outputs keep their values.
     Writes,
-    /// Clocks from start to valid.
+    /// The number of clocks from `start` to `valid`.
     Latency,
 }
 
 impl Topic {
-    /// Returns a note on it.
+    /// Makes a note on this topic.
     pub fn note(self, text: impl Into<String>) -> Note {
         Note { topic: self, text: text.into() }
     }
@@ -313,14 +314,14 @@ impl<T: Into<String>> From<T> for Note {
     }
 }
 
-/// A device: datapath, control unit and ports.
+/// The netlist of a device: datapath, control unit and ports.
 #[derive(Clone, Debug)]
 pub struct Design {
     /// The name of the top module, which must be a legal Verilog identifier.
     pub name: String,
-    /// The title, formula, source and notes of the device, for people.
+    /// Texts about the device, for people.
     pub about: About,
-    /// All wires.
+    /// All nets.
     pub nets: Vec<Net>,
     /// All registers.
     pub registers: Vec<NetlistRegister>,
@@ -328,11 +329,11 @@ pub struct Design {
     pub roms: Vec<NetlistRom>,
     /// Inputs, then outputs, in order of declaration.
     pub ports: Vec<Port>,
-    /// The control unit; [`Control::none`] of a pipeline.
+    /// The control unit; for a pipeline it is [`Control::none`].
     pub control: Control,
-    /// The stages, of a pipeline.
+    /// The facts about the stages, if the design is a pipeline.
     pub pipeline: Option<Pipeline>,
-    /// Parts of the description that no output needs.
+    /// Warnings about logic that no output needs.
     pub warnings: Vec<Diagnostic>,
 }
 
@@ -352,8 +353,8 @@ impl Design {
         &self.registers[id.index()]
     }
 
-    /// Returns whether `rom` has control words: it is the control ROM, or a ROM beside it for fields that do not fit
-    /// into the control ROM's words.
+    /// Returns whether `rom` stores control words: it is the control ROM, or another ROM for the fields that do not fit into the
+    /// words of the control ROM.
     pub fn is_control_memory(&self, rom: &NetlistRom) -> bool {
         self.roms.get(self.control.rom.index()).is_some_and(|it| it.address == rom.address)
     }
@@ -369,7 +370,7 @@ impl Design {
         Some(NetId(at as u32))
     }
 
-    /// Returns the net that a net shows under another name, or the net itself if it shows none.
+    /// Returns the net whose bits this net shows under another name, or the net itself.
     pub fn renamed(&self, id: NetId) -> NetId {
         match self.net(id).driver {
             Driver::Op(Op::Relabel(of)) => self.renamed(of),
@@ -392,7 +393,7 @@ impl Design {
         self.ports.iter().filter(|port| !port.role.is_input())
     }
 
-    /// Returns the ports of the given kind.
+    /// Returns the first port with a role that `wanted` accepts.
     pub fn port(&self, wanted: impl Fn(Role) -> bool) -> Option<&Port> {
         self.ports.iter().find(|port| wanted(port.role))
     }
@@ -460,7 +461,7 @@ impl Design {
         Ok(order)
     }
 
-    /// Returns the bits in all ROMs.
+    /// Returns the number of bits in all ROMs.
     pub fn rom_bits(&self) -> u64 {
         self.roms.iter().map(|rom| rom.words.len() as u64 * u64::from(self.width(rom.data))).sum()
     }

@@ -1,5 +1,5 @@
-//! Finds the first clock of a computation in which the value of each net is used. `held` inserts registers
-//! only where that is later than the first microinstruction.
+//! Finds the first clock of a computation in which the value of each net is used. The module `held` inserts registers before nets
+//! that are used later than in the first microinstruction.
 
 use std::collections::{HashSet, VecDeque};
 
@@ -41,8 +41,8 @@ pub fn needed(design: &Design) -> Vec<usize> {
     walk.needed
 }
 
-/// Returns the value of a control line in a microinstruction. The line must be a field, or a function of fields
-/// alone; otherwise it returns `None`.
+/// Returns the value of a control line in a microinstruction. Returns `None` if the line depends on anything but fields of the
+/// control word.
 pub fn setting_of(
     design: &Design,
     microinstruction: &Microinstruction,
@@ -76,7 +76,7 @@ pub fn passed_on(design: &Design, microinstruction: &Microinstruction, net: NetI
 
 struct UseSearch<'a> {
     design: &'a Design,
-    /// The fewest clocks from the first microinstruction to each.
+    /// The smallest number of clocks from the first microinstruction to each microinstruction.
     clocks: Vec<usize>,
     needed: Vec<usize>,
     seen: HashSet<(usize, NetId)>,

@@ -1,4 +1,4 @@
-//! Holds the facts about a pipelined design that go beyond its netlist: stages, handshake, shared multipliers and
+//! Defines the facts about a pipeline that its netlist alone does not state: stages, handshake, shared multipliers and
 //! checkpoints.
 
 use std::collections::BTreeMap;
@@ -6,58 +6,58 @@ use std::collections::BTreeMap;
 use super::{Design, Driver, Net, NetId, Op, RegId};
 use glint_base::target::DelayMemory;
 
-/// The pipeline of a design: it takes a point every clock, or every few.
+/// The facts about a pipeline, a design that accepts a point (a set of operands) every clock or every few clocks.
 #[derive(Clone, Debug, Default)]
 pub struct Pipeline {
-    /// The name of the target whose delays the schedule assumes.
+    /// The name of the target whose delays the schedule assumed. For example, `ecp5`.
     pub target: String,
-    /// The clock that they keep.
+    /// The clock frequency that the stages reach, in MHz.
     pub clock_mhz: f64,
-    /// The fastest clock that any number of stages can reach. The slowest operation alone limits it.
+    /// The highest clock frequency that any number of stages can reach, in MHz. The slowest single operation limits it.
     pub most_mhz: f64,
-    /// The least number of clocks between two points, which are taken in slot 0. A point is in stage s while the slot is s
-    /// modulo this number. For example, with an interval of 4 a point is in stage 6 while the slot is 2.
+    /// The interval: the smallest number of clocks between two points. A counter counts slots from 0 to this number less one; the
+    /// pipeline accepts a point in slot 0, and a point is in stage s while the slot is s modulo the interval. For example, with
+    /// an interval of 4 a point is in stage 6 while the slot is 2.
     pub interval: usize,
-    /// The counter of the slots, which moves on with the points; none with an interval of 1.
+    /// The counter of slots, which moves when the points move; `None` if the interval is 1.
     pub slot: Option<NetId>,
-    /// By slot, the enables of registers that take a value in it and hold it for as many clocks.
+    /// For each slot, the enable of the registers that load a value in it and keep it until the slot comes again.
     pub loads: BTreeMap<usize, NetId>,
-    /// The multipliers that serve one operation in each slot.
+    /// The multipliers that serve several products, each in its slot.
     pub units: Vec<Unit>,
-    /// The environment can hold the results back by `out_ready`.
+    /// Whether the environment can stop the pipeline by `out_ready`.
     pub stall: bool,
-    /// Bits that travel with a point.
+    /// The number of bits of the side channel, which travels with a point.
     pub side: u32,
-    /// The memory that the Verilog has in place of registers that nothing reads; `None` if these registers stay.
+    /// The kind of memory with which the Verilog replaces delay lines; `None` if their registers stay.
     pub delay_memory: Option<DelayMemory>,
-    /// From the operands on. Results are behind the registers of the last: there are as many stages as clocks from a point to
-    /// its results. For example, `rough_pipelined` has 18 stages, and its results come 18 clocks after a point is taken.
+    /// The stages, from the operands on. The results are in the registers behind the last stage, so there are as many stages as
+    /// clocks from a point to its results. For example, `rough_pipelined` has 18 stages.
     pub stages: Vec<Stage>,
-    /// For each net, its stage. A register of stage k holds a value that stage k - 1 made.
+    /// The stage of each net. A register in stage k holds a value that stage k − 1 computed.
     pub stage_of: Vec<usize>,
-    /// For each net the name of its value, which is the same in every stage that has it.
+    /// The name of the value of each net. It is the same in every stage through which the value travels.
     pub value_of: Vec<String>,
-    /// The nets that say which stage has a point, and when points move.
+    /// The nets of the handshake, which say which stages have a point and when points move.
     pub handshake: Vec<NetId>,
-    /// For each stage from 1 on, to the results: whether it has a point.
+    /// For each stage from 1 on, including the results, the net that says whether it has a point.
     pub valid: Vec<NetId>,
-    /// For each of these stages, the net of the side channel, which travels with the point; empty without a side
-    /// channel.
+    /// For each stage from 1 on, the net of the side channel; empty if there is no side channel.
     pub side_values: Vec<NetId>,
-    /// The registers that are inside a multiplier, with the product that they take.
+    /// The registers that become output registers of multipliers.
     pub registered: Vec<RegId>,
-    /// The nets that show values which the sequential design has in registers.
+    /// The nets with values that a register of the sequential design holds at some time.
     pub checkpoints: Vec<Checkpoint>,
 }
 
-/// A multiplier that several operations share.
+/// A multiplier that several products share, each in its slot.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Unit {
-    /// Its name, which is also the name of the register behind it.
+    /// The name of the multiplier and of the register behind it.
     pub name: String,
-    /// The nets of its muxes, operand registers and product; the last is the register behind it.
+    /// The nets of its muxes, its operand registers and its product, followed by the net of the register behind it.
     pub nets: Vec<NetId>,
-    /// For each slot, the value that it computes, by name.
+    /// For each slot, the name of the value that the multiplier computes in it.
     pub serves: Vec<Option<String>>,
 }
 
@@ -67,42 +67,43 @@ pub struct Unit {
 pub struct Stage {
     /// The microinstructions of the sequential design that compute the values of this stage.
     pub microinstructions: Vec<String>,
-    /// Nanoseconds that the longest way through it takes on the target.
+    /// The delay of the longest path through the logic of the stage, in nanoseconds.
     pub logic_ns: f64,
-    /// Nanoseconds of the clock that are left, registers counted.
+    /// The nanoseconds of the clock that remain after the logic and the registers.
     pub slack_ns: f64,
-    /// Bits of the registers that end it.
+    /// The number of bits in the registers at the end of the stage.
     pub register_bits: u32,
-    /// Bits that a memory holds in place of such registers.
+    /// The number of bits that memories hold in place of registers at the end of the stage.
     pub delayed_bits: u32,
 }
 
-/// A value of a pipeline that a register of the sequential design has in some microinstruction.
+/// A value of a pipeline that a register of the sequential design holds in some microinstruction. Checks compare both.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Checkpoint {
-    /// The register, by name.
+    /// The name of the register in the sequential design.
     pub register: String,
-    /// The microinstruction while which it has the value, by its place in the microprogram.
+    /// The number of the microinstruction in which the register holds the value.
     pub address: usize,
-    /// How often this was executed before in the same computation.
+    /// How often the computation has executed this microinstruction before.
     pub visit: usize,
-    /// The net with the value, in its stage.
+    /// The net of the pipeline with the value.
     pub net: NetId,
 }
 
 impl Pipeline {
-    /// Returns the first clock in which a net has the value of a point, counted from that in which the point is taken: its stage.
+    /// Returns the first clock in which a net has the value of a point. The pipeline accepts the point in clock 0, so this is the
+    /// stage of the net.
     pub fn clock_of(&self, net: NetId) -> usize {
         self.stage_of[net.index()]
     }
 
-    /// Returns whether a net belongs to a multiplier that operations of several stages share.
+    /// Returns whether a net belongs to a multiplier that several products share.
     pub fn is_shared(&self, net: NetId) -> bool {
         self.units.iter().any(|unit| unit.nets.contains(&net))
     }
 
-    /// Returns the named nets whose logic is in a stage, each with the name of its value, in the order of the design's nets. It
-    /// leaves out the nets of the handshake.
+    /// Returns the named nets whose logic is in `stage`, with the names of their values, in the order of the design. It leaves
+    /// out nets of the handshake.
     pub fn computed<'a>(
         &'a self,
         design: &'a Design,
@@ -122,17 +123,17 @@ impl Pipeline {
     }
 }
 
-/// A multiplier with a register at its output.
+/// A multiplier with an output register.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Multiplier {
-    /// The product that the register takes.
+    /// The product that the register loads.
     pub product: NetId,
-    /// The factors.
+    /// The two factors.
     pub factors: [NetId; 2],
 }
 
 impl Design {
-    /// Returns the multiplier that a register is inside of, if it is.
+    /// Returns the multiplier to which a register belongs as its output register, or `None`.
     pub fn multiplier(&self, register: RegId) -> Option<Multiplier> {
         self.pipeline.as_ref().filter(|it| it.registered.contains(&register))?;
         let product = self.register(register).data?;

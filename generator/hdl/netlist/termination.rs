@@ -1,21 +1,21 @@
-//! Computes how many clocks a computation can take at most, from its microprogram alone.
+//! Computes an upper limit of the clocks that a computation can take, from its microprogram alone.
 //!
-//! A loop of one microinstruction ends because a counter counts down: its condition depends on nothing else. Nothing here
-//! assumes that the counter counts in every iteration; the formal proof must show it.
+//! A loop of one microinstruction ends because its condition depends only on a counter that counts down. The module does not
+//! check that the counter counts in every iteration; the formal proof checks that.
 
 use crate::netlist::{Design, Driver, NetId, RegId, Sequence};
 use glint_base::cone;
 
-/// The most clocks from a microinstruction to the one with `done`.
+/// An upper limit of the clocks from a microinstruction to the clock with `done`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Left {
-    /// The clocks that do not depend on a counter.
+    /// The number of clocks that do not depend on a counter.
     pub clocks: u64,
-    /// One clock more for each count that this counter still has to go.
+    /// A counter whose current value adds as many clocks, if there is one.
     pub counter: Option<RegId>,
 }
 
-/// Returns for each microinstruction the most clocks that are left when it is executed.
+/// Returns for each microinstruction an upper limit of the remaining clocks when it is executed.
 ///
 /// Returns `None` if a microinstruction waits for `start`, if a loop has several microinstructions, or if anything
 /// but a counter decides about a loop.
@@ -46,7 +46,7 @@ pub fn remaining(design: &Design) -> Option<Vec<Left>> {
     Some(left)
 }
 
-/// Returns the number of the clock in which `done` is high, at most.
+/// Returns the number of the latest clock in which `done` can be high.
 pub fn latest_done(design: &Design) -> Option<u32> {
     // Microinstruction 0 is executed in clock 1.
     let first = *remaining(design)?.first()?;

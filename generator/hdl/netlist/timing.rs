@@ -1,4 +1,4 @@
-//! Holds the latency of a device in clocks: from `start` to `valid`, to `done` and to the next `start`.
+//! Defines the latency of a device: the numbers of clocks from `start` to `valid`, to `done` and to the next `start`.
 
 use serde::Serialize;
 
@@ -10,13 +10,14 @@ use serde::Serialize;
 pub struct HandshakeTiming {
     /// The number of the first clock in which `valid` is high.
     pub start_to_valid: Option<u32>,
-    /// Clocks from a result to the next one of the same computation, if it has several. For example, `quad_cosine` has 1.
+    /// The number of clocks from one result to the next of the same computation, if it has several results. For example,
+    /// `quad_cosine` has 1.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub valid_to_valid: Option<u32>,
     /// The number of the clock in which `done` is high.
     pub start_to_done: Option<u32>,
-    /// If that depends on the data: the number of the latest clock in which `done` can be high, if the microprogram has a
-    /// bound. For example, `lyon` has 36.
+    /// The number of the latest clock in which `done` can be high, if that depends on the data and the microprogram has a bound.
+    /// For example, `lyon` has 36.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub start_to_done_at_most: Option<u32>,
     /// The number of the first clock in which the next `start` is taken.
@@ -24,9 +25,9 @@ pub struct HandshakeTiming {
 }
 
 impl HandshakeTiming {
-    /// Returns the clocks from a point to the next without a pause. If a computation has several results, they are the clocks
-    /// between two points of a line under way. Otherwise they are the clocks between computations back to back. `None` if they
-    /// depend on the data. For example, `rough` gives 11.
+    /// Returns the number of clocks for each point when the device works without a pause, or `None` if it depends on the data.
+    /// For a device with several results a computation, it is the distance of two results; otherwise it is the distance of two
+    /// computations. For example, `rough` gives 11.
     pub fn clocks_per_point(&self) -> Option<u32> {
         self.valid_to_valid.or(self.start_to_start)
     }

@@ -1,6 +1,7 @@
-//! Checks the rules of every [`Design`], whoever made it: on names, drivers, widths, loops and the microprogram.
+//! Checks the rules that every [`Design`] must satisfy, whoever made it: rules on names, drivers, widths, loops and the
+//! microprogram.
 //!
-//! rust_hdl's own `check_all` finds open pins and writes to inputs. These rules find the rest.
+//! rust_hdl's own `check_all` finds unconnected pins and writes to inputs; these rules find all other mistakes.
 
 use std::collections::HashMap;
 
@@ -11,7 +12,7 @@ use glint_base::fixed::{MAX_WIDTH, mask};
 use glint_base::identifier;
 
 impl Design {
-    /// Returns every mistake: one in the names, in the structure or in the microprogram.
+    /// Returns every mistake in the names, the structure and the microprogram.
     pub fn verify(&self) -> Vec<Diagnostic> {
         let mut found = self.verify_structure();
         self.names(&mut found);
@@ -21,9 +22,8 @@ impl Design {
         found
     }
 
-    /// Returns the mistakes that make a design meaningless: references to parts that do not exist, nets without a
-    /// driver or with two, widths that do not match, combinational loops. It does not check names and the
-    /// microprogram.
+    /// Returns the mistakes that make a design meaningless: references to things that do not exist, nets without a driver or with
+    /// two, widths that do not match, and combinational loops. It does not check the names and the microprogram.
     pub fn verify_structure(&self) -> Vec<Diagnostic> {
         let mut found = Vec::new();
         // The later checks must not index parts that do not exist, or ask for an impossible width.

@@ -1,4 +1,4 @@
-//! Computes the delays of the operations of a graph on a target, in nanoseconds.
+//! Estimates the delay of each operation of a computation on an FPGA target, in nanoseconds.
 
 use super::graph::{Cell, Graph, NodeId};
 use crate::netlist::Op;
@@ -23,7 +23,7 @@ pub fn delay_of<N: Copy>(timing: &Timing, op: &Op<N>, width: &impl Fn(N) -> u32)
     }
 }
 
-/// Returns the delay of a choice among this number of values, in nanoseconds.
+/// Returns the delay of a mux among `values` values, in nanoseconds.
 pub fn of_choice(timing: &Timing, values: usize) -> f64 {
     let select = usize::BITS - values.saturating_sub(1).leading_zeros();
     delay_of(timing, &Op::Mux { select: 0, inputs: vec![0; values] }, &|_| select)

@@ -1,4 +1,4 @@
-//! Defines the error of a pipeline that cannot be made, with the nearest options that can.
+//! Defines the error for a pipeline that cannot be made as requested. It states the nearest request that can be satisfied.
 
 use std::fmt;
 
@@ -8,56 +8,56 @@ use glint_base::diagnostic::{Diagnostic, SourceLocation};
 
 /// The reason why a design has no pipeline with the given [`Options`](super::Options).
 ///
-/// A variant has the nearest value that can be reached. For example, a pipeline that is asked to run at 900 MHz may fail with
+/// A variant states the nearest possible value. For example, a request for 900 MHz may fail with `Clock { nearest: 130.0, .. }`.
 /// `Clock { nearest: 130.0, .. }`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum PipelineErrorKind {
-    /// The microprogram cannot be unrolled.
+    /// The microprogram cannot be unrolled into a computation without loops.
     Microprogram,
-    /// One operation alone takes longer than the clock.
+    /// A single operation takes longer than the clock period.
     Clock {
-        /// The fastest clock, in MHz.
+        /// The highest clock frequency that can be reached, in MHz.
         nearest: f64,
-        /// Whether the clock can be reached if products end in the registers of multipliers.
+        /// Whether the clock could be reached if multipliers had output registers.
         needs_registered: bool,
     },
-    /// Some of the stages make the pipeline no faster.
+    /// The pipeline would have more stages than make it faster.
     TooManyStages {
         /// The largest number of stages that is of use.
         most: usize,
     },
-    /// The registers in memories and multipliers need more stages.
+    /// The memories and the registers of multipliers need more stages than requested.
     TooFewStages {
         /// The smallest number of stages.
         least: usize,
     },
-    /// The interval is longer than the sequential core's.
+    /// The interval exceeds the number of clocks that the sequential core takes for a point.
     Interval {
-        /// The longest interval, in clocks.
+        /// The largest interval, in clocks.
         most: usize,
     },
-    /// A rate needs a clock, and the goal is a number of stages.
+    /// The request has a rate but a number of stages instead of a clock frequency.
     RateWithoutClock,
-    /// The rate is above a point every clock.
+    /// The rate exceeds one point a clock.
     Rate {
         /// The highest rate, in million points a second.
         most: f64,
     },
-    /// Every interval needs more multipliers.
+    /// Every interval needs more multipliers than requested.
     Multipliers {
-        /// The smallest number of multipliers.
+        /// The smallest number of multipliers that is possible.
         fewest: usize,
     },
-    /// The solver found no schedule although there is one: a mistake of Glint's.
+    /// The solver found no schedule although one exists, which is a bug of Glint.
     Unsolved,
 }
 
-/// A pipeline that cannot be made.
+/// The error for a pipeline that cannot be made as requested.
 #[derive(Clone, Debug)]
 pub struct PipelineError {
     /// The reason.
     pub kind: PipelineErrorKind,
-    /// The reason in words, with the line of the Rust source.
+    /// The reason as a message, with the line of the Rust source.
     pub diagnostic: Diagnostic,
 }
 

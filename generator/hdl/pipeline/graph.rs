@@ -1,7 +1,7 @@
-//! The unrolled computation: an acyclic graph of values, each made once.
+//! The graph of an unrolled computation: an acyclic graph of values, each computed once.
 //!
-//! A node is the value that one net carries in one clock of the computation. Equal nodes are merged, constants fold,
-//! and wiring that changes nothing disappears. The remaining nodes are the work for one point.
+//! A node is the value of one net in one clock of the computation. Equal nodes are merged, constants are folded, and wiring
+//! without an effect disappears. The remaining nodes are the operations for one point (one set of operands).
 
 use std::collections::HashMap;
 use std::panic::Location;
@@ -16,23 +16,23 @@ netlist::id!(
     NodeId
 );
 
-/// A combinational cell of nodes.
+/// A combinational cell whose operands are nodes.
 pub type NodeOp = netlist::Op<NodeId>;
 
-/// The origin of a value.
+/// The operation that computes a node.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub enum Cell {
-    /// An operand, by its position among the operands of the design.
+    /// The operand with this position among the operands of the design.
     Operand(usize),
-    /// An undetermined value: a register before its first load, by its name.
+    /// An unknown value: the content of the named register before its first load.
     Unknown(String),
-    /// A bit pattern.
+    /// A constant bit pattern.
     Constant(u64),
-    /// The word that a ROM has at an address.
+    /// The word at an address of a ROM.
     Read {
-        /// The ROM of the sequential design.
+        /// The ROM in the sequential design.
         rom: RomId,
-        /// The node with the address.
+        /// The node that is the address.
         address: NodeId,
     },
     /// A combinational cell; its operands are nodes.
@@ -42,17 +42,17 @@ pub enum Cell {
 /// The name, block number and comment of a value.
 #[derive(Clone, Debug)]
 pub struct Label {
-    /// The net or register of the sequential design that carries it.
+    /// The name of the net or register in the sequential design that has the value.
     pub name: String,
-    /// One line, as in the sequential design.
+    /// A comment of one line, taken from the sequential design.
     pub doc: String,
-    /// The number of the block in the source's figure.
+    /// The number of the block in the figure of the device's source.
     pub block: Option<u16>,
-    /// Named by the author of the description.
+    /// Whether the author of the description gave the name.
     pub named: bool,
-    /// The name of the whole value, if this is a part of one.
+    /// The name of the whole value, if the node is a part of it.
     pub part_of: Option<String>,
-    /// The place in the description.
+    /// The place in the Rust source of the description.
     pub location: &'static Location<'static>,
 }
 
@@ -62,8 +62,8 @@ impl Label {
         Self { name, doc: String::new(), block: None, named: true, part_of: None, location }
     }
 
-    /// Returns the label of a part of the value, or of the value that this is a part of: names do not grow with the depth. For
-    /// example, the part `low` of `base` is named `base_low`, and the part `high` of this part `base_high`.
+    /// Returns the label of a part of the value. A part of a part is named after the whole value, so that names stay short. For
+    /// example, the part `low` of `base` is named `base_low`, and the part `high` of that part `base_high`.
     pub fn part(&self, name: &str) -> Self {
         let whole = self.part_of.as_ref().unwrap_or(&self.name);
         let part_of = Some(whole.clone());
@@ -71,30 +71,30 @@ impl Label {
     }
 }
 
-/// A value.
+/// A value of the computation.
 #[derive(Clone, Debug)]
 pub struct Node {
-    /// The cell that makes it.
+    /// The operation that computes the value.
     pub cell: Cell,
-    /// Its width, sign and point.
+    /// The format of the value.
     pub format: Format,
-    /// The raw values that it can have.
+    /// The interval of raw values that the node can have.
     pub range: Interval,
-    /// Its name and place.
+    /// The name and the place in the source.
     pub label: Label,
-    /// The microinstruction that needs it first, as a position in [`super::unroll::Unrolled::steps`].
+    /// The first microinstruction that needs the value, as a position in [`super::unroll::Unrolled::steps`].
     pub step: usize,
-    /// A register of the sequential design takes it.
+    /// Whether a register of the sequential design loads the value.
     pub held: bool,
 }
 
-/// All values of a computation. A node comes after its operands.
+/// All values of a computation. Every node comes after its operands.
 #[derive(Clone, Debug, Default)]
 pub struct Graph {
     /// The nodes, by number.
     pub nodes: Vec<Node>,
     known: HashMap<(Cell, u32, bool), NodeId>,
-    /// The microinstruction that new nodes belong to.
+    /// The microinstruction to which new nodes belong.
     pub step: usize,
 }
 
@@ -109,7 +109,7 @@ impl Graph {
         self.node(id).format.width()
     }
 
-    /// Returns the bit pattern of a constant.
+    /// Returns the bit pattern of a node that is a constant, otherwise `None`.
     pub fn constant_of(&self, id: NodeId) -> Option<u64> {
         match self.node(id).cell {
             Cell::Constant(bits) => Some(bits),
@@ -117,14 +117,14 @@ impl Graph {
         }
     }
 
-    /// Returns every node that these need, themselves too, in order.
+    /// Returns all nodes on which `roots` depend, including the roots, in order.
     pub fn cone(&self, roots: impl IntoIterator<Item = NodeId>) -> Vec<NodeId> {
         let operands = |at: usize| self.nodes[at].cell.operands().into_iter().map(NodeId::index);
         let live = cone::needed(self.nodes.len(), roots.into_iter().map(NodeId::index), operands);
         (0..live.len()).filter(|&at| live[at]).map(|at| NodeId(at as u32)).collect()
     }
 
-    /// Limits a node, from now on, to the values of `range`.
+    /// Limits the interval of a node to `range` too.
     pub fn refine(&mut self, id: NodeId, range: Interval) -> NodeId {
         let node = &mut self.nodes[id.index()];
         // On a path that is never taken, the intersection can be empty.
@@ -132,7 +132,7 @@ impl Graph {
         id
     }
 
-    /// Gives a value the name of the register that takes it: it is known by that from now on.
+    /// Names a value after the register that loads it.
     pub fn name_after(&mut self, id: NodeId, register: &Label) {
         let node = &mut self.nodes[id.index()];
         if !matches!(node.cell, Cell::Constant(_)) && !node.held {
@@ -141,14 +141,14 @@ impl Graph {
         }
     }
 
-    /// Returns a constant.
+    /// Returns the node of a constant.
     pub fn constant(&mut self, bits: u64, format: Format, label: &Label) -> NodeId {
         let bits = bits & mask(format.width());
         let raw = format.raw(bits);
         self.insert(Cell::Constant(bits), format, (raw, raw), label)
     }
 
-    /// Returns the word of a ROM. `words` are its contents.
+    /// Returns the node of a word of a ROM with the contents `words`.
     pub fn read(
         &mut self,
         rom: RomId,
@@ -169,7 +169,7 @@ impl Graph {
         self.insert(Cell::Read { rom, address }, format, range, label)
     }
 
-    /// Returns the node of a cell. If the node is already there, its values are limited to `range` too.
+    /// Returns the node of a cell. If an equal node exists, its interval is limited to `range` too, and it is returned.
     pub fn insert(&mut self, cell: Cell, format: Format, range: Interval, label: &Label) -> NodeId {
         let key = (cell.clone(), format.width(), format.signed);
         if let Some(&id) = self.known.get(&key) {
@@ -186,7 +186,7 @@ impl Graph {
         id
     }
 
-    /// Returns the bits of `id` from the lowest on as a number of this width and sign.
+    /// Returns the low bits of `id` as a number with this width and sign.
     pub fn resize(&mut self, id: NodeId, width: u32, signed: bool) -> NodeId {
         let node = self.node(id);
         let (format, label) = (node.format, Label { named: false, ..node.label.clone() });
@@ -199,7 +199,7 @@ impl Graph {
         }
     }
 
-    /// Returns a cell, folded as far as it can be.
+    /// Returns the node of a cell, after folding constants and wiring.
     pub fn op(&mut self, op: NodeOp, format: Format, label: &Label) -> NodeId {
         if let Some(id) = self.fold(&op, format, label) {
             let node = &mut self.nodes[id.index()];
@@ -447,7 +447,7 @@ impl Graph {
 }
 
 impl Cell {
-    /// Returns the nodes that it takes.
+    /// Returns the operands of the node.
     pub fn operands(&self) -> Vec<NodeId> {
         match self {
             Self::Op(op) => op.operands(),
@@ -456,7 +456,7 @@ impl Cell {
         }
     }
 
-    /// Returns whether it is bits under another name: wires alone.
+    /// Returns whether the node is mere wiring: bits under another name.
     pub fn is_wiring(&self) -> bool {
         matches!(
             self,

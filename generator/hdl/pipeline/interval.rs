@@ -1,23 +1,24 @@
-//! Finds the clocks from a point to the next: as given, or as a wanted rate or number of multipliers asks for.
+//! Finds the interval of a pipeline, the number of clocks from one point to the next: as given, or for a wanted rate or number of
+//! multipliers.
 
 use super::error::{PipelineError, PipelineErrorKind};
 use super::schedule::ScheduleProblem;
 use super::{Goal, Options};
 use crate::netlist::Design;
 
-/// The clocks from a point to the next.
+/// How the interval of a pipeline is chosen. The interval is the number of clocks from one point to the next.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum IntervalGoal {
-    /// A number of clocks.
+    /// The interval itself, in clocks.
     Clocks(usize),
-    /// The longest interval with this number of million points a second at the clock of the goal. For example, 26 million
-    /// points a second at 130 MHz allow an interval of at most 5 clocks.
+    /// The largest interval with at least this rate, in million points a second, at the requested clock. For example, 26 million
+    /// points a second at 130 MHz allow an interval of 5 clocks.
     Rate(f64),
-    /// The fewest with which there are no more multipliers than this.
+    /// The smallest interval that needs at most this number of multipliers.
     Multipliers(usize),
 }
 
-/// Returns the clocks from a point to the next. A sequential core takes a point every `most`.
+/// Returns the interval. `most` is the number of clocks in which the sequential core computes a point.
 ///
 /// # Errors
 /// Fails if the interval is longer than the sequential core's, or if no interval reaches the rate. Fails if a rate is wanted

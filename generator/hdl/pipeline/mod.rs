@@ -1,9 +1,9 @@
-//! Makes a pipeline of a design with a microprogram. The pipeline takes a point every clock or every few clocks.
+//! Turns a design with a microprogram into a pipeline, which accepts a point (a set of operands) every clock or every few clocks.
 //!
-//! `unroll` turns the design into a graph of values. The first of the `passes` splits its products to fit the
-//! multipliers of a [`Timing`]. A schedule (`schedule`, for a `request`) assigns every value to a stage. `stages`
-//! builds a design from that, without a microprogram and with a register wherever a value crosses from a stage to the
-//! next. Nothing here knows a device.
+//! `unroll` turns the design into a graph of values. `passes` rewrite the graph; the first splits its products to fit the
+//! multipliers of a [`Timing`]. `request` finds a schedule (`schedule`), which assigns every value to a stage. `stages` builds
+//! the pipeline: it has no microprogram, and a register wherever a value crosses from one stage to the next. None of these
+//! modules knows a particular device.
 
 mod delay;
 mod error;
@@ -40,40 +40,40 @@ pub use unroll::{
     unroll_in_powers, unroll_line,
 };
 
-/// The goal of the schedule.
+/// The goal of the schedule: a clock frequency or a number of stages.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Goal {
-    /// The fewest registers for a clock.
+    /// The fewest register bits for this clock frequency.
     ClockMhz(f64),
-    /// The fastest clock in this number of stages.
+    /// The highest clock frequency with this number of stages.
     Stages(usize),
 }
 
-/// The storage of values that nothing reads for several stages.
+/// How values are stored that nothing reads for several stages.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Delays {
-    /// A small memory, if the target has one.
+    /// In a small memory, if the target has one.
     Memory,
-    /// A register a stage.
+    /// In a register in each stage.
     Registers,
 }
 
-/// The options of a pipeline.
+/// The options with which a user requests a pipeline.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Options {
-    /// The target whose delays and multipliers count.
+    /// The FPGA target whose delays and multipliers the schedule assumes.
     pub target: &'static Timing,
     /// The goal of the schedule.
     pub goal: Goal,
-    /// The least number of clocks between two points.
+    /// How the interval, the number of clocks from one point to the next, is chosen.
     pub interval: IntervalGoal,
-    /// Products end in the register of a multiplier, if the target has a delay for it.
+    /// Whether products use the output registers of multipliers, if the target states a delay for them.
     pub registered: bool,
-    /// The environment can hold the results back.
+    /// Whether the environment can stop the pipeline by `out_ready`.
     pub stall: bool,
-    /// Bits that travel with a point.
+    /// The number of bits of the side channel, which travels with a point.
     pub side: u32,
-    /// The storage of values on their way.
+    /// How values are stored that nothing reads for several stages.
     pub delays: Delays,
 }
 

@@ -1,5 +1,5 @@
-//! Runs the passes that rewrite an unrolled computation before it is scheduled. Each pass computes the same values
-//! with other cells.
+//! Runs the passes that rewrite an unrolled computation before it is scheduled. A pass replaces operations by others that compute
+//! the same values. For example, one splits a product that is too wide for a multiplier.
 //!
 //! The tests of a pass are files, `passes/<name>/*.txt`: a computation as text, and the computation that the pass
 //! must make of it.
@@ -10,13 +10,13 @@ use super::split::split;
 use super::unroll::Unrolled;
 use glint_base::target::Timing;
 
-/// A pass.
+/// A pass, which rewrites an unrolled computation.
 pub struct Pass {
     /// The name of the pass, and of the directory of its tests.
     pub name: &'static str,
-    /// Whether a pipeline with these options has it.
+    /// Returns whether a pipeline with these options uses the pass.
     pub applies: fn(&Options) -> bool,
-    /// Makes the computation anew.
+    /// Returns the rewritten computation.
     pub run: fn(&Unrolled, &Timing) -> Unrolled,
 }
 
@@ -28,7 +28,7 @@ pub static PASSES: [Pass; 2] = [
     Pass { name: "gates", applies: |options| options.registered, run: |it, _| gated(it) },
 ];
 
-/// Runs the passes that the options ask for.
+/// Runs the passes that the options ask for, and returns the rewritten computation.
 pub fn applied(unrolled: Unrolled, options: &Options) -> Unrolled {
     let passes = PASSES.iter().filter(|pass| (pass.applies)(options));
     passes.fold(unrolled, |unrolled, pass| (pass.run)(&unrolled, options.target))

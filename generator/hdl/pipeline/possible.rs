@@ -1,4 +1,4 @@
-//! Decides whether a condition can hold at all, by trying every combination of the bits that it depends on.
+//! Decides whether a condition can ever be 1, by trying all combinations of the bits on which it depends.
 
 use std::collections::{HashMap, HashSet};
 

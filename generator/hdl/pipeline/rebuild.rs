@@ -1,4 +1,4 @@
-//! Rebuilds a computation in a new graph, with other nodes in place of some.
+//! Copies a computation into a new graph, and replaces some of its nodes.
 
 use super::graph::{Cell, Graph, Node, NodeId, NodeOp};
 use super::unroll::Unrolled;

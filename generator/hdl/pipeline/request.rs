@@ -1,6 +1,6 @@
-//! Finds the interval and the schedule of the pipeline that is asked for.
+//! Finds the interval and the schedule for the pipeline that a user requests.
 //!
-//! If a clock or a number of stages cannot be reached, the error has the nearest value that can.
+//! If a clock frequency or a number of stages cannot be reached, the error states the nearest value that can.
 
 use super::error::{PipelineError, PipelineErrorKind};
 use super::graph::NodeId;
@@ -10,7 +10,7 @@ use super::unroll::Unrolled;
 use super::{Goal, Options};
 use crate::netlist::{Design, decided_by_data, latest_done};
 
-/// A computation, and the pipeline that is requested for it.
+/// A computation, and the options of the pipeline that is requested for it.
 pub struct Request<'a> {
     sequential: &'a Design,
     unrolled: &'a Unrolled,
@@ -19,20 +19,20 @@ pub struct Request<'a> {
 }
 
 impl<'a> Request<'a> {
-    /// Asks for a pipeline of a computation.
+    /// Makes a request for a pipeline of the computation `unrolled`.
     pub fn new(sequential: &'a Design, unrolled: &'a Unrolled, options: &'a Options) -> Self {
         let results = unrolled.results.iter().map(|&(_, value)| value).collect();
         Self { sequential, unrolled, options, results }
     }
 
-    /// Poses the problem of a schedule, products with registers of their own or without.
+    /// Returns the scheduling problem. `registered` says whether products use the output registers of multipliers.
     pub fn problems(&self, registered: bool, interval: usize) -> ScheduleProblem<'_> {
         let target = self.options.target;
         let registered = target.registered.filter(|_| registered);
         ScheduleProblem::new(&self.unrolled.graph, target, registered, interval, &self.results)
     }
 
-    /// Returns the clocks from a point to the next.
+    /// Returns the interval, the number of clocks from one point to the next.
     ///
     /// # Errors
     /// Fails if [`interval::clocks`] fails.

@@ -1,15 +1,13 @@
-//! Assigns nodes to stages: solves a system of difference constraints for the fewest register bits.
+//! Assigns each node of a computation to a stage of the pipeline, with the fewest register bits.
 //!
-//! Every node has a number, its stage. The stage is no earlier than the stages of its operands. It is a stage later
-//! if a block memory lies between. It is also a stage later than any node from which the path through logic takes
-//! longer than the clock. This is the formulation of Cong and Zhang, "An efficient and versatile scheduling algorithm
-//! based on SDC formulation", 2006. A value is held over every boundary up to its last use, and costs a register bit
-//! for each bit and boundary. All constraints are differences of two variables, so the linear program has an integer
-//! solution.
+//! The stage of a node is not before the stages of its operands. It is a later stage if a block memory lies between them, or if
+//! the path through the logic from an earlier node takes longer than the clock. A value needs registers at every boundary between
+//! stages up to its last use, one register bit for each of its bits and boundaries. All constraints are on differences of two
+//! stages, so the linear program has an integer solution (Cong and Zhang, "An efficient and versatile scheduling algorithm based
+//! on SDC formulation", 2006).
 //!
-//! Products that share multipliers get their stages first: one after another, as early as the constraints allow, in
-//! the first slot in which a multiplier is free (`sharing`). The linear program then places all other nodes around
-//! them.
+//! If products share multipliers, they get their stages first: one after another, as early as the constraints allow, in the first
+//! slot in which a multiplier is free (`sharing`). The linear program then places all other nodes around them.
 
 use std::cmp::Reverse;
 use std::collections::{BTreeMap, BTreeSet};
@@ -21,34 +19,34 @@ use super::graph::{Cell, Graph, Node, NodeId, NodeOp};
 use super::sharing::{self, MultiplierUnit, ProductGroup};
 use glint_base::target::{Registered, Timing};
 
-/// When each value is computed.
+/// A schedule: the stage of every node, and the clock that the stages reach.
 #[derive(Clone, Debug)]
 pub struct Schedule {
-    /// For each node of the graph; it has no meaning for constants and for nodes that nothing needs.
+    /// The stage of each node. It is meaningless for constants and for nodes that nothing needs.
     pub stage: Vec<usize>,
-    /// Boundaries with registers, from the operands to the results.
+    /// The number of boundaries with registers, from the operands to the results.
     pub latency: usize,
-    /// Nanoseconds of a clock.
+    /// The clock period, in nanoseconds.
     pub period: f64,
-    /// Nanoseconds of logic in each stage, without the delays of the registers around it.
+    /// The delay of the logic in each stage, in nanoseconds, without the registers around it.
     pub logic: Vec<f64>,
 }
 
-/// Why there is no schedule.
+/// The reason why there is no schedule.
 #[derive(Clone, Debug)]
 pub enum ScheduleRefusal {
-    /// The clock cannot be met.
+    /// The clock period is too short for an operation.
     Unreachable(Unreachable),
-    /// The solver failed, or its solution breaks a constraint: the reason, and the node in the wrong stage.
+    /// The solver failed, or its solution violates a constraint. The fields are the reason, and the node with the wrong stage.
     Unsolved(String, Option<NodeId>),
 }
 
-/// The reason why a clock cannot be met.
+/// The reason why a clock period cannot be reached.
 #[derive(Clone, Debug)]
 pub struct Unreachable {
-    /// The node that takes the longest.
+    /// The slowest node.
     pub limiting: NodeId,
-    /// The shortest period that it allows.
+    /// The shortest period that this node allows, in nanoseconds.
     pub period: f64,
 }
 
@@ -56,21 +54,22 @@ pub struct Unreachable {
 pub struct ScheduleProblem<'a> {
     graph: &'a Graph,
     target: &'a Timing,
-    /// The nodes that are scheduled, in order.
+    /// The nodes to schedule, in order.
     live: Vec<NodeId>,
     results: &'a [NodeId],
-    /// For each node, the live nodes that use it; empty for constants.
+    /// For each node, the scheduled nodes that use it; empty for constants.
     users: Vec<Vec<NodeId>>,
     delay: Vec<f64>,
-    /// The setup of a register behind each node, beyond any other's.
+    /// For each node, the extra setup time of a register behind it.
     setup: Vec<f64>,
-    /// The select of a choice between a value and a constant, if a register behind it makes the choice by its reset.
+    /// For each node that chooses between a value and a constant, the select signal, if a register behind it can make this choice
+    /// by its reset.
     reset_by: Vec<Option<NodeId>>,
-    /// For nodes that the clock makes.
+    /// The timing of the nodes that a rising edge computes: block memories and registered products.
     clocked: Vec<Option<ClockedNode>>,
-    /// Clocks from a point to the next at least.
+    /// The interval: the smallest number of clocks from one point to the next.
     interval: usize,
-    /// The products that share multipliers.
+    /// The groups of products that share multipliers.
     kinds: Vec<ProductGroup>,
 }
 
@@ -78,11 +77,11 @@ pub struct ScheduleProblem<'a> {
 /// that others use too.
 #[derive(Clone, Copy, Debug)]
 struct ClockedNode {
-    /// The time from the operands to the clock, beyond the way to a register.
+    /// The time from the operands to the rising edge, in addition to the path to an ordinary register.
     operands: f64,
-    /// The logic between registers that the operands go through after that, if there is any.
+    /// The delay of the logic between two registers that the operands pass afterwards, if there is any.
     inside: f64,
-    /// Boundaries from the operands to the node.
+    /// The number of boundaries from the operands to the node.
     apart: usize,
 }
 
@@ -174,7 +173,7 @@ fn node_timing(
 }
 
 impl<'a> ScheduleProblem<'a> {
-    /// Makes the problems of a schedule of the nodes that `results` need.
+    /// Returns the scheduling problem for the nodes that `results` need.
     pub fn new(
         graph: &'a Graph,
         target: &'a Timing,
@@ -237,7 +236,7 @@ impl<'a> ScheduleProblem<'a> {
         }
     }
 
-    /// Returns the multipliers of the target that products take.
+    /// Returns the number of multipliers of the target that the products take.
     pub fn multipliers(&self) -> usize {
         let mut multipliers = sharing::products(self.graph, self.target, &self.live).len();
         for kind in &self.kinds {
@@ -317,7 +316,7 @@ impl<'a> ScheduleProblem<'a> {
         self.solve(high, stages)
     }
 
-    /// Returns the most stages that shorten the clock.
+    /// Returns the largest number of stages that still shortens the clock period.
     pub fn most_stages(&self) -> usize {
         self.least_stages(self.fastest_period())
     }
@@ -336,7 +335,7 @@ impl<'a> ScheduleProblem<'a> {
         self.latency(&differences, &self.taken(&differences))
     }
 
-    /// Returns how many boundaries lie between the operands of `user` and `user`.
+    /// Returns the number of boundaries between the operands of `user` and `user`.
     pub fn apart(&self, user: NodeId) -> usize {
         match self.clocked[user.index()] {
             Some(clocked) => clocked.apart,
@@ -645,17 +644,17 @@ impl<'a> ScheduleProblem<'a> {
         longest
     }
 
-    /// Returns the part of a clock that registers take.
+    /// Returns the part of the clock period that registers take, in nanoseconds.
     pub fn register_ns(&self) -> f64 {
         self.target.register
     }
 
-    /// Returns the nodes that are scheduled.
+    /// Returns the nodes to schedule.
     pub fn live(&self) -> &[NodeId] {
         &self.live
     }
 
-    /// Returns for each node the boundary up to which it is held: the number of the last stage that takes it.
+    /// Returns for each node the last boundary at which a register holds it, which is the number of the last stage that reads it.
     pub fn last_use(&self, schedule: &Schedule) -> Vec<usize> {
         let mut last = schedule.stage.clone();
         for &id in &self.live {
@@ -670,7 +669,7 @@ impl<'a> ScheduleProblem<'a> {
         last
     }
 
-    /// Returns the multipliers that products share, with the products of each slot.
+    /// Returns the multipliers that products share, with the product of each slot.
     pub fn units(&self, schedule: &Schedule) -> Vec<MultiplierUnit> {
         let mut units = Vec::new();
         for kind in &self.kinds {
@@ -680,7 +679,7 @@ impl<'a> ScheduleProblem<'a> {
         units
     }
 
-    /// Returns whether the clock makes a node: a word of a block memory, or a product in a register.
+    /// Returns whether a rising edge computes a node: the word of a block memory, or a product with an output register.
     pub fn is_clocked(&self, id: NodeId) -> bool {
         self.clocked[id.index()].is_some()
     }

@@ -1,13 +1,12 @@
-//! Merges a limit of a limit into one limit. Such values arise if a step that limits its result is taken several
-//! times.
+//! Merges two limits of a value into one. Two limits follow each other if the computation repeats a step that limits its result.
 //!
-//! For example, in `over₂ ? most : f(over₁ ? most : x)`, the condition `over₂` tests a bit of the inner choice. The
-//! pass makes one choice of it: `most` if either condition holds, and else `f(x)`.
+//! For example, in `over₂ ? most : f(over₁ ? most : x)`, the condition `over₂` tests a bit of the inner choice. The pass merges
+//! both choices: the result is `most` if either condition holds, and otherwise `f(x)`.
 
 use super::graph::{Cell, Graph, Label, NodeId, NodeOp};
 use glint_base::fixed::Format;
 
-/// Returns a value as one choice, if it is a choice between a constant and another such choice.
+/// Returns the merged choice for a node that chooses between a constant and another such choice. Otherwise it returns the node.
 pub fn settled(graph: &mut Graph, id: NodeId) -> NodeId {
     let node = graph.node(id).clone();
     let Some((over, rest, most)) = limit(graph, id) else { return id };

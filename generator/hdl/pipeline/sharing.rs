@@ -1,29 +1,30 @@
-//! Assigns products to multipliers that serve several of them, each in a slot of its own.
+//! Assigns products to multipliers, so that one multiplier serves several products of a pipeline, each in its own slot.
 //!
-//! A pipeline that takes a point every k clocks has a point in stage s while the slot is s modulo k. A product whose stage is
-//! known therefore takes a multiplier in one slot of k, and products of different slots can share it: their factors come
-//! through muxes into the registers before the multiplier, and every product into the one behind it.
+//! A pipeline that accepts a point every k clocks counts slots from 0 to k − 1: a point is in stage s while the slot is s modulo
+//! k. A product in a known stage therefore needs a multiplier in one slot of k, and products of different slots can share one.
+//! Muxes in front of the multiplier select the factors into its operand registers, and the product goes into the register behind
+//! it.
 
 use std::cmp::Reverse;
 
 use super::graph::{Cell, Graph, NodeId, NodeOp};
 use glint_base::target::{FAMILIES, Timing};
 
-/// Products that can share multipliers.
+/// A group of products that can share multipliers.
 #[derive(Clone, Debug)]
 pub struct ProductGroup {
     /// The products, in order.
     pub products: Vec<NodeId>,
-    /// The multipliers, fewer than products: as few as serve them in all slots.
+    /// The number of multipliers that serve the products in all slots; it is less than the number of products.
     pub units: usize,
-    /// The multipliers take signed factors.
+    /// Whether the multipliers take signed factors.
     signed: bool,
 }
 
-/// A multiplier and the products that it serves.
+/// A multiplier, with the products that it serves.
 #[derive(Clone, Debug)]
 pub struct MultiplierUnit {
-    /// The bits of its factors.
+    /// The widths of its two factors.
     pub widths: [u32; 2],
     /// Whether the factors have signs.
     pub signed: bool,
@@ -40,8 +41,8 @@ fn factors(graph: &Graph, id: NodeId) -> Option<[NodeId; 2]> {
     }
 }
 
-/// Returns the products of a computation that take a multiplier of the target. It leaves out the narrow products that
-/// synthesis makes of look-up tables.
+/// Returns the products of a computation for which synthesis uses multipliers of the target. It leaves out narrow products, which
+/// become look-up tables.
 pub fn products(graph: &Graph, target: &Timing, live: &[NodeId]) -> Vec<NodeId> {
     let least = match FAMILIES.iter().find(|family| family.name() == target.name) {
         Some(family) => family.estimate.least_product,

@@ -1,12 +1,12 @@
-//! Splits products that are too wide for the multipliers of the target into sums of narrower ones.
+//! Splits products that are too wide for the multipliers of an FPGA target into sums of narrower products.
 //!
-//! An operand that is too wide is cut in two: its upper bits, as many as a multiplier takes, and the rest. A rest of
-//! a few bits becomes rows of the product in look-up tables, as on paper; a synthesiser would spend a whole
-//! multiplier on it. A longer rest, or one with long rows, becomes a product of its own.
+//! An operand that is too wide is cut in two: as many upper bits as a multiplier takes, and the remaining lower bits. If only a
+//! few bits remain, their product is added row by row in look-up tables, as in multiplication by hand; synthesis would use a
+//! whole multiplier. Otherwise they become a product of their own.
 //!
-//! Two kinds of factors cost less. In the square `(u·2^r + l)² = u²·4^r + l·(u·2^(r+1) + l)`, both partial products
-//! with the rest share one factor. If a factor reaches a power of two, as a cosine does with 1.0, its highest bit is
-//! set only where all its other bits are 0.
+//! Two special cases cost less. In the square `(u·2^r + l)² = u²·4^r + l·(u·2^(r+1) + l)`, both partial products with the rest l
+//! share one factor. If a factor has a power of two as its largest value, such as a cosine with 1.0, its highest bit is set only
+//! if all its other bits are 0.
 
 use super::graph::{Graph, Label, NodeId, NodeOp};
 use super::rebuild::rebuilt;
@@ -18,7 +18,7 @@ use glint_base::target::Timing;
 /// The most bits of an operand that become rows in look-up tables.
 const MOST_ROWS: u32 = 4;
 
-/// Returns the computation with products that the target's multipliers take.
+/// Returns the computation with products that fit the multipliers of the target.
 pub fn split(unrolled: &Unrolled, target: &Timing) -> Unrolled {
     rebuilt(unrolled, |graph, op, node| {
         Some(match op {

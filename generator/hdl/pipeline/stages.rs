@@ -99,18 +99,18 @@ struct StageBuilder<'a> {
     problems: &'a ScheduleProblem<'a>,
     schedule: &'a Schedule,
     design: Design,
-    /// The pipeline as far as it is built; stages and checkpoints come last.
+    /// The pipeline built so far. Its stages and checkpoints are added last.
     pipeline: Pipeline,
-    /// 1 when every point moves on by a stage; `None` if points always do.
+    /// A net that is 1 if every point moves to the next stage; `None` if points always move.
     advance: Option<NetId>,
-    /// The register behind the multiplier of each product that shares one.
+    /// The register behind the multiplier, for each product that shares one.
     shared: HashMap<NodeId, NetId>,
     taken: HashSet<String>,
-    /// The name of every node's value, without a stage.
+    /// The name of each node's value, without a stage.
     names: HashMap<NodeId, String>,
     /// The net with the value of a node in a stage.
     values: HashMap<(NodeId, usize), NetId>,
-    /// The read ports of each memory.
+    /// The ROMs that serve as read ports of each memory.
     memories: HashMap<RomId, Vec<RomId>>,
 }
 

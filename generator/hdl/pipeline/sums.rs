@@ -1,9 +1,8 @@
-//! Rewrites sums and differences so that they take fewer look-up tables.
+//! Rewrites sums and differences so that they take fewer look-up tables. For example, `a + ~b + 1` becomes `a - b`.
 //!
-//! A synthesiser takes sums as they are written, and a schedule counts them. If an operand of a sum has zeros in its
-//! lowest bits, the lowest bits of the other operand pass by the adder. For example, `a + ~b + 1` becomes `a - b`. A
-//! choice between a value and a constant moves behind a sum with a constant, where a register can make the choice by
-//! its reset.
+//! Synthesis implements sums as they are written, and the schedule counts their cost. If an operand of a sum has zeros in its
+//! lowest bits, the lowest bits of the other operand bypass the adder. A choice between a value and a constant is moved behind a
+//! sum with a constant, where a register can make the choice by its reset.
 
 use super::graph::{Cell, Graph, Label, NodeId, NodeOp};
 use crate::netlist::interval::of_cell;

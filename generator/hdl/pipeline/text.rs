@@ -1,4 +1,4 @@
-//! Prints and reads unrolled computations as text, for the tests of passes.
+//! Prints unrolled computations as text and parses them, for tests of the passes.
 //!
 //! A value is a line, `name format [low, high] = operation operands`. A line without an operation is an operand. `constant` is
 //! followed by a bit pattern, `slice` by its value and the lowest bit, `mux` by the select and its inputs. `add` has a third
@@ -14,7 +14,7 @@ use super::unroll::Unrolled;
 use crate::netlist::{NetId, eval};
 use glint_base::fixed::{Format, mask};
 
-/// Prints the nodes that the results need.
+/// Returns the text of all nodes that the results need.
 pub fn printed(unrolled: &Unrolled) -> String {
     let graph = &unrolled.graph;
     let results = unrolled.results.iter().map(|it| it.1);
@@ -49,7 +49,7 @@ pub fn printed(unrolled: &Unrolled) -> String {
     text
 }
 
-/// Reads a computation. For example, `sum u6.0 = sub a b` is the difference of two operands.
+/// Parses a computation. For example, `sum u6.0 = sub a b` is the difference of two operands.
 ///
 /// # Errors
 /// Fails if a line is not understood. The error is the line.
@@ -137,8 +137,8 @@ pub fn parsed(text: &str) -> Result<Unrolled, String> {
     Ok(unrolled)
 }
 
-/// Returns the results for a combination of operands, by its number, as bit patterns, and how many combinations there are.
-/// Operands outside their ranges are taken from within.
+/// Returns the results for the combination of operands with this number, as bit patterns, and the number of all combinations.
+/// Every operand lies within its interval.
 pub fn computed(unrolled: &Unrolled, combination: u64) -> (Vec<u64>, u64) {
     let graph = &unrolled.graph;
     let mut values: HashMap<NodeId, [u64; 1]> = HashMap::new();

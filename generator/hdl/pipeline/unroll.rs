@@ -1,14 +1,12 @@
-//! Unrolls a microprogram into a graph of values by executing it symbolically: the operands are unknowns.
+//! Unrolls a microprogram into a graph of values, by executing it symbolically with unknown operands.
 //!
-//! The execution visits every clock of one computation, from the clock that takes `start` to the clock in which the
-//! results are on the outputs. Fields of the control word are constants in a clock, so muxes under them disappear.
-//! Each load of a register makes a new value. A synchronous ROM and a register without an enable follow their inputs
-//! by a clock here too.
+//! The execution follows one computation clock by clock, from the clock that accepts `start` to the clock with the results. In
+//! each clock the fields of the control word are constants, so muxes that they control disappear. Each load of a register makes a
+//! new value.
 //!
-//! A constant condition decides where control goes. A condition that depends on an operand is followed both ways. A
-//! loop is executed as often as it can be, each iteration under the conditions of those before. A jump ahead is
-//! executed with and without the microinstructions that it skips. Where the ways meet, the condition chooses the
-//! value of each register.
+//! If a condition is constant, it decides which microinstruction follows. If it depends on an operand, the execution follows both
+//! ways, and the condition chooses the value of each register where the ways meet. A loop is unrolled as often as it can run, and
+//! a jump is executed with and without the microinstructions that it skips.
 
 mod clock;
 mod cycle;
@@ -29,27 +27,27 @@ use glint_base::fixed::Format;
 /// The number of clocks that a microprogram may take. A longer one is not worth a pipeline.
 const MOST_CLOCKS: usize = 4096;
 
-/// One computation of a design.
+/// The values of one computation of a design.
 #[derive(Debug)]
 pub struct Unrolled {
     /// All values.
     pub graph: Graph,
-    /// The operands, as ports of the design.
+    /// The operands, as input ports of the design.
     pub operands: Vec<NetId>,
-    /// Each result with its value, by its port in the design.
+    /// The results: the output port and the value of each.
     pub results: Vec<(NetId, NodeId)>,
-    /// The microinstructions in the order of execution.
+    /// The executed microinstructions, in order.
     pub steps: Vec<UnrolledStep>,
 }
 
-/// A microinstruction at a clock of the computation.
+/// One executed microinstruction of the computation.
 #[derive(Clone, Debug)]
 pub struct UnrolledStep {
-    /// Its place in the microprogram.
+    /// Its address in the microprogram.
     pub address: usize,
-    /// How often it was executed before.
+    /// How often the computation executed the same microinstruction before.
     pub visit: usize,
-    /// The contents of the architectural registers while it is executed, as far as they are determined.
+    /// The values that the architectural registers hold while it is executed, as far as they are determined.
     pub registers: Vec<(RegId, NodeId)>,
 }
 
@@ -64,11 +62,11 @@ struct Executor<'a> {
     iterations: Iterations,
     unrolled: Unrolled,
     visits: Vec<usize>,
-    /// Set when the results are on the outputs.
+    /// The values of the results, once they are on the outputs.
     shown: Option<Vec<(NetId, NodeId)>>,
 }
 
-/// Executes the microprogram of a design that the DSL has accepted.
+/// Executes the microprogram of a design symbolically. The description language must have accepted the design.
 ///
 /// # Errors
 /// Fails if the microprogram has no fixed bound, waits for `start` on the way or gives several results. Fails if a
@@ -77,7 +75,7 @@ pub fn unroll(design: &Design) -> Result<Unrolled, Diagnostics> {
     run(design, Iterations::OneByOne).map_err(|diagnostic| Diagnostics(vec![diagnostic]))
 }
 
-/// Unrolls as [`unroll`] does, into fewer values if iterations of a loop can be taken together.
+/// Unrolls a design as [`unroll`] does, but with fewer values if several iterations of a loop can be merged.
 ///
 /// # Errors
 /// Fails if [`unroll`] would fail.

@@ -1,4 +1,5 @@
-//! Divides the compiler's one bank of slots into the two banks of a [`CompiledDesign`], and inserts conversions between them.
+//! Distributes the values of a compiled design over two banks, one of 32-bit and one of 64-bit slots, and inserts conversions
+//! between the banks.
 
 use crate::sim::compiler::{Compiler, Ordered};
 use crate::sim::program::{
@@ -79,11 +80,11 @@ fn widths(compiler: &Compiler) -> Vec<u32> {
 
 struct BankSplitter<'a> {
     compiler: &'a Compiler<'a>,
-    /// For each slot of the compiler: whether it takes a wide one.
+    /// For each slot of the compiler, whether it needs a wide (64-bit) slot.
     is_wide: Vec<bool>,
     narrow: Bank,
     wide: Bank,
-    /// For each slot of the compiler, its place in each bank, if it has one yet.
+    /// For each slot of the compiler, its slot in the narrow (32-bit) bank, if it already has one.
     narrow_of: Vec<Option<Slot>>,
     wide_of: Vec<Option<Slot>>,
     steps: Vec<(Sources, SettlingStep)>,

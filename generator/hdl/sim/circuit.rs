@@ -1,4 +1,4 @@
-//! Makes a design one block of a rust_hdl circuit, which rust_hdl clocks, checks and traces.
+//! Wraps a compiled design as one block of the simulation kernel rust_hdl, which clocks, checks and traces it.
 
 use std::sync::Arc;
 
@@ -12,25 +12,25 @@ use crate::sim::machine::Machine;
 use crate::sim::program::CompiledDesign;
 use crate::sim::wire::{Direction, ProbeView, Wire};
 
-/// `LANES` independent instances of a design as a rust_hdl [`Block`]: rust_hdl clocks and settles
-/// it, checks it and, for lane 0, traces it.
+/// `LANES` independent instances of a design as one rust_hdl [`Block`]. rust_hdl clocks and settles the block, checks it, and
+/// traces lane 0.
 ///
 /// The caller must change inputs together with the falling edge of [`Circuit::clock`]. Inputs that change together with the
 /// rising edge are seen only after it.
 #[derive(Debug)]
 pub struct Circuit<const LANES: usize = 1> {
-    /// Everything happens on its rising edge.
+    /// The clock. Registers change on its rising edge.
     pub clock: Signal<In, Clock>,
     pub(super) machine: Machine<LANES>,
-    /// The last inputs given to [`Circuit::inputs_mut`], for each port.
+    /// The latest values of the input ports, one for each lane.
     inputs: Vec<[u64; LANES]>,
-    /// The machine has yet to be told.
+    /// Whether the machine does not know the latest inputs yet.
     input_set: bool,
-    /// The latest update changed something.
+    /// Whether the latest update changed a value.
     changed: bool,
     connected: bool,
     ports: Vec<Observed>,
-    /// Control unit and datapath, or the handshake and the stages of a pipeline.
+    /// The scopes of the waveform: control unit and datapath, or the handshake and the stages of a pipeline.
     scopes: Vec<(String, Vec<Observed>)>,
     microprogram: MicroinstructionNames,
 }
@@ -50,13 +50,13 @@ struct Observed {
 #[derive(Debug)]
 struct MicroinstructionNames {
     names: Arc<[String]>,
-    /// The address register and the run flag, when there is a control unit.
+    /// The address counter and the run flag, if the design has a control unit.
     state: Option<(NetId, NetId)>,
     id: usize,
 }
 
 impl<const LANES: usize> Circuit<LANES> {
-    /// Compiles a design and has rust_hdl check the result. It is at power-up, the clock low.
+    /// Compiles a design and lets rust_hdl check the result. The circuit is in the state after power-up, with the clock low.
     ///
     /// # Errors
     /// Fails if [`CompiledDesign::new`] fails, or if rust_hdl's `check_all` finds a fault.
@@ -98,8 +98,8 @@ impl<const LANES: usize> Circuit<LANES> {
         Ok(circuit)
     }
 
-    /// Returns the input ports in order of declaration, each with its lanes. Bits beyond a port's width are ignored.
-    /// New values take effect with rust_hdl's next update.
+    /// Returns the values of the input ports, in the order of the ports, one for each lane. The circuit ignores bits beyond the
+    /// width of a port. New values take effect at rust_hdl's next update.
     pub fn inputs_mut(&mut self) -> &mut Vec<[u64; LANES]> {
         self.input_set = true;
         &mut self.inputs

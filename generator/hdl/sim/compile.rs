@@ -1,4 +1,4 @@
-//! Compiles a [`Design`] to a [`CompiledDesign`], which the simulator runs.
+//! Compiles a [`Design`] to a [`CompiledDesign`], a list of instructions that the simulator executes.
 
 use std::collections::{HashMap, HashSet};
 

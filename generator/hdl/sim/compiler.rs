@@ -1,4 +1,4 @@
-//! Holds the state of the compiler of simulation programs: slots, instructions, and facts about them.
+//! The state of the simulator's compiler while it compiles a design: slots, instructions, and facts about them.
 
 use std::collections::{BTreeMap, HashMap};
 use std::mem;
@@ -32,18 +32,18 @@ pub(super) struct Compiler<'a> {
     pub(super) sources: Vec<Sources>,
     /// The number of sources that are input ports.
     input_sources: u32,
-    /// The next source for a value that the edge writes.
+    /// The number of the next source for a value that a rising edge writes.
     next_source: u32,
-    /// The sources of values that have an enable.
+    /// The sources of values that a rising edge writes only if an enable is 1.
     enabled: HashMap<NetId, u32>,
     /// The next source for a field.
     pub(super) next_field: u32,
     /// The initial value of each slot. Its only lane is the lane of the folded constants.
     pub(super) initial: Vec<[u64; 1]>,
     constants: BTreeMap<u64, Slot>,
-    /// Instructions already there, written to slot 0, and the slots that have their results.
+    /// The instructions so far, as if they wrote slot 0, each with the slot of its result.
     known: HashMap<Instruction, Slot>,
-    /// The instruction that writes a slot, unless it is a field.
+    /// The instruction that writes each slot, unless it is a field of the control word.
     made_by: HashMap<Slot, Instruction>,
     /// In an order of evaluation.
     pub(super) steps: Vec<Ordered>,

@@ -1,4 +1,4 @@
-//! Lowers the cells of a netlist to instructions of a simulation program.
+//! Translates the cells of a netlist to instructions of the simulator.
 
 use crate::netlist::{NetId, Op};
 use crate::sim::compiler::Compiler;

@@ -1,4 +1,4 @@
-//! Interprets simulation programs: one pass over a program advances many independent instances of a design, its lanes.
+//! Executes compiled designs. One pass over the instructions advances many independent instances of a design, called lanes.
 
 use std::hint::select_unpredictable;
 use std::mem;
@@ -13,19 +13,20 @@ use crate::sim::word::LaneWord;
 
 /// The state of `LANES` independent instances of a design, which one pass over the [`CompiledDesign`] advances together.
 ///
-/// A pass is compiled three times on x86-64: for any processor, for processors with AVX2 and for processors with
-/// AVX-512. The machine decides at run time which one runs; all compute the same.
+/// On x86-64 the pass is compiled three times: for any processor, for AVX2 and for AVX-512. The machine chooses at run time; all
+/// compute the same values.
 #[derive(Clone, Debug)]
 pub struct Machine<const LANES: usize = 1> {
     program: Arc<CompiledDesign>,
     narrow: Slots<u32, LANES>,
     wide: Slots<u64, LANES>,
-    /// The sources that have changed since the machine was last settled.
+    /// The sources that have changed since the machine last evaluated all nets.
     changed: Sources,
 }
 
 impl<const LANES: usize> Machine<LANES> {
-    /// Makes a machine at power-up: registers, outputs of synchronous ROMs and inputs are 0; settled.
+    /// Makes a machine in the state after power-up: registers, outputs of synchronous ROMs and inputs are 0, and all nets are up
+    /// to date.
     pub fn new(program: Arc<CompiledDesign>) -> Self {
         let mut machine = Self {
             narrow: power_up(&program.narrow),
@@ -37,8 +38,8 @@ impl<const LANES: usize> Machine<LANES> {
         machine
     }
 
-    /// Inverts bits of a word of a ROM: a fault, which the same call takes back. Words are numbered through all ROMs, in
-    /// the order of the design.
+    /// Inverts bits of a ROM word, which models a fault. A second call with the same arguments restores the word. Words are
+    /// numbered through all ROMs, in the order of the design.
     ///
     /// # Panics
     /// Panics if there is no such word.
@@ -47,8 +48,8 @@ impl<const LANES: usize> Machine<LANES> {
         self.changed = Sources::MAX;
     }
 
-    /// Performs a rising edge, if there is one; then changes the inputs, if there are new ones; then brings all nets
-    /// up to date. Returns whether anything that starts a change has changed.
+    /// Performs a rising edge if `edge` is set, then applies `inputs` if there are any, and then evaluates all nets. Returns
+    /// whether any source of changes has a new value.
     ///
     /// At the edge, registers and synchronous ROMs take the values of their operands. `inputs` must have the bit pattern of
     /// each input port, in order of declaration; bits beyond the width of a port are ignored.
@@ -199,7 +200,7 @@ impl<const LANES: usize> Machine<LANES> {
         differences
     }
 
-    /// Returns the bit pattern of a net in each lane.
+    /// Returns the bit pattern of a net for each lane.
     ///
     /// # Panics
     /// Panics if the compiler has optimised the net away, which it may do only if the net has no name.

@@ -1,14 +1,13 @@
-//! The built-in simulator: runs many instances of a design clock by clock, and writes waveforms.
+//! The built-in simulator: runs many independent instances of a design clock by clock, and writes waveforms.
 //!
-//! A [`Design`] is compiled to a [`CompiledDesign`] of levelised instructions. A [`Machine`] runs the program for a number
-//! of independent instances at once, its lanes. A [`Circuit`] is the machine as one rust_hdl block, and a
-//! [`Simulator`] is the circuit with its clock.
+//! The compiler turns a [`Design`] into a [`CompiledDesign`], a list of instructions in evaluation order. A [`Machine`] executes
+//! it for several instances at once, called lanes. A [`Circuit`] wraps the machine as one block of the simulation kernel
+//! rust_hdl, and a [`Simulator`] adds the clock.
 //!
-//! rust_hdl is the kernel. It owns the clock, a `Signal`. Each half of a clock is one call of its `simulate()`, which
-//! updates the block, finds the edge, and updates again until nothing changes. Its `check_all` checks the ports, and
-//! its probes see every named net and write the waveforms. Glint's code computes the netlist within an update: the
-//! registers at an edge, and then one pass over the program, in an order of evaluation, which settles all nets.
-//! rust_hdl could also settle one block for each cell, but a hundred times more slowly.
+//! rust_hdl is the kernel. It owns the clock, a `Signal`. Each half of a clock is one call of its `simulate()`, which updates the
+//! block, finds the edge, and updates again until nothing changes. Its `check_all` checks the ports, and its probes see every
+//! named net and write the waveforms. Glint computes the nets within an update: the registers at an edge, and then one pass over
+//! the instructions. rust_hdl could also simulate one block for each cell, but a hundred times more slowly.
 
 mod banks;
 mod circuit;
@@ -63,7 +62,7 @@ pub struct Simulator<const LANES: usize = 1> {
     name: String,
     inputs: Vec<String>,
     trace: Option<VcdWriter<Box<dyn Write + Send>>>,
-    /// In picoseconds.
+    /// The simulated time, in picoseconds.
     time: u64,
 }
 

@@ -1,4 +1,4 @@
-//! Defines the simulation program to which a design is compiled: its slots, instructions and edges.
+//! Defines the compiled form of a design for the simulator: slots, instructions, and what happens at an edge.
 //!
 //! All values are in *slots*, bit patterns masked to their width. A clock has two phases. *Settling* runs the steps
 //! in order; each computes one slot from earlier ones. The *edge* writes the data outputs of synchronous ROMs and

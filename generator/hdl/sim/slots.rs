@@ -1,4 +1,4 @@
-//! Stores the slots of a bank, aligned in memory so that the processor's vectors load fast.
+//! Stores the slots of a bank in memory, aligned so that vector instructions of the processor load them fast.
 
 use std::ops::{Deref, DerefMut};
 
@@ -9,7 +9,7 @@ const LINE: usize = 64;
 #[derive(Debug)]
 pub(super) struct Slots<W, const LANES: usize> {
     words: Vec<W>,
-    /// The words before the first slot.
+    /// The number of words in front of the first slot, for alignment.
     before: usize,
 }
 

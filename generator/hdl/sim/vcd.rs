@@ -1,4 +1,5 @@
-//! Writes the waveform of a circuit to a file while it is simulated: rust_hdl's VCD output, streamed.
+//! Writes the waveform of a circuit to a VCD file during the simulation. rust_hdl formats it, and this module streams it to the
+//! file.
 
 use std::io::{self, Write};
 use std::mem;
@@ -10,12 +11,12 @@ use rust_hdl::core::logic::Logic;
 use rust_hdl::core::probe::Probe;
 use rust_hdl::core::vcd_probe::{VCDProbe, write_vcd_change, write_vcd_dump, write_vcd_header};
 
-/// Writes the waveform of a circuit as it is simulated, a step at a time; times are picoseconds.
+/// Writes the waveform of a circuit step by step. Times are in picoseconds.
 ///
-/// rust_hdl panics when a write fails. It therefore writes to a page in memory, which takes
-/// everything; after each step the page goes to the file.
+/// rust_hdl panics if a write fails, so it writes to a buffer in memory, which cannot fail. After each step the buffer goes to
+/// the file.
 pub struct VcdWriter<W: Write> {
-    /// Absent only while rust_hdl writes.
+    /// The probe of rust_hdl; `None` only while rust_hdl writes.
     probe: Option<VCDProbe<Page>>,
     page: Page,
     file: W,
@@ -38,7 +39,7 @@ impl<W: Write> VcdWriter<W> {
         Ok(writer)
     }
 
-    /// Writes the changes since the last step.
+    /// Writes the values that have changed since the last step.
     ///
     /// # Errors
     /// Fails if the file cannot be written.
@@ -50,7 +51,7 @@ impl<W: Write> VcdWriter<W> {
         self.write_out()
     }
 
-    /// Ends the waveform at `time` and hands the file back, flushed.
+    /// Ends the waveform at `time`, flushes the file and returns it.
     ///
     /// # Errors
     /// Fails if the file cannot be written.

@@ -1,5 +1,5 @@
-//! Writes files that tell the viewers GTKWave and Surfer how to show a waveform: every net in its scope, numbers by
-//! their values.
+//! Writes files that tell the waveform viewers GTKWave and Surfer how to show a waveform: each net in its module or stage, and
+//! numbers as values.
 
 use std::fmt::Write;
 

@@ -1,7 +1,8 @@
-//! Shows a circuit's wires to rust_hdl's probes, as atoms with run-time widths.
+//! Shows the nets of a circuit to rust_hdl's probes, as atoms (rust_hdl's term for a signal) whose widths are known only at run
+//! time.
 //!
-//! An atom is made when a probe visits the circuit. It holds nothing of its own but the id, which is the same every
-//! time; rust_hdl needs no more. A simulation without a trace never makes one.
+//! A probe that visits the circuit gets an atom for each net. An atom stores only an id, which is the same at every visit. A
+//! simulation without a waveform makes no atoms.
 
 use rust_hdl::core::ast::VerilogLiteral;
 use rust_hdl::core::atom::{Atom, AtomKind};
@@ -20,17 +21,16 @@ pub(super) enum Direction {
 /// The view of a probe.
 #[derive(Debug)]
 pub(super) enum ProbeView<'a> {
-    /// A net.
+    /// A net, with its width, sign and direction.
     Net { width: u32, signed: bool, direction: Direction },
-    /// The name of the microinstruction that is executed, `idle` when none is: of these, the one at the address that the bits
-    /// are.
+    /// The name of the microinstruction that is being executed, or `idle`. The bits are the address, an index of `names`.
     Microinstruction { names: &'a [String], run: bool },
 }
 
 /// An atom.
 #[derive(Debug)]
 pub(super) struct Wire<'a> {
-    /// From rust_hdl's counter, so that it is distinct from the ids of signals.
+    /// The id, from rust_hdl's counter, so that it differs from the ids of rust_hdl's own signals.
     pub id: usize,
     pub connected: bool,
     pub changed: bool,

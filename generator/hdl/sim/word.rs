@@ -1,4 +1,4 @@
-//! Defines the arithmetic on the words of the two banks of slots, of 32 and of 64 bits.
+//! Defines the arithmetic on the values of the simulator, for its 32-bit and its 64-bit slots.
 
 use std::ops::{BitAnd, BitOr, BitXor, Shl, Shr};
 

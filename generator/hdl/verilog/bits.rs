@@ -1,38 +1,38 @@
-//! Reduces wiring to a normal form: the bits of nets, and the constants, that make up a word.
+//! Reduces wiring to a normal form: every word becomes a list of bit ranges of nets and constants.
 //!
-//! Slices, extensions, concatenations, relabelled nets and constants are no hardware. [`Bits`] is the result of any
-//! mixture of them: pieces of the nets that the Verilog declares, constants, and copies of a sign bit. Because it is
-//! a normal form, the printer finds `a[5:2]` behind three nets of wiring, and knows exactly which bits nobody reads.
+//! Slices, extensions, concatenations, renamed nets and constants are wiring, which needs no hardware. [`Bits`] represents any
+//! mixture of them as pieces of nets that the Verilog declares, constants, and copies of a sign bit. For example, the emitter
+//! finds `a[5:2]` behind three nets of wiring. It also finds out which bits of a net nobody reads.
 
 use crate::netlist::NetId;
 use glint_base::fixed::mask;
 
-/// Neighbouring bits of one origin.
+/// Adjacent bits with the same origin.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum BitRun {
-    /// `width` bits of a net from `low` up.
+    /// `width` adjacent bits of a net, from bit `low` up.
     Net {
         /// The net.
         net: NetId,
         /// The lowest bit.
         low: u32,
-        /// How many.
+        /// The number of bits.
         width: u32,
     },
-    /// Known bits.
+    /// Constant bits.
     Constant {
-        /// The pattern.
+        /// The bit pattern.
         value: u64,
-        /// How many.
+        /// The number of bits.
         width: u32,
     },
-    /// One bit, `count` times (two or more).
+    /// `count` copies of one bit of a net; there are at least two.
     Copies {
         /// The net.
         net: NetId,
-        /// The bit.
+        /// The position of the bit.
         bit: u32,
-        /// How often.
+        /// The number of copies.
         count: u32,
     },
 }
@@ -76,17 +76,17 @@ impl BitRun {
     }
 }
 
-/// A word as pieces, the most significant first.
+/// A word as a list of pieces, the most significant first.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Bits(Vec<BitRun>);
 
 impl Bits {
-    /// Makes the bits of a whole net.
+    /// Returns all bits of a net.
     pub fn net(net: NetId, width: u32) -> Self {
         Self(vec![BitRun::Net { net, low: 0, width }])
     }
 
-    /// Makes a bit pattern.
+    /// Returns the bits of a constant.
     pub fn constant(value: u64, width: u32) -> Self {
         Self(vec![BitRun::Constant { value, width }])
     }
@@ -96,7 +96,7 @@ impl Bits {
         &self.0
     }
 
-    /// Returns the only piece, if there is but one.
+    /// Returns the piece if there is exactly one, otherwise `None`.
     pub fn single(&self) -> Option<BitRun> {
         match self.0[..] {
             [piece] => Some(piece),
@@ -109,7 +109,7 @@ impl Bits {
         self.0.iter().map(|piece| piece.width()).sum()
     }
 
-    /// Returns `width` bits from `low` up.
+    /// Returns `width` bits of the word, from bit `low` up.
     pub fn slice(&self, low: u32, width: u32) -> Self {
         let mut taken = Self::default();
         let mut top = self.width();
@@ -124,7 +124,7 @@ impl Bits {
         taken
     }
 
-    /// Puts `lower` below these bits.
+    /// Returns the word with the bits `lower` appended below.
     pub fn followed_by(mut self, lower: &Self) -> Self {
         for piece in &lower.0 {
             self.append(*piece);
@@ -132,7 +132,7 @@ impl Bits {
         self
     }
 
-    /// Adds copies of the top bit (signed) or zeros above, up to `width`.
+    /// Returns the word extended to `width` bits: by copies of its top bit if it is signed, otherwise by zeros.
     pub fn extend(&self, width: u32, signed: bool) -> Self {
         let count = width.saturating_sub(self.width());
         if count == 0 {

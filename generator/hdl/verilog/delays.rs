@@ -1,5 +1,5 @@
-//! Writes the delay lines of a pipeline: values that nothing reads for several stages go through memories, in a module
-//! of its own.
+//! Writes the delay lines of a pipeline as Verilog. A delay line carries a value that nothing reads for several stages; a memory
+//! in a separate module replaces its registers.
 
 use std::collections::BTreeMap;
 
@@ -16,8 +16,8 @@ const TITLE: &str =
 /// How many words go round, and when they do.
 type Pace = (usize, Option<NetId>);
 
-/// Returns the section of the delay lines, with one instance for all lines of the same length and enable. It is empty
-/// if there are no delay lines.
+/// Returns the section of the delay lines, with one instance for all lines of the same length and enable. It is empty if there
+/// are no delay lines.
 pub fn section(builder: &mut Builder<'_>, naming: &Naming) -> Vec<String> {
     let plan = builder.plan;
     let mut paces: BTreeMap<Pace, Vec<&DelayLine>> = BTreeMap::new();

@@ -1,4 +1,4 @@
-//! Writes cells as Verilog expressions.
+//! Writes the cells of a netlist as Verilog expressions. For example, a sum becomes `a + b`.
 //!
 //! The operands of every cell have the same width as the result, so that no context can extend or cut a carry. Two
 //! cells are exceptions. A product is written only as the whole right-hand side of a net of its full width. The carry
@@ -11,18 +11,19 @@ use super::text::{Names, constant_name, literal, together};
 use crate::netlist::{Driver, NetId, NetlistRom, Op};
 use glint_base::fixed::mask;
 
-/// A number that is baked in: a localparam. For example, `COS_GAMMA_MOST` is `21'h100000`, with the note `1.0 in u1.20`.
+/// A constant that the Verilog declares as a localparam. For example, `COS_GAMMA_MOST` is `21'h100000`, with the note `1.0 in
+/// u1.20`.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Constant {
-    /// The localparam.
+    /// The name of the localparam.
     pub name: String,
     /// The name in the description, without a number at its end.
     base: String,
     /// The bit pattern.
     pub bits: u64,
-    /// Its width.
+    /// The number of bits.
     pub width: u32,
-    /// Its value, unless that is the bit pattern.
+    /// The value as text, or an empty text if the bit pattern itself is the value.
     pub note: String,
 }
 
@@ -30,22 +31,22 @@ pub struct Constant {
 pub struct Expressions<'a> {
     plan: &'a Plan<'a>,
     names: Names,
-    /// The constants that were used, in that order.
+    /// The constants that the expressions use, in the order of use.
     pub constants: Vec<Constant>,
 }
 
 impl<'a> Expressions<'a> {
-    /// Makes the expressions of a module in which nothing was written yet.
+    /// Makes a writer that has written nothing yet.
     pub fn new(plan: &'a Plan<'a>, names: Names) -> Self {
         Self { plan, names, constants: Vec::new() }
     }
 
-    /// Returns `wish`, or a name like it that nothing else has.
+    /// Returns `wish` if no other identifier of the module has this name, otherwise a similar name.
     pub fn fresh(&mut self, wish: &str) -> String {
         self.names.fresh(wish)
     }
 
-    /// Returns the right-hand side that drives a net.
+    /// Returns the right-hand side of the assignment that drives a net.
     pub fn driver(&mut self, id: NetId) -> String {
         match &self.plan.design.net(id).driver {
             Driver::Op(op) => self.cell(id, op),
@@ -58,7 +59,7 @@ impl<'a> Expressions<'a> {
         }
     }
 
-    /// Returns a net as the whole right-hand side.
+    /// Returns the text of a net as a complete right-hand side.
     pub fn whole(&mut self, id: NetId) -> String {
         match self.inline(id) {
             Some(cell) => self.driver(cell),
@@ -66,7 +67,7 @@ impl<'a> Expressions<'a> {
         }
     }
 
-    /// Returns a net as an operand: a name, a selection, a concatenation, or a cell in parentheses.
+    /// Returns the text of a net as an operand: a name, a selection, a concatenation, or a cell in parentheses.
     pub fn operand(&mut self, id: NetId) -> String {
         if let Some(constant) = self.constant(id) {
             return constant;
@@ -134,7 +135,7 @@ impl<'a> Expressions<'a> {
         Some(name)
     }
 
-    /// Returns the word number for a ROM, exactly as wide as its depth asks.
+    /// Returns the address of a ROM, with exactly as many bits as its number of words needs.
     pub fn address(&mut self, rom: &NetlistRom) -> String {
         let width = super::plan::address_width(rom.words.len());
         let bits = &self.plan.bits[rom.address.index()];
@@ -153,7 +154,7 @@ impl<'a> Expressions<'a> {
         }
     }
 
-    /// Writes wiring: one piece, or several side by side.
+    /// Returns the text of wiring: one piece, or a concatenation of several.
     pub fn bits(&self, bits: &Bits) -> String {
         together(bits.pieces().iter().map(|piece| self.piece(*piece)).collect())
     }

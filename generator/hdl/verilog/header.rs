@@ -1,20 +1,21 @@
-//! Writes the comment at the head of each Verilog file: formula, latency, ports, microprogram and origin.
+//! Writes the comment at the head of each Verilog file: the formula, the latency, the ports, the microprogram, and the command
+//! that generated the file.
 
 use super::naming::Naming;
 use super::text::comment;
 use crate::netlist::{Design, HandshakeTiming, NetId, Partition, Pipeline, Role, Sequence};
 use glint_base::fixed::Format;
 
-/// The facts of a file's header beyond the design.
+/// The facts in a file's header that the design itself does not state.
 #[derive(Clone, Copy)]
 pub struct Origin<'a> {
-    /// The command that makes the file again; empty if there is no such command.
+    /// The command that generates the file again, or an empty text.
     pub regenerate: &'a str,
-    /// Clocks between the events of the handshake.
+    /// The numbers of clocks between the events of the handshake.
     pub timing: &'a HandshakeTiming,
 }
 
-/// Returns the header of the top module: its formula and all that its user must know.
+/// Returns the header of the top module: the formula, and everything that a user of the module must know.
 pub fn top(design: &Design, origin: &Origin) -> Vec<String> {
     let about = &design.about;
     let mut lines = comment(0, &format!("{}: {}", design.name, about.title));
@@ -39,7 +40,7 @@ pub fn top(design: &Design, origin: &Origin) -> Vec<String> {
     lines
 }
 
-/// Returns the header of a partition.
+/// Returns the header of the control unit's or the datapath's module.
 pub fn partition(
     design: &Design,
     partition: Partition,
@@ -67,7 +68,7 @@ fn paragraph(text: &str) -> Vec<String> {
     lines
 }
 
-/// Returns the lines about the origin of a file.
+/// Returns the lines that name the command which generates the file.
 pub fn regenerated(origin: &Origin) -> Vec<String> {
     let again = match origin.regenerate {
         "" => String::new(),

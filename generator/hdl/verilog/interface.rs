@@ -1,23 +1,23 @@
-//! Finds the ports and the ROMs of the control unit and of the datapath, and the bits that nothing in a unit reads.
+//! Finds the ports and the ROMs of the two modules, control unit and datapath, and the bits that nothing in a module reads.
 
 use super::plan::{NetForm, Plan};
 use crate::netlist::{Driver, NetId, Partition, RomId};
 use glint_base::fixed::mask;
 
-/// The signals that cross the boundary of a partition.
+/// The signals that connect one of the two modules, control unit and datapath, with the outside.
 pub struct Interface {
-    /// Something in it changes on the clock.
+    /// Whether anything in the module changes on the clock.
     pub clocked: bool,
-    /// Nets driven elsewhere: ports of the top module in their order, then nets of the other unit.
+    /// The inputs: ports of the top module in their order, followed by nets from the other module.
     pub inputs: Vec<NetId>,
-    /// Nets driven here: ports of the top module in their order, then nets for the other unit.
+    /// The outputs: ports of the top module in their order, followed by nets for the other module.
     pub outputs: Vec<NetId>,
-    /// Its ROMs.
+    /// The ROMs in the module.
     pub roms: Vec<RomId>,
 }
 
 impl Interface {
-    /// Makes the interface of one of the units.
+    /// Returns the interface of one of the two modules.
     pub fn new(plan: &Plan, partition: Partition) -> Self {
         let design = plan.design;
         let other = match partition {
@@ -73,8 +73,7 @@ fn crossing(plan: &Plan, from: Partition, to: Partition) -> Vec<NetId> {
     crossing
 }
 
-/// Returns the nets and the bits of them that are there in a partition and that nothing in it needs, as ranges
-/// `(net, low, width)`.
+/// Returns the bits that exist in a module but that nothing in it reads, as ranges `(net, low, width)`.
 pub fn unread(plan: &Plan, partition: Partition, interface: &Interface) -> Vec<(NetId, u32, u32)> {
     let design = plan.design;
     let mut nets = interface.inputs.clone();

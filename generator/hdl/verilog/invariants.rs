@@ -1,11 +1,11 @@
-//! Writes the assertions of a partition, for formal tools alone: the proof of the handshake rests on them. For example, the
-//! control unit of `rough` asserts that `word_address` is 0 while `run` is 0.
+//! Writes assertions into the Verilog of a control unit or datapath, for formal tools only. The proof of the handshake relies on
+//! them. For example, the control unit of `rough` asserts that `word_address` is 0 while `run` is 0.
 
 use super::naming::Naming;
 use super::text::literal;
 use crate::netlist::{Design, Partition, RegisterKind};
 
-/// Returns the assertions of a partition as lines of Verilog; the caller must put them under `FORMAL`.
+/// Returns the assertions for one module as lines of Verilog. The caller must put them under `FORMAL`.
 pub fn invariants(design: &Design, naming: &Naming, partition: Partition) -> Vec<String> {
     let mut names = naming.names.clone();
     let lines = match partition {

@@ -1,4 +1,4 @@
-//! Writes the contents of ROMs as `$readmem` files.
+//! Writes the contents of ROMs as files that the Verilog task `$readmemh` or `$readmemb` reads.
 
 use anyhow::{Result, ensure};
 

@@ -1,6 +1,7 @@
 //! Writes a design as Verilog modules, and the contents of its ROMs as memory files.
 //!
-//! Names and expressions become strings first (`plan`, `expression`). `writer` then makes modules of these lines.
+//! `plan` decides which nets the Verilog declares, `expression` writes the right-hand sides, and `writer` forms modules from
+//! these lines.
 
 pub mod bits;
 pub mod delays;
@@ -27,7 +28,7 @@ use interface::Interface;
 use naming::Naming;
 use plan::Plan;
 
-/// Returns the files of a design by their names: modules, then the contents of ROMs as `$readmemh` reads them.
+/// Returns the files of a design with their names: the modules, and the contents of ROMs for `$readmem`.
 ///
 /// # Errors
 /// Fails with the mistakes that [`Design::verify_structure`] finds, or if [`memories`] fails.
@@ -42,7 +43,7 @@ pub fn files(design: &Design) -> Result<Vec<(String, String)>> {
     Ok(files)
 }
 
-/// The text of a file in Verilog, with the names of the modules that it defines.
+/// The text of one Verilog file, with the names of the modules that it defines.
 pub struct ModuleFile {
     /// The names of the modules, the main one first.
     pub modules: Vec<String>,
@@ -50,8 +51,8 @@ pub struct ModuleFile {
     pub text: String,
 }
 
-/// Returns the files of the modules, the top module first. A pipeline is one module, in one file with its delay line. Other
-/// designs have the top module, the control unit and the datapath, each in a file of its own.
+/// Returns the Verilog files, the top module first. A pipeline has one file, with the module of its delay lines in it. Any other
+/// design has three files: the top module, the control unit and the datapath.
 pub fn modules(plan: &Plan, naming: &Naming, origin: &Origin) -> Vec<ModuleFile> {
     if let Some(pipeline) = &plan.design.pipeline {
         let mut modules = vec![plan.design.name.clone()];
@@ -75,7 +76,7 @@ pub fn modules(plan: &Plan, naming: &Naming, origin: &Origin) -> Vec<ModuleFile>
     files
 }
 
-/// Returns the contents of the ROMs that have files of their own, by the names of these files.
+/// Returns the contents of the ROMs that have memory files, with the names of these files.
 ///
 /// # Errors
 /// Fails if the words of the control ROM are not exactly as wide as all fields, or if a word is wider than its ROM.

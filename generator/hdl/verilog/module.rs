@@ -1,4 +1,4 @@
-//! Writes the modules of the control unit and of the datapath, and the sections of the module of a pipeline.
+//! Writes the Verilog modules of the control unit and of the datapath. The module of a pipeline uses its sections too.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -16,21 +16,21 @@ use crate::netlist::{
     Design, Driver, Multiplier, NetId, NetlistRegister, Op, Partition, RegId, RomId,
 };
 
-/// Builds one partition.
+/// Writes the sections of one module.
 pub struct Builder<'a> {
     pub(super) plan: &'a Plan<'a>,
     naming: &'a Naming,
     interface: &'a Interface,
     partition: Partition,
     pub(super) expressions: Expressions<'a>,
-    /// The choices of fields that label a case, as (field, value).
+    /// The choices of select fields that label a case, as pairs of field and value.
     labels: BTreeSet<(usize, usize)>,
-    /// The comment of the assignment before.
+    /// The comment of the previous assignment.
     last_note: String,
 }
 
 impl<'a> Builder<'a> {
-    /// Makes the builder of a partition.
+    /// Makes the writer of one module.
     pub fn new(
         plan: &'a Plan<'a>,
         naming: &'a Naming,
@@ -48,7 +48,7 @@ impl<'a> Builder<'a> {
         }
     }
 
-    /// Returns the module.
+    /// Returns the text of the module.
     pub fn module(mut self, origin: &Origin) -> String {
         // Statements first: they tell which constants and choices are to be declared.
         let items = self.items(&|_| true);
@@ -518,7 +518,7 @@ fn words(
     lines
 }
 
-/// Returns the file parameters of ROMs, with their commas. It is empty if the words are written in the Verilog.
+/// Returns the parameters with the file names of ROMs, with commas. It is empty if the words are written in the Verilog.
 pub fn parameters(naming: &Naming, roms: &[RomId]) -> Vec<String> {
     let mut texts = Vec::new();
     for rom in roms {

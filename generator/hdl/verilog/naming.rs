@@ -1,54 +1,53 @@
-//! Chooses the names and comments that the Verilog has in addition to the description's: of instances, memories,
-//! files.
+//! Chooses the names and comments that the Verilog has in addition to the description's: names of instances, memories, files and
+//! parameters.
 
 use super::text::{Names, constant_name};
 use crate::netlist::{
     Control, Design, Driver, FieldKind, Net, NetId, NetlistRom, Op, Partition, RomId,
 };
 
-/// Names of modules, instances, memories, files and parameters.
+/// The names of modules, instances, memories, files and parameters in the Verilog of a design.
 pub struct Naming {
-    /// The instance of the control unit in the top module.
+    /// The name of the control unit's instance in the top module.
     pub control_instance: String,
-    /// The instance of the datapath in the top module.
+    /// The name of the datapath's instance in the top module.
     pub datapath_instance: String,
-    /// The memory of each ROM. For example, `control_rom`.
+    /// The name of each ROM's memory. For example, `control_rom`.
     pub memories: Vec<String>,
-    /// The parameter with the file name of each ROM. For example, `SINE_FILE`.
+    /// The name of the parameter with each ROM's file name. For example, `SINE_FILE`.
     pub parameters: Vec<String>,
-    /// The file of each ROM.
+    /// The file name of each ROM.
     pub files: Vec<String>,
-    /// How memories and registers are written.
+    /// The style in which memories and registers are written.
     pub style: Style,
-    /// The ROMs that are the second read port of another, and have its memory.
+    /// The ROMs that are the second read port of another ROM's memory.
     pub second: Vec<RomId>,
-    /// The localparams of each field's choices, by value. For example, `OPERAND_SELECT_COSINES` is 0.
+    /// The names of the localparams for each field's choices. For example, `OPERAND_SELECT_COSINES` is 0.
     pub choices: Vec<Vec<String>>,
-    /// The net that takes unread bits. Linters leave a net alone whose name contains `unused`.
+    /// The name of the net that reads all unread bits. Linters accept an unread net if its name contains `unused`.
     pub unused: String,
-    /// The shift register of a pipeline that says which stages have points.
+    /// The name of the shift register that says which stages of a pipeline hold points.
     pub valid: String,
-    /// All names so far: a module may add its own.
+    /// All names so far. A module may add its own.
     pub names: Names,
     design: String,
 }
 
-/// How memories and registers are written.
+/// The style in which memories and registers are written.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Style {
-    /// ROM contents are written in the Verilog: there are neither files nor parameters with their names.
+    /// Whether the words of ROMs are written in the Verilog, so that there are no memory files.
     pub inline: bool,
-    /// ROM contents are written as the choices of a case, in a function.
+    /// Whether the words of ROMs are written as a case statement in a function.
     pub case: bool,
-    /// The attributes of ROMs that are read on the clock.
+    /// The Verilog attribute of ROMs that are read at the rising edge, if any.
     pub rom_style: Option<&'static str>,
-    /// Registers are 0 before the first clock.
+    /// Whether registers have the initial value 0.
     pub initial: bool,
 }
 
 impl Naming {
-    /// Chooses names for the instances, memories and parameters that the Verilog adds. None of them is the name of a
-    /// net.
+    /// Chooses names for everything that the Verilog adds to the description. None of them is the name of a net.
     pub fn new(design: &Design) -> Self {
         let mut names = Names::new(design.nets.iter().map(|net| net.name.as_str()));
         names.fresh("clk");
@@ -83,12 +82,13 @@ impl Naming {
         }
     }
 
-    /// Sets the style of memories and registers.
+    /// Returns the names with another style of memories and registers.
     pub fn styled(self, style: Style) -> Self {
         Self { style, ..self }
     }
 
-    /// Returns the module of a partition. For example, `rough` has `rough_control` and `rough_datapath`.
+    /// Returns the name of the control unit's or the datapath's module. For example, `rough` has `rough_control` and
+    /// `rough_datapath`.
     pub fn module(&self, partition: Partition) -> String {
         match partition {
             Partition::Control => format!("{}_control", self.design),
@@ -96,17 +96,17 @@ impl Naming {
         }
     }
 
-    /// Returns the module of a product with a register at its output. For example, `blinn_pipelined_multiplier`.
+    /// Returns the name of the module of a multiplier with an output register. For example, `blinn_pipelined_multiplier`.
     pub fn multiplier(&self) -> String {
         format!("{}_multiplier", self.design)
     }
 
-    /// Returns the module of delay lines. For example, `rough_pipelined_delay`.
+    /// Returns the name of the module of delay lines. For example, `rough_pipelined_delay`.
     pub fn delay(&self) -> String {
         format!("{}_delay", self.design)
     }
 
-    /// Returns the instance of a partition.
+    /// Returns the name of the control unit's or the datapath's instance in the top module.
     pub fn instance(&self, partition: Partition) -> &str {
         match partition {
             Partition::Control => &self.control_instance,
@@ -131,7 +131,7 @@ pub fn is_control_rom(design: &Design, rom: RomId) -> bool {
     design.control.rom == rom
 }
 
-/// Returns the comment beside a net's declaration: `mux 8, s1.20: first operand`.
+/// Returns the comment behind the declaration of a net. For example, `mux 8, s1.20: first operand`.
 pub fn remark(design: &Design, id: NetId) -> String {
     let net = design.net(id);
     // The width already says all of an unsigned integer.
@@ -163,7 +163,7 @@ pub fn remark(design: &Design, id: NetId) -> String {
     }
 }
 
-/// Returns `ROM 18`, or `ROM sine` if the source has no number for the ROM.
+/// Returns the name of a ROM for comments: `ROM 18`, or `ROM sine` if the figure of the source has no number for it.
 pub fn rom_label(rom: &NetlistRom) -> String {
     match rom.block {
         Some(number) => format!("ROM {number}"),

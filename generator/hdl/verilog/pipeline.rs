@@ -1,4 +1,4 @@
-//! Writes the module of a pipeline: the handshake, then a section for every stage.
+//! Writes the Verilog module of a pipeline: its handshake, and a section for each stage.
 
 use super::delays;
 use super::header::{self, Origin};
@@ -14,7 +14,7 @@ use crate::netlist::{Design, Driver, NetId, Partition, Pipeline, Role, Unit};
 /// The module of delay lines, under the name `delay`.
 const DELAY: &str = include_str!("delay.v");
 
-/// Returns the Verilog of a pipelined core: its module, and the module of its delay lines.
+/// Returns the Verilog of a pipeline: its module, and the module of its delay lines.
 pub fn module(plan: &Plan, naming: &Naming, pipeline: &Pipeline, origin: &Origin) -> String {
     let design = plan.design;
     let interface = Interface::new(plan, Partition::Datapath);

@@ -1,8 +1,8 @@
-//! Plans the Verilog of a module: the nets that are declared, the text of the others, and the readers of each bit.
+//! Decides how each net appears in the Verilog: declared under its name, written into the expression that uses it, or as wiring.
 //!
-//! Wiring (slices, extensions, concatenations, relabelled nets, constants) that nobody named is written where it is
-//! used, as [`Bits`]. Another cell that nobody named is written into the one expression that uses it, as long as the
-//! expression stays short. All other nets are declared, under their names.
+//! Wiring without a name from the description's author (slices, extensions, concatenations, constants) is written as [`Bits`]
+//! wherever it is used. Any other cell without such a name is written into the only expression that uses it, as long as that
+//! expression stays short. All other nets are declared.
 
 use std::collections::{BTreeMap, HashSet};
 
@@ -17,51 +17,51 @@ use glint_base::fixed::mask;
 /// How a net appears in the Verilog.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum NetForm {
-    /// Pure wiring: its [`Bits`] are written wherever it is used.
+    /// As wiring: its [`Bits`] are written wherever it is used.
     Wiring,
-    /// A `wire`, `reg` or port of its own.
+    /// As a declared `wire`, `reg` or port.
     Declared,
-    /// Written into the one expression that uses it.
+    /// Within the one expression that uses it.
     Inline,
-    /// A product in the multiplier whose register takes it: not written at all.
+    /// Not at all: it is a product inside a multiplier with an output register.
     Inside,
 }
 
-/// Something that reads nets, and the module that it is written in.
+/// Something in the Verilog that reads nets.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Reader {
-    /// The right-hand side of a declared net, or of a net whose expression is written in place of its name.
+    /// The right-hand side of a net that is declared, or of a net that is written within another expression.
     Cell(NetId),
-    /// Data, enable and reset of a register.
+    /// A register, which reads its data, enable and reset.
     Register(RegId),
-    /// The address of a ROM.
+    /// A ROM, which reads its address.
     Rom(RomId),
 }
 
-/// The decisions about a design.
+/// The decisions on how a design appears in the Verilog.
 pub struct Plan<'a> {
-    /// The design that is emitted.
+    /// The design that is written.
     pub design: &'a Design,
     /// How each net appears.
     pub forms: Vec<NetForm>,
-    /// The text of each net.
+    /// The bits of each net, as it is written where it is used.
     pub bits: Vec<Bits>,
-    /// The text of each net through declared wiring too, down to cells, state and inputs.
+    /// The bits of each net, traced through declared wiring too, back to cells, registers, ROMs and inputs.
     pub roots: Vec<Bits>,
-    /// The nets whose cells are written at all, in an order in which operands come first.
+    /// The nets whose cells are written at all, operands before their readers.
     pub live: Vec<NetId>,
-    /// The bits of each net that each module reads.
+    /// A mask of the bits of each net that each module reads.
     pub reads: BTreeMap<(Partition, NetId), u64>,
-    /// The reset port, if a register is reset.
+    /// The reset port, if any register has a reset.
     pub reset: Option<NetId>,
-    /// The registers that are written as memories.
+    /// The delay lines that are written as memories.
     pub delays: Vec<DelayLine>,
-    /// The nets that repeat a value of a pipeline. The first declaration of the value has the comment.
+    /// The nets that repeat a value of an earlier stage; only the first declaration of the value gets the comment.
     repeats: HashSet<NetId>,
 }
 
 impl<'a> Plan<'a> {
-    /// Builds the plan of a design.
+    /// Decides how the nets of a design appear.
     ///
     /// # Errors
     /// Fails with the mistakes that [`Design::verify_structure`] finds.
@@ -93,7 +93,7 @@ impl<'a> Plan<'a> {
         Ok(plan)
     }
 
-    /// Returns the module that declares a net: fields belong to the control unit whatever they control.
+    /// Returns the module that declares a net. Fields belong to the control unit, whatever they control.
     pub fn partition(&self, net: NetId) -> Partition {
         match self.design.net(net).driver {
             Driver::Field(_) => Partition::Control,
@@ -101,25 +101,25 @@ impl<'a> Plan<'a> {
         }
     }
 
-    /// Returns whether a net is a port of the top module.
+    /// Returns whether a net is a port of the design.
     pub fn is_port(&self, net: NetId) -> bool {
         self.design.ports.iter().any(|port| port.net == net)
     }
 
-    /// Returns whether a net is an input port, driven from outside.
+    /// Returns whether a net is an input port of the design.
     pub fn is_input(&self, net: NetId) -> bool {
         self.design.net(net).driver == Driver::Input
     }
 
-    /// Returns `None` if a register belongs to no delay line, and else whether it is the last of its line, which is
-    /// read.
+    /// Returns `None` if a register belongs to no delay line; otherwise whether it is the last register of its line, from which
+    /// the value is read.
     pub fn delayed(&self, register: RegId) -> Option<bool> {
         let mut values = self.delays.iter().flat_map(|line| &line.values);
         let value = values.find(|it| it.registers.contains(&register))?;
         Some(value.last() == register)
     }
 
-    /// Returns the module that a reader is written in.
+    /// Returns the module in which a reader is written.
     pub fn home(&self, reader: Reader) -> Partition {
         match reader {
             Reader::Cell(net) => self.partition(net),
@@ -128,7 +128,7 @@ impl<'a> Plan<'a> {
         }
     }
 
-    /// Returns the nets that a reader is written with.
+    /// Returns the nets that appear in the text of a reader.
     pub fn operands(&self, reader: Reader) -> Vec<NetId> {
         match reader {
             Reader::Cell(net) => match &self.design.net(net).driver {
@@ -152,8 +152,8 @@ impl<'a> Plan<'a> {
         }
     }
 
-    /// Returns the bits of the operand that a reader actually reads. These are all bits, except for a field, a slice
-    /// and the address of a ROM, which may have bits to spare.
+    /// Returns the bits of the operand that a reader uses. These are all bits, unless the reader is a slice, a field or the
+    /// address of a ROM.
     pub fn operand_bits(&self, reader: Reader, operand: NetId) -> Bits {
         let bits = &self.bits[operand.index()];
         match reader {
@@ -173,7 +173,8 @@ impl<'a> Plan<'a> {
         }
     }
 
-    /// Returns a comparison that the format alone decides (`a < 0` without a sign), which linters refuse.
+    /// Returns the result of a comparison if the formats alone decide it, such as `a < 0` for an unsigned `a`. Linters reject
+    /// such comparisons.
     pub fn constant_comparison(&self, a: NetId, b: NetId) -> Option<u64> {
         let format = self.design.net(a).format;
         let constant = |id: NetId| match self.roots[id.index()].single() {
@@ -188,7 +189,7 @@ impl<'a> Plan<'a> {
         }
     }
 
-    /// Returns every reader that is written.
+    /// Returns all readers that are written.
     pub fn readers(&self) -> Vec<Reader> {
         let mut readers = Vec::new();
         for &net in &self.live {
@@ -227,7 +228,7 @@ impl<'a> Plan<'a> {
         }
     }
 
-    /// Returns the right-hand side of a declared net that is wiring.
+    /// Returns the bits of a declared net if the net is wiring.
     pub fn wiring(&self, id: NetId) -> Option<Bits> {
         self.wired(id, &self.bits)
     }
@@ -467,7 +468,7 @@ impl<'a> Plan<'a> {
     }
 }
 
-/// Returns the bits that number `depth` words; a memory of one word has one address bit. For example, 584 words need 10.
+/// Returns the number of address bits for `depth` words. One word needs one bit, and 584 words need 10.
 pub fn address_width(depth: usize) -> u32 {
     depth.max(2).next_power_of_two().trailing_zeros()
 }

@@ -1,10 +1,10 @@
-//! Writes declarations and port lists of Verilog in columns.
+//! Formats Verilog declarations and port lists in columns.
 
 use super::plan::Plan;
 use super::text::{COLUMNS, annotated, range};
 use crate::netlist::{Design, NetId, Port};
 
-/// Returns a comma behind each text but the last. For example, `a` and `b` become `a,` and `b`.
+/// Returns the texts with a comma after each except the last. For example, `a` and `b` become `a,` and `b`.
 pub fn separated(mut texts: Vec<String>) -> Vec<String> {
     let last = texts.len().saturating_sub(1);
     for text in texts.iter_mut().take(last) {
@@ -13,13 +13,14 @@ pub fn separated(mut texts: Vec<String>) -> Vec<String> {
     texts
 }
 
-/// Returns the connections of an instance of a design to nets named as its ports, the clock first.
+/// Returns the port connections of an instance of a design to nets with the same names, the clock first.
 pub fn connections(design: &Design) -> Vec<String> {
     let ports = design.ports.iter().map(|port| design.net(port.net).name.as_str());
     separated(std::iter::once("clk").chain(ports).map(|name| format!(".{name}({name})")).collect())
 }
 
-/// Declares a variable for each input of a design and a wire for each output, with their signs or as bit patterns.
+/// Returns a variable declaration for each input of a design and a wire declaration for each output. With `with_signs` they are
+/// signed where the ports are.
 pub fn variables(design: &Design, with_signs: bool) -> Vec<String> {
     let row = |port: &Port| {
         let net = design.net(port.net);
@@ -29,7 +30,7 @@ pub fn variables(design: &Design, with_signs: bool) -> Vec<String> {
     Row::declarations(&design.ports.iter().map(row).collect::<Vec<_>>())
 }
 
-/// A declaration that is set in columns with its neighbours.
+/// One declaration, whose parts are aligned with the declarations around it.
 pub struct Row {
     head: String,
     range: String,
@@ -38,7 +39,7 @@ pub struct Row {
 }
 
 impl Row {
-    /// Makes a declaration of a net; the direction is empty for one that is no port.
+    /// Makes the declaration of a net. `direction` is empty if the net is no port.
     pub fn net(plan: &Plan, direction: &str, kind: &str, id: NetId) -> Self {
         let net = plan.design.net(id);
         let format = net.format;
@@ -46,7 +47,7 @@ impl Row {
         Self::port(direction, kind, format.width(), format.signed, &net.name, &note)
     }
 
-    /// Makes a declaration.
+    /// Makes a declaration from its parts.
     pub fn port(
         direction: &str,
         kind: &str,
@@ -68,14 +69,14 @@ impl Row {
         }
     }
 
-    /// Removes the comment.
+    /// Returns the declaration without its comment.
     #[must_use]
     pub fn without_note(mut self) -> Self {
         self.note.clear();
         self
     }
 
-    /// Joins the rows that have no comment and are declared alike.
+    /// Merges declarations that differ only in their names and have no comment.
     pub fn together(rows: Vec<Self>) -> Vec<Self> {
         let (mut all, plain): (Vec<_>, Vec<_>) =
             rows.into_iter().partition(|row| !row.note.is_empty());
@@ -97,12 +98,12 @@ impl Row {
         all
     }
 
-    /// Writes the rows as ports, with commas.
+    /// Returns the rows as a port list, with commas.
     pub fn ports(rows: &[Self]) -> Vec<String> {
         Self::set(rows, |at| if at + 1 < rows.len() { "," } else { "" })
     }
 
-    /// Writes the rows as declarations.
+    /// Returns the rows as declarations, with semicolons.
     pub fn declarations(rows: &[Self]) -> Vec<String> {
         Self::set(rows, |_| ";")
     }

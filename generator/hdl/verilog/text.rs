@@ -1,13 +1,13 @@
-//! Formats words and lines of Verilog: ASCII, identifiers, literals, comments, and lines of limited length.
+//! Formats Verilog text: ASCII characters, identifiers, literals, comments, and lines of limited length.
 
 use std::collections::HashSet;
 
 use crate::netlist::Design;
 
-/// The number of columns that a line of the Verilog may have.
+/// The largest number of columns in a line of Verilog.
 pub const COLUMNS: usize = 100;
 
-/// Returns `text` in ASCII: the signs of the formulas spelled out, anything else unknown as `?`. For example, `cos²γ ≤ ½`
+/// Returns `text` in ASCII. Mathematical signs are spelled out, and unknown characters become `?`. For example, `cos²γ ≤ ½`
 /// becomes `cos^2gamma <= 1/2`.
 pub fn ascii(text: &str) -> String {
     let mut plain = String::with_capacity(text.len());
@@ -70,7 +70,7 @@ pub fn ascii(text: &str) -> String {
     plain
 }
 
-/// Returns `text` as the upper-case part of an identifier: runs of anything else become one underscore. For example, `cos γ`
+/// Returns `text` as an upper-case identifier; all other characters become underscores, one for each run. For example, `cos γ`
 /// becomes `COS_GAMMA`.
 pub fn constant_name(text: &str) -> String {
     let mut name = String::new();
@@ -84,8 +84,8 @@ pub fn constant_name(text: &str) -> String {
     name.trim_end_matches('_').to_owned()
 }
 
-/// Returns a sized literal: decimal while that is short, else hexadecimal. For example, 9 in 4 bits is `4'd9`, and 1048576 in
-/// 21 bits is `21'h100000`.
+/// Returns a Verilog literal with its width, decimal if that is short and otherwise hexadecimal. For example, 9 in 4 bits is
+/// `4'd9`, and 1048576 in 21 bits is `21'h100000`.
 pub fn literal(value: u64, width: u32) -> String {
     match (width, value) {
         (1, _) => format!("1'b{value}"),
@@ -94,7 +94,7 @@ pub fn literal(value: u64, width: u32) -> String {
     }
 }
 
-/// Returns one word, or several side by side. For example, `a` and `b` give `{a, b}`.
+/// Returns one word, or the concatenation of several. For example, `a` and `b` give `{a, b}`.
 pub fn together(words: Vec<String>) -> String {
     match &words[..] {
         [only] => only.clone(),
@@ -102,7 +102,7 @@ pub fn together(words: Vec<String>) -> String {
     }
 }
 
-/// Returns `[7:0]`, or nothing for one bit.
+/// Returns the range of a declaration, such as `[7:0]`, or nothing for one bit.
 pub fn range(width: u32) -> String {
     match width {
         1 => String::new(),
@@ -110,12 +110,12 @@ pub fn range(width: u32) -> String {
     }
 }
 
-/// Returns a statement, broken at spaces if it exceeds the columns. Further lines are indented more.
+/// Returns the lines of a statement, which is broken at spaces if it exceeds [`COLUMNS`].
 pub fn statement(indent: usize, text: &str) -> Vec<String> {
     broken(&" ".repeat(indent), &" ".repeat(indent + 8), text)
 }
 
-/// Returns a comment of as many lines as it needs, or none for an empty text.
+/// Returns the lines of a comment, or none for an empty text.
 pub fn comment(indent: usize, text: &str) -> Vec<String> {
     // Tools take a comment that begins with their name for an order.
     let text = ascii(text).replace("verilator", "Verilator").replace("synopsys", "Synopsys");
@@ -126,7 +126,7 @@ pub fn comment(indent: usize, text: &str) -> Vec<String> {
     broken(&margin, &margin, &text)
 }
 
-/// Returns a declaration with a comment behind it, or above it if there is no room behind.
+/// Returns a declaration with a comment behind it, or above it if the line would be too long.
 pub fn annotated(code: &str, indent: usize, note: &str) -> Vec<String> {
     let code = format!("{}{code}", " ".repeat(indent));
     let note = ascii(note);
@@ -162,24 +162,24 @@ fn broken(first: &str, further: &str, text: &str) -> Vec<String> {
     lines
 }
 
-/// The identifiers of one module.
+/// The identifiers that one module uses.
 #[derive(Clone, Debug, Default)]
 pub struct Names(HashSet<String>);
 
 impl Names {
-    /// Makes the set of the names that are taken already.
+    /// Makes the set with the names that are already taken.
     pub fn new<'a>(taken: impl IntoIterator<Item = &'a str>) -> Self {
         Self(taken.into_iter().map(str::to_owned).collect())
     }
 
-    /// Makes the set of the names of the ports of a design and of its clock.
+    /// Makes the set with the names of a design's ports and its clock.
     pub fn of_ports(design: &Design) -> Self {
         let ports = design.ports.iter().map(|port| design.net(port.net).name.as_str());
         Self::new(ports.chain(["clk"]))
     }
 
-    /// Returns `wish`, or `wish_2`, `wish_3` … when that is taken. For example, if `control` is taken, the next names are
-    /// `control_2` and `control_3`.
+    /// Returns `wish`, or `wish_2`, `wish_3` and so on if it is taken, and adds the name to the set. For example, if `control` is
+    /// taken, the next names are `control_2` and `control_3`.
     pub fn fresh(&mut self, wish: &str) -> String {
         let mut name = wish.to_owned();
         let mut number = 1;

@@ -1,4 +1,5 @@
-//! Writes the top module: instances of the control unit and of the datapath, and the wires between them.
+//! Writes the top Verilog module of a device: an instance of the control unit, an instance of the datapath, and the wires between
+//! them.
 
 use super::header::{self, Origin};
 use super::interface::Interface;
@@ -9,7 +10,7 @@ use super::rows::{Row, separated};
 use super::writer;
 use crate::netlist::Partition;
 
-/// Writes the top module.
+/// Returns the text of the top module.
 pub fn module(
     plan: &Plan,
     naming: &Naming,

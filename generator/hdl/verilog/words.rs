@@ -1,11 +1,11 @@
-//! Writes the words of ROMs as text, in binary or hexadecimal, and the comments on them.
+//! Writes the words of ROMs as text, in binary or hexadecimal, with comments.
 
 use super::naming::is_control_rom;
 use super::text::ascii;
 use crate::netlist::{Design, RomId};
 use glint_base::fixed::mask;
 
-/// Returns the comment on a word.
+/// Returns the comment on a word of a ROM, if it has one.
 pub fn word_note(design: &Design, id: RomId, address: usize) -> Option<String> {
     let given = design.rom(id).comments.get(address);
     let name = || {
@@ -16,7 +16,7 @@ pub fn word_note(design: &Design, id: RomId, address: usize) -> Option<String> {
     given.or_else(name).map(|text| ascii(text))
 }
 
-/// Returns a word of the control ROM in binary, its fields apart. For example, word 3 of `rough` is `01_1_0_0_1_0_0_1`.
+/// Returns a control word in binary, with `_` between its fields. For example, word 3 of `rough` is `01_1_0_0_1_0_0_1`.
 pub fn in_fields(design: &Design, word: u64) -> String {
     let positions = design.field_positions();
     let digits = design.control.fields.iter().zip(positions).map(|(field, low)| {

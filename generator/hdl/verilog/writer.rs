@@ -1,4 +1,4 @@
-//! Writes Verilog modules, instances and blocks as lines of text.
+//! Writes the frames of Verilog modules, instances and blocks around lines of text.
 
 /// Returns the text of a file with one module, between its parts and an empty line the text of another one, if any.
 pub fn module(
@@ -16,7 +16,7 @@ pub fn module(
     format!("{}\nendmodule\n{other}\n`default_nettype wire\n", lines.join("\n"))
 }
 
-/// Returns an instance; its ports and parameters have their commas.
+/// Returns an instance. Its ports and parameters must have their commas.
 pub fn instance(
     module: &str,
     parameters: &[String],
@@ -50,13 +50,13 @@ fn head(
     lines
 }
 
-/// Returns lines under a title, an empty line above; nothing without lines.
+/// Returns the lines under a title with an empty line above, or nothing if there are no lines.
 pub fn section(title: &str, lines: Vec<String>) -> Vec<String> {
     let title = format!("    // {title}");
     if lines.is_empty() { lines } else { [vec![String::new(), title], lines].concat() }
 }
 
-/// Returns lines between two others, an empty line above; nothing without lines.
+/// Returns the lines between `begin` and `end` with an empty line above, or nothing if there are no lines.
 pub fn block(begin: &str, lines: Vec<String>, end: &str) -> Vec<String> {
     match lines.is_empty() {
         true => lines,

@@ -1,7 +1,7 @@
-//! Rewrites the direction of a point, `atan2(y, x)`, by the octant in which the point is.
+//! Rewrites `atan2(y, x)`, the direction of a point as an angle, as operations of a plan.
 //!
-//! Within an octant the direction is the arc tangent of the smaller coordinate over the larger one, which is from 0 to 1.
-//! The other octants are mirror images: at the diagonal, at the y axis and at the x axis.
+//! One table covers an octant: there the angle is the arc tangent of the smaller coordinate divided by the larger one, a number
+//! from 0 to 1. The other octants are mirror images of this octant, at the diagonal, the y axis and the x axis.
 
 use glint_base::fixed::{Rounding, exp2};
 use glint_formula::{Enclosure, Expression, Function, Kind, Operator};

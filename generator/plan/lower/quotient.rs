@@ -1,7 +1,7 @@
-//! Rewrites a quotient of two parts as a product with a reciprocal.
+//! Rewrites a quotient a / b as operations of a plan: a product with a reciprocal.
 //!
-//! The divisor b is m · 2^−k with m from 1/2 to below 1. A table gives 1/m, and the dividend is shifted by the same k places,
-//! so that a / b = (a · 2^k) · (1/m).
+//! The divisor is normalised: b = m · 2^−k with m from 1/2 to below 1. A table gives 1/m, and the dividend is shifted by the same
+//! k bits, so that a / b = (a · 2^k) · (1/m).
 
 use glint_base::fixed::{Format, Rounding, exp2};
 use glint_formula::{Enclosure, Expression};

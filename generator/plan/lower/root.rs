@@ -1,7 +1,8 @@
-//! Rewrites a power of a part, as a root or a reciprocal, so that one table for a single octave serves all octaves.
+//! Rewrites a power v^p, such as a square root or a reciprocal, as operations of a plan, so that a table for one octave serves
+//! all octaves.
 //!
-//! A word v is m · 2^k with m from 1/2 to below 1, so that v^p is m^p · 2^(p·k): a table for m, and a shift. For p = 1/2 and
-//! its odd multiples, m is from 1/4 to below 1, and k is even.
+//! The value is normalised: v = m · 2^k with m from 1/2 to below 1. Then v^p = m^p · 2^(p·k), which a table of m^p and a shift
+//! compute. If p is 1/2 or an odd multiple of it, k must be even, and m goes from 1/4 to below 1.
 
 use glint_base::fixed::{Format, Rounding, exp2};
 use glint_formula::{Enclosure, Expression, Function, Kind, Operator, RBig};

@@ -1,8 +1,8 @@
-//! Rewrites sines and cosines of whole turns by the quadrant of the angle: a table of one quadrant serves all four.
+//! Rewrites sines and cosines such as `sin(2 * pi * x)` as operations of a plan, so that a table of one quadrant serves all four.
 //!
-//! The angle in quarter turns is q + w, with q an integer and w from 0 to below 1. The sine is the table's value at w where q is
-//! even and at 1 − w where q is odd, with a minus sign in the third and the fourth quadrant. The cosine is the sine a
-//! quarter turn later.
+//! The angle in quarter turns is q + w, with an integer q and w from 0 to below 1. The sine is the table's value at w if q is
+//! even, and at 1 − w if q is odd; in the third and the fourth quadrant it is negative. The cosine is the sine of the angle plus
+//! a quarter turn.
 
 use glint_base::fixed::Format;
 use glint_formula::{Expression, Function, Kind, Operator, RBig};

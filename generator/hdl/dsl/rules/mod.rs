@@ -1,5 +1,5 @@
-//! Checks the rules of a description that go beyond the rules of a netlist: on operands, products and the
-//! microprogram.
+//! Checks rules of the description language that a netlist alone does not express: on operands, shared products and the
+//! microprogram. For example, a register may take a shared product only while its operands are selected.
 
 mod operands;
 mod products;

@@ -1,4 +1,4 @@
-//! Checks that some output depends on every operand.
+//! Checks that every operand of a description affects some output.
 
 use std::collections::HashSet;
 

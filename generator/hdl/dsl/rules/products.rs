@@ -1,5 +1,5 @@
-//! Checks that a register takes a product of a shared multiplier only while the multiplier's operands are selected for
-//! that product.
+//! Checks that a register loads a product of a shared multiplier only in microinstructions that select the operands of this
+//! product.
 
 use std::collections::{HashMap, HashSet};
 

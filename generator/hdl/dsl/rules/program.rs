@@ -1,4 +1,5 @@
-//! Checks that a microprogram raises `valid` (not before the result is there), selects every mux, and ends every loop.
+//! Checks the microprogram of a description: it raises `valid` only after the result is loaded, selects an input of every mux
+//! that matters, and ends every loop.
 
 use std::collections::HashSet;
 

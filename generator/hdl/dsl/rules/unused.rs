@@ -1,5 +1,5 @@
-//! Warns of parts of a correct description that the device does not need: unused logic, muxes that always pass on the
-//! same, and choices that no microinstruction makes.
+//! Warns of things in a correct description that the device does not need: unused logic, muxes that always select the same input,
+//! and choices that no microinstruction makes.
 
 use std::collections::HashSet;
 

@@ -1,4 +1,4 @@
-//! Executes one clock symbolically: gives the nodes of its nets, and of the registers after its rising edge.
+//! Executes one clock of a design symbolically: finds the node of each net, and the node of each register after the rising edge.
 
 use std::collections::HashMap;
 
@@ -19,9 +19,9 @@ pub(super) struct State {
 pub(super) struct Clock<'e, 'a> {
     executor: &'e mut Executor<'a>,
     state: &'e State,
-    /// The microinstruction that is executed; `None` if the sequencer's registers decide.
+    /// The number of the executed microinstruction; `None` if the registers of the sequencer decide.
     address: Option<usize>,
-    /// The clock that takes `start`.
+    /// Whether this clock accepts `start`.
     first: bool,
     values: HashMap<NetId, NodeId>,
 }

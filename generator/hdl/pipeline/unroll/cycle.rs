@@ -1,6 +1,5 @@
-//! Unrolls one clock of a computation, whatever the registers hold before it.
-//!
-//! A computation with any number of results repeats such a clock.
+//! Executes one arbitrary clock of a computation symbolically, with unknown register contents. A computation with any number of
+//! results repeats such a clock.
 
 use super::clock::Clock;
 use super::{Executor, Iterations, Unrolled};
@@ -8,26 +7,26 @@ use crate::netlist::{Design, NetId};
 use crate::pipeline::graph::NodeId;
 use glint_base::fixed::Format;
 
-/// A clock of a design that runs.
+/// One clock of a running design, as values.
 #[derive(Debug)]
 pub struct Cycle {
-    /// The values, including the values of the clock that takes `start`. The results are all outputs.
+    /// The values of the clock, and of the clock that accepts `start`. The results are all outputs.
     pub unrolled: Unrolled,
-    /// Registers and synchronous ROMs.
+    /// The registers and the synchronous ROMs.
     pub held: Vec<StateValues>,
 }
 
-/// The contents of registers and synchronous ROMs, by values.
+/// The content of a register or a synchronous ROM before and after a clock, as nodes.
 #[derive(Clone, Copy, Debug)]
 pub struct StateValues {
-    /// The net that it drives.
+    /// The net that the register or ROM drives.
     pub net: NetId,
-    /// After the clock that takes `start` and all operands. For a ROM it is the word before any clock, which no
+    /// The content after the clock that accepts `start` and all operands. For a ROM it is the word before any clock, which no
     /// result shows.
     pub first: NodeId,
-    /// Before any clock.
+    /// The content before an arbitrary clock.
     pub before: NodeId,
-    /// After any clock, as a function of the values `before` it.
+    /// The content after that clock, as a function of the contents `before` it.
     pub after: NodeId,
 }
 

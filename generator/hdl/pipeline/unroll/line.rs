@@ -21,23 +21,23 @@ use glint_base::diagnostic::{Diagnostic, Diagnostics};
 /// The number of clocks that may lie between a point and its results.
 const MOST_DELAY: usize = 12;
 
-/// A computation of several results.
+/// The values of a computation with several results, such as the points of a scan line.
 #[derive(Debug)]
 pub struct UnrolledLine {
-    /// The first point. The others differ from it in the walk.
+    /// The values of the first point. Later points differ only in the registers of the walk.
     pub unrolled: Unrolled,
     /// The registers of the walk.
     pub walk: Vec<WalkRegister>,
 }
 
-/// A register of the walk, by values.
+/// A register of the walk, as values. The walk are the registers that change from point to point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct WalkRegister {
-    /// The value that the first point writes.
+    /// The value that the first point loads.
     pub first: NodeId,
-    /// The value that it holds before another point is written.
+    /// The value that the register holds before a later point is loaded.
     pub before: NodeId,
-    /// The value that this point writes, in terms of the one before.
+    /// The value that a later point loads, as a function of the values `before`.
     pub next: NodeId,
 }
 
