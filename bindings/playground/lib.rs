@@ -1,7 +1,8 @@
-//! Glint for a page in the browser: a request in JSON in, an answer in JSON out.
+//! Glint as a WebAssembly module for the playground page of the web site: it takes a request in JSON, and returns an answer in
+//! JSON.
 //!
-//! `site/worker.js` calls it: it reserves room for the text of a request, writes it there and calls [`answer`]. Everything that the
-//! page shows is made by the code that makes the native pages, pictures and files.
+//! `site/worker.js` reserves memory for the text of a request, writes the text there and calls [`answer`]. The same code as in
+//! the command line makes the pages, pictures and files that the playground shows.
 
 use std::cell::RefCell;
 
@@ -56,7 +57,7 @@ enum Question {
     Files { toml: String },
 }
 
-/// Makes room for a request of so many bytes; returns where.
+/// Reserves memory for a request of `len` bytes, and returns its address.
 #[unsafe(no_mangle)]
 pub extern "C" fn reserve(len: usize) -> *mut u8 {
     ROOM.with_borrow_mut(|room| {
@@ -66,7 +67,7 @@ pub extern "C" fn reserve(len: usize) -> *mut u8 {
     })
 }
 
-/// Answers the request in the room. Returns where the answer is; [`answer_len`] has its length.
+/// Answers the request in the reserved memory. Returns the address of the answer; [`answer_len`] returns its length.
 #[unsafe(no_mangle)]
 pub extern "C" fn answer() -> *const u8 {
     let request = ROOM.take();
@@ -75,7 +76,7 @@ pub extern "C" fn answer() -> *const u8 {
     ROOM.with_borrow(|room| room.as_ptr())
 }
 
-/// Returns the bytes of the last answer.
+/// Returns the length of the last answer in bytes.
 #[unsafe(no_mangle)]
 pub extern "C" fn answer_len() -> usize {
     ROOM.with_borrow(Vec::len)

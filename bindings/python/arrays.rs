@@ -1,4 +1,5 @@
-//! Columns of operands, of values or of raw integers, and columns of results.
+//! Converts the columns of operands that Python passes, as values or as raw integers, and the columns of results that it gets
+//! back.
 
 use std::ops::Range;
 use std::slice::ChunksExact;
@@ -25,7 +26,7 @@ pub enum OperandColumn<'py> {
     Value(f64),
 }
 
-/// The raw operands of many points.
+/// The raw operands of many points, converted from Python.
 pub struct OperandTable<'a> {
     columns: Vec<RawColumn<'a>>,
     points: usize,
@@ -128,7 +129,7 @@ impl<'a> OperandTable<'a> {
         self.points
     }
 
-    /// Puts the raw operands of some points into `rows`, point after point.
+    /// Fills `rows` with the raw operands of some points, point after point.
     pub fn rows(&self, points: Range<usize>, rows: &mut Vec<i64>) {
         let width = self.columns.len();
         rows.resize(points.len() * width, 0);
@@ -149,14 +150,14 @@ impl<'a> OperandTable<'a> {
     }
 }
 
-/// Columns of results.
+/// The results of many points, a column for each output.
 pub enum ResultColumns {
     Integers(Vec<Vec<i64>>),
     Values(Vec<Vec<f64>>),
 }
 
 impl ResultColumns {
-    /// The results of the golden model, raw or as values.
+    /// Computes the results with the golden model, as raw integers or as values.
     pub fn golden(contract: &dyn Contract, operands: &OperandTable, raw: bool) -> Self {
         let results = |points: ChunksExact<i64>, out: &mut Vec<i64>| {
             points.for_each(|point| contract.results(point, 0, out));
@@ -172,7 +173,7 @@ impl ResultColumns {
         }))
     }
 
-    /// Computes the formula.
+    /// Computes the values of the formula.
     pub fn exact(contract: &dyn Contract, operands: &OperandTable) -> Self {
         let mut columns = each(contract, operands, |points, out| {
             for point in points {
@@ -184,7 +185,7 @@ impl ResultColumns {
         )
     }
 
-    /// How far the golden model is from the formula, in units of the outputs' last place.
+    /// Computes the distance of the golden model's results from the formula, in units of the outputs' last place.
     pub fn errors(contract: &dyn Contract, operands: &OperandTable) -> Self {
         let units = units(contract);
         Self::Values(each(contract, operands, |points, out| {
@@ -202,7 +203,7 @@ impl ResultColumns {
         }))
     }
 
-    /// Returns an array for each output.
+    /// Converts each column to a NumPy array.
     pub fn into_arrays(self, py: Python<'_>) -> Vec<Bound<'_, PyAny>> {
         match self {
             Self::Integers(all) => {

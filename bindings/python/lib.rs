@@ -1,4 +1,4 @@
-//! The extension module behind the Python package `glint`, which says what each function is for.
+//! The native extension module of the Python package `glint`. The Python code of the package documents each function.
 
 mod arrays;
 

@@ -1,5 +1,7 @@
-//! Writes a single file whole or not at all, and makes sure before the work for it that it can be written. It makes
-//! the directories above the file that are missing, and removes them again if the file is not written.
+//! Writes a single file completely or not at all.
+//!
+//! A command opens the destination before it starts the work, so that a path that cannot be written is reported early. Missing
+//! directories above the file are created, and removed again if the file is not written.
 
 use std::fs::{self, File, OpenOptions};
 use std::io::Write;

@@ -1,4 +1,4 @@
-//! Makes the directories that files are written to.
+//! Creates the directories for files that Glint writes.
 
 use std::fs;
 use std::path::{Path, PathBuf};

@@ -1,4 +1,4 @@
-//! Tells errors: to people on standard error, to scripts as JSON, and to the shell by the exit code.
+//! Reports errors: as text to people on standard error, as JSON to scripts, and to the shell by the exit code.
 
 use std::fmt;
 use std::io::Write;
@@ -72,7 +72,7 @@ pub fn print_problems(problems: Vec<Value>) {
     super::tables::print_json(&json!({ "ok": false, "problems": problems }));
 }
 
-/// Returns a problem that is not in the text of a configuration. It has the same keys as a problem that is.
+/// Returns a problem that has no place in the text of a configuration. It has the same JSON keys as a problem that has one.
 pub fn problem(message: &str) -> Value {
     json!({ "file": null, "line": null, "column": null, "key": null, "message": message, "remedy": null })
 }

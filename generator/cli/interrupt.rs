@@ -1,5 +1,7 @@
-//! Ends the program and its child processes, and deletes its temporary files, on Ctrl-C and the other signals that ask
-//! a process to end. A command can defer the end until it has saved its work; a second signal then ends it at once.
+//! Ends the program on Ctrl-C and on other signals that ask a process to end. It kills the child processes and deletes the
+//! temporary files.
+//!
+//! A command can delay the end until it has saved its work; a second signal then ends the program at once.
 
 use std::fmt;
 use std::sync::atomic::{AtomicBool, AtomicI32, Ordering};
@@ -9,7 +11,7 @@ static DEFERRED: AtomicBool = AtomicBool::new(false);
 /// The signal that was noted, or 0.
 static NOTED: AtomicI32 = AtomicI32::new(0);
 
-/// An interruption after which a command has saved its work.
+/// The error of a command that was interrupted after it saved its work.
 #[derive(Debug)]
 pub struct Interrupted {
     /// The number of the signal.
@@ -19,7 +21,7 @@ pub struct Interrupted {
 }
 
 impl Interrupted {
-    /// Returns the exit code, as a shell has it. For example, SIGINT is signal 2 and gives 130.
+    /// Returns the exit code that shells use for a signal. For example, SIGINT is signal 2 and gives 130.
     pub fn exit_code(&self) -> u8 {
         128 + self.signal as u8
     }
@@ -31,8 +33,8 @@ impl fmt::Display for Interrupted {
     }
 }
 
-/// While it lives, the first signal is only noted, so that the command can save its work. The second signal ends the
-/// process. For example, `cosim --exhaustive --resume FILE` saves the state of its proof in this way.
+/// While this value lives, the first signal only sets a flag, so that the command can save its work. The second signal ends the
+/// process. For example, `cosim --exhaustive --resume FILE` saves its progress in this way.
 pub struct Deferred(());
 
 impl Deferred {
@@ -42,12 +44,12 @@ impl Deferred {
         Self(())
     }
 
-    /// Returns whether a signal has come. If it has, the command must save its work and end.
+    /// Returns whether a signal has arrived. If so, the command must save its work and end.
     pub fn noted(&self) -> bool {
         NOTED.load(Ordering::SeqCst) != 0
     }
 
-    /// Returns the error to end with if a signal has come, once the work that `saved` tells of is saved.
+    /// Returns the error with which the command must end if a signal has arrived. `saved` describes the saved work.
     pub fn end(self, saved: impl FnOnce() -> String) -> Option<Interrupted> {
         match NOTED.load(Ordering::SeqCst) {
             0 => None,

@@ -1,4 +1,4 @@
-//! Parses and runs the command line: the only code that prints and exits.
+//! Parses the command line and runs the commands. Only this crate prints, and only this crate exits the process.
 
 mod commands;
 mod destination;
@@ -177,13 +177,13 @@ pub fn run(registry: &Registry) -> ExitCode {
     run_as(name, registry)
 }
 
-/// Runs the command line of this process under the name `program`, which messages and written files call it by.
+/// Runs the command line of this process. Messages and written files call the program `program`.
 pub fn run_as(program: &str, registry: &Registry) -> ExitCode {
     run_with(program, registry, std::env::args_os())
 }
 
-/// Runs a command line of this process, the program's name first, under the name `program`: for a process whose own arguments are
-/// others, such as an interpreter.
+/// Runs a command line, whose first entry is the program's name, under the name `program`. It is for a process whose own
+/// arguments are others, such as a Python interpreter.
 pub fn run_with(
     program: &str,
     registry: &Registry,
@@ -196,7 +196,7 @@ pub fn run_with(
     run_from(registry, arguments)
 }
 
-/// Runs the command line `arguments`, the program's name first.
+/// Runs the command line `arguments`, whose first entry is the program's name.
 pub fn run_from(registry: &Registry, arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
     let arguments: Vec<OsString> = arguments.into_iter().collect();
     let cli = match parse(&arguments) {

@@ -1,4 +1,4 @@
-//! Writes single files that Glint writes again and again. It does not overwrite a file that Glint did not write.
+//! Writes single files that Glint rewrites at each run, such as records. It refuses to overwrite a file that Glint did not write.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -10,7 +10,7 @@ use super::destination::Destination;
 use super::directories::create_directory;
 use super::record_text::record_text;
 
-/// A file to be, with the place to write it in.
+/// A file that will be written, with its destination.
 pub struct OwnFile {
     path: PathBuf,
     destination: Destination,
@@ -20,9 +20,9 @@ impl OwnFile {
     /// The first characters of a JSON file that Glint wrote.
     pub const JSON: &str = "{\n  \"glint\":";
 
-    /// Prepares a file `name` in `directory`, which is made if it is missing. A file that is already there must
-    /// contain `marker`. This is done before the work for the file, so that a place that cannot be written is known
-    /// then.
+    /// Prepares to write the file `name` in `directory`, which is created if it is missing. If the file exists, it must contain
+    /// `marker`. A command calls this function before the work for the file, so that a path that cannot be written is reported
+    /// early.
     ///
     /// # Errors
     /// Fails if something else is there, or if the file cannot be written.
@@ -54,7 +54,7 @@ impl OwnFile {
         directory.map(|it| Self::new(it, &format!("{name}.json"), Self::JSON)).transpose()
     }
 
-    /// Returns its name, when it is written.
+    /// Writes the file and returns its path.
     ///
     /// # Errors
     /// Fails if the file cannot be written.
@@ -64,7 +64,7 @@ impl OwnFile {
         Ok(name)
     }
 
-    /// Does the same as [`OwnFile::write`], with `value` as the JSON of a record.
+    /// Writes `value` as the JSON of a record, as [`OwnFile::write`] does.
     ///
     /// # Errors
     /// Fails if the file cannot be written.

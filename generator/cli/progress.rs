@@ -1,4 +1,4 @@
-//! Shows progress bars on long work.
+//! Shows progress bars for long work.
 
 use std::fmt::Write;
 use std::time::Duration;
@@ -27,7 +27,8 @@ const FIRST: Duration = Duration::from_secs(10);
 /// Between two such lines.
 const EVERY: Duration = Duration::from_secs(60);
 
-/// Returns a bar over `total` steps; hidden when output is for scripts or on request, and a line a minute without a terminal.
+/// Returns a progress bar over `total` steps. It is hidden if the output is for scripts or if the user asks for that. Without a
+/// terminal, it prints a line every minute.
 pub fn bar(output: OutputOptions, total: u64, what: &str) -> ProgressBar {
     let is_hidden = output.quiet || !output.is_for_people();
     let target = if is_hidden {

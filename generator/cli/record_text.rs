@@ -1,4 +1,4 @@
-//! Prints JSON as text for records: indented, and in one line if a value fits into it.
+//! Formats JSON for the records in the repository: indented, but with every value that fits on a single line.
 //!
 //! For example, the counts of one kind of fault are a line: `"inverted": { "planted": 848, "undecided": 0 }`.
 

@@ -1,5 +1,6 @@
-//! Reports: the answers of commands, as JSON for scripts and as text for people. Commands hand their reports to this file, which
-//! alone asks whether the user wants JSON.
+//! Prints the answers of commands: as JSON for scripts, or as text for people.
+//!
+//! A command returns its answer as a [`CommandReport`], which can do both. Only this file asks which one the user wants.
 
 use anyhow::Result;
 use serde_json::{Value, json};
@@ -35,8 +36,8 @@ impl OutputOptions {
         }
     }
 
-    /// Returns whether people read the answer, and no script. Only people are told, for example, how long
-    /// a check of several hours will take.
+    /// Returns whether people read the answer, and not a script. For example, only people get an estimate of how long a check of
+    /// several hours will take.
     pub fn is_for_people(self) -> bool {
         !self.json
     }
@@ -47,8 +48,8 @@ impl OutputOptions {
     }
 }
 
-/// Reports of the same kind, for example one of each configuration. People see each report at once; scripts get all of them
-/// together at the end.
+/// A list of reports of the same kind, for example one for each configuration. For people, each report is printed at once. For
+/// scripts, all are printed together at the end.
 pub struct ReportList {
     output: OutputOptions,
     reports: Vec<Value>,

@@ -1,9 +1,8 @@
-//! Writes generated files, without ever costing the user a file.
+//! Writes the generated files of a configuration to disk, and replaces no file of the user, unless the user gives `--force`.
 //!
-//! Everything is written beside the directories of a configuration first. When it is complete, it is moved into
-//! place, file by file. A file that is already there is replaced only if the manifest's digests say that Glint wrote
-//! it and nobody edited it since. A file that is not Glint's and not in the way (an editor's swap file, a note) is
-//! not touched.
+//! All files are first written to a temporary directory next to the directories of the configuration, and then moved to their
+//! places one by one. A file that exists already is replaced only if the digests in the manifest show that Glint wrote it and
+//! nobody edited it since. A file that Glint neither wrote nor needs to write, such as an editor's swap file, is left alone.
 
 mod staging;
 mod survey;
@@ -24,7 +23,7 @@ use glint_core::package::{OutputFile, Seal, is_sealed};
 use staging::Staging;
 use survey::Survey;
 
-/// The result of [`write()`] for the directories of a configuration, or of [`write_sealed`] for a file.
+/// Whether [`write()`] or [`write_sealed`] changed any file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Written {
     /// They were there already, byte for byte.
@@ -42,8 +41,8 @@ impl fmt::Display for Written {
     }
 }
 
-/// Writes the files of configuration `name` below `out`. Files that are neither Glint's nor in the way stay in their
-/// places.
+/// Writes the files of configuration `name` below the directory `out`. Files of the user stay unless they have the path of a file
+/// that must be written.
 ///
 /// # Errors
 /// Without `force`, fails if files of Glint's were edited, or if other files would be overwritten; `force` replaces
@@ -88,7 +87,7 @@ pub fn differences(out: &Path, name: &str, files: &[OutputFile]) -> Result<Vec<S
     Ok(Survey::new(out, name, files)?.different)
 }
 
-/// Writes a single file that vouches for itself: it must contain the digest of its own text.
+/// Writes a single file that contains the digest of its own text.
 ///
 /// # Errors
 /// Without `force`, fails if there is a file that Glint did not write or that was edited since. Fails if a directory

@@ -1,4 +1,4 @@
-//! Prints tables for people, JSON and CSV for scripts.
+//! Prints tables as text for people, and as JSON and CSV for scripts.
 
 use std::io::{self, ErrorKind, Write};
 use std::sync::OnceLock;

@@ -1,6 +1,7 @@
-//! Sets `GLINT_SOURCES` for the build: a digest of the sources that take part in a proof.
+//! Build script: sets `GLINT_SOURCES` to a digest of the source files that an exhaustive check depends on.
 //!
-//! A proof that is interrupted, or divided among machines, may continue only with the sources that began it.
+//! An exhaustive check that was interrupted, or divided among machines, may continue only with the same sources. `glint cosim`
+//! compares this digest to make sure.
 
 use std::fs;
 use std::path::{Path, PathBuf};

@@ -1,5 +1,7 @@
-//! [`Core`]: a configuration of a device with its design and its contract. It makes everything that follows from them:
-//! Verilog and other files, digests, timing, bench vectors, and the jobs of co-simulation and proof.
+//! Defines [`Core`]: a configuration of a device, with the netlist and the accuracy contract that Glint builds from it.
+//!
+//! Its methods make everything else from the configuration: Verilog and other files, digests, timing, bench vectors, and the jobs
+//! of co-simulation and exhaustive checks.
 
 use std::path::Path;
 
@@ -18,10 +20,11 @@ use glint_config::{Config, Key};
 use glint_golden::{Contract, Sweep};
 use glint_rtl::netlist::Design;
 
-/// The results that the main job and `cosim` check for each configuration, unless an option says otherwise: the default test.
+/// The number of results that the default test of a configuration checks, in `glint` without a command and in `glint cosim`. An
+/// option of the command can change it.
 pub const TEST_POINTS: u64 = 100_000;
 
-/// The seed of the default test.
+/// The seed of the random inputs of the default test.
 pub const TEST_SEED: u64 = 1;
 
 /// Computations at random at the beginning of the shipped bench, with everything that the handshake allows. For lines, the
@@ -34,23 +37,23 @@ const BENCH_LINE: i64 = 6;
 /// Points of the shipped bench of a pipeline, which takes one a clock.
 const PIPELINE_POINTS: u64 = 2000;
 
-/// The seed of the stimulus of benches.
+/// The seed of the random inputs of emitted test benches.
 pub const BENCH_SEED: u64 = 1;
 
-/// A configuration with everything that is made of it.
+/// A configuration of a device, with the netlist and the accuracy contract that are built from it.
 pub struct Core {
-    /// The device.
+    /// The device that the configuration names.
     pub device: Device,
-    /// Its configuration.
+    /// The configuration: a value for each key of the device.
     pub config: Config,
-    /// The design that the description makes of it.
+    /// The netlist that the device's description builds from the configuration.
     pub design: Design,
-    /// The accuracy contract.
+    /// The accuracy contract of the device for this configuration.
     pub contract: Box<dyn Contract>,
 }
 
 impl Core {
-    /// Builds and checks the design.
+    /// Builds the netlist of a configuration and checks it.
     ///
     /// # Errors
     /// Fails in these cases:
@@ -66,7 +69,8 @@ impl Core {
         Self::of_design(device, config, design)
     }
 
-    /// Builds and checks the design of a configuration whose clock nobody gave, as [`Device::design_with_free_clock`] does.
+    /// Builds the netlist of a configuration that does not set a clock frequency. [`Device::design_with_free_clock`] chooses the
+    /// frequency.
     ///
     /// # Errors
     /// Fails if [`Core::new`] fails with that clock, too.
@@ -126,8 +130,9 @@ impl Core {
         Backing::of_records(proofs, &self.contract_digest(), self.contract.as_ref())
     }
 
-    /// Returns a digest that identifies this core, whatever its name: as [`Core::contract_digest`], with the architecture.
-    /// Keys of the tables `interface` and `package` do not change it, because they concern only the surroundings of the core.
+    /// Returns a digest that identifies this core, whatever its name. It covers the same keys as [`Core::contract_digest`], and
+    /// the architecture. Keys of the tables `interface` and `package` do not change it, because they concern only wrappers and
+    /// packages around the core.
     pub fn core_digest(&self) -> String {
         let schema = (self.device.schema)();
         let around = |key: &&Key| ["interface", "package"].contains(&key.table_and_leaf().0);
@@ -146,9 +151,9 @@ impl Core {
         package::digest(text.as_bytes())
     }
 
-    /// Returns a digest that identifies a proof of this configuration. It covers the configuration, the sweep, the sources of
-    /// everything that takes part, and the errors at places spread over the sweep. These errors also reveal a changed golden
-    /// model outside this crate. The digest is the same on every machine.
+    /// Returns a digest that identifies an exhaustive check of this configuration. It covers the configuration, the sweep, the
+    /// sources of all code that takes part, and the errors at some operand combinations of the sweep. The errors also reveal a
+    /// changed golden model in another crate. The digest is the same on every machine.
     pub fn fingerprint(&self, sweep: &Sweep) -> String {
         let contract = self.contract.as_ref();
         let places = [Places::of_sweep(contract, sweep.clone()), Places::of_colours(contract)];
@@ -162,7 +167,7 @@ impl Core {
         package::digest(text.as_bytes())
     }
 
-    /// Pairs the golden model with the built-in simulator, for runs whose stimuli are drawn from `seed`.
+    /// Returns a co-simulation of the golden model and the netlist, whose random inputs are drawn from `seed`.
     ///
     /// # Errors
     /// Fails if model and design do not name the same signals.
@@ -170,7 +175,8 @@ impl Core {
         self.lockstep_of(&self.design, seed)
     }
 
-    /// Pairs the golden model with another design of its ports and registers: a mutant, say.
+    /// Returns a co-simulation of the golden model with another netlist that has the same ports and registers, for example a
+    /// mutant.
     ///
     /// # Errors
     /// Fails if model and design do not name the same signals.
@@ -179,7 +185,7 @@ impl Core {
         Lockstep::new(design, model, self.contract.as_ref(), seed)
     }
 
-    /// Returns the exhaustive check: the proof of the contract and, where they are not too many, every
+    /// Returns the exhaustive check of this core: the check of the error bound and, if the operands have few bits, every
     /// combination of operands clock by clock.
     ///
     /// # Errors
@@ -188,7 +194,7 @@ impl Core {
         self.job_of(self.contract.sweep())
     }
 
-    /// Returns the job by a sweep with other values than the contract's sweep.
+    /// Returns the exhaustive check of this core with other operand values than the contract's sweep has.
     ///
     /// # Errors
     /// Fails if model and design do not name the same signals.
@@ -196,7 +202,7 @@ impl Core {
         Ok(Job::of_sweep(self.contract.as_ref(), sweep).with(self.clocks()?))
     }
 
-    /// Returns every combination of operands, golden model against built-in simulator.
+    /// Returns the check that compares golden model and simulated hardware clock by clock for every combination of operands.
     ///
     /// # Errors
     /// Fails if model and design do not name the same signals.
@@ -205,7 +211,8 @@ impl Core {
         Clocks::new(&self.design, model, self.contract.as_ref())
     }
 
-    /// Returns the clocks between the events of the handshake, as [`trial::timing`] measures them.
+    /// Returns the number of clocks between the events of the handshake, such as `start` and `valid`. [`trial::timing`] measures
+    /// them.
     ///
     /// # Errors
     /// Fails if the device does not end.
@@ -213,7 +220,7 @@ impl Core {
         trial::timing(&self.design, self.contract.as_ref())
     }
 
-    /// Returns one computation with all its numbers.
+    /// Returns a worked example: one computation with the values of all operands and outputs.
     ///
     /// # Errors
     /// Fails if the device does not end.
@@ -221,7 +228,7 @@ impl Core {
         trial::example(&self.design, self.contract.as_ref())
     }
 
-    /// Returns the clocks of a line in terms of its length, where the device walks lines.
+    /// Returns the number of clocks of a line as a function of its length. Returns `None` if the device computes single points.
     ///
     /// # Errors
     /// Fails if the device does not end.
@@ -229,7 +236,8 @@ impl Core {
         trial::line(&self.design, self.contract.as_ref())
     }
 
-    /// Returns stimulus and expected outputs for a bench; the golden model and the built-in simulator agree on them.
+    /// Returns the vectors of a test bench: the inputs and the expected outputs of every clock. The golden model and the
+    /// simulated netlist agree on the outputs.
     ///
     /// # Errors
     /// Fails if they do not agree.
@@ -237,8 +245,8 @@ impl Core {
         self.lockstep(seed)?.record(points, &[])
     }
 
-    /// Returns stimulus and expected outputs of the shipped bench: some computations at random, which show the
-    /// handshake, and directed ones, which show the datapath and its tables.
+    /// Returns the vectors of the test bench that is emitted with the core. Random computations show the handshake; computations
+    /// that `directed` chooses detect faults in the datapath and its ROMs.
     ///
     /// # Errors
     /// Fails as [`Core::vectors`] does.
@@ -246,8 +254,8 @@ impl Core {
         self.shipped_vectors_of(&directed::ComputationCache::default())
     }
 
-    /// Returns the same as [`Core::shipped_vectors`], but takes directed computations that are already in `known` from there,
-    /// and adds new ones to it.
+    /// Returns the same as [`Core::shipped_vectors`]. If the cache `known` has the chosen computations of this design, they are
+    /// not searched for again; otherwise they are added to the cache.
     ///
     /// # Errors
     /// Fails as [`Core::vectors`] does.
@@ -267,7 +275,8 @@ impl Core {
         Ok(Vectors { word_stride: directed.word_stride, ..vectors? })
     }
 
-    /// Returns the program that recomputes every operand, the model that it includes, and the memories.
+    /// Returns the C program that recomputes the result of every operand, with the C model that it includes and the contents of
+    /// the ROMs.
     ///
     /// # Errors
     /// Fails if the contract is no formula of one operand.
@@ -288,7 +297,8 @@ impl Core {
         Ok(wanted.then(|| self.device.sequential(&self.config)).transpose()?)
     }
 
-    /// Returns every file of the configuration, which the command line knows as `config`, a path; without vectors there are no benches.
+    /// Returns every emitted file of the configuration. `config` is the path of its file, for the commands in the files' heads.
+    /// Without `vectors` there are no test benches.
     ///
     /// # Errors
     /// Fails if golden model and simulation do not agree, or if the design cannot be written as Verilog.
@@ -309,7 +319,7 @@ impl Core {
         package::emit(&self.design, &inputs)
     }
 
-    /// Returns an instance in Verilog of each module that a system can instantiate, the outermost first.
+    /// Returns an example instance in Verilog of each module that a system can instantiate, the outermost wrapper first.
     ///
     /// # Errors
     /// Fails if a wrapper that the configuration asks for does not fit the core.
@@ -322,7 +332,8 @@ impl Core {
         package::instances(&self.design, &inputs)
     }
 
-    /// Returns only the files that synthesis needs: the Verilog of the core, for every target, and the contents of its ROMs.
+    /// Returns only the files that synthesis needs: the Verilog of the core, in the forms for all targets, and the contents of
+    /// its ROMs.
     ///
     /// # Errors
     /// Fails if the design cannot be written as Verilog.
@@ -334,7 +345,7 @@ impl Core {
         package::emit_core(&self.design, &EmitInputs { around, ..EmitInputs::default() })
     }
 
-    /// Returns the files of [`Core::core_files`] for all targets, as pairs of a plain name and contents.
+    /// Returns the files of [`Core::core_files`] in the portable form, as pairs of a file name and contents.
     ///
     /// # Errors
     /// Fails if the design cannot be written as Verilog.
@@ -342,7 +353,8 @@ impl Core {
         self.verilog_for("")
     }
 
-    /// Returns the Verilog for a target, by name, with its own files.
+    /// Returns the files of [`Core::core_files`] for the FPGA family `target`: files with a form for this family replace the
+    /// portable ones.
     ///
     /// # Errors
     /// Fails if the design cannot be written as Verilog.

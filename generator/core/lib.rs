@@ -1,7 +1,7 @@
-//! Makes everything that follows from a configuration: its files, and the checks that its core is correct.
+//! Builds a core from a configuration, emits its files, and co-simulates it with the golden model.
 //!
-//! This crate and the crates below it start no process, no thread of their own and no signal handler
-//! (`tests/quick/rooms.rs`).
+//! This crate and the crates below it start no processes, no threads of their own and no signal handlers. A test
+//! (`tests/quick/rooms.rs`) checks this.
 
 pub mod core;
 pub mod cosim;

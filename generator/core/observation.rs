@@ -1,50 +1,52 @@
-//! Holds the facts that simulation and contract add to a netlist: worked examples, computations with their results,
-//! the clocks of a line, the vectors of a bench.
+//! Defines the facts about a core that come from simulation or from its contract, and not from its netlist.
+//!
+//! They are worked examples, computations with their results, the clocks of a line, and the vectors of a test bench. Manifests
+//! and pages print them.
 
 use std::iter::repeat;
 
 use glint_golden::Contract;
 
-/// A computation with all its numbers.
+/// One computation with the values of all operands and outputs.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct WorkedExample {
-    /// In the order of the operand ports.
+    /// The operands, in the order of the operand ports.
     pub operands: Vec<Quantity>,
-    /// In the order of the result ports; of several results the first.
+    /// The outputs, in the order of the result ports. If the computation has several results, these are the outputs of the first.
     pub outputs: Vec<Quantity>,
     /// The outputs of every result.
     pub results: Vec<Vec<Quantity>>,
 }
 
-/// The numbers of the clocks in which a line ends, by the operand that says how long it is.
+/// The clocks of the handshake of a device that computes a line of points, as functions of the line's length.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct LineClocks {
-    /// The name of that operand.
+    /// The name of the operand that gives the length of the line.
     pub length: String,
-    /// The last clock in which `valid` is high.
+    /// The number of the last clock in which `valid` is high.
     pub last_valid: Linear,
-    /// The clock in which `done` is high.
+    /// The number of the clock in which `done` is high.
     pub done: Linear,
-    /// The first clock in which the next `start` is taken.
+    /// The number of the first clock in which the device takes the next `start`.
     pub next_start: Linear,
 }
 
-/// A constant and a multiple of a length.
+/// A linear function of the length of a line: `constant + each · length`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Linear {
-    /// For the length 0.
+    /// The value for the length 0.
     pub constant: i64,
-    /// For each interval.
+    /// The increase for each unit of the length.
     pub each: i64,
 }
 
 impl Linear {
-    /// Returns the number for a length. For example, `4 + length` gives 24 for the length 20.
+    /// Returns the value of the function for a length. For example, `4 + length` gives 24 for the length 20.
     pub fn at(self, length: i64) -> i64 {
         self.constant + self.each * length
     }
 
-    /// Returns the formula with the length by its name, as `4 + length`.
+    /// Returns the function as text, with the name of the operand `length`. For example, `4 + length`.
     pub fn text(self, length: &str) -> String {
         match self.each {
             0 => self.constant.to_string(),
@@ -58,15 +60,16 @@ impl Linear {
 /// that each output is within 0.97 units of the formula.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ContractFacts {
-    /// The operands with the smallest and the largest raw value for which it promises anything.
+    /// The operands, each with the smallest and the largest raw value for which the contract holds.
     pub domain: Vec<(String, (i64, i64))>,
     /// The result outputs, each with the operand by which a highlight multiplies f.
     pub outputs: Vec<(String, Option<String>)>,
-    /// The operand that says how many results there are beyond the first, where one does.
+    /// The operand that gives the number of results beyond the first, if a computation has several results.
     pub length: Option<String>,
-    /// Expressions of Python: the values that are right for a highlight's f, or else one for each output.
+    /// Python expressions of the correct values: the values of `f` for a highlight, or one value for each output of another
+    /// device.
     pub f: Vec<String>,
-    /// The largest error of an output, in its units.
+    /// The largest error of an output, in units of its last place.
     pub bound: f64,
 }
 
@@ -101,56 +104,56 @@ impl ContractFacts {
 /// result in clock 9, and `done` in clock 10.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Computation {
-    /// Raw, in the order of [`ContractFacts::domain`].
+    /// The raw operands, in the order of [`ContractFacts::domain`].
     pub operands: Vec<i64>,
     /// The outputs in every clock in which `valid` is high.
     pub results: Vec<TimedResult>,
-    /// The clock in which `done` is high.
+    /// The number of the clock in which `done` is high.
     pub done: u32,
 }
 
 impl Computation {
-    /// Returns whether the last result comes with `done`.
+    /// Returns whether the last result is shown in the clock of `done`.
     pub fn ends_with_result(&self) -> bool {
         let last = self.results.last();
         last.is_some_and(|result| result.clock == self.done)
     }
 }
 
-/// A result.
+/// A result of a computation, and the clock in which it is shown.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct TimedResult {
-    /// The clock in which `valid` is high.
+    /// The number of the clock in which `valid` is high for this result.
     pub clock: u32,
-    /// Raw, in the order of [`ContractFacts::outputs`].
+    /// The raw outputs, in the order of [`ContractFacts::outputs`].
     pub outputs: Vec<i64>,
 }
 
-/// A number on a port. For example, `cos_gamma` with 20 fraction bits has the raw integer 1044480 and the value 0.99609375.
+/// The value of a port. For example, `cos_gamma` with 20 fraction bits has the raw integer 1044480 and the value 0.99609375.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Quantity {
-    /// The port.
+    /// The name of the port.
     pub name: String,
-    /// The integer that its bits denote.
+    /// The integer that the bits of the port denote.
     pub raw: i128,
     /// `raw · 2^-F`.
     pub value: f64,
 }
 
-/// Stimulus and expected outputs, clock by clock.
+/// The vectors of a test bench: inputs and expected outputs of every clock.
 ///
-/// The inputs of a clock are applied on the falling edge that begins it; its outputs are those just
-/// before the rising edge in its middle, with these inputs applied.
+/// The bench applies the inputs of a clock on the falling edge that begins the clock. It compares the outputs just before the
+/// rising edge in the middle of the clock.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Vectors {
-    /// For each clock the bit patterns of all input ports but `clk`, in port order.
+    /// For each clock, the bit patterns of all input ports except `clk`, in the order of the ports.
     pub inputs: Vec<Vec<u64>>,
-    /// For each clock the bit patterns of all output ports, in port order.
+    /// For each clock, the expected bit patterns of all output ports, in the order of the ports.
     pub expected: Vec<Vec<u64>>,
-    /// The first clock from which results and status are compared. Handshake outputs are compared from the
-    /// first clock after one with reset.
+    /// The first clock in which the bench compares results and status. It compares the handshake outputs from the first clock
+    /// after a clock with reset.
     pub known_from: usize,
-    /// The directed computations notice a fault in every word of the memories if this is 1, in every second word if it is 2, and
-    /// so on. 0 if there are no directed computations.
+    /// The share of ROM words in which the bench detects a fault: every word if this is 1, every second word if it is 2, and so
+    /// on. It is 0 if the bench has no computations for ROM words.
     pub word_stride: usize,
 }

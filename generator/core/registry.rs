@@ -1,4 +1,4 @@
-//! The registry of devices. It knows the keys, the description, the golden model and the accuracy contract of each device.
+//! Defines the registry of devices: for each device its configuration keys, its description, its golden model and its contract.
 
 mod design_error;
 mod pipeline_keys;
@@ -30,17 +30,18 @@ const OPERANDS_BUFFERED: &str = "operands.buffered";
 /// one's own, in full.
 #[derive(Clone, Copy)]
 pub struct Device {
-    /// The name that the key `device` gives. It must be the same as [`Schema::device`].
+    /// The name of the device, which the key `device` of a configuration gives. It must equal [`Schema::device`].
     pub name: &'static str,
-    /// One line for `glint list`.
+    /// A line about the device, which `glint list` prints.
     pub summary: &'static str,
-    /// Its configuration keys.
+    /// Returns the configuration keys of the device.
     pub schema: fn() -> Schema,
-    /// Its description: builds on a designer that has the module's name, and must not finish it.
+    /// Describes the hardware of a configuration: adds blocks and a microprogram to a designer that has the module's name. It
+    /// must not call `finish`.
     pub describe: fn(&Designer, &Config),
-    /// Its golden model.
+    /// Returns the golden model of a configuration.
     pub model: fn(&Config) -> Box<dyn Model>,
-    /// Its accuracy contract.
+    /// Returns the accuracy contract of a configuration.
     pub contract: fn(&Config) -> Box<dyn Contract>,
     /// Whether the bound of the contract is proved, beside the golden model, for every configuration. Otherwise the bound is
     /// the word of the author.
@@ -50,13 +51,13 @@ pub struct Device {
 }
 
 impl Device {
-    /// Returns its default configuration, under [`Schema::module`].
+    /// Returns the default configuration of the device. Its name is [`Schema::module`].
     pub fn defaults(&self) -> Config {
         let schema = (self.schema)();
         Config::defaults(&schema, &schema.module())
     }
 
-    /// Returns the design that a configuration asks for.
+    /// Returns the netlist of a configuration: with a microprogram, or a pipeline if the configuration asks for one.
     ///
     /// # Errors
     /// Fails if the description has mistakes, or if the pipeline cannot be made.
@@ -66,8 +67,8 @@ impl Device {
         Ok(pipelined.unwrap_or(sequential))
     }
 
-    /// Returns the design of a configuration whose clock nobody gave. If the pipeline cannot reach the default of
-    /// [`CLOCK_MHZ`], the configuration gets the fastest clock that it can reach.
+    /// Returns the netlist of a configuration that does not set a clock frequency. If a pipeline cannot reach the default of
+    /// [`CLOCK_MHZ`], the function sets this key to the fastest clock that the pipeline can reach.
     ///
     /// # Errors
     /// Fails if the description has mistakes, or if the pipeline cannot be made with that clock either.
@@ -84,7 +85,7 @@ impl Device {
         Ok(pipelined?.unwrap_or(sequential))
     }
 
-    /// Returns the sequential design, which executes a microprogram. [`Device::design`] also makes pipelines from it.
+    /// Returns the sequential netlist, which executes a microprogram. [`Device::design`] makes pipelines from it.
     ///
     /// # Errors
     /// Fails if the description has mistakes. The error lists them.
@@ -104,7 +105,7 @@ impl Device {
         designer.finish().map_err(|mistakes| with_key_remedies(mistakes, &keys))
     }
 
-    /// Returns the golden model of the design with the microprogram.
+    /// Returns the golden model of the sequential netlist.
     pub fn golden(&self, config: &Config) -> Box<dyn Model> {
         let mut model = (self.model)(config);
         // A model that lacks the registers or buffers differs from the design, and the comparison reports the difference.
@@ -138,7 +139,7 @@ impl Device {
         Ok(())
     }
 
-    /// Refuses a device whose results the contract cannot describe.
+    /// Checks that the contract can describe the results of the device.
     ///
     /// # Errors
     /// Fails if results depend on values that an earlier computation left, or are never shown.
@@ -185,17 +186,18 @@ macro_rules! of_catalogue {
     };
 }
 
-/// The devices that a command line knows.
+/// The devices that a command line offers.
 #[derive(Clone)]
 pub struct Registry(Vec<Device>);
 
 impl Registry {
-    /// Returns a registry without a device: for a command line of your own devices.
+    /// Returns a registry without devices, for a command line with devices of your own.
     pub fn empty() -> Self {
         Self(Vec::new())
     }
 
-    /// Returns the devices of the seeds, and the one that computes any formula.
+    /// Returns the highlight devices, and the device `function`, which computes a formula of one operand. This repository has
+    /// records of their checks.
     pub fn catalogue() -> Self {
         Self(of_catalogue![
             quad_cosine: "quad-cosine", "cos^k(sqrt(n/k)*delta) along a scan line, k = 1, 2, 4, 16 by n (seed 000)";
@@ -212,7 +214,8 @@ impl Registry {
         ])
     }
 
-    /// Returns the catalogue, and the devices that make colours of normals, which have no records beside the code.
+    /// Returns all devices of Glint: the catalogue, and the devices without records in this repository, for example `normaliser`
+    /// and `shading`.
     pub fn shipped() -> Self {
         let mut all = Self::catalogue();
         all.0.extend(of_catalogue![
@@ -231,17 +234,17 @@ impl Registry {
         self
     }
 
-    /// Returns all devices, in order.
+    /// Returns all devices, in the order in which they were added.
     pub fn devices(&self) -> &[Device] {
         &self.0
     }
 
-    /// Returns the device of a configuration, which was read with the schemas of this registry.
+    /// Returns the device with this name.
     pub fn device(&self, name: &str) -> Option<&Device> {
         self.0.iter().find(|device| device.name == name)
     }
 
-    /// Returns the keys of all devices.
+    /// Returns the configuration keys of all devices.
     pub fn schemas(&self) -> Vec<Schema> {
         self.0.iter().map(|device| (device.schema)()).collect()
     }

@@ -1,4 +1,4 @@
-//! Computes many points at once with the emitted Verilog, under an outside simulator.
+//! Computes many points at once with the emitted Verilog of a core, under an outside simulator.
 
 use std::fmt::Write as _;
 use std::fs;
@@ -16,8 +16,9 @@ use glint_tools::{BuiltBench, VerilogSimulator, Waveform};
 /// More clocks than any computation takes.
 const LIMIT: u32 = 1 << 16;
 
-/// An outside simulator that runs the emitted Verilog under a bench that reads points from a file. A line of the file
-/// has the operands of a point in hexadecimal. For example, the raw values 5 and −1 in 8 bits are the line `5 ff`.
+/// An [`Engine`] that runs the emitted Verilog in an outside simulator, with a test bench that reads points from a file. Each
+/// line of the file has the operands of a point in hexadecimal. For example, the raw values 5 and −1 in 8 bits are the line `5
+/// ff`.
 pub struct Verilog {
     bench: BuiltBench,
     limit: Duration,
@@ -28,8 +29,8 @@ pub struct Verilog {
 }
 
 impl Verilog {
-    /// Builds the bench from the emitted `files`, pairs of a plain name and contents; `limit` is on the
-    /// build, and on each list of points.
+    /// Builds the test bench from the emitted `files`, pairs of a file name and contents. `limit` is the time limit of the build,
+    /// and of the simulation of each list of points.
     ///
     /// # Errors
     /// Fails if [`BuiltBench::build`] fails, or if the contract names ports that the design does not have.

@@ -1,5 +1,7 @@
-//! Proofs and searches about a core, mostly by outside tools: faults, error bounds, equality, area and frequency,
-//! the smallest widths.
+//! Proofs and searches about a core, mostly with outside tools.
+//!
+//! The modules inject faults to test the tests, prove error bounds and the equality of pipeline and core, measure area and
+//! frequency, and search for the smallest bit widths.
 
 pub mod batch;
 pub mod certify;

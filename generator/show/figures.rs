@@ -1,4 +1,7 @@
-//! The figures of a measurement of a core on a target: area, frequency and critical path.
+//! Defines the results of measuring a core on a target: area, frequency and critical path.
+//!
+//! A target is an FPGA family or a standard-cell library. `glint synth` measures these results with synthesis and place-and-route
+//! tools.
 
 mod record;
 
@@ -12,7 +15,7 @@ use glint_base::target::{FAMILIES, Family, Usage};
 
 pub use record::{DIRECTORY, Rate, SynthesisRecord, tools};
 
-/// A family or library for which a core is measured.
+/// An FPGA family or a standard-cell library for which cores are measured.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Target {
@@ -30,7 +33,7 @@ pub enum Target {
 pub const TARGETS: [Target; 4] = [Target::Ice40, Target::Ecp5, Target::Xilinx7, Target::Osu018];
 
 impl Target {
-    /// Returns the name for scripts. For example, `ice40`.
+    /// Returns the name in options and JSON. For example, `ice40`.
     pub fn name(self) -> &'static str {
         match self {
             Self::Ice40 => "ice40",
@@ -40,12 +43,12 @@ impl Target {
         }
     }
 
-    /// Returns the name for people. For example, `0.18 µm cells`.
+    /// Returns the name in tables and messages. For example, `0.18 µm cells`.
     pub fn title(self) -> &'static str {
         self.family().map_or("0.18 µm cells", |family| family.title)
     }
 
-    /// Returns the family as Yosys knows it; `None` for standard cells.
+    /// Returns the FPGA family in the terms of Yosys, or `None` for standard cells.
     pub fn family(self) -> Option<&'static Family> {
         FAMILIES.iter().find(|family| family.name() == self.name())
     }
@@ -67,25 +70,25 @@ impl fmt::Display for Target {
     }
 }
 
-/// The area and the frequency of a core on a target.
+/// The measured area and frequency of a core on a target.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Figures {
-    /// The target.
+    /// The target for which the core was measured.
     pub target: Target,
-    /// The chip or the library, for people.
+    /// The name of the chip or of the cell library.
     pub device: String,
-    /// The area of the core, without the registers around it.
+    /// The area of the core, without the registers that the measurement adds around it.
     pub area: Area,
-    /// How fast it is, with the registers around it; not of every target.
+    /// The frequency of the core between the registers that the measurement adds around it. Some targets are not timed.
     #[serde(skip_serializing_if = "Option::is_none", default)]
     pub frequency: Option<Frequency>,
-    /// The longest path between registers in the median run, by names of the description.
+    /// The longest path between registers in the run with the median frequency, with the names of the description.
     #[serde(skip_serializing_if = "Vec::is_empty", default)]
     pub critical_path: Vec<PathPoint>,
-    /// Why there is no frequency.
+    /// The reason why no frequency was measured, if there is one.
     #[serde(skip_serializing_if = "Option::is_none", default)]
     pub untimed: Option<String>,
-    /// The tools with their versions.
+    /// The tools that measured, with their versions.
     pub tools: Vec<String>,
 }
 
@@ -93,26 +96,26 @@ pub struct Figures {
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Area {
-    /// Look-up tables.
+    /// The number of look-up tables.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub luts: Option<u64>,
-    /// DSP blocks.
+    /// The number of DSP blocks.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub dsps: Option<u64>,
-    /// Block RAMs.
+    /// The number of block RAMs.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub block_rams: Option<u64>,
-    /// Flip-flops.
+    /// The number of flip-flops.
     pub flip_flops: u64,
-    /// Area in NAND gates of two inputs.
+    /// The area in two-input NAND gates.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub gates: Option<f64>,
-    /// Area of the cells in µm².
+    /// The area of the standard cells in µm².
     #[serde(skip_serializing_if = "Option::is_none")]
     pub square_micrometres: Option<f64>,
 }
 
-/// Frequencies in MHz.
+/// The frequencies in MHz that several runs of placement and routing reached.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Frequency {
     /// The frequency of the slowest run.
@@ -125,17 +128,17 @@ pub struct Frequency {
     pub runs: u32,
 }
 
-/// A point of a path.
+/// A net on the longest path, and the time at which it settles.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct PathPoint {
     /// The net, as the description names it. The name of a ROM has `ROM` before it. For example, `ROM coefficient`.
     pub name: String,
-    /// When it settles, after the clock's edge, in nanoseconds.
+    /// The time in nanoseconds from the clock edge until the net settles.
     pub ns: f64,
 }
 
 impl Figures {
-    /// Makes figures with an area alone.
+    /// Makes the measurement of an area, without a frequency.
     pub fn new(target: Target, device: &str, area: Area) -> Self {
         Self {
             target,
@@ -154,8 +157,8 @@ impl Figures {
         format!("{} ns", Vec::from_iter(steps).join(" → "))
     }
 
-    /// Puts the runs in, each a frequency in MHz and its longest path. For example, the median of runs with 100, 110,
-    /// 120 and 130 MHz is 110 MHz.
+    /// Adds the results of several runs, each a frequency in MHz and its longest path. For example, the median of runs with 100,
+    /// 110, 120 and 130 MHz is 110 MHz.
     pub fn with_runs(mut self, mut runs: Vec<(f64, Vec<PathPoint>)>) -> Self {
         runs.sort_by(|one, other| one.0.total_cmp(&other.0));
         let (Some(first), Some(last)) = (runs.first(), runs.last()) else {
@@ -172,7 +175,7 @@ impl Figures {
 }
 
 impl Area {
-    /// Returns the FPGA's resources; `None` for standard cells.
+    /// Returns the area in the resources of an FPGA, or `None` for standard cells.
     pub fn usage(&self) -> Option<Usage> {
         let flip_flops = self.flip_flops;
         let (luts, dsps, block_rams) = (self.luts?, self.dsps?, self.block_rams?);
@@ -192,7 +195,7 @@ impl From<Usage> for Area {
     }
 }
 
-/// Rounds to two decimals: more than a tool's figures are worth. For example, 3.14159 is 3.14.
+/// Rounds a measured number to two decimals, since the tools are not more exact. For example, 3.14159 is 3.14.
 pub fn rounded(number: f64) -> f64 {
     (number * 100.0).round() / 100.0
 }

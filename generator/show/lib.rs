@@ -1,6 +1,7 @@
-//! Makes pages, datasheets, charts and pictures of a core, and keeps the measurements that they show.
+//! Makes documentation pages, datasheets, charts and rendered pictures of a core, and keeps the measurements that they show.
 //!
-//! No process, thread of its own or signal is in this crate or below it (`tests/quick/rooms.rs`).
+//! This crate and the crates below it start no processes, no threads of their own and no signal handlers. A test
+//! (`tests/quick/rooms.rs`) checks this.
 
 pub mod evidence;
 pub mod figures;

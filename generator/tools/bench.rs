@@ -1,4 +1,4 @@
-//! Runs self-checking Verilog test benches under external simulators.
+//! Runs self-checking Verilog test benches under Icarus Verilog or Verilator, and reads their verdicts.
 
 use std::env;
 use std::ffi::OsStr;
@@ -13,7 +13,7 @@ use super::{Tool, capture};
 use crate::file_names::is_verilog;
 use crate::transient::Directory;
 
-/// An event-driven or compiling Verilog simulator.
+/// A Verilog simulator: Icarus Verilog, which is event-driven, or Verilator, which compiles.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum VerilogSimulator {
     /// Icarus Verilog: starts at once, runs slowly.
@@ -22,7 +22,7 @@ pub enum VerilogSimulator {
     Verilator,
 }
 
-/// Whether a bench writes a waveform, which Verilator wants to know when it builds it.
+/// Whether the test bench writes a waveform. Verilator must know this when it builds the bench.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Waveform {
     /// It writes none.
@@ -31,15 +31,15 @@ pub enum Waveform {
     Written,
 }
 
-/// The outcome of a bench.
+/// The outcome of running a test bench.
 #[derive(Clone, Debug)]
 pub struct BenchOutcome {
-    /// The bench printed a PASS line, no FAIL line, and ended without an error.
+    /// Whether the bench passed: it printed a PASS line and no FAIL line, and ended without an error.
     pub passed: bool,
-    /// The compiler's output. Empty when it had nothing to warn of (Icarus), or the protocol of
-    /// the build (Verilator, which takes a warning for an error).
+    /// The output of the compiler. For Icarus it is empty if there were no warnings. For Verilator it is the log of the build,
+    /// because Verilator treats a warning as an error.
     pub build: String,
-    /// The bench's output.
+    /// The text that the bench printed.
     pub transcript: String,
 }
 
@@ -84,7 +84,7 @@ pub(super) fn run_bench_in<N: AsRef<str>, C: AsRef<[u8]>>(
     bench.run(deadline.saturating_duration_since(Instant::now()))
 }
 
-/// A bench that was built, in a temporary directory of its own, and that can be run again and again.
+/// A test bench that was built in a temporary directory of its own, and can be run repeatedly.
 pub struct BuiltBench {
     dir: Directory,
     simulator: VerilogSimulator,
@@ -164,7 +164,7 @@ impl BuiltBench {
         Ok(Self { simulator, top: top.to_owned(), program, build, dir })
     }
 
-    /// Returns the directory in which the bench runs: it has the bench's files, and the files that the bench writes.
+    /// Returns the directory in which the bench runs. It contains the bench's files, and the files that the bench writes.
     pub fn directory(&self) -> &Path {
         self.dir.path()
     }

@@ -1,4 +1,4 @@
-//! Reads the output of a child process, and keeps a bounded part of it: the beginning and the end.
+//! Reads the output of a child process to its end, and keeps only the beginning and the end if the output is long.
 
 use std::collections::VecDeque;
 use std::io::Read;
@@ -13,7 +13,7 @@ const QUOTED_LINES: usize = 12;
 /// Characters of a line that an error quotes.
 const QUOTED_CHARACTERS: usize = 200;
 
-/// Output as far as it has come. Clones share it, so that one thread can read the output while another quotes it.
+/// The output of a child process so far. Clones share the text, so that one thread can read output while another quotes it.
 #[derive(Clone, Default)]
 pub(super) struct Capture(Arc<Mutex<CaptureBuffer>>);
 
@@ -25,7 +25,7 @@ struct CaptureBuffer {
 }
 
 impl Capture {
-    /// Reads to the end, or to an error, which ends the output too.
+    /// Reads output until it ends or cannot be read.
     pub(super) fn drain(&self, reader: &mut impl Read) {
         let mut buffer = vec![0; 64 << 10];
         while let Ok(count @ 1..) = reader.read(&mut buffer) {
@@ -34,8 +34,8 @@ impl Capture {
         }
     }
 
-    /// Returns the text that was kept; bytes that are not UTF-8 are replaced. If the capture dropped bytes, a line
-    /// between the two parts says how many, for example `... 4096 bytes left out ...`.
+    /// Returns the text that was kept, with bytes that are not UTF-8 replaced. If the middle of the output was dropped, a line
+    /// between the two parts says how many bytes, for example `... 4096 bytes left out ...`.
     pub(super) fn text(&self) -> String {
         let kept = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         let mut bytes = kept.first.clone();
@@ -47,7 +47,7 @@ impl Capture {
         String::from_utf8_lossy(&bytes).into_owned()
     }
 
-    /// Returns the end of the kept output, as [`quote`] gives it.
+    /// Returns the last lines of the output for an error message, as the function [`quote`] formats them.
     pub(super) fn quote(&self) -> String {
         quote(&self.text())
     }

@@ -1,4 +1,5 @@
-//! Reads the first difference that a failing test bench reports, and writes the waveform of the clocks before it.
+//! Reads the first difference that a failing test bench printed, and runs the bench again to get the waveform of the clocks
+//! before it.
 
 use std::fs;
 use std::time::Duration;
@@ -9,18 +10,18 @@ use super::VerilogSimulator;
 use super::bench::{BuiltBench, Waveform};
 use crate::window::{WINDOW_FILE, window};
 
-/// The first difference that a bench printed.
+/// The first difference between simulated and expected outputs that a test bench printed.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct BenchDifference {
-    /// The clock of the bench, from 0.
+    /// The number of the clock in the bench, from 0.
     pub clock: u64,
     /// The microinstruction that is executed in it, ``microinstruction `result` ``; empty for a pipeline.
     pub during: String,
-    /// The output.
+    /// The name of the output.
     pub signal: String,
-    /// Its value, in hexadecimal; x and z are possible.
+    /// The simulated value in hexadecimal, which may contain x and z.
     pub simulated: String,
-    /// The value in the vectors, in hexadecimal.
+    /// The expected value from the vectors, in hexadecimal.
     pub expected: String,
 }
 

@@ -1,4 +1,4 @@
-//! Elaborates Verilog with Yosys: returns a flat netlist in its JSON format.
+//! Elaborates Verilog with Yosys: reads the files, and returns the flat netlist in Yosys's JSON format.
 
 use std::time::Duration;
 

@@ -1,5 +1,7 @@
-//! Tells Verilog from memory contents by the names of files. Outside tools read files as pairs of a plain name and contents:
-//! emitted files, netlists, and files of the user. Only the name says what such a file is, as it does for the tools.
+//! Tells Verilog files from memory contents by the ending of their names.
+//!
+//! The functions of this crate take files as pairs of a name and contents. They must know which files to compile and which only
+//! to put into the directory. For example, `rough.v` is compiled, and `rough_sine.mem` is not.
 
 /// Returns whether tools compile the file of this name as Verilog or SystemVerilog. For example, they compile `rough.v`, and
 /// `rough.v` reads `rough_sine.mem`.

@@ -1,7 +1,7 @@
-//! Runs outside tools as child processes: simulators, synthesis, provers.
+//! Runs programs outside Glint as child processes: Verilog simulators, synthesis tools and provers.
 //!
-//! A [`Tool`] is a program found on a search path. Every run has a time limit; then the run is killed with everything
-//! that it has started. Output is drained to the end but kept only in part, and errors quote its last lines.
+//! A [`Tool`] is a program found on a search path. Every run has a time limit. When it is over, the tool and all processes that
+//! it started are killed. Glint reads a tool's output to the end but keeps only a part, and error messages quote the last lines.
 //! [`run_bench`] builds and runs a self-checking Verilog bench; a [`BuiltBench`] can be run repeatedly.
 
 use std::env;
@@ -44,29 +44,29 @@ const VERSION_LIMIT: Duration = Duration::from_secs(600);
 /// How long the output of killed processes may take to close.
 const CLOSING_LIMIT: Duration = Duration::from_secs(1);
 
-/// A program outside Glint.
+/// An outside program, such as `yosys`, with its path.
 #[derive(Clone, Debug)]
 pub struct Tool {
     name: String,
     path: PathBuf,
 }
 
-/// A run that ended by itself.
+/// The result of running a tool to its end.
 #[derive(Clone, Debug)]
 pub struct Run {
-    /// How the program ended; not necessarily well.
+    /// The exit status of the tool, which may report a failure.
     pub status: ExitStatus,
-    /// Standard output and standard error in the order of writing. It has at most about a megabyte. Longer output loses
-    /// its middle, and a line says so.
+    /// Standard output and standard error together, in the order of writing. Output longer than about a megabyte loses its
+    /// middle, and a line says so.
     pub output: String,
 }
 
-/// The limits of a run.
+/// The limits on a run of a tool.
 #[derive(Clone, Copy, Debug)]
 pub struct Limits {
-    /// After which it is killed.
+    /// The time after which the tool is killed.
     pub time: Duration,
-    /// The address space of each of its processes, in bytes. Only Linux keeps to it.
+    /// The largest address space of each of the tool's processes, in bytes. Only Linux enforces it.
     pub memory: Option<u64>,
 }
 
@@ -76,7 +76,7 @@ impl From<Duration> for Limits {
     }
 }
 
-/// A run that took all that it was given, and therefore says nothing.
+/// The error of a run that reached its limits. It says nothing about the tool's answer.
 #[derive(Clone, Debug)]
 pub struct LimitReached(String);
 
@@ -121,8 +121,8 @@ impl Tool {
         &self.path
     }
 
-    /// Returns the first line of the tool's answer to the question for its version. For example, the answer of Yosys
-    /// 0.23 begins with `Yosys 0.23`.
+    /// Returns the first line that the tool prints when it is asked for its version. For example, the answer of Yosys 0.23 begins
+    /// with `Yosys 0.23`.
     ///
     /// # Errors
     /// Fails if the tool does not start, does not end, fails, or says nothing.
@@ -138,8 +138,8 @@ impl Tool {
         line.map(str::to_owned).with_context(|| format!("`{} {flag}` printed nothing", self.name))
     }
 
-    /// Runs the tool in `directory` with nothing on its standard input, until it has ended and
-    /// everything that writes to its output has too.
+    /// Runs the tool in `directory` with an empty standard input. Returns when the tool and all processes that write to its
+    /// output have ended.
     ///
     /// # Errors
     /// Fails if the tool does not start. Fails with [`LimitReached`] if it takes longer than its limit; then the tool
@@ -198,7 +198,7 @@ impl Tool {
         )));
     }
 
-    /// Runs a tool as [`Tool::run`] does, but the tool must exit with 0; returns its output.
+    /// Runs a tool as [`Tool::run`] does, requires the exit status 0, and returns the output.
     ///
     /// # Errors
     /// Fails if [`Tool::run`] fails, or if the exit status is not 0.

@@ -1,4 +1,4 @@
-//! Runs linters on Verilog, and returns their complaints.
+//! Runs the linters `iverilog` and `verilator` on Verilog files, and returns their warnings.
 
 use std::path::Path;
 use std::time::Duration;
@@ -7,8 +7,8 @@ use anyhow::{Result, bail};
 
 use super::Tool;
 
-/// Returns the complaints of `iverilog` or `verilator`, at its strictest, about the Verilog files `sources` of a
-/// directory. For example, clean sources give an empty text.
+/// Runs `iverilog` or `verilator` with their strictest warnings on the Verilog files `sources` in a directory, and returns the
+/// warnings. For example, clean sources give an empty text.
 ///
 /// # Errors
 /// Fails if the tool is neither of these, rejects the sources, or takes longer than `limit`.

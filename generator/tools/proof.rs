@@ -1,4 +1,6 @@
-//! Runs the formal proof of a wrapper, by the commands that the wrapper's file gives.
+//! Runs the formal proof of a core or a wrapper.
+//!
+//! The generated proof file lists the commands in its first lines, for users to copy; this module runs the same commands.
 
 use std::fs;
 use std::path::Path;
@@ -8,11 +10,11 @@ use anyhow::{Context, Result, bail, ensure};
 
 use super::{LimitReached, Limits, Tool, capture};
 
-/// The limits of each command of a proof, unless less is asked for.
+/// The default limits of each command of a proof.
 pub const PROOF_LIMITS: Limits = Limits { time: Duration::from_secs(300), memory: Some(4 << 30) };
 
-/// Runs the commands that the head of the proof `file` gives to users. `directory` must have the proof and the files of
-/// its device. The head must have three lines that begin with `$ yosys`. For example, the first command of
+/// Runs the commands that the first lines of the proof `file` list for users. `directory` must contain the proof and the files of
+/// its device. The first lines must have three commands that begin with `$ yosys`. For example, the first command of
 /// `threshold_levels_axil_formal.sv` is `yosys -q threshold_levels_axil_formal.ys`.
 ///
 /// # Errors

@@ -1,4 +1,4 @@
-//! Writes Verilog and memory files into a directory of their own, and runs Yosys on them there.
+//! Writes Verilog and memory files into a temporary directory, and runs Yosys on them there.
 
 use std::fs;
 use std::path::Path;
@@ -11,7 +11,7 @@ use super::Tool;
 use crate::file_names::is_verilog;
 use crate::transient::Directory;
 
-/// Files with the Yosys that reads them.
+/// Verilog and memory files in a temporary directory, with the Yosys that reads them.
 pub struct YosysSources<'a> {
     directory: Directory,
     yosys: &'a Tool,
@@ -20,8 +20,7 @@ pub struct YosysSources<'a> {
 }
 
 impl<'a> YosysSources<'a> {
-    /// Writes `files`, pairs of a plain name and contents. Yosys reads the files in Verilog. No run of Yosys
-    /// takes longer than `limit`.
+    /// Writes `files`, pairs of a file name and contents, into a temporary directory. Each run of Yosys may take at most `limit`.
     ///
     /// # Errors
     /// Fails if the files cannot be written.
@@ -34,7 +33,7 @@ impl<'a> YosysSources<'a> {
         Ok(sources)
     }
 
-    /// Writes another file beside them. The `name` must be plain.
+    /// Writes another file into the directory. `name` must not contain a path.
     ///
     /// # Errors
     /// Fails if the file cannot be written.
@@ -43,13 +42,13 @@ impl<'a> YosysSources<'a> {
             .with_context(|| format!("cannot write `{name}` for synthesis"))
     }
 
-    /// Returns the directory.
+    /// Returns the path of the directory.
     pub fn path(&self) -> &Path {
         self.directory.path()
     }
 
-    /// Has Yosys read the Verilog and run commands. For example, for one file `rsqrt.v` and the commands `proc; opt`
-    /// the script is `read_verilog rsqrt.v; proc; opt`.
+    /// Lets Yosys read the Verilog files and then run `commands`. For example, for one file `rsqrt.v` and the commands `proc;
+    /// opt` the script is `read_verilog rsqrt.v; proc; opt`.
     ///
     /// # Errors
     /// Fails if Yosys fails or takes too long.
@@ -59,7 +58,7 @@ impl<'a> YosysSources<'a> {
         Ok(())
     }
 
-    /// Reads a file that a tool has left, for example `statistics.json`.
+    /// Returns the text of a file that a tool has written into the directory, for example `statistics.json`.
     ///
     /// # Errors
     /// Fails if the file is not there.
@@ -68,7 +67,7 @@ impl<'a> YosysSources<'a> {
             .with_context(|| format!("a tool wrote no `{name}`"))
     }
 
-    /// Reads a JSON file that a tool has left.
+    /// Parses a JSON file that a tool has written into the directory.
     ///
     /// # Errors
     /// Fails if the file is not there, or is no JSON.

@@ -1,4 +1,4 @@
-//! Synthesises a design with Yosys, and counts the cells of an FPGA that it takes.
+//! Synthesises a design for an FPGA family with Yosys, and counts the cells: LUTs, flip-flops, DSP blocks and block RAMs.
 
 use std::time::Duration;
 

@@ -1,4 +1,4 @@
-//! Fake tools, which are shell scripts, misbehave in every way that a real one might.
+//! Tests how tools are run, with shell scripts in place of tools that misbehave in every way that a real one might.
 
 use std::io::Write;
 use std::path::PathBuf;

@@ -1,7 +1,7 @@
-//! Shows that a tool works: given something wrong, it must say so.
+//! Tests an outside tool before Glint trusts it: the tool must reject an input that is wrong.
 //!
-//! A proof and a lint rest on the silence of a tool, or on its exit status alone. This test finds a tool that is
-//! silent and exits with 0 whatever it is given.
+//! A proof or a lint counts as passed if the tool reports nothing. A broken tool that never reports anything would let everything
+//! pass. For example, Yosys gets a false claim, and must print `proof did fail`.
 
 use std::fs;
 use std::time::Duration;
@@ -33,8 +33,8 @@ struct Trials {
 }
 
 impl Tool {
-    /// Gives the tool a wrong input. If the exit status is all that the tool says, it also gets a right input. For
-    /// example, `yosys` gets a claim that does not hold, and must print `proof did fail`.
+    /// Tests a tool with an input that it must reject. If the tool answers only by its exit status, it also gets an input that it
+    /// must accept. For example, `yosys` gets a false claim, and must print `proof did fail`.
     ///
     /// # Errors
     /// Fails if the tool does not tell them apart, or if it does not run.

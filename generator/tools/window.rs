@@ -1,4 +1,4 @@
-//! Writes a module around a test bench that writes the waveform of some of its clocks.
+//! Writes a Verilog module around a test bench that dumps the waveform of a range of clocks.
 
 use anyhow::Result;
 use glint_base::fill;

@@ -1,4 +1,5 @@
-//! `glint certify`: proves the error bound of a contract with Gappa, from the netlist and the microprogram.
+//! `glint certify`: proves the error bound of a configuration's contract with the prover Gappa, from the netlist and the
+//! microprogram.
 
 use std::path::{Path, PathBuf};
 use std::time::Duration;

@@ -1,4 +1,5 @@
-//! `glint compare`: compares all devices with cosⁿγ at one exponent: errors, cells, frequencies and points a second.
+//! `glint compare`: compares all highlight devices at one exponent n: their errors against cosⁿγ, cells, frequencies and points a
+//! second.
 
 mod show;
 

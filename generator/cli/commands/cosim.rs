@@ -1,4 +1,4 @@
-//! `glint cosim`: compares the golden model with the simulated hardware, every register on every clock.
+//! `glint cosim`: compares the golden model of a configuration with the simulated hardware, every register at every clock.
 
 mod benches;
 pub mod exhaustive;

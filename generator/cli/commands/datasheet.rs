@@ -1,4 +1,4 @@
-//! `glint datasheet`: writes the datasheet of a configuration, one HTML page that needs no network.
+//! `glint datasheet`: writes the datasheet of a configuration, one HTML page that needs no other file and no network.
 
 use std::path::PathBuf;
 

@@ -1,4 +1,4 @@
-//! `glint describe`: prints or writes a page of documentation about a configuration, in Markdown.
+//! `glint describe`: prints or writes the documentation page of a configuration, in Markdown.
 
 use std::path::{Path, PathBuf};
 

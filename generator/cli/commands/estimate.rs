@@ -1,4 +1,4 @@
-//! `glint estimate`: estimates area and clock of a core on each FPGA family, without outside tools.
+//! `glint estimate`: estimates area and clock frequency of a core on each FPGA family, without outside tools.
 
 use anyhow::Result;
 use clap::Args;

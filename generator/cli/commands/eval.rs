@@ -1,4 +1,5 @@
-//! `glint eval`: computes one point, or the points of a CSV file: golden registers, outputs and the formula in f64.
+//! `glint eval`: computes one point, or the points of a CSV file, with the golden model, and compares the outputs with the
+//! formula in f64.
 
 mod batch;
 mod operands;

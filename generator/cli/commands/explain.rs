@@ -1,4 +1,4 @@
-//! `glint explain`: explains the code of a mistake in a description, or lists all codes.
+//! `glint explain`: explains the code of an error in a device's description, or lists all codes.
 
 use anyhow::Result;
 use clap::Args;

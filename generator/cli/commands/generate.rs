@@ -1,4 +1,4 @@
-//! `glint generate`: writes Verilog, ROM contents, manifest, FuseSoC core and test bench of each configuration.
+//! `glint generate`: writes the files of each configuration: Verilog, ROM contents, manifest, FuseSoC core and test bench.
 
 use std::path::{Path, PathBuf};
 

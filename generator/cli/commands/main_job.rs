@@ -1,4 +1,5 @@
-//! Does the main job: generates everything, co-simulates everything, and reports the results.
+//! `glint` without a command: generates the files of every configuration in `configs/`, co-simulates each, and reports the
+//! results.
 
 use std::path::Path;
 

@@ -1,4 +1,4 @@
-//! `glint merge`: joins the parts of a `cosim --exhaustive` that was divided by `--shard`.
+//! `glint merge`: joins the results of an exhaustive check that was divided among machines by `glint cosim --exhaustive --shard`.
 
 use std::path::PathBuf;
 

@@ -1,4 +1,6 @@
-//! Reports a first difference, for people and for scripts, with the means to see it again: a waveform and a command.
+//! Reports the first difference between golden model and hardware, for people and for scripts.
+//!
+//! The report comes with a waveform file and a command, with which the user can reproduce the difference.
 
 use std::fs::{self, File};
 use std::io::BufWriter;

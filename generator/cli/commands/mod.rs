@@ -1,7 +1,6 @@
-//! The commands of the command line, a module each, and the code that they share: loading configurations, and their
-//! verdicts.
+//! Defines the commands of `glint`, one in each module, and the code that they share, for example loading configuration files.
 //!
-//! A command returns whether everything that it checks holds.
+//! The function `run` of a command returns whether everything that the command checks holds.
 
 pub mod certify;
 

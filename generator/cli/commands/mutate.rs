@@ -1,4 +1,4 @@
-//! `glint mutate`: plants faults one at a time, and shows which of them the tests notice.
+//! `glint mutate`: plants faults in a configuration's hardware, one at a time, and shows which of them the tests notice.
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;

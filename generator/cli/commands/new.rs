@@ -1,4 +1,4 @@
-//! `glint new`: prints a configuration of a device, or of a function by its name.
+//! `glint new`: prints a configuration file for a device, or for a function that is given by its name, such as `rsqrt`.
 
 use anyhow::Result;
 use clap::Args;

@@ -1,4 +1,4 @@
-//! `glint new-device`: writes a crate with a device of one's own.
+//! `glint new-device`: writes a Rust crate that defines a device of the user's own, as a starting point.
 
 use std::fs;
 use std::path::{Path, PathBuf};

@@ -1,4 +1,4 @@
-//! `glint render`: draws a picture whose highlights are bit-accurate results of the device.
+//! `glint render`: draws a picture whose highlights are bit-exact results of a device.
 
 use std::io::Read;
 use std::path::{Path, PathBuf};

@@ -1,4 +1,4 @@
-//! Reads the rows of a CSV file, and tells the line of one that is wrong.
+//! Reads the rows of a CSV file. An error message names the line of the row that is wrong.
 
 use std::io;
 use std::path::Path;

@@ -1,4 +1,4 @@
-//! `glint schedule`: shows the stages of a pipeline.
+//! `glint schedule`: shows the stages of a pipeline, and the operations in each.
 
 use std::path::PathBuf;
 

@@ -1,4 +1,4 @@
-//! Parses the option `--set KEY=VALUE` of commands that make a configuration.
+//! Parses the option `--set KEY=VALUE`, by which a user changes a key of a configuration on the command line.
 
 use anyhow::Result;
 

@@ -1,4 +1,4 @@
-//! `glint synth`: measures area and frequency by synthesis, placement and routing.
+//! `glint synth`: measures area and frequency of a core by synthesis, placement and routing.
 
 mod cache;
 mod show;

@@ -1,4 +1,4 @@
-//! `glint tune`: finds the smallest configuration of a device for an error.
+//! `glint tune`: finds the smallest configuration of a device whose error stays below a given limit.
 
 mod plot;
 

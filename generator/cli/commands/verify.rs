@@ -1,4 +1,4 @@
-//! `glint verify`: verifies configurations by every means that Glint has, and writes a record and a page about each.
+//! `glint verify`: runs every test and proof that Glint has on configurations, and writes a record and a page about each.
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};

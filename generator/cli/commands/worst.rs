@@ -1,4 +1,4 @@
-//! `glint worst`: searches for the largest error of an output.
+//! `glint worst`: searches for the operands with the largest error of an output.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};

@@ -1,4 +1,5 @@
-//! The description: blocks, wires and the microprogram. Glint emits Verilog from it, and simulates it.
+//! Describes the hardware of the device: blocks, wires and the microprogram. Glint emits Verilog from this description and
+//! simulates it.
 
 use super::Keys;
 use glint::config::Config;

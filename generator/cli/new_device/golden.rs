@@ -1,4 +1,5 @@
-//! The golden model, written from the formula and not from the description, and the accuracy contract.
+//! Defines the golden model and the accuracy contract. The model is written from the formula and not from the description, so
+//! that comparing the two finds mistakes in either.
 
 use super::Keys;
 use glint::config::Config;

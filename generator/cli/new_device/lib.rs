@@ -1,8 +1,9 @@
 //! The device `parabola`, which computes x².
 //!
-//! A device is five things. The configuration keys and the line that ties everything together are here. The description is in
-//! `description.rs`; golden model and accuracy contract are in `golden.rs`. Description and golden model share nothing but the keys:
-//! Glint compares them clock by clock.
+//! A device has five parts: configuration keys, a description of the hardware, a golden model, an accuracy contract, and a
+//! constant that ties them together. Keys and constant are in this file. The description is in `description.rs`; golden model and
+//! accuracy contract are in `golden.rs`. Description and golden model share nothing but the keys: Glint compares the two clock by
+//! clock.
 
 mod description;
 mod golden;

@@ -1,4 +1,4 @@
-//! The command line of Glint, with this device: `cargo run -- --help`.
+//! The command line of Glint, with only this device: `cargo run -- --help`.
 
 use std::process::ExitCode;
 

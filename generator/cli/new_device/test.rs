@@ -1,4 +1,4 @@
-//! The device beside its golden model, and beside numbers that were worked out by hand.
+//! Compares the hardware of the device with its golden model, and with numbers that were worked out by hand.
 
 use anyhow::Result;
 use glint::core::Core;

@@ -1,7 +1,7 @@
-//! Makes new files whole in a directory of its own, and then moves each into its place.
+//! Writes new files completely in a temporary directory, and then moves each to its place.
 //!
-//! The next run after one that was killed begins anew, and generates everything again. Files that were moved already
-//! have their new contents. The manifest comes last and vouches for the others.
+//! If a run is killed, the next run generates all files again. Some files may have been moved already and have their new
+//! contents. The manifest, which lists the digests of all others, is moved last.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -12,7 +12,7 @@ use crate::directories::{create_directory, create_parent};
 use glint_core::package::OutputFile;
 use glint_tools::transient::{self, Directory};
 
-/// Complete new files, beside the directories that they are for.
+/// A temporary directory with complete new files, next to the directories to which they will be moved.
 pub struct Staging {
     directory: Directory,
     /// The files, as [`OutputFile::path`] has them.
@@ -20,7 +20,7 @@ pub struct Staging {
 }
 
 impl Staging {
-    /// Writes the files of a configuration.
+    /// Writes the files of a configuration into a temporary directory below `out`.
     ///
     /// # Errors
     /// Fails if `out` cannot be written; then nothing is left of it.

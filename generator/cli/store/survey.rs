@@ -1,5 +1,5 @@
-//! Finds the files in the directories of a configuration, and the owner of each: as Glint wrote it, edited since, or
-//! foreign.
+//! Finds the files that are in the directories of a configuration, and decides for each whether Glint wrote it, the user edited
+//! it, or it is foreign.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -13,18 +13,19 @@ use super::{differs, directories};
 use glint_core::package::{OutputFile, digest};
 use glint_tools::transient::{files_below, relative_name};
 
-/// Compares the files that are there with the files that should be there. All lists are sorted.
+/// The differences between the files in the directories of a configuration and the files that should be there. All lists are
+/// sorted.
 pub struct Survey {
     /// Names of files that are to be written, replaced, or deleted because Glint wrote them once.
     pub different: Vec<String>,
-    /// Files of Glint's that somebody edited, and files that would be overwritten.
+    /// The paths of files that Glint wrote and somebody edited, and of foreign files in the place of a file to be written.
     pub edited: Vec<PathBuf>,
-    /// Files of Glint's that are to be deleted.
+    /// The paths of files that Glint wrote and that are no longer needed.
     pub stale: Vec<PathBuf>,
 }
 
 impl Survey {
-    /// Surveys the configuration `name` below `out`, which should have `files`.
+    /// Compares the files of the configuration `name` below `out` with `files`, which should be there.
     ///
     /// # Errors
     /// Fails if a file or a directory cannot be read.

@@ -1,4 +1,4 @@
-//! A run after one that was killed, and files that are stale or foreign.
+//! Tests the writing of generated files after a killed run, and next to files that are outdated or foreign.
 
 use std::fs;
 use std::path::Path;

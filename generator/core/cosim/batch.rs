@@ -1,7 +1,8 @@
-//! Computes many points at once, with the golden model, the built-in simulator or the emitted Verilog.
+//! Defines the interface of the engines that compute many points at once.
 //!
-//! The three engines take the same [`Points`] and give the same results. The rest of Glint proves that they do, so any of
-//! them may compute a picture.
+//! An [`Engine`] takes the operands of many computations as [`Points`], and returns their results. There are three engines: the
+//! golden model ([`Golden`]), the built-in simulator (`RustHdl`) and the emitted Verilog under an outside simulator. All three
+//! return the same results, so a caller such as `glint render` may take any of them.
 
 mod lanes;
 
@@ -18,7 +19,7 @@ const LANES: usize = 32;
 /// Points that are computed as one piece of work.
 const PIECE: usize = 4096;
 
-/// The operands of many computations.
+/// The operands of many computations, and the number of results of each.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Points {
     operands: usize,
@@ -33,7 +34,7 @@ impl Points {
         Self { operands, values: Vec::new(), results: vec![0] }
     }
 
-    /// Adds a computation with its raw operands and the number of its results.
+    /// Adds a computation: its raw operands, and the number of results that it gives.
     ///
     /// # Panics
     /// Panics unless there are as many operands as [`Points::new`] said.
@@ -43,7 +44,7 @@ impl Points {
         assert_eq!(self.values.len(), self.operands * self.len(), "operands");
     }
 
-    /// Adds the computations of another list, which must have as many operands.
+    /// Adds the computations of another list, which must have the same number of operands per computation.
     pub fn append(&mut self, other: &Self) {
         let before = self.result_count();
         self.values.extend(&other.values);
@@ -55,7 +56,7 @@ impl Points {
         self.results.len() - 1
     }
 
-    /// Returns whether there is none.
+    /// Returns whether the list has no computations.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
@@ -70,7 +71,7 @@ impl Points {
         &self.values[at * self.operands..(at + 1) * self.operands]
     }
 
-    /// Returns the number of results of all computations before computation number `at`.
+    /// Returns the index of the first result of computation number `at`, in a list of the results of all computations.
     pub fn results_before(&self, at: usize) -> usize {
         self.results[at]
     }
@@ -81,7 +82,7 @@ impl Points {
     }
 }
 
-/// An engine that computes points.
+/// Computes points: the golden model, the built-in simulator or the emitted Verilog.
 pub trait Engine {
     /// Returns the raw outputs, in the order of the [`Contract`], result after result.
     ///
@@ -90,7 +91,7 @@ pub trait Engine {
     fn compute(&mut self, points: &Points) -> Result<Vec<i64>>;
 }
 
-/// The golden model's arithmetic, as the contract states it.
+/// An [`Engine`] that evaluates the golden model's arithmetic through the contract, without clocks.
 pub struct Golden<'a>(pub &'a dyn Contract);
 
 impl Engine for Golden<'_> {

@@ -1,4 +1,7 @@
-//! Binds a golden model to a design: finds the port or register of the design for each signal of the model.
+//! Finds, for each signal of a golden model, the port or the register of the design with the same name.
+//!
+//! A golden model predicts the values of a device's outputs and registers. Co-simulation compares the predictions with the
+//! simulated design by this binding. For example, the model's signal `busy` is bound to the port `busy` of the design.
 
 use std::sync::Arc;
 
@@ -13,33 +16,33 @@ use super::sequential::{SequentialModel, registers};
 use glint_golden::{Contract, Model};
 use glint_rtl::netlist::{Design, NetId};
 
-/// The prediction of a device, whatever its architecture.
+/// The model that predicts the signals of a device: for a core with a microprogram, or for a pipeline.
 #[derive(Clone)]
 pub(super) enum Host {
     Core(SequentialModel),
     Pipe(Pipe),
 }
 
-/// A design and its golden model, bound by the names of ports and registers.
+/// A design and its golden model, whose signals are matched by the names of ports and registers.
 pub(super) struct Binding<'a> {
     pub(super) design: &'a Design,
     pub(super) measure: Measure<'a>,
     pub(super) ports: Arc<Ports>,
-    /// At power-up; every stream runs a copy of it.
+    /// The model at power-up. Every stream runs a copy of it.
     pub(super) host: Host,
     pub(super) outputs: Vec<NetId>,
-    /// The nets that the host predicts, in its order.
+    /// The nets whose values the model predicts, in the order of the predictions.
     pub(super) compared: Vec<NetId>,
-    /// How many of them are registers of the golden model.
+    /// The number of these nets that are registers, or for a pipeline checkpoints.
     pub(super) registers: usize,
-    /// The address of the microprogram.
+    /// The register with the address of the current microinstruction. A pipeline has none.
     pub(super) address: Option<NetId>,
     pub(super) space: Arc<Space>,
     pub(super) points: PointSource<'a>,
 }
 
 impl<'a> Binding<'a> {
-    /// Pairs them.
+    /// Matches the signals of a golden model with the ports and registers of a design.
     ///
     /// # Errors
     /// Fails if one side has a name that the other does not have.
@@ -78,8 +81,8 @@ impl<'a> Binding<'a> {
         self.address.is_none()
     }
 
-    /// Holds operands at raw values: combinations are of the others alone, and the stimulus seldom draws
-    /// anything else.
+    /// Holds operands at the given raw values. Combinations then cover only the other operands, and random inputs seldom have
+    /// other values.
     pub(super) fn holding(mut self, held: &[(String, i64)]) -> Self {
         for (name, raw) in held {
             self.points.hold(name, *raw);
@@ -88,12 +91,12 @@ impl<'a> Binding<'a> {
         self
     }
 
-    /// Draws lines of at most `results` results.
+    /// Limits the lines that are drawn at random to at most `results` results.
     pub(super) fn shorten(&mut self, results: i64) {
         self.points.shorten(results - 1);
     }
 
-    /// Returns a bound on the results of one computation.
+    /// Returns an upper bound of the number of results of one computation.
     pub(super) fn longest(&self) -> u64 {
         let operands = self.measure.contract.operands();
         // A length of 0 is a result too.

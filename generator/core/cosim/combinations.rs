@@ -1,8 +1,9 @@
-//! Drives a device with every combination of the bit patterns of all operands, one computation after another.
+//! Drives a device with every combination of the bit patterns of its operands, one computation after another.
 //!
-//! A combination is the bits of all operands side by side. Consecutive combinations have little in common. A register that
-//! should have been loaded, and was not, therefore seldom holds the right value by chance. *Place* p has the combination p·k
-//! mod 2^bits for an odd constant k. Operands that are held at a value are no part of the combination.
+//! A combination is a number: the bits of all operands side by side. For example, two operands of 8 bits have 2^16 combinations.
+//! The combinations are shuffled: computation number p has the combination p·k mod 2^bits, for an odd constant k. Consecutive
+//! computations thus have little in common, and a register that failed to load seldom holds the right value by chance. Operands
+//! that the caller holds at a fixed value are not part of the combination.
 
 use std::sync::Arc;
 
@@ -12,7 +13,7 @@ use glint_base::fixed::mask;
 /// Odd, and without a pattern in its bits: 2^64 by the golden ratio.
 const SCATTER: u64 = 0x9e37_79b9_7f4a_7c15;
 
-/// The combinations of operands, by place.
+/// The combinations of operands, each with a number, its *place*.
 #[derive(Clone)]
 pub(super) struct Space {
     ports: Arc<Ports>,
@@ -29,13 +30,13 @@ impl Space {
         Self { held: vec![None; ports.operands.len()], listed: Vec::new(), ports: ports.clone() }
     }
 
-    /// Makes the space of all combinations, with these raw operands at its first places. Each list must be in the order of the
-    /// contract.
+    /// Makes the space of all combinations, but with the raw operands of `list` at the first places. Each list has the order of
+    /// the contract.
     pub(super) fn listed(ports: &Arc<Ports>, list: &[Vec<i64>]) -> Self {
         Self { listed: list.to_vec(), ..Self::new(ports) }
     }
 
-    /// Holds operands at raw values: all combinations are of the others alone.
+    /// Holds operands at raw values, so that the combinations cover only the other operands.
     pub(super) fn hold(&mut self, held: &[(String, i64)]) {
         for (name, raw) in held {
             let operands = self.ports.operands.iter().zip(&mut self.held);
@@ -45,8 +46,8 @@ impl Space {
         }
     }
 
-    /// Returns the bits of all operands together that are not held. For example, three operands of 8 bits give 16 if one of
-    /// them is held.
+    /// Returns the total number of bits of the operands that are not held. For example, three operands of 8 bits give 16 if one
+    /// is held.
     pub(super) fn bits(&self) -> u32 {
         let operands = self.ports.operands.iter().zip(&self.held);
         let free = operands.filter(|(_, held)| held.is_none());
@@ -100,7 +101,7 @@ impl Combinations {
         Self { space, first, count, started: 0, since_start: 0, reset: false, inputs }
     }
 
-    /// Returns whether no computation is left to start.
+    /// Returns whether all computations have been started.
     pub(super) fn all_started(&self) -> bool {
         self.started == self.count
     }
@@ -110,12 +111,12 @@ impl Combinations {
         self.first + self.started.saturating_sub(1)
     }
 
-    /// Returns the clocks since `start`: 0 for the one that takes it.
+    /// Returns the number of clocks since `start`, which is 0 in the clock that takes `start`.
     pub(super) fn since_start(&self) -> u64 {
         self.since_start
     }
 
-    /// Returns the inputs of the next clock, in which the device takes a computation if it is `ready`.
+    /// Returns the inputs of the next clock. If `ready`, the device takes the next computation in this clock.
     pub(super) fn next(&mut self, ready: bool) -> &[u64] {
         let ports = &*self.space.ports;
         let starting = ready && self.reset && self.started < self.count;
@@ -145,7 +146,7 @@ impl Combinations {
         &self.inputs
     }
 
-    /// Returns the latest inputs.
+    /// Returns the inputs of the latest clock.
     pub(super) fn inputs(&self) -> &[u64] {
         &self.inputs
     }

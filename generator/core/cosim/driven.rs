@@ -1,10 +1,12 @@
-//! Drives a golden model on its own: starts a computation, clocks the model and reads its signals.
+//! Runs a golden model without hardware: starts a computation, advances the model clock by clock, and reads its signals by name.
+//!
+//! For example, `glint eval` runs a model in this way to print the registers of one computation.
 
 use anyhow::{Context, Result};
 
 use glint_golden::Model;
 
-/// A golden model whose handshake is driven.
+/// A golden model together with the values of its inputs, which the caller drives.
 #[derive(Clone)]
 pub struct Driven {
     model: Box<dyn Model>,
@@ -18,7 +20,7 @@ pub struct Driven {
 }
 
 impl Driven {
-    /// Takes a model, which must be at power-up, and finds its inputs of the handshake and of the operands that are named.
+    /// Takes a model at power-up, and finds its inputs by the names of the handshake and of the operands.
     ///
     /// # Errors
     /// Fails if the model does not have one of the names.
@@ -39,7 +41,7 @@ impl Driven {
         })
     }
 
-    /// Starts a computation with these bit patterns, in one clock.
+    /// Starts a computation: for one clock, drives `start` and the bit patterns of the operands.
     pub fn start(&mut self, patterns: impl Iterator<Item = u64>) {
         for (bits, &(data, strobe)) in patterns.zip(&self.operands) {
             self.inputs[data] = bits;
@@ -57,12 +59,12 @@ impl Driven {
         self.model.clock(&self.inputs);
     }
 
-    /// Returns whether there is a result.
+    /// Returns whether the model shows a result in this clock.
     pub fn is_valid(&self) -> bool {
         self.values()[self.valid] == 1
     }
 
-    /// Returns all signals, with their names in [`Driven::names`].
+    /// Returns the values of all signals of the model, in the order of [`Driven::names`].
     pub fn values(&self) -> &[u64] {
         self.model.values()
     }
@@ -73,7 +75,7 @@ impl Driven {
     }
 }
 
-/// Returns the position of a signal of a model.
+/// Returns the index of the signal `name` among the signals of a model.
 pub(super) fn signal(model: &dyn Model, name: &str) -> Result<usize> {
     let at = model.signals().iter().position(|other| other == name);
     at.with_context(|| format!("the golden model does not predict `{name}`"))

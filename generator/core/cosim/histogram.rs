@@ -1,5 +1,7 @@
-//! Counts the results of a run in classes by their `f`. For example, the class `<0.1` has the results with f from 0.01 to
-//! below 0.1.
+//! Counts the results of a run by the value of their reflectance `f`, in nine classes.
+//!
+//! The counts show whether the random operands reached all values of `f`. For example, the class `<0.1` has the results with f
+//! from 0.01 to below 0.1.
 
 use glint_base::fixed::Format;
 
@@ -42,12 +44,12 @@ impl Histogram {
         self.counts.iter_mut().zip(&other.counts).for_each(|(sum, count)| *sum += count);
     }
 
-    /// Returns how many results are in each of [`CLASSES`].
+    /// Returns the number of results in each of [`CLASSES`].
     pub fn counts(&self) -> [u64; CLASSES.len()] {
         self.counts
     }
 
-    /// Returns the share of all results with `0 < f < 1 − ulp`.
+    /// Returns the share of results whose `f` is neither 0 nor the largest: `0 < f < 1 − ulp`.
     pub fn share_inside(&self) -> f64 {
         let inside: u64 = self.counts[1..CLASSES.len() - 2].iter().sum();
         inside as f64 / self.counts.iter().sum::<u64>().max(1) as f64

@@ -1,4 +1,6 @@
-//! Runs instances of a design in the lanes of one simulator, and gives each its computations.
+//! Runs instances of one design in the lanes of one simulator.
+//!
+//! The caller gives each instance the operands of a computation, and reads its results from the same lane.
 
 use anyhow::Result;
 
@@ -7,7 +9,7 @@ use glint_golden::Contract;
 use glint_rtl::netlist::Design;
 use glint_rtl::sim::Simulator;
 
-/// Instances of a design behind their reset; results of a pipeline are always taken.
+/// A simulator with an instance of the design in each lane, after reset. Results of a pipeline are always accepted.
 pub(super) struct Instances<const LANES: usize> {
     pub(super) simulator: Simulator<LANES>,
     pub(super) ports: Ports,
@@ -28,7 +30,7 @@ impl<const LANES: usize> Instances<LANES> {
         Ok(Self { simulator, ports })
     }
 
-    /// Has the instances that are given raw operands, in the order of the contract, take a computation in the next clock.
+    /// Offers a computation to some lanes in the next clock. The raw operands of a lane are in the order of the contract.
     pub(super) fn offer(&mut self, computations: [Option<&[i64]>; LANES]) {
         let taking = computations.map(|raw| u64::from(raw.is_some()));
         for port in &self.ports.operands {
@@ -40,7 +42,7 @@ impl<const LANES: usize> Instances<LANES> {
         self.simulator.set_lanes(self.ports.start, taking);
     }
 
-    /// Lowers `start` and all strobes, so that no instance takes a computation; the data stay.
+    /// Lowers `start` and all write strobes, so that no instance takes a computation. The operand values stay on the ports.
     pub(super) fn release(&mut self) {
         for at in self.ports.operands.iter().map(|port| port.strobe).chain([self.ports.start]) {
             self.simulator.set_lanes(at, [0; LANES]);

@@ -1,10 +1,9 @@
-//! Runs golden model and simulated hardware side by side, whatever the architecture, and compares every signal on every
-//! clock.
+//! Simulates a design and its golden model side by side, and compares every predicted signal at every clock.
 //!
-//! A run is divided into *streams*. Each stream starts at power-up, and has its own stimulus. The number of streams, their
-//! seeds and their points depend only on the seed and the points of the run. Up to [`LANES`] streams go through one simulator
-//! together, and there is one simulator for each thread; neither number influences the result. The result is made of all
-//! streams in their order, up to the first stream that differs.
+//! A run is divided into *streams*. Each stream starts at power-up and has its own random inputs. The number of streams, their
+//! seeds and their points depend only on the seed and the number of points of the run. Up to [`LANES`] streams share a simulator,
+//! and each thread has a simulator; neither number changes the result. The result covers the streams in order, up to the first
+//! stream in which model and hardware differ.
 
 use std::io::Write;
 use std::ops::Range;
@@ -23,7 +22,7 @@ use glint_golden::{Contract, Model};
 use glint_rtl::netlist::Design;
 use glint_rtl::sim::Simulator;
 
-/// Streams that share a simulator.
+/// The number of streams that share a simulator.
 pub(super) const LANES: usize = 32;
 
 /// The number of streams that keeps two threads busy. A longer run has a multiple of it.
@@ -48,14 +47,14 @@ const FEWEST_PIPELINES: u64 = 4;
 /// The number of points after which the progress is reported.
 const TOLD: u64 = 1024;
 
-/// Golden model and simulator of one design.
+/// A golden model and a simulator of the same design, which run side by side.
 pub struct Lockstep<'a> {
     binding: Binding<'a>,
     seed: u64,
 }
 
 impl<'a> Lockstep<'a> {
-    /// Pairs the model and the simulator of a design by the names of ports and registers.
+    /// Matches the golden model with the ports and registers of a design by name.
     ///
     /// # Errors
     /// Fails if one side has a name that the other does not have.
@@ -68,22 +67,22 @@ impl<'a> Lockstep<'a> {
         Ok(Self { binding: Binding::new(design, model, contract)?, seed })
     }
 
-    /// Holds some operands at raw values: the stimulus may draw others for them, but seldom does.
+    /// Holds some operands at raw values. The random inputs seldom have other values for them.
     #[must_use]
     pub fn holding(self, held: &[(String, i64)]) -> Self {
         Self { binding: self.binding.holding(held), ..self }
     }
 
-    /// Limits lines to at most `results` results.
+    /// Limits the lines that are drawn to at most `results` results.
     #[must_use]
     pub fn with_lines_of(mut self, results: i64) -> Self {
         self.binding.shorten(results);
         self
     }
 
-    /// Runs until `points` results were seen or something differs, on all threads of rayon's pool.
+    /// Runs until `points` results were compared, or until model and hardware differ, on all threads of rayon's pool.
     ///
-    /// `progress` is called now and then with the number of points since its last call.
+    /// It calls `progress` now and then with the number of points since the last call.
     ///
     /// # Errors
     /// Fails if the design cannot be simulated, or does not settle.
@@ -144,9 +143,9 @@ impl<'a> Lockstep<'a> {
         Ok(self.outcome(alone.into_seen()?))
     }
 
-    /// Goes through the streams of a run of `points` results, each alone. `begin` makes the watch of a stream from the
-    /// stream's seed. After each clock `note` shows the watch the results so far and the simulator. The watches are returned
-    /// in the order of the streams.
+    /// Runs the streams of a run of `points` results one by one, for an observer. `begin` makes an observer from the stream's
+    /// seed. After each clock, `note` passes the number of results so far and the simulator to the observer. Returns the
+    /// observers in the order of the streams.
     ///
     /// # Errors
     /// Fails as [`Lockstep::run`] does.
@@ -173,9 +172,9 @@ impl<'a> Lockstep<'a> {
             .collect()
     }
 
-    /// Makes stimulus and expected outputs for a bench: the inputs of every clock of one stream of `points` results, and the
-    /// outputs before the clock's edge. The clocks of `computations`, one after another, follow; their raw operands are in
-    /// the order of the contract.
+    /// Records the vectors of a test bench: the inputs of every clock, and the outputs just before the clock's edge. A random
+    /// stream of `points` results comes first, and then the given `computations`, whose raw operands are in the order of the
+    /// contract.
     ///
     /// # Errors
     /// Fails if golden model and simulation differ, or if the design cannot be simulated or does not settle.

@@ -1,4 +1,4 @@
-//! Measures the error of results against the formula in f64.
+//! Measures how far the results of a device are from its formula, which is evaluated in f64.
 
 use anyhow::{Context, Result, ensure};
 
@@ -7,7 +7,7 @@ use glint_base::fixed::{Format, MAX_WIDTH, exp2};
 use glint_golden::{Contract, Output, nearer};
 use glint_rtl::netlist::{Design, NetId};
 
-/// The outputs of a contract among values that are compared.
+/// Measures the errors of a contract's outputs in the values that a run compares.
 pub(super) struct Measure<'a> {
     pub(super) contract: &'a dyn Contract,
     /// In the order of the contract.
@@ -39,7 +39,7 @@ impl OutputQuantity {
 }
 
 impl<'a> Measure<'a> {
-    /// Finds the outputs of the contract among these nets, whose values are measured.
+    /// Finds the outputs of the contract among the compared `nets`.
     ///
     /// # Errors
     /// Fails if an output is missing in the design, or has another format there.
@@ -67,7 +67,7 @@ impl<'a> Measure<'a> {
         Ok(Self { contract, outputs })
     }
 
-    /// Returns whether raw operands, in the order of the contract, are in its domain.
+    /// Returns whether raw operands are inside the domain of the contract.
     pub(super) fn inside(&self, operands: &[i64]) -> bool {
         let mut pairs = self.contract.operands().iter().zip(operands);
         pairs.all(|(operand, raw)| (operand.domain.0..=operand.domain.1).contains(raw))

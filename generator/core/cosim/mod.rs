@@ -1,5 +1,7 @@
-//! Co-simulates designs: draws stimulus, and compares the golden model with the built-in simulator, clock by clock and
-//! exhaustively.
+//! Co-simulates a design with its golden model.
+//!
+//! The modules draw random inputs, compare model and simulated hardware at every clock, measure the error of the results, and
+//! check all operand combinations of small devices.
 
 pub mod batch;
 mod binding;

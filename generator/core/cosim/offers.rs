@@ -1,10 +1,10 @@
-//! Drives the inputs of a pipeline with random points and a random handshake, clock by clock.
+//! Drives the inputs of a pipeline with random points and a random valid/ready handshake, clock by clock.
 //!
-//! [`Offers`] raises `in_valid` with the operands of a point, and keeps both until the pipeline takes the point. Between two
-//! points it pauses at random. Now and then it withdraws a point that the pipeline has not taken yet, lowers `out_ready` so that
-//! results must wait, or applies a reset, which drops every point in the pipeline. Every 24 clocks it draws anew how often it
-//! offers a point, and how often `out_ready` is high. For example, `out_ready` is high in every clock, and later in one of five.
-//! The same seed gives the same inputs.
+//! [`Offers`] raises `in_valid` with the operands of a point, and keeps both until the pipeline takes the point. It pauses at
+//! random between points, and now and then withdraws a point that the pipeline has not taken, lowers `out_ready` so that results
+//! must wait, or applies a reset, which drops every point in the pipeline. Every 24 clocks it draws new probabilities for
+//! `in_valid` and `out_ready`. For example, `out_ready` is high in every clock for a while, and later in one clock of five. The
+//! same seed gives the same inputs.
 
 use std::collections::VecDeque;
 use std::sync::Arc;
@@ -22,7 +22,7 @@ const PACE_CLOCKS: u64 = 24;
 /// A reset comes once in this number of clocks.
 const RESET_CLOCKS: u64 = 1024;
 
-/// The inputs of a pipeline, clock by clock.
+/// The random inputs of a pipeline, clock by clock.
 pub(super) struct Offers {
     ports: Arc<Ports>,
     random: Random,
@@ -39,7 +39,7 @@ pub(super) struct Offers {
 }
 
 impl Offers {
-    /// Makes the offers of a seed, from power-up on.
+    /// Makes the inputs of a seed, beginning at power-up.
     pub(super) fn new(ports: &Arc<Ports>, seed: u64) -> Self {
         Self {
             random: Random::new(seed),
@@ -53,17 +53,17 @@ impl Offers {
         }
     }
 
-    /// Goes on with these points, raw operands in the order of the contract, and then with none.
+    /// Offers the given points next, with raw operands in the order of the contract, and no points after them.
     pub(super) fn follow(&mut self, points: &[Vec<i64>]) {
         self.listed = Some(points.iter().cloned().collect());
     }
 
-    /// Returns whether a list is at its end.
+    /// Returns whether all points of [`Offers::follow`] were offered.
     pub(super) fn is_over(&self) -> bool {
         self.offered.is_none() && self.listed.as_ref().is_some_and(VecDeque::is_empty)
     }
 
-    /// Returns the latest inputs.
+    /// Returns the inputs of the latest clock.
     pub(super) fn inputs(&self) -> &[u64] {
         &self.inputs
     }

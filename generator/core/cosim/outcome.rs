@@ -1,4 +1,5 @@
-//! The outcome of co-simulation runs: how many results were seen, the largest error, and the first difference.
+//! Defines the outcome of a co-simulation run: the number of results, the largest error, and the first signal on which golden
+//! model and hardware differ.
 
 use std::fmt;
 use std::sync::Arc;
@@ -8,16 +9,16 @@ use super::random::Random;
 use super::recorded::Recording;
 use glint_golden::Bound;
 
-/// The outcome of a run.
+/// The outcome of a co-simulation run.
 #[derive(Clone, Debug, Default)]
 pub struct Outcome {
-    /// Results seen.
+    /// The number of results.
     pub points: u64,
-    /// Clocks run, each compared.
+    /// The number of clocks. All predicted signals are compared in each.
     pub clocks: u64,
-    /// Registers compared on every clock.
+    /// The number of registers that are compared in every clock.
     pub registers: usize,
-    /// Outputs compared on every clock.
+    /// The number of outputs that are compared in every clock.
     pub outputs: usize,
     /// The largest error of an output against the formula in f64.
     pub worst: Option<Worst>,
@@ -52,7 +53,7 @@ impl Outcome {
         outcome
     }
 
-    /// Returns the failures, with a contract whose bound this is.
+    /// Returns sentences about the failures of the run: a difference between model and hardware, or an error above `bound`.
     pub fn failures(&self, bound: &Bound) -> Vec<String> {
         let mut failures = Vec::new();
         if let Some(mismatch) = &self.mismatch {
@@ -82,28 +83,28 @@ impl Outcome {
     }
 }
 
-/// The largest error against the formula, and where.
+/// The largest error of an output against the formula, and its operands.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Worst {
-    /// In output units; infinite where the formula has no value.
+    /// The error in output units. It is infinite if the formula has no value there.
     pub units: f64,
     /// The error in units, times the largest bound of any output and divided by the bound of this output.
     pub weighted: f64,
-    /// The output.
+    /// The name of the output.
     pub output: String,
     /// Raw operands, by name.
     pub operands: Vec<(String, i64)>,
 }
 
-/// A signal on which model and hardware differ.
+/// A signal on which golden model and hardware differ.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mismatch {
     /// The seed of the stream: a run with it that is not divided, [`Lockstep::trace`](super::Lockstep::trace)
     /// say, goes the same way from the first clock on. Where combinations are gone through, the place of the one that runs.
     pub seed: u64,
-    /// Rising edges of the stream so far.
+    /// The number of rising edges of the stream up to the difference.
     pub clock: u64,
-    /// Its name.
+    /// The name of the signal.
     pub signal: String,
     /// The golden model's value, a bit pattern.
     pub golden: u64,
@@ -123,7 +124,7 @@ impl fmt::Display for Mismatch {
     }
 }
 
-/// The record of a stream.
+/// The outcome of one stream.
 #[derive(Clone, Debug, Default)]
 pub(super) struct StreamRecord {
     pub(super) points: u64,
@@ -146,7 +147,8 @@ pub(super) fn stream_seed(seed: u64, number: u64) -> u64 {
     }
 }
 
-/// Returns the points of stream `number` of a run of `points`. For example, 10 points in 4 streams are 3, 3, 2 and 2.
+/// Returns the number of points of stream `number`, if `points` points are divided among `streams` streams. For example, 10
+/// points in 4 streams are 3, 3, 2 and 2.
 pub(super) fn share(points: u64, streams: u64, number: u64) -> u64 {
     points / streams + u64::from(number < points % streams)
 }

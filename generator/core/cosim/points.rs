@@ -3,17 +3,17 @@
 //! A highlight device multiplies colours by a reflectance `f`, from 0 to 1. Over most of the domain `f` is 0, so evenly drawn
 //! operands test little. Three of four points are therefore drawn *by the value of the formula* for `f`:
 //!
-//! 1. [`PointSource`] draws operands in the domain, and a value for the formula. It draws half of the values evenly, and half
+//! 1. [`PointSource`] draws operands in the domain, and a target value for `f`. It draws half of the targets evenly, and half
 //!    with an evenly drawn logarithm.
-//! 2. It moves the operands along a straight line toward the peak, the operands with the largest `f`, until the formula has
-//!    about this value.
-//! 3. For one in eight of these points it searches on, for the two neighbouring steps between which the formula crosses the
-//!    value, or leaves 0, and takes one of the two.
+//! 2. It moves the operands along a straight line toward the operands with the largest `f`, until the formula has about the
+//!    target value.
+//! 3. For one in eight of these points, it continues to the two neighbouring operand values between which the formula crosses the
+//!    target, or leaves 0, and takes one of the two.
 //!
 //! The other points are corners of the domain, points that are drawn evenly, or arbitrary bit patterns.
 //!
-//! If a device is no highlight, half of the points come from [`Contract::hint`]: operands at which the formula is steep, bends
-//! or ends.
+//! If a device is no highlight, half of the points come from [`Contract::hint`]: operands at which the formula is steep, bends or
+//! ends.
 
 use std::sync::LazyLock;
 
@@ -53,7 +53,7 @@ const OCTAVES: u32 = 32;
 const SETTINGS: u32 = 8;
 const MOVED: usize = 6;
 
-/// The source of a point's operands.
+/// Draws the operands of random points for a contract.
 pub struct PointSource<'a> {
     contract: &'a dyn Contract,
     /// The highlight, if the device multiplies by an f. Without a highlight there is no value by which to draw points.
@@ -70,7 +70,7 @@ pub struct PointSource<'a> {
 }
 
 impl<'a> PointSource<'a> {
-    /// Prepares to draw points for a contract, and finds the peak of its highlight if it has one.
+    /// Prepares to draw points for a contract. If the device is a highlight, it finds the operands with the largest `f`.
     pub fn new(contract: &'a dyn Contract) -> Self {
         let highlight = contract.highlight();
         let operands = contract.operands().to_vec();
@@ -91,7 +91,7 @@ impl<'a> PointSource<'a> {
         held.for_each(|operand| operand.domain = (raw, raw));
     }
 
-    /// Draws no more than `most` for the length of a line.
+    /// Limits the drawn lengths of lines to `most`.
     pub fn shorten(&mut self, most: i64) {
         if let Some(at) = self.length {
             let (low, high) = self.operands[at].domain;
@@ -108,12 +108,13 @@ impl<'a> PointSource<'a> {
         values
     }
 
-    /// Returns the operands, in the order in which values are passed.
+    /// Returns the operands of the contract. Raw values are passed in this order.
     pub fn operands(&self) -> &[Operand] {
         &self.operands
     }
 
-    /// Draws new raw values for the operands whose bit is set in `free`. Other operands change too if they lead to the peak.
+    /// Draws new raw values for the operands whose bit is set in `free`. Other operands may change too if the search toward the
+    /// largest `f` moves them.
     pub fn draw(&self, random: &mut Random, values: &mut [i64], free: u64) {
         let kind = random.within(0, KINDS - 1);
         self.draw_kind(random, values, free, kind);
@@ -132,12 +133,12 @@ impl<'a> PointSource<'a> {
         self.operands.iter().map(|it| random.within(it.domain.0, it.domain.1)).collect()
     }
 
-    /// Draws operands by [`Contract::hint`], and clamps them to their domains. Returns `None` if the contract gives no hints.
+    /// Draws operands with [`Contract::hint`], and clamps them to their domains. Returns `None` if the contract has no hints.
     pub fn hint(&self, random: &mut Random) -> Option<Vec<i64>> {
         self.contract.hint(&mut || random.unit()).map(|hint| self.clamped(hint))
     }
 
-    /// Returns the position of the operand that says how many results a computation has.
+    /// Returns the index of the operand that gives the number of results of a computation.
     pub fn length(&self) -> Option<usize> {
         self.length
     }
@@ -171,8 +172,8 @@ impl<'a> PointSource<'a> {
         }
     }
 
-    /// Returns a raw value for one operand, drawn on its own: often an end of the domain or close to one, and of a length a
-    /// short one more often than not, so that long computations do not crowd out all others.
+    /// Returns a random raw value for operand number `at`, often an end of the domain or close to one. A length is usually short,
+    /// so that long computations do not take most of the time.
     pub fn one(&self, random: &mut Random, at: usize) -> i64 {
         let (low, high) = self.operands[at].domain;
         if self.length != Some(at) || random.once_in(16) {
@@ -238,8 +239,8 @@ impl<'a> PointSource<'a> {
         way.go(scale, far);
     }
 
-    /// Finds the edge of the highlight on the way from the peak to `control`. Returns the last control operands at which the
-    /// formula is above its value at the far end (for example 0), and the first at which it is not.
+    /// Finds the edge of the highlight on the straight line from the operands with the largest `f` to `control`. Returns the last
+    /// operands at which the formula is above its value at the far end, for example 0, and the first at which it is not.
     pub fn edge(&self, control: &[i64]) -> Option<[Vec<i64>; 2]> {
         let (way, highlight) = self.way(control).zip(self.highlight)?;
         let target = way.bottom + f64::MIN_POSITIVE;
@@ -250,7 +251,7 @@ impl<'a> PointSource<'a> {
         }))
     }
 
-    /// Moves control operands toward the peak, to about a value of the formula.
+    /// Moves the operands that determine `f` toward the largest `f`, until the formula has about the given value.
     pub fn to_value(&self, control: &mut [i64], value: f64) {
         if let Some((way, highlight)) = self.way(control).zip(self.highlight) {
             let [inner, _] = way.crossing(highlight, value, false, control);
@@ -258,8 +259,8 @@ impl<'a> PointSource<'a> {
         }
     }
 
-    /// Takes the control operands that do not lead to the peak to the ends of their domains for which the formula is
-    /// nearest to its middle, so that it is seen.
+    /// Moves some operands to the ends of their domains at which the formula is nearest to the middle of its range, so that
+    /// errors show. It does not move the operands that lead to the largest `f`.
     pub fn show(&self, control: &mut [i64]) {
         let Some(highlight) = self.highlight else { return };
         let rest =
@@ -348,7 +349,7 @@ impl<'a> PointSource<'a> {
     }
 }
 
-/// Returns the position of the operand that says how many results a computation has.
+/// Returns the index of the operand that gives the number of results of a computation.
 pub(super) fn length(contract: &dyn Contract) -> Option<usize> {
     let length = contract.length();
     contract.operands().iter().position(|operand| Some(operand.name.as_str()) == length)

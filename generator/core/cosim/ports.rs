@@ -1,4 +1,6 @@
-//! Finds the ports of a design once, for everything that drives it and reads it.
+//! Finds the ports of a design by name: the handshake, the operands and the results.
+//!
+//! Everything that drives or reads a simulated design uses the same list of ports.
 
 use anyhow::{Context, Result, ensure};
 
@@ -6,10 +8,10 @@ use glint_base::fixed::{Format, mask};
 use glint_golden::Contract;
 use glint_rtl::netlist::{Design, NetId, Role};
 
-/// The ports of a design. Inputs are positions among its inputs.
+/// The ports of a design by their roles. An input is the index among the design's inputs.
 #[derive(Clone, Debug)]
 pub(super) struct Ports {
-    /// How many inputs there are.
+    /// The number of inputs.
     pub(super) inputs: usize,
     pub(super) reset: usize,
     /// The port `start`, or `in_valid` if the design is a pipeline.
@@ -20,17 +22,17 @@ pub(super) struct Ports {
     /// The operands of the contract, in the order of the design.
     pub(super) operands: Vec<OperandPort>,
     pub(super) valid: NetId,
-    /// The outputs `busy` and `done` of a core.
+    /// The outputs `busy` and `done`, which a core with a microprogram has.
     pub(super) busy: Option<NetId>,
     pub(super) done: Option<NetId>,
-    /// Whether `start` is heard while `done` is high.
+    /// Whether the core takes a `start` in the clock in which `done` is high.
     pub(super) overlaps: bool,
     pub(super) side_out: Option<NetId>,
-    /// The outputs of the contract, in its order.
+    /// The result outputs, in the order of the contract.
     pub(super) results: Vec<(NetId, Format)>,
 }
 
-/// An operand among the inputs.
+/// The port of an operand.
 #[derive(Clone, Debug)]
 pub(super) struct OperandPort {
     pub(super) name: String,
@@ -38,18 +40,18 @@ pub(super) struct OperandPort {
     /// The strobe of the operand. A pipeline takes all operands at once, so this is `in_valid` there.
     pub(super) strobe: usize,
     pub(super) format: Format,
-    /// Its position among the operands of the contract.
+    /// The index of the operand in the contract.
     pub(super) at: usize,
 }
 
 impl OperandPort {
-    /// Returns the bit pattern at the port of its value among raw operands, in the order of the contract.
+    /// Returns the bit pattern for this port from raw operands in the order of the contract.
     #[inline]
     pub(super) fn pattern(&self, raw: &[i64]) -> u64 {
         raw[self.at] as u64 & mask(self.format.width())
     }
 
-    /// Returns its raw value among the inputs.
+    /// Returns the raw value of this port from the values of all inputs.
     #[inline]
     pub(super) fn raw(&self, inputs: &[u64]) -> i64 {
         self.format.raw(inputs[self.data]) as i64
@@ -57,7 +59,7 @@ impl OperandPort {
 }
 
 impl Ports {
-    /// Finds the ports of a design.
+    /// Finds the ports of a design by their roles.
     ///
     /// # Errors
     /// Fails if the design lacks a port of the handshake or an output, or has a strobe that is no input. Fails also if design

@@ -1,10 +1,10 @@
-//! Draws pseudo-random numbers, the same on every machine.
+//! Draws pseudo-random numbers. The same seed gives the same numbers on every machine.
 
 use glint_base::fixed::{exp2, mask};
 use glint_golden::Operand;
 
-/// A small deterministic generator (SplitMix64): the same numbers on every machine, and fast enough
-/// not to matter beside the simulation.
+/// A small deterministic random number generator (SplitMix64). It gives the same numbers on every machine, and is fast compared
+/// with the simulation.
 #[derive(Clone, Debug)]
 pub struct Random(u64);
 
@@ -37,12 +37,12 @@ fn magnitude([first, second]: [u64; 2], most: u64) -> u64 {
 }
 
 impl Random {
-    /// Starts the sequence of a seed.
+    /// Makes a generator from a seed.
     pub fn new(seed: u64) -> Self {
         Self(seed)
     }
 
-    /// Returns the next 64 bits.
+    /// Returns 64 random bits.
     pub fn bits(&mut self) -> u64 {
         let bits = self.ahead(1);
         self.skip(1);
@@ -68,7 +68,7 @@ impl Random {
         scaled(self.bits(), below)
     }
 
-    /// Returns true once in `times`, on average.
+    /// Returns true with the probability 1 / `times`.
     pub fn once_in(&mut self, times: u64) -> bool {
         self.below(times) == 0
     }
@@ -104,14 +104,15 @@ impl Random {
         values[place]
     }
 
-    /// Returns a bit pattern for an operand: mostly of its domain, as [`Random::of_domain`] draws it, at times any.
+    /// Returns a random bit pattern for an operand: usually a value of its domain, drawn by [`Random::of_domain`], and sometimes
+    /// any bits.
     pub fn pattern(&mut self, operand: &Operand) -> u64 {
         let raw =
             if self.once_in(16) { self.bits() as i64 } else { self.of_domain(operand.domain) };
         raw as u64 & mask(operand.format.width())
     }
 
-    /// Returns an integer from 0 to `most`, of each magnitude as often as of any other.
+    /// Returns a random integer from 0 to `most`, in which each number of digits is equally likely.
     pub fn magnitude(&mut self, most: u64) -> u64 {
         magnitude([self.bits(), self.bits()], most)
     }

@@ -1,8 +1,8 @@
-//! Replays recorded inputs clock by clock. After the last clock it begins again with the first.
+//! Replays recorded inputs of a design, clock by clock, and begins again with the first clock after the last.
 
 use std::sync::Arc;
 
-/// The inputs of some clocks, one clock after another.
+/// The recorded inputs of a design, clock by clock.
 #[derive(Debug)]
 pub(super) struct Recording {
     words: Vec<u64>,
@@ -17,7 +17,7 @@ impl Recording {
     }
 }
 
-/// A stream of recorded inputs.
+/// Replays a recording from its first clock on.
 pub(super) struct RecordedInputs {
     recording: Arc<Recording>,
     /// The position at which the inputs of the next clock begin.
@@ -38,7 +38,7 @@ impl RecordedInputs {
         &words[first..self.next]
     }
 
-    /// Returns the latest inputs.
+    /// Returns the inputs of the latest clock.
     #[inline]
     pub(super) fn inputs(&self) -> &[u64] {
         &self.recording.words[self.next - self.recording.inputs..self.next]

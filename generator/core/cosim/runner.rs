@@ -1,4 +1,4 @@
-//! Runs streams side by side in the lanes of one simulator, and compares every signal on every clock.
+//! Runs several streams of random inputs in the lanes of one simulator, and compares every predicted signal at every clock.
 
 use std::io::Write;
 use std::mem;
@@ -44,7 +44,7 @@ struct PredictedClock<const LANES: usize> {
 }
 
 impl<'a, const LANES: usize> Runner<'a, LANES> {
-    /// Starts a stream for each course, at power-up.
+    /// Makes a stream for each course, beginning at power-up.
     ///
     /// # Errors
     /// Fails if the design cannot be simulated.
@@ -74,7 +74,7 @@ impl<'a, const LANES: usize> Runner<'a, LANES> {
         })
     }
 
-    /// Returns whether every stream has ended up to the first that differs.
+    /// Returns whether the run is over: every stream before the first that differs has ended.
     pub(super) fn ended(&self) -> bool {
         for (stream, differs) in self.streams.iter().zip(self.differ) {
             if differs || !stream.ended() || stream.seen.mismatch.is_some() {
@@ -84,7 +84,7 @@ impl<'a, const LANES: usize> Runner<'a, LANES> {
         true
     }
 
-    /// Returns the first stream in which something differs.
+    /// Returns the first stream in which model and hardware differ.
     pub(super) fn first_that_differs(&self) -> Option<usize> {
         let mut streams = self.streams.iter().zip(self.differ);
         streams.position(|(stream, differs)| differs || stream.seen.mismatch.is_some())
@@ -95,7 +95,7 @@ impl<'a, const LANES: usize> Runner<'a, LANES> {
         &mut self.streams[0]
     }
 
-    /// Runs some clocks of all streams that have not ended, and returns the number of results seen in them.
+    /// Runs some clocks of all streams that have not ended, and returns the number of results in these clocks.
     ///
     /// # Errors
     /// Fails if the simulation does not settle, if the VCD cannot be written, or if a model does not end.
@@ -107,7 +107,7 @@ impl<'a, const LANES: usize> Runner<'a, LANES> {
         Ok(points(&self.streams) - before)
     }
 
-    /// Lets all streams that have not ended make the inputs of the next clocks and the predictions after each.
+    /// Computes the inputs and the predictions of the next clocks, for all streams that have not ended.
     ///
     /// # Errors
     /// Fails if a model does not end.
@@ -139,7 +139,7 @@ impl<'a, const LANES: usize> Runner<'a, LANES> {
         Ok(())
     }
 
-    /// Simulates the clocks that are prepared, and compares everything that can be compared after each.
+    /// Simulates the prepared clocks, and compares every predicted signal after each.
     ///
     /// # Errors
     /// Fails if the simulation does not settle, or if the VCD cannot be written.
@@ -171,7 +171,7 @@ impl<'a, const LANES: usize> Runner<'a, LANES> {
         Ok(())
     }
 
-    /// Returns the record of each, up to the first that differs.
+    /// Returns the outcomes of the streams, up to the first that differs.
     ///
     /// # Errors
     /// Fails as [`Runner::run`] does.
@@ -191,7 +191,7 @@ impl<'a, const LANES: usize> Runner<'a, LANES> {
 }
 
 impl Runner<'_, 1> {
-    /// Continues to the end, or until the given number of clocks is done.
+    /// Runs until all streams have ended or the given number of clocks is done.
     ///
     /// # Errors
     /// Fails as [`Runner::run`] does.
@@ -202,7 +202,7 @@ impl Runner<'_, 1> {
         Ok(())
     }
 
-    /// Goes to the end; `file` takes the waveform from clock `from` on.
+    /// Runs to the end, and writes the waveform from clock `from` on into `file`.
     ///
     /// # Errors
     /// Fails as [`Runner::run`] does.

@@ -30,14 +30,14 @@ const MOST_AROUND: u64 = 1 << 16;
 /// How many starts are climbed from before only the highest places are kept: memory does not grow with the starts.
 const BATCH: u64 = 1 << 10;
 
-/// An error of an output, and where.
+/// An error that the search has found, with its operands and its output.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Reached {
-    /// In output units; infinite where the formula has no value.
+    /// The error in output units. It is infinite if the formula has no value there.
     pub units: f64,
     /// The raw operands, in the order of the contract.
     pub operands: Vec<i64>,
-    /// The output, by its position in the contract.
+    /// The index of the output in the contract.
     pub output: usize,
     /// The output, in its units, and the formula's value.
     pub raw: i64,
@@ -45,7 +45,7 @@ pub struct Reached {
 }
 
 impl Reached {
-    /// Returns the largest error of an output at raw operands; `None` without an output.
+    /// Returns the largest error of an output at raw operands, or `None` if the contract has no output.
     pub fn at(contract: &dyn Contract, operands: Vec<i64>) -> Option<Self> {
         let (mut raw, mut exact) = (Vec::new(), Vec::new());
         contract.results(&operands, 0, &mut raw);
@@ -68,13 +68,14 @@ fn larger(a: Reached, b: Reached) -> Reached {
     if b.units > a.units { b } else { a }
 }
 
-/// Returns how often [`worst`] calls `progress`.
+/// Returns the number of times that [`worst`] calls `progress`.
 pub fn steps(starts: u64) -> u64 {
     starts.saturating_add(starts.min(HIGHEST as u64))
 }
 
-/// Returns the largest error that is reached from `starts` starts, drawn by a seed: the same on any number of threads. `progress`
-/// is called after each, and after each place that is looked around. `None` for no start.
+/// Searches from `starts` random points and returns the largest error that it finds, or `None` if `starts` is 0. The result
+/// depends on the seed but not on the number of threads. It calls `progress` after each start, and after each place whose
+/// neighbourhood it has searched.
 pub fn worst(
     contract: &dyn Contract,
     starts: u64,

@@ -1,4 +1,4 @@
-//! Predicts a core with a microprogram clock by clock, from its golden model.
+//! Predicts the signals of a core with a microprogram at every clock, with the core's golden model.
 
 use std::mem;
 
@@ -10,7 +10,7 @@ use super::ports::Ports;
 use glint_golden::Model;
 use glint_rtl::netlist::{Design, NetId, RegisterKind};
 
-/// A golden model under the inputs of a core.
+/// The golden model of a core with a microprogram, which gets the same inputs as the core.
 #[derive(Clone)]
 pub(super) struct SequentialModel {
     model: Box<dyn Model>,
@@ -22,7 +22,7 @@ pub(super) struct SequentialModel {
     busy: usize,
     valid: usize,
     overlaps: Option<usize>,
-    /// Whether it does not hear `start`.
+    /// Whether the core ignores `start` in the next clock.
     pub(super) deaf: bool,
     /// Results since the latest start.
     index: u64,
@@ -32,7 +32,7 @@ pub(super) struct SequentialModel {
 }
 
 impl SequentialModel {
-    /// Returns the model of a core, and the nets that it predicts, in its order.
+    /// Returns the model of a core, and the nets that it predicts, in the order of the predictions.
     ///
     /// # Errors
     /// Fails if one side has a name that the other does not have.
@@ -88,7 +88,7 @@ impl SequentialModel {
         }
     }
 
-    /// Returns the prediction of the model after the latest clock.
+    /// Returns the predicted values after the latest clock.
     #[inline]
     pub(super) fn predicted(&self) -> &[u64] {
         self.model.values()
@@ -132,7 +132,7 @@ impl SequentialModel {
     }
 }
 
-/// Returns the registers that a golden model must predict.
+/// Returns the registers of a design that its golden model must predict.
 pub(super) fn registers(design: &Design) -> impl Iterator<Item = NetId> {
     let registers = design.registers.iter();
     let registers = registers.filter(|register| register.kind != RegisterKind::Internal);

@@ -1,12 +1,12 @@
 //! Draws the inputs of a core with a microprogram, clock by clock.
 //!
-//! A stimulus mixes everything that a device meets: points with idle gaps and back to back; operands written one after
-//! another, all at once or together with `start`; operands left from the point before; writes and starts while busy; and
-//! resets in the middle of a computation. It reacts to `busy`, as a host does, and is a function of its seed.
+//! The inputs cover all that a host may do: computations with idle gaps or back to back; operands written one after another, all
+//! at once or together with `start`; operands left from the previous computation; writes and starts while the core is busy; and
+//! resets in the middle of a computation. The stimulus reacts to `busy`, as a host does. The same seed gives the same inputs.
 //!
-//! At the start of a computation, the stimulus draws whether and when it is reset. Times of every magnitude are equally
-//! likely. Resets therefore come often in the middle of a computation of ten clocks, and most computations of thousands of
-//! clocks still reach their end.
+//! At the start of a computation, the stimulus draws whether and after how many clocks it is reset. Short and long delays are
+//! equally likely on a logarithmic scale. Resets therefore often hit a computation of ten clocks, and most computations of
+//! thousands of clocks still finish.
 
 use std::sync::Arc;
 
@@ -31,7 +31,7 @@ enum Phase {
     Running(Option<u64>),
 }
 
-/// The inputs of a device, clock by clock.
+/// The random inputs of a core with a microprogram, clock by clock.
 pub(super) struct Stimulus {
     ports: Arc<Ports>,
     random: Random,
@@ -49,7 +49,7 @@ pub(super) struct Stimulus {
 }
 
 impl Stimulus {
-    /// Makes the stimulus of a seed, from power-up on.
+    /// Makes the stimulus of a seed, beginning at power-up.
     pub(super) fn new(ports: &Arc<Ports>, seed: u64) -> Self {
         let nothing = vec![0; ports.operands.len()];
         Self {
@@ -65,7 +65,7 @@ impl Stimulus {
         }
     }
 
-    /// Returns the raw values of the latest computation, in the order of the points.
+    /// Returns the raw operands of the latest computation that the core took, in the order of the contract.
     pub(super) fn accepted(&self) -> &[i64] {
         self.taken.as_ref().unwrap_or(&self.written)
     }
@@ -101,13 +101,13 @@ impl Stimulus {
         &self.inputs
     }
 
-    /// Returns whether the latest inputs drive nothing.
+    /// Returns whether the latest inputs neither start, write nor reset anything.
     #[inline]
     pub(super) fn is_idle(&self) -> bool {
         self.idle
     }
 
-    /// Returns the latest inputs.
+    /// Returns the inputs of the latest clock.
     #[inline]
     pub(super) fn inputs(&self) -> &[u64] {
         &self.inputs

@@ -1,4 +1,4 @@
-//! Runs one stream: makes its inputs from power-up on, and predicts the hardware's signals with the golden model.
+//! Runs one stream: draws the inputs of a simulated instance from power-up on, and predicts its signals with the golden model.
 
 use anyhow::Result;
 
@@ -50,19 +50,20 @@ impl Source {
     }
 }
 
-/// A stream. It predicts signals; the caller compares them with the simulated hardware.
+/// A stream: the inputs of one simulated instance, and the predictions of its signals. The caller compares the predictions with
+/// the simulation.
 pub(super) struct Stream {
     pub(super) seen: StreamRecord,
-    /// Its course, for another to go the same way.
+    /// The kind of inputs and their seed or number, from which the same stream can be made again.
     pub(super) course: Course,
     source: Source,
     host: Host,
-    /// Clocks from the start of the combination that differs to the difference.
+    /// For combinations, the number of clocks from the `start` of the combination that differs to the difference.
     pub(super) since_start: u64,
 }
 
 impl Stream {
-    /// Starts a stream at power-up, when the device shows `busy`.
+    /// Begins a stream at power-up. `busy` is the value of the device's output at power-up.
     pub(super) fn new(binding: &Binding, course: Course, busy: bool) -> Self {
         let mut host = binding.host.clone();
         if let Host::Core(core) = &mut host {
@@ -81,8 +82,8 @@ impl Stream {
         Self { seen: StreamRecord::default(), course, source, host, since_start: 0 }
     }
 
-    /// Returns whether it has come to the end of its course, or something differs. Of combinations in a pipeline those before the
-    /// one that differs are still gone through.
+    /// Returns whether the stream has ended, because its inputs are at an end or because a signal differs. In a pipeline,
+    /// combinations that were taken before the one that differs are still finished.
     pub(super) fn ended(&self) -> bool {
         match (&self.course, &self.seen.mismatch) {
             (Course::Combinations { .. }, Some(found)) => {
@@ -101,7 +102,8 @@ impl Stream {
         }
     }
 
-    /// Continues from the present state of the device, with computations of these raw operands in the order of the contract.
+    /// Continues the stream from the present state of the device with some computations, whose raw operands are in the order of
+    /// the contract.
     pub(super) fn follow(&mut self, binding: &Binding, computations: &[Vec<i64>]) {
         let count = computations.len() as u64;
         self.course = Course::Combinations { first: 0, count };
@@ -113,7 +115,7 @@ impl Stream {
         }
     }
 
-    /// Advances the model by one clock, with the next inputs of the stream.
+    /// Advances the model by one clock, with the next inputs.
     #[inline]
     pub(super) fn clock(&mut self, binding: &Binding) -> Result<()> {
         let (deaf, taken) = match &self.host {
@@ -149,7 +151,7 @@ impl Stream {
         self.source.inputs()
     }
 
-    /// Returns whether the stream drives nothing with its latest inputs.
+    /// Returns whether the latest inputs neither start, write nor reset anything.
     #[inline]
     pub(super) fn is_idle(&self) -> bool {
         matches!(&self.source, Source::Stimulus(stimulus) if stimulus.is_idle())
@@ -233,7 +235,7 @@ impl Stream {
         });
     }
 
-    /// Takes note of a result of a core, if there is one, as predicted.
+    /// Counts and measures the predicted result of a core, if the core shows one after the latest clock.
     #[inline]
     pub(super) fn note(&mut self, binding: &Binding) {
         if let Host::Core(core) = &mut self.host {

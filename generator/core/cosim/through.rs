@@ -1,4 +1,4 @@
-//! Sends points through a pipeline in the built-in simulator, and records the values of its nets.
+//! Simulates a few points in a pipeline, and records the values of chosen nets at every clock, for example for a timing diagram.
 
 use anyhow::{Result, bail};
 

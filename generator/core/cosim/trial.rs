@@ -1,5 +1,7 @@
-//! Runs one computation of a design in the built-in simulator. The runs give the timing, a worked example, a recording, and a
-//! list of computations for users who check the device without a model.
+//! Runs single computations of a design in the built-in simulator, and records facts for manifests and pages.
+//!
+//! The runs measure the clocks between `start`, `valid` and `done`. They also give a worked example, a recording of chosen nets,
+//! and a list of computations by which users can check the device without a model.
 
 use anyhow::{Context, Result, ensure};
 

@@ -1,5 +1,7 @@
-//! Generates the self-checking test bench of a core and its vectors: stimulus, and the outputs that are expected. For example,
-//! `rough` has `rough_tb.v`, `rough_stimulus.mem` and `rough_expected.mem`.
+//! Generates the self-checking test bench of a core in Verilog, with its stimulus and the expected outputs of every clock.
+//!
+//! For example, `rough` has `rough_tb.v`, `rough_stimulus.mem` and `rough_expected.mem`. The bench reads both `.mem` files, and
+//! compares the core's outputs with the expected outputs.
 
 use anyhow::{Result, ensure};
 use glint_base::fill;
@@ -37,7 +39,7 @@ struct StepLabel {
     name: String,
 }
 
-/// Adds the bench, the stimulus and the expected outputs.
+/// Adds the test bench, its stimulus and the expected outputs to `files`.
 ///
 /// # Errors
 /// Fails if the vectors do not fit the ports.
@@ -173,8 +175,8 @@ fn vector_file(design: &Design, title: &str, ports: &[&Port], rows: &[Vec<u64>])
     Ok(lines.join("\n") + "\n")
 }
 
-/// Returns the values side by side, the first on top, in hexadecimal digits. For example, 1 in one bit and 5 in three bits give
-/// `d`.
+/// Concatenates the values of a row, the first in the highest bits, and returns hexadecimal digits. For example, 1 in one bit and
+/// 5 in three bits give `d`.
 pub(super) fn packed(row: &[u64], widths: &[u32]) -> String {
     let total: u32 = widths.iter().sum();
     let mut digits = vec![0u8; total.div_ceil(4) as usize];

@@ -1,25 +1,27 @@
-//! Describes the buses that registers can be on, as data: keys, ports, and the Verilog of each bus.
+//! Describes the buses on which a core's registers can be: AXI4-Lite and Wishbone.
+//!
+//! Each bus is a row of data: the value of the key `interface.registers`, the ports, and the templates of its Verilog.
 
 use anyhow::Result;
 use glint_base::fill;
 
-/// A bus on which registers are.
+/// A bus on which the registers of a core can be.
 #[derive(Debug)]
 pub struct Bus {
-    /// As the key `interface.registers` names it.
+    /// The value of the key `interface.registers` that selects this bus.
     pub key: &'static str,
-    /// For people.
+    /// The name of the bus in messages and comments.
     pub title: &'static str,
-    /// The end of the name of a module on it. For example, `axil` in `threshold_levels_axil`.
+    /// The suffix of the names of modules on this bus. For example, `axil` in `threshold_levels_axil`.
     pub suffix: &'static str,
-    /// The level of the reset that resets.
+    /// The level at which the reset port of the bus resets.
     pub reset_level: u8,
     /// The ports, clock and reset first: direction, name, the width of a vector, and for a port that LiteX connects its
     /// signal. `#` denotes the number of bits of an address.
     pub ports: &'static str,
     /// The interface that tools find by the names of its ports, if there is a definition of it.
     pub protocol: &'static [Protocol],
-    /// The interface of LiteX.
+    /// The Python expression that makes this bus in LiteX.
     pub litex: &'static str,
     /// Makes the module on the bus, and its proof. Its parameters are the name of the core, the configuration that makes it,
     /// and the highest bit of an address.
@@ -32,22 +34,22 @@ impl PartialEq for Bus {
     }
 }
 
-/// An interface of ports that tools know by its definition.
+/// A standard interface, which tools recognise by the names of its ports.
 #[derive(Debug)]
 pub struct Protocol {
-    /// The prefix of the names of its ports.
+    /// The prefix of the port names.
     pub name: &'static str,
-    /// The name of ARM's definition for IP-XACT.
+    /// The name of the interface in ARM's definitions for IP-XACT.
     pub amba: &'static str,
-    /// The version of the definition.
+    /// The version of ARM's definition.
     pub version: &'static str,
-    /// The type of an interface in Platform Designer.
+    /// The type of the interface in Intel's Platform Designer.
     pub platform: &'static str,
     /// Whether the module is the receiving side of the interface.
     pub is_slave: bool,
 }
 
-/// The interfaces between two AXI4-Streams.
+/// The input stream and the output stream of an AXI4-Stream wrapper.
 pub static STREAMS: [Protocol; 2] = [stream("s_axis", true), stream("m_axis", false)];
 
 /// Returns the interface of an AXI4-Stream.
@@ -55,7 +57,7 @@ const fn stream(name: &'static str, is_slave: bool) -> Protocol {
     Protocol { name, amba: "AXI4Stream", version: "r0p0_1", platform: "axi4stream", is_slave }
 }
 
-/// All buses.
+/// The buses that a core's registers can be on.
 pub static BUSES: [Bus; 2] = [
     Bus {
         key: "axi-lite",

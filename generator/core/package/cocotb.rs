@@ -1,5 +1,6 @@
-//! Generates the test bench in Python, for cocotb, and the driver that the benches of all configurations share. For example,
-//! the bench of `rough` is `test_rough.py`.
+//! Generates the test bench of a core in Python, for cocotb, and the Python driver that the benches of all configurations share.
+//!
+//! For example, the bench of `rough` is `test_rough.py`.
 
 use anyhow::Result;
 use glint_base::fill;

@@ -1,6 +1,8 @@
-//! Collects the data that the generators of a core's files read: the netlist, facts such as the clocks of a computation, the
-//! names of modules and memories in the Verilog, and the registers on a bus. For example, the test bench takes the ports from
-//! `design`, and the name of the control unit's instance from `naming`.
+//! Collects the data of one core that the generators of its files read.
+//!
+//! An [`EmitJob`] has the netlist, facts such as the clocks of a computation, the names of modules and memories in the emitted
+//! Verilog, and the core's registers on a bus. For example, the generator of the test bench takes the ports from `design`, and
+//! the name of the control unit's instance from `naming`.
 
 use super::bus::Bus;
 use super::inputs::EmitInputs;
@@ -23,12 +25,12 @@ impl<'a> EmitJob<'a> {
         &self.design.name
     }
 
-    /// Returns the command that makes the files again.
+    /// Returns the command that generates the files again, which their heads quote.
     pub fn regenerate(&self) -> &'a str {
         &self.inputs.regenerate
     }
 
-    /// Returns whether the core computes lines of points.
+    /// Returns whether the core computes a line of points after one start.
     pub fn is_line(&self) -> bool {
         self.inputs.accuracy.as_ref().is_some_and(|accuracy| accuracy.length.is_some())
     }

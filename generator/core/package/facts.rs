@@ -1,6 +1,6 @@
-//! Lists the facts of a device: ports, fields of the control word, microprogram, ROMs.
+//! Lists the facts of a core that its files and pages describe: ports, fields of the control word, microprogram and ROMs.
 //!
-//! The manifest writes them as JSON, the page as tables.
+//! The manifest prints these lists as JSON, and documentation pages print them as tables.
 
 use serde::{Serialize, Serializer, ser::SerializeMap};
 
@@ -11,28 +11,28 @@ use glint_rtl::verilog::naming::{Naming, is_control_rom};
 /// writes it.
 #[derive(Default, Serialize)]
 pub struct PortFacts<'a> {
-    /// Its name.
+    /// The name of the port.
     pub name: &'a str,
-    /// `input` or `output`.
+    /// Whether the port is an `input` or an `output`.
     pub direction: &'static str,
     /// The role of the port.
     pub role: &'static str,
-    /// In bits.
+    /// The number of bits.
     pub width: u32,
-    /// The format of operands, results and status.
+    /// The number format, if the port is an operand, a result or a status bit.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub format: Option<String>,
     #[serde(skip_serializing_if = "Option::is_none")]
     signed: Option<bool>,
     #[serde(skip_serializing_if = "Option::is_none")]
     fraction_bits: Option<i32>,
-    /// The port that writes the operand.
+    /// For an operand, the port that writes it.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub strobe: Option<&'a str>,
-    /// The number in the source's figure.
+    /// The number of the port's block in the source's figure.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub block: Option<u16>,
-    /// One line.
+    /// A description of one line.
     #[serde(skip_serializing_if = "str::is_empty")]
     pub doc: &'a str,
 }
@@ -41,37 +41,37 @@ pub struct PortFacts<'a> {
 /// `sines`, `half_n` and `square`.
 #[derive(Serialize)]
 pub struct FieldFacts<'a> {
-    /// Its name.
+    /// The name of the field.
     pub name: &'a str,
     /// The kind of the field: `select`, `enable`, `flag` or `sequence`.
     pub kind: &'static str,
-    /// Its lowest bit in the control word.
+    /// The lowest bit of the field in the control word.
     pub low: u32,
-    /// In bits.
+    /// The number of bits.
     pub width: u32,
     /// The choices of a select's values, from 0.
     #[serde(skip_serializing_if = "<[_]>::is_empty")]
     pub choices: &'a [String],
-    /// The numbers of its lines in the source's figure.
+    /// The numbers of the field's control lines in the source's figure.
     #[serde(skip_serializing_if = "<[_]>::is_empty")]
     pub lines: &'a [u16],
 }
 
-/// A microinstruction. For example, microinstruction 3 of `rough` is named `12 <- sin gamma * sin dgamma`.
+/// A microinstruction with its fields. For example, microinstruction 3 of `rough` is named `12 <- sin gamma * sin dgamma`.
 #[derive(Serialize)]
 pub struct MicroinstructionFacts<'a> {
-    /// Its address.
+    /// The address of the microinstruction in the control ROM.
     pub address: usize,
     /// The name of the operation.
     pub name: &'a str,
-    /// The value of each field, in their order.
+    /// The value of each field, in the order of the fields.
     #[serde(serialize_with = "as_map")]
     pub fields: Vec<(&'a str, u64)>,
-    /// The successor.
+    /// The microinstruction that follows.
     pub sequence: SequenceFacts<'a>,
 }
 
-/// Where control goes after a microinstruction.
+/// Which microinstruction follows another.
 #[derive(Serialize)]
 #[serde(untagged)]
 pub enum SequenceFacts<'a> {
@@ -98,31 +98,31 @@ pub enum SequenceFacts<'a> {
 /// A ROM. For example, `sine` of `rough` has 584 words of 35 bits, which are 20440 bits in all.
 #[derive(Serialize)]
 pub struct RomFacts<'a> {
-    /// Its name in the description.
+    /// The name of the ROM in the device's description.
     pub name: &'a str,
-    /// The file of its contents, unless the Verilog contains the words.
+    /// The file with the ROM's contents; `None` if the Verilog contains the words.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub file: Option<&'a str>,
     #[serde(skip_serializing_if = "Option::is_none")]
     parameter: Option<&'a str>,
-    /// Words.
+    /// The number of words.
     pub depth: usize,
-    /// Bits of a word.
+    /// The number of bits of a word.
     pub width: u32,
-    /// Bits in all.
+    /// The number of bits of all words together.
     pub bits: u64,
-    /// The format of the net that takes a word.
+    /// The number format of a word.
     pub format: String,
-    /// Reads on the clock.
+    /// Whether the ROM is read on the clock edge.
     pub synchronous: bool,
     #[serde(skip_serializing_if = "Option::is_none")]
     radix: Option<u8>,
     /// Its words, where no file has them.
     #[serde(skip_serializing_if = "Option::is_none")]
     words: Option<&'a [u64]>,
-    /// The meaning of an entry.
+    /// The meaning of a word.
     pub doc: &'a [String],
-    /// The number in the source's figure.
+    /// The number of the ROM in the source's figure.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub block: Option<u16>,
 }
@@ -135,7 +135,7 @@ fn as_map<S: Serializer>(pairs: &[(&str, u64)], serializer: S) -> Result<S::Ok, 
     map.end()
 }
 
-/// Returns the ports, the clock first.
+/// Returns the ports of a design, the clock first.
 pub fn ports(design: &Design) -> Vec<PortFacts<'_>> {
     let clock = PortFacts {
         name: "clk",
@@ -192,7 +192,7 @@ fn role(role: Role) -> &'static str {
     }
 }
 
-/// Returns the fields of the control word, from the top bits.
+/// Returns the fields of a design's control word, from the highest bits to the lowest.
 pub fn fields(design: &Design) -> Vec<FieldFacts<'_>> {
     let positions = design.field_positions();
     design
@@ -219,7 +219,7 @@ pub fn fields(design: &Design) -> Vec<FieldFacts<'_>> {
         .collect()
 }
 
-/// Returns the microinstructions, from address 0.
+/// Returns the microinstructions of a design, from address 0.
 pub fn microprogram(design: &Design) -> Vec<MicroinstructionFacts<'_>> {
     let control = &design.control;
     let names = || control.fields.iter().map(|field| field.name.as_str());
@@ -248,7 +248,7 @@ pub fn microprogram(design: &Design) -> Vec<MicroinstructionFacts<'_>> {
         .collect()
 }
 
-/// Returns the ROMs, including the ROM of the microprogram.
+/// Returns the ROMs of a design, including the control ROM.
 pub fn roms<'a>(design: &'a Design, naming: &'a Naming) -> Vec<RomFacts<'a>> {
     let in_file = !naming.style.inline;
     let entry = |(at, rom): (usize, &'a netlist::NetlistRom)| {

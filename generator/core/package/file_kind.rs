@@ -1,4 +1,6 @@
-//! Lists the kinds of files that emission makes. The kind of a file decides its folder and its place in the list of files.
+//! Lists the kinds of files that Glint emits for a core, for example Verilog, memory contents, benches and constraints.
+//!
+//! The kind of a file decides its folder, and its position in the list of files.
 
 use FileKind::{
     Bench, BenchPackage, BenchVectors, BusWrapper, CocotbBench, CocotbDriver, Constraint,

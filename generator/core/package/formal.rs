@@ -1,8 +1,9 @@
-//! Generates the properties of the emitted Verilog of a core with a microprogram, which are proved by k-induction.
+//! Generates formal properties of a core with a microprogram, which Yosys and an SMT solver prove by k-induction.
 //!
-//! Both units carry the invariants that the proof needs, in a section for formal tools alone. A wrapper states the manifest's
-//! promises about the handshake. A Yosys script makes the problem for `yosys-smtbmc`. It cuts out products and the datapath's
-//! ROMs, since no property depends on them.
+//! The generated wrapper asserts the handshake that the manifest promises, for example the clock in which `done` is high. The
+//! emitted Verilog of the core has the invariants that the proof needs, in a section that only formal tools read. A Yosys script
+//! prepares the problem for `yosys-smtbmc`. The script replaces multipliers and ROMs of the datapath by free values, since no
+//! property depends on them.
 
 use anyhow::Result;
 use glint_base::fill;
@@ -67,12 +68,12 @@ struct Latest {
     end: String,
 }
 
-/// The inputs of the Yosys commands that make the problem, alone or for SymbiYosys.
+/// The parameters of the Yosys commands that prepare a proof, for `yosys-smtbmc` or for SymbiYosys.
 pub(super) struct Script<'a> {
     pub(super) name: &'a str,
-    /// The cells whose memories are cut out, as Yosys selects them.
+    /// The cells whose ROMs the proof replaces by free values, as a selection of Yosys.
     pub(super) within: &'a str,
-    /// Registers have initial values.
+    /// Whether registers have initial values.
     pub(super) initial: bool,
 }
 
@@ -119,7 +120,7 @@ fn valid_delay(design: &Design) -> u32 {
     clocks
 }
 
-/// Adds the wrapper and its scripts.
+/// Adds the formal wrapper of a core with a microprogram and the scripts of its proof.
 ///
 /// # Errors
 /// Fails if a template fails.

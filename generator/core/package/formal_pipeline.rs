@@ -1,8 +1,9 @@
-//! Generates the properties of the emitted Verilog of a pipeline, which are proved by k-induction.
+//! Generates formal properties of a pipeline, which Yosys and an SMT solver prove by k-induction.
 //!
-//! A wrapper contains a queue beside the pipeline, and states that the pipeline has points exactly in the stages in which the
-//! queue has them. With a side channel, it follows an arbitrary point, and states that the side value stays with this point.
-//! No property depends on a product or a ROM, so the proof cuts them out.
+//! The generated wrapper has a reference queue: it moves points from stage to stage as the pipeline should. The proof shows that
+//! the pipeline holds points in exactly the same stages as the queue. If the pipeline has a side channel, the wrapper also
+//! follows one arbitrary point, and asserts that the point's side value arrives with it. Multipliers and ROMs are replaced by
+//! free values, since no property depends on them.
 
 use anyhow::Result;
 use glint_base::fill;
@@ -39,7 +40,7 @@ struct SideStage {
     value: String,
 }
 
-/// Adds the wrapper and its scripts.
+/// Adds the formal wrapper of a pipeline and the scripts of its proof.
 ///
 /// # Errors
 /// Fails if a template fails.

@@ -1,5 +1,7 @@
-//! Generates FuseSoC cores (CAPI2): one for the device, and one for the bench. A core may only list files beside it, so the
-//! bench has a core of its own.
+//! Generates the FuseSoC core files (CAPI2) of a device: `<name>.core` for the device, and `<name>_tb.core` for its bench.
+//!
+//! FuseSoC lets a core file list only files in its own directory or below. The bench is in another directory, so it needs a core
+//! file of its own.
 
 use anyhow::Result;
 use glint_base::fill;

@@ -1,30 +1,31 @@
-//! The inputs of emission in addition to the design: clocks, contract, stimulus and surroundings.
+//! Defines the data that emission needs in addition to the netlist: timing, contract, bench vectors, and the wrappers and
+//! packages that the configuration asks for.
 
 use super::surroundings::Surroundings;
 use crate::observation::{Computation, ContractFacts, Vectors, WorkedExample};
 use glint_rtl::netlist::{Design, HandshakeTiming};
 use glint_rtl::verilog::header::Origin;
 
-/// The inputs of the files beyond the design.
+/// The data that emission needs in addition to the netlist.
 #[derive(Clone, Debug, Default)]
 pub struct EmitInputs {
-    /// The command that makes the files again, with the configuration by its [`glint_base::input::label`].
+    /// The command that generates the files again. It names the configuration by its [`glint_base::input::label`].
     pub regenerate: String,
-    /// Tells the configuration from others: SHA-256 in hexadecimal.
+    /// A digest that identifies the configuration: SHA-256 in hexadecimal.
     pub configuration: String,
-    /// Clocks, for header and manifest.
+    /// The number of clocks between the events of the handshake, for the heads of files and the manifest.
     pub timing: HandshakeTiming,
-    /// One computation with all its numbers, for the manifest.
+    /// A computation with the values of all operands and outputs, for the manifest.
     pub example: Option<WorkedExample>,
-    /// The contract of the results, for the manifest.
+    /// The accuracy contract, for the manifest.
     pub accuracy: Option<ContractFacts>,
-    /// Computations with all that they show, for the manifest.
+    /// Computations with their results and clocks, for the manifest.
     pub computations: Vec<Computation>,
-    /// Stimulus and expected outputs; without them there is no bench.
+    /// The vectors of the test bench. Without vectors, no test bench is emitted.
     pub vectors: Option<Vectors>,
-    /// The surroundings of the core.
+    /// The wrappers and packages that the configuration asks for.
     pub around: Surroundings,
-    /// The design with the microprogram from which a pipeline is made: the model in C is made of it.
+    /// For a pipeline, the netlist with a microprogram from which it was made. The model in C is generated from it.
     pub sequential: Option<Design>,
 }
 

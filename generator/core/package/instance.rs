@@ -1,4 +1,4 @@
-//! Writes examples of a device's use in Verilog: wires for the ports of a module, and an instance of it.
+//! Writes example instances of a core and its wrappers in Verilog, with a wire for each port, for the user to copy.
 
 use anyhow::Result;
 
@@ -11,13 +11,13 @@ use glint_rtl::netlist::Design;
 use glint_rtl::verilog::naming::{Naming, remark};
 use glint_rtl::verilog::rows::{Row, separated};
 
-/// An example of a module's use.
+/// An example instance of a module.
 pub struct InstanceExample {
-    /// The module.
+    /// The name of the module.
     pub module: String,
     /// A description of the module in a few words. For example, `the core between two AXI4-Streams`.
     pub what: String,
-    /// Declarations of the wires that its ports are connected to, and an instance. The clock must be declared already.
+    /// The Verilog: declarations of the wires for the module's ports, and the instance. The clock must be declared already.
     pub verilog: String,
 }
 

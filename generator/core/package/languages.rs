@@ -1,4 +1,5 @@
-//! Generates the files for designs in VHDL and SystemVerilog: `<name>.vhd`, and `<name>_pkg.sv`.
+//! Generates declarations of a core's modules for designs in other languages: `<name>.vhd` for VHDL, and `<name>_pkg.sv` for
+//! SystemVerilog.
 
 use anyhow::Result;
 use glint_base::fill;
@@ -13,7 +14,7 @@ use glint_rtl::netlist::{Port, Role};
 use glint_rtl::verilog::rows::separated;
 use glint_rtl::verilog::text::{Names, ascii, comment, constant_name, literal};
 
-/// Adds the files that the configuration asks for.
+/// Adds the VHDL and SystemVerilog files that the configuration asks for.
 ///
 /// # Errors
 /// Fails if a template fails.

@@ -1,5 +1,6 @@
-//! Generates the manifest, `<name>.json`, which describes the device for programs. For example, `rough.json` has the ports, the
-//! timing, the ROMs and the digests of all files of `rough`.
+//! Generates the manifest of a core, `<name>.json`, which describes the core for programs.
+//!
+//! For example, `rough.json` has the ports, the timing, the ROMs and the digests of all files of `rough`.
 
 use anyhow::{Context, Result};
 use serde::Serialize;
@@ -103,7 +104,7 @@ fn file_names(files: &OutputFiles) -> serde_json::Map<String, Value> {
     names
 }
 
-/// Returns the manifest as text, with the digests of all `others`, which are complete but for the manifest.
+/// Returns the text of the manifest, with the digests of all `others`: the files of the configuration except the manifest.
 ///
 /// # Errors
 /// Fails if a number is not finite, because JSON cannot represent it.

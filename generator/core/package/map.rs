@@ -1,5 +1,7 @@
-//! Assigns bus registers to the operands, results and status bits of a core, for the Verilog and for software. For example,
-//! the first operand is at word 8.
+//! Assigns the bus registers of a core: it gives each operand, each result and each status bit an address.
+//!
+//! The Verilog of the bus wrapper, the C header and the documentation use the same assignment. For example, the first operand is
+//! at word 8, which is byte address 32.
 
 use std::collections::BTreeSet;
 
@@ -15,22 +17,23 @@ use glint_rtl::verilog::text::ascii;
 /// Bits of a register.
 const WORD: u32 = 32;
 
-/// The number of registers that never change. They come first.
+/// The number of constant registers. They are the first of the map.
 pub const CONSTANTS: u32 = 4;
 
-/// The first register that can be written; [`INTERRUPT_ENABLE`] and [`INTERRUPT_PENDING`] follow.
+/// The word address of the control register, the first that software can write. [`INTERRUPT_ENABLE`] and [`INTERRUPT_PENDING`]
+/// follow.
 pub const CONTROL: u32 = 5;
 
-/// Its place, in words.
+/// The word address of the register that enables the interrupt.
 pub const INTERRUPT_ENABLE: u32 = 6;
 
-/// Its place, in words.
+/// The word address of the register that shows a pending interrupt.
 pub const INTERRUPT_PENDING: u32 = 7;
 
 /// The place of the first operand, in words.
 const FIRST_OPERAND: u32 = 8;
 
-/// The access of software to bits of a register.
+/// How software can access some bits of a register.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Access {
@@ -44,36 +47,36 @@ pub enum Access {
     Clear,
 }
 
-/// Bits of a register.
+/// A field of a bus register.
 #[derive(Clone, Debug, Deserialize)]
 pub struct RegisterBits {
-    /// Plain lower-case words.
+    /// The name of the field, in plain lower-case words.
     pub name: String,
-    /// The lowest of them.
+    /// The lowest bit of the field.
     #[serde(default)]
     pub low: u32,
-    /// How many.
+    /// The number of bits of the field.
     pub width: u32,
-    /// The access of software to them.
+    /// How software can access the field.
     pub access: Access,
-    /// Their value after a reset.
+    /// The value of the field after a reset.
     #[serde(default)]
     pub reset: u64,
     /// One sentence without its full stop.
     pub doc: String,
 }
 
-/// A register of 32 bits.
+/// A bus register of 32 bits.
 #[derive(Clone, Debug, Deserialize)]
 pub struct BusRegister {
-    /// Plain lower-case words.
+    /// The name of the register, in plain lower-case words.
     pub name: String,
-    /// In words.
+    /// The word address of the register.
     #[serde(default)]
     pub place: u32,
     /// One sentence without its full stop.
     pub doc: String,
-    /// From the lowest on.
+    /// The fields, from the lowest bits to the highest.
     pub bits: Vec<RegisterBits>,
 }
 
@@ -84,46 +87,46 @@ impl BusRegister {
     }
 }
 
-/// A port of the core in the registers that hold it, the lowest bits first. For example, an operand of 40 bits takes two
-/// registers, the first with 32 bits and the second with 8.
+/// The bus registers that hold a port of the core, the lowest bits first. For example, an operand of 40 bits takes two registers,
+/// the first with 32 bits and the second with 8.
 #[derive(Clone, Debug)]
 pub struct PortPlacement {
     /// The name of the port.
     pub name: String,
-    /// Its format.
+    /// The number format of the port.
     pub format: Format,
-    /// The name of the port that writes an operand.
+    /// For an operand, the name of the port that writes it.
     pub strobe: String,
-    /// The parts of it.
+    /// The parts of the port, one in each register.
     pub parts: Vec<PortBits>,
 }
 
-/// Bits of a port in a register.
+/// Some bits of a port, and their position in a bus register.
 #[derive(Clone, Copy, Debug)]
 pub struct PortBits {
-    /// The register, in words.
+    /// The word address of the register.
     pub place: u32,
-    /// The lowest bit in the register.
+    /// The lowest of these bits in the register.
     pub at: u32,
-    /// The lowest bit of the port.
+    /// The lowest of these bits in the port.
     pub low: u32,
-    /// How many.
+    /// The number of these bits.
     pub width: u32,
 }
 
-/// The registers of a core.
+/// The register map of a core.
 #[derive(Clone, Debug)]
 pub struct Map {
-    /// In the order of their places, which have no gap.
+    /// All registers in the order of their addresses, which have no gaps.
     pub registers: Vec<BusRegister>,
-    /// In the order of the ports.
+    /// The registers of the operands, in the order of the ports.
     pub operands: Vec<PortPlacement>,
-    /// In the order of the ports.
+    /// The registers of the results, in the order of the ports.
     pub results: Vec<PortPlacement>,
 }
 
 impl Map {
-    /// Gives the operands, results and status bits of a core their registers.
+    /// Assigns registers to the operands, results and status bits of a core.
     ///
     /// # Errors
     /// Fails if the core is no single computation of operands to results, or if names collide in the map.
@@ -173,17 +176,17 @@ impl Map {
         Ok(map)
     }
 
-    /// Returns the place of the last operand's last register, in words.
+    /// Returns the word address of the last register that holds an operand.
     pub fn last_operand(&self) -> u32 {
         last_place(&self.operands)
     }
 
-    /// Returns the place of the last register, in words, which is one of a result.
+    /// Returns the word address of the last register of the map, which holds a result.
     pub fn last(&self) -> u32 {
         last_place(&self.results)
     }
 
-    /// Returns the number of bits of an address in bytes. For example, a map whose last register has place 15 needs 6.
+    /// Returns the number of bits of a byte address. For example, a map whose last register has word address 15 needs 6 bits.
     pub fn address_bits(&self) -> u32 {
         (4 * self.last()).ilog2() + 1
     }

@@ -1,9 +1,9 @@
-//! Generates the files of a checked [`Design`]: Verilog, ROM contents, manifest, FuseSoC cores, benches, formal
-//! wrappers, bus wrappers and the model in C.
+//! Generates all files of a checked [`Design`]: Verilog, ROM contents, manifest, FuseSoC cores, test benches, formal wrappers,
+//! bus wrappers and the model in C.
 //!
-//! Names and expressions become strings first (`hdl::verilog`), views collect them, and the templates in
-//! `templates/` print views and decide nothing. Emission is pure: it returns files
-//! and writes none, and the same design gives the same bytes.
+//! `hdl::verilog` turns names and expressions of the netlist into strings. Each module here collects such strings in a view, a
+//! plain struct, and a template in `templates/` prints the view. Templates make no decisions. Emission returns the files and
+//! writes nothing to disk, and the same design always gives the same bytes.
 
 /// Declares a structure of a bench's own names. No name is the name of a port.
 macro_rules! fresh_names {
@@ -69,8 +69,8 @@ pub use seal::{Seal, is_sealed, sealed, sealed_json};
 pub use software::check_recomputation;
 pub use surroundings::{Surroundings, check_clock, check_rom_style};
 
-/// Returns the bench that computes a list of points, for a pipeline or for a design with a microprogram. Each point must take
-/// less than `limit` clocks.
+/// Returns the test bench that computes a list of points, with a pipeline or with a core that has a microprogram. Each point must
+/// take less than `limit` clocks.
 ///
 /// # Errors
 /// Fails if the design lacks its handshake, operands or results.
@@ -81,7 +81,7 @@ pub fn points_bench(design: &Design, limit: u32) -> Result<PointsBench> {
     }
 }
 
-/// Returns only the Verilog of a design and the contents of its ROMs, without wrappers, benches and descriptions.
+/// Returns only the Verilog of a core and the contents of its ROMs, without wrappers, test benches and other files.
 ///
 /// # Errors
 /// Fails if [`Design::verify_structure`] finds mistakes, or if a net is named `clk`.
@@ -108,7 +108,7 @@ fn core_files(job: &EmitJob) -> Result<OutputFiles> {
     Ok(files)
 }
 
-/// Returns every file of a design.
+/// Returns all files of a core.
 ///
 /// # Errors
 /// Fails if [`Design::verify_structure`] finds mistakes, if a net is named `clk`, or if vectors do not fit the ports.

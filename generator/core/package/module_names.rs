@@ -1,9 +1,9 @@
-//! Checks that the names of modules mean nothing else in the emitted Verilog, and that no two configurations define the same
-//! module. Emission says which modules a file defines ([`OutputFile::modules`]).
+//! Checks the module names in emitted Verilog: a module's name must not be used for anything else, and no two configurations may
+//! define the same module.
 //!
-//! In Verilog a module may have the name of something inside it, but tools do not always accept that. For example, if a bench
-//! looks into instance `control` of a module `control`, it is not elaborated. Linters warn of a port that is named like its
-//! module.
+//! Verilog allows a module to have the name of something inside it, but some tools fail. For example, if a bench reads a signal
+//! of the instance `control` of a module `control`, elaboration fails. Linters warn of a port that has the name of its module.
+//! Each file lists its modules in [`OutputFile::modules`].
 
 use std::collections::BTreeMap;
 
@@ -12,7 +12,7 @@ use anyhow::{Result, bail};
 use super::file_kind::FileKind;
 use super::output_file::OutputFile;
 
-/// Makes sure that in some files of one configuration the name of every module is used for the module alone.
+/// Checks that the names of the modules in some files of one configuration are not used for anything else.
 ///
 /// # Errors
 /// Fails if the name of a module is also used for something else. The error names the module, the file and the line.

@@ -1,8 +1,8 @@
-//! Generates `<name>_multiplier.v`: a product with a register at its output, in a form for all tools and in a form for a
-//! target.
+//! Generates `<name>_multiplier.v`: a multiplier with an output register, for pipelines.
 //!
-//! The portable form is among the Verilog files of the core. The target's own form has the same name, in a directory of the
-//! target. In the flow of that target, and only there, it replaces the portable form.
+//! There are two versions with the same module name. The portable version is ordinary Verilog, and is listed with the core's
+//! files. The version for a target, for example ECP5, instantiates the target's DSP block and is in a directory with the target's
+//! name. The build for that target uses it in place of the portable version.
 
 use anyhow::Result;
 use glint_base::fill;
@@ -23,8 +23,8 @@ const PORTABLE: &str = "The portable form, for simulators and synthesis alike. O
 const ECP5: &str = "For ECP5: a DSP block with its output register and no other. nextpnr-ecp5 times the ways into the \
                     block, which end in that register, and those from it. The portable form is in the directory above.";
 
-/// Adds the module of a design's products, if any of its registers is inside a multiplier: the portable form, and the form of
-/// the target.
+/// Adds the multiplier module of a design, in the portable version and in the version for the target. Adds nothing if no
+/// multiplier of the design contains its output register.
 ///
 /// # Errors
 /// Fails if a template fails to print.

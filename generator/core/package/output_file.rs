@@ -1,14 +1,14 @@
-//! A file that emission makes, and the digest of its text.
+//! Defines one emitted file: its kind, path, contents and digest.
 
 use super::file_kind::FileKind;
 use sha2::{Digest, Sha256};
 
-/// A file to be written.
+/// A file that emission returns.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct OutputFile {
-    /// The purpose of the file.
+    /// The kind of the file.
     pub kind: FileKind,
-    /// Relative to the output directory, with `/`: `rtl_out/<name>/<name>.v`.
+    /// The path relative to the output directory, with `/`: `rtl_out/<name>/<name>.v`.
     pub path: String,
     /// The whole text, which must end with a newline.
     pub contents: String,

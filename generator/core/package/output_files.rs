@@ -1,5 +1,6 @@
-//! Collects the files of a configuration, and selects among them by kind. For example, a simulator reads the files of the kinds
-//! [`FileKind::SIMULATED`].
+//! Collects the emitted files of a configuration, and selects among them by kind.
+//!
+//! For example, a simulator reads the files of the kinds [`FileKind::SIMULATED`].
 
 use std::slice::Iter;
 use std::vec::IntoIter;

@@ -1,4 +1,7 @@
-//! Generates the test bench that computes a list of points: operands come from one file, results go to another.
+//! Generates a Verilog test bench that computes a list of points with a core that has a microprogram.
+//!
+//! The bench reads the operands of each point from one file and writes the results to another. `glint` uses it to compute
+//! pictures with the emitted Verilog under an outside simulator.
 
 pub(super) mod pipeline;
 
@@ -17,11 +20,11 @@ pub const POINTS_FILE: &str = "points.hex";
 /// [`PointsBench::results`], and a line with a dot after the last of each computation.
 pub const RESULTS_FILE: &str = "results.hex";
 
-/// A bench that reads operands from a file and writes results to another.
+/// A test bench that reads operands from a file and writes results to another file.
 pub struct PointsBench {
-    /// The module, which is also the name of its file without `.v`.
+    /// The name of the bench's module. Its file has the same name with `.v`.
     pub name: String,
-    /// The text.
+    /// The Verilog of the bench.
     pub text: String,
     /// The operand ports in the order in which a line has them.
     pub operands: Vec<String>,
@@ -88,7 +91,7 @@ impl PointList {
 
 fresh_names!(Variables { points, results, read, clocks, total, tick, dut });
 
-/// Returns the bench of a design with a microprogram, whose computations take less than `limit` clocks each.
+/// Returns the test bench of a core with a microprogram. Each computation must take less than `limit` clocks.
 ///
 /// # Errors
 /// Fails if the design lacks the common handshake, operands or results.

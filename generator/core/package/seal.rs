@@ -1,12 +1,14 @@
-//! Writes and checks a digest in files that no manifest lists. The digest is in the last line, or is a member of JSON. It
-//! shows whether a file was changed since Glint wrote it.
+//! Adds a SHA-256 digest to generated files that no manifest lists, and checks it.
+//!
+//! The digest is in the last line of a text file, or in a member of a JSON object. It shows whether anybody changed the file
+//! since Glint wrote it. For example, the last line of a Python file is `# sha256` and 64 hexadecimal digits.
 
 use anyhow::{Context, Result};
 use serde_json::Value;
 
 use super::output_file::digest;
 
-/// Where a file of some language has the digest of the rest.
+/// Where a file has the digest of its other contents.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Seal {
     /// Markdown and HTML: a last line `<!-- … -->`, which no reader of the page sees.
@@ -46,7 +48,7 @@ pub fn sealed_json(mut value: Value) -> Result<String> {
     Ok(serde_json::to_string_pretty(&value)? + "\n")
 }
 
-/// Returns whether a file is as Glint wrote it.
+/// Returns whether the digest in a file fits the file's other contents, so that nobody has edited the file since Glint wrote it.
 pub fn is_sealed(contents: &[u8], seal: Seal) -> bool {
     match seal {
         Seal::Json => is_sealed_json(contents),

@@ -1,5 +1,7 @@
-//! Reads from the keys of a configuration the surroundings of a core, for example wrappers and software, and checks whether
-//! the core allows them.
+//! Reads the configuration keys that ask for files around a core, for example bus wrappers, a C model or constraints.
+//!
+//! It also checks that the core allows them. For example, `package.rom_style` is an error if the core has no ROM that the key can
+//! affect.
 
 use super::bus::{BUSES, Bus};
 use glint_base::key_error::KeyError;
@@ -71,44 +73,44 @@ pub fn check_rom_style(config: &Config, design: &Design) -> Result<(), KeyError>
     ))
 }
 
-/// The surroundings of a core.
+/// The wrappers and packages around a core that a configuration asks for.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Surroundings {
-    /// The core between two AXI4-Streams.
+    /// Whether to emit a wrapper that connects the core to two AXI4-Streams.
     pub stream: bool,
-    /// The width of their `tuser`.
+    /// The width of `tuser` on the streams.
     pub user_bits: u32,
-    /// The bytes of a transfer are as many as a power of two.
+    /// Whether the number of bytes of a transfer is padded to a power of two.
     pub power_of_two: bool,
-    /// The streams have `tkeep`.
+    /// Whether the streams have `tkeep`.
     pub keep: bool,
-    /// The core behind registers.
+    /// The bus on which the core has registers, if any.
     pub registers: Option<&'static Bus>,
-    /// A model in C, in `software/<name>/`.
+    /// Whether to emit a C model, in `software/<name>/`.
     pub software: bool,
-    /// A program beside it that recomputes every operand.
+    /// Whether to emit a C program that computes every operand and compares the results with the formula.
     pub recomputation: bool,
-    /// How memories and registers are written.
+    /// How the Verilog declares memories and registers.
     pub style: Style,
-    /// A module for LiteX.
+    /// Whether to emit a module for LiteX.
     pub litex: bool,
-    /// The clock of constraints, if there are any.
+    /// The clock frequency of the constraint files, if they are asked for.
     pub clock_mhz: Option<f64>,
-    /// Tcl for Vivado.
+    /// Whether to emit Tcl for Vivado.
     pub vivado: bool,
-    /// Tcl for Quartus.
+    /// Whether to emit Tcl for Quartus.
     pub quartus: bool,
-    /// Components of IP-XACT.
+    /// Whether to emit components of IP-XACT.
     pub ip_xact: bool,
-    /// Components and an entity in VHDL.
+    /// Whether to emit components and an entity in VHDL.
     pub vhdl: bool,
-    /// A package in SystemVerilog.
+    /// Whether to emit a package in SystemVerilog.
     pub systemverilog: bool,
-    /// Who is said to make the core.
+    /// The vendor that the packages name.
     pub vendor: String,
-    /// Three numbers with dots between them.
+    /// The version of the core that the packages name: three numbers with dots between them.
     pub version: String,
-    /// An SPDX expression.
+    /// The licence of the core, as an SPDX expression.
     pub licence: String,
 }
 
@@ -121,7 +123,8 @@ impl Default for Surroundings {
 }
 
 impl Surroundings {
-    /// Reads the keys that every device shares. A pipeline adds the clock that it is made for.
+    /// Reads the keys of the tables `interface` and `package`, which every device has. For a pipeline, `pipeline` gives the
+    /// default of the clock.
     pub fn new(config: &Config, pipeline: Option<&Pipeline>) -> Self {
         let keys = Shared::of(config);
         Self {

@@ -1,4 +1,4 @@
-//! Lists the modules that a system can instantiate, with their ports: the core, and the wrappers around it.
+//! Lists the modules that a system can instantiate, with their ports: the core itself, its stream wrapper and its bus wrapper.
 
 use anyhow::Result;
 
@@ -10,7 +10,7 @@ use super::wrap::fields::Transfer;
 use glint_rtl::netlist::{Design, Role};
 use glint_rtl::verilog::text::ascii;
 
-/// The interface of a module to a system.
+/// The kind of interface that a module has to the system.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Face {
     /// The core itself.
@@ -21,20 +21,20 @@ pub enum Face {
     Registers(&'static Bus),
 }
 
-/// A port of such a module.
+/// A port of a module that a system can instantiate.
 #[derive(Clone, Debug)]
 pub struct TopPort {
-    /// Its name.
+    /// The name of the port.
     pub name: String,
-    /// Or an output.
+    /// Whether the port is an input; otherwise it is an output.
     pub input: bool,
-    /// In bits.
+    /// The width in bits.
     pub width: u32,
-    /// Declared with a range.
+    /// Whether the port is declared with a range.
     pub vector: bool,
-    /// The signal of a bus in LiteX, or nothing.
+    /// The signal of the LiteX bus to which the port is connected; empty if there is no such signal.
     pub signal: String,
-    /// One line, or nothing.
+    /// A comment of one line; may be empty.
     pub doc: String,
 }
 
@@ -42,40 +42,40 @@ pub struct TopPort {
 /// streams, and `threshold_levels_axil` on AXI4-Lite.
 #[derive(Clone, Debug)]
 pub struct Top {
-    /// Its name.
+    /// The name of the module.
     pub module: String,
     /// What its name has after the name of the core and `_`; empty for the core. For example, `axis`.
     pub suffix: &'static str,
-    /// The interface.
+    /// The kind of interface that the module has to the system.
     pub face: Face,
-    /// The purpose, in a few words.
+    /// The purpose of the module in a few words.
     pub what: String,
-    /// The clock, the first port.
+    /// The name of the clock port, which is the first port.
     pub clock: String,
-    /// The reset, synchronous.
+    /// The name of the reset port. The reset is synchronous.
     pub reset: String,
-    /// The level of the reset that resets.
+    /// The level at which the reset port resets.
     pub reset_level: u8,
-    /// All ports, as the Verilog has them.
+    /// All ports, in the order of the Verilog.
     pub ports: Vec<TopPort>,
-    /// The interfaces that its ports make.
+    /// The standard interfaces among the ports.
     pub protocols: &'static [Protocol],
-    /// The Verilog that it is made of, its own file first.
+    /// The Verilog files of the module and of all modules below it, its own file first.
     pub verilog: Vec<String>,
 }
 
 impl Top {
-    /// Returns the bits of a port; 0 of none.
+    /// Returns the number of bits of the port `name`, or 0 if there is no such port.
     pub fn width(&self, name: &str) -> u32 {
         self.ports.iter().find(|port| port.name == name).map_or(0, |port| port.width)
     }
 
-    /// Returns the ports that carry data or a handshake: neither clock nor reset.
+    /// Returns the ports except clock and reset.
     pub fn signals(&self) -> impl Iterator<Item = &TopPort> {
         self.ports.iter().filter(|port| port.name != self.clock && port.name != self.reset)
     }
 
-    /// Returns the ports of an interface, each with its name there.
+    /// Returns the ports of a standard interface, each with its name in the definition of the interface.
     pub fn ports_of(&self, protocol: &Protocol) -> Vec<(&TopPort, String)> {
         let named = |port: &TopPort| {
             Some(port.name.strip_prefix(protocol.name)?.strip_prefix('_')?.to_owned())
@@ -83,7 +83,7 @@ impl Top {
         self.signals().filter_map(|port| Some((port, named(port)?))).collect()
     }
 
-    /// Returns whether it has an interrupt, a level.
+    /// Returns whether the module has an interrupt output, which is active as long as an interrupt is pending.
     pub fn interrupts(&self) -> bool {
         matches!(self.face, Face::Registers(_))
     }

@@ -1,11 +1,11 @@
-//! Defines the error of a configuration that makes no design.
+//! Defines the error of a configuration from which no netlist can be built.
 
 use std::fmt;
 
 use glint_base::diagnostic::Diagnostics;
 use glint_base::key_error::KeyError;
 
-/// The reason why a configuration makes no design.
+/// The reason why no netlist can be built from a configuration.
 #[derive(Clone, Debug)]
 pub enum DesignError {
     /// The description has mistakes, whatever its pipeline.

@@ -1,4 +1,5 @@
-//! Maps the keys of a pipeline to its options, and the error of a pipeline that cannot be made back to a key.
+//! Converts the configuration keys of a pipeline to options of the pipeline builder. If the builder fails, it names the key that
+//! the user should change.
 
 use glint_base::diagnostic::Diagnostic;
 use glint_base::key_error::KeyError;
@@ -7,10 +8,10 @@ use glint_config::{Config, Shared};
 use glint_rtl::netlist::Design;
 use glint_rtl::pipeline::{self, PipelineError, PipelineErrorKind};
 
-/// The key of the clock that a pipeline is made for.
+/// The key with the clock frequency for which a pipeline is scheduled.
 pub const CLOCK_MHZ: &str = "pipeline.clock_mhz";
 
-/// Returns the pipeline of a sequential design, or `None` if the architecture of the configuration is sequential.
+/// Makes a pipeline from a sequential netlist. Returns `None` if the configuration has a sequential architecture.
 ///
 /// # Errors
 /// Fails if the pipeline cannot be made. The error names the key that is best changed.

@@ -1,5 +1,7 @@
-//! Splits a computation into ways, one for each combination of decisions, and finds the intervals of raw values that
-//! its nodes have on each way.
+//! Splits a computation into cases, one for each combination of outcomes of its conditions.
+//!
+//! For example, a saturation has two cases: the value is inside its limits, or it is cut off. For each case, the module finds the
+//! interval of raw values of every node of the computation. `certify` then proves the error bound case by case.
 
 use std::collections::BTreeMap;
 
@@ -13,31 +15,31 @@ use glint_rtl::pipeline::{Cell, Graph, NodeId, NodeOp};
 /// The most ways that are looked at, including ways that turn out to be impossible.
 const MOST: usize = 4096;
 
-/// Intervals of raw values by node, in addition to the intervals that follow from the operands.
+/// Intervals of raw values of some nodes, which narrow the intervals that follow from the operands.
 pub type NodeIntervals = BTreeMap<NodeId, Interval>;
 
-/// One way.
+/// A case of a computation: one combination of outcomes of its conditions.
 #[derive(Clone, Debug)]
 pub struct Case {
-    /// The hypotheses of this way, implied by the operands' values that lead here.
+    /// The hypotheses of the case: intervals of nodes that follow from the outcomes of the conditions.
     pub known: NodeIntervals,
-    /// The raw values of every node.
+    /// The interval of raw values of every node in this case.
     pub ranges: Vec<Interval>,
     /// The nodes whose values are the values of a parabola. Intervals alone would allow more values.
     pub parabolas: BTreeMap<NodeId, RawPolynomial>,
 }
 
-/// The raw value of a word of a ROM.
+/// Returns the raw value of a ROM's word at an address.
 pub type WordLookup<'a> = &'a dyn Fn(RomId, u64) -> i128;
 
-/// An unrolled computation, with its tables and quotients.
+/// A computation as a graph of values, with the words of its ROMs and with its dividers.
 #[derive(Clone, Copy)]
 pub struct UnrolledComputation<'a> {
-    /// The computation.
+    /// The graph of values.
     pub graph: &'a Graph,
-    /// The words of its tables.
+    /// The words of the ROMs.
     pub words: WordLookup<'a>,
-    /// Its quotients, by the node that joins the bits.
+    /// The dividers, each by the node that concatenates the bits of its quotient.
     pub quotients: &'a BTreeMap<NodeId, Quotient>,
 }
 
@@ -58,8 +60,8 @@ impl UnrolledComputation<'_> {
     }
 }
 
-/// Returns all ways to compute `results`, given `known` of the operands: together they cover every combination of
-/// operands. For example, a saturation whose condition is open makes two ways.
+/// Returns all cases of the computation of `results`, with the intervals `known` of the operands. Together they cover every
+/// combination of operands. For example, a saturation that may or may not happen makes two cases.
 ///
 /// # Errors
 /// Fails if there are too many ways.
@@ -103,8 +105,8 @@ pub fn cases(
     Ok(found)
 }
 
-/// Returns the raw values of a node, given `known` of the operands. Returns `None` if a selection on the way to it is
-/// open.
+/// Returns the interval of raw values of a node, with the intervals `known` of the operands. Returns `None` if the value depends
+/// on a condition whose outcome is not known.
 pub fn range(view: UnrolledComputation, node: NodeId, known: &NodeIntervals) -> Option<Interval> {
     let ranges = view.graph.nodes.iter().map(|node| node.range).collect();
     let mut case = Case { known: known.clone(), ranges, parabolas: BTreeMap::new() };

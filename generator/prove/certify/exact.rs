@@ -1,8 +1,8 @@
-//! Translates the contract's formula to exact terms, with one branch for each way its `max`, `min` and `if` can choose.
-//! For example, `max(a, b)` has two branches: `a` where a − b ≥ 0, and `b` where a − b ≤ 0.
+//! Translates the formula of a contract to real expressions for the prover Gappa.
 //!
-//! A branch has the signs of differences as its conditions. Operands have the range of one case of the proof, which may
-//! decide a choice.
+//! A formula with `max`, `min` or `if` becomes several branches, each with conditions under which it applies. For example,
+//! `max(a, b)` has two branches: `a` where a − b ≥ 0, and `b` where a − b ≤ 0. The range of the operands may decide a condition,
+//! and then only one branch is left.
 
 use std::collections::{BTreeMap, HashMap};
 
@@ -11,15 +11,15 @@ use glint_base::fixed::exp2;
 use glint_formula::{Comparison, Expression, Function, Kind, Literal, Operator};
 use glint_golden::Operand;
 
-/// A term for the formula under conditions: the terms `at_least` are not negative, and the terms `at_most` are not
-/// positive.
+/// A branch of a formula: a term, and the conditions under which it is the formula's value. The terms `at_least` must not be
+/// negative, and the terms `at_most` must not be positive.
 #[derive(Clone, Debug, Default)]
 pub struct Branch {
-    /// Terms that are at least 0.
+    /// Terms that are at least 0 in this branch.
     pub at_least: Vec<RealTermId>,
-    /// Terms that are at most 0.
+    /// Terms that are at most 0 in this branch.
     pub at_most: Vec<RealTermId>,
-    /// The formula.
+    /// The value of the formula in this branch.
     pub term: RealTermId,
     /// The side of every choice, by the number that is compared with 0 and the comparison.
     chosen: BTreeMap<(RealTermId, Choice), bool>,
@@ -34,7 +34,7 @@ enum Choice {
 }
 
 impl Branch {
-    /// Returns whether a condition of the branch is false for a number.
+    /// Returns whether the branch can never apply, because a constant violates one of its conditions.
     pub fn is_never(&self, terms: &RealTerms) -> bool {
         for &id in &self.at_least {
             if matches!(terms.get(id), RealTerm::Number(value) if *value < 0.0) {
@@ -49,8 +49,8 @@ impl Branch {
         false
     }
 
-    /// Returns the branch in which both formulas make their choices, with the term of `other`. Returns `None` if they
-    /// choose differently.
+    /// Combines this branch with a branch of another formula: the conditions of both, and the term of `other`. Returns `None` if
+    /// the two branches decide the same condition differently.
     pub fn and(&self, other: &Self) -> Option<Self> {
         let mut both = self.clone();
         both.term = other.term;
@@ -85,20 +85,20 @@ impl Branch {
     }
 }
 
-/// The context in which formulas are written.
+/// The variables, ranges and ROM words with which formulas are translated.
 pub struct FormulaContext<'a> {
     /// Variable, and the power of two by which an operand is divided in it.
     pub variables: &'a HashMap<String, (String, i32)>,
-    /// The values, lowest and highest, that an operand has in this case.
+    /// The smallest and the largest value of each operand in this case.
     pub ranges: &'a HashMap<String, (f64, f64)>,
-    /// The words of ROMs as values, by the name of the ROM.
+    /// The values of the words of each ROM, by the name of the ROM.
     pub words: &'a HashMap<String, Vec<f64>>,
     /// The operands.
     pub operands: &'a [Operand],
 }
 
-/// Returns the variable for the word of a table, by the variable of the operand that addresses the table. For example,
-/// the table `coefficient` at `exponent` has the variable `coefficient_at_exponent`.
+/// Returns the name of the variable for a ROM's word, from the ROM and the variable of the operand that addresses it. For
+/// example, the ROM `coefficient` at `exponent` has the variable `coefficient_at_exponent`.
 pub fn word_variable(rom: &str, variable: &str) -> String {
     format!("{rom}_at_{variable}")
 }
@@ -140,12 +140,12 @@ fn power_of_two(value: f64) -> Option<i32> {
     (0..=30).find(|&power| exp2(power) == value)
 }
 
-/// Returns the message about a function that Gappa lacks.
+/// Returns the error message for a function that Gappa does not have.
 pub fn untranslated(function: Function) -> String {
     format!("the function `{}` has no translation", function.name())
 }
 
-/// Returns every way that a formula can go.
+/// Returns all branches of a formula.
 ///
 /// # Errors
 /// Fails if the formula has a part without a translation.

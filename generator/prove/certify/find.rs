@@ -1,5 +1,6 @@
-//! Finds a bound if a contract states none. Gappa finds the least bound for each statement, and the largest of these
-//! is the result.
+//! Finds an error bound that Gappa can prove, for a contract that states none.
+//!
+//! Gappa finds a bound for each statement about an output, and the largest of these is the result.
 
 use std::fs;
 use std::time::Duration;
@@ -19,8 +20,8 @@ const MILLIONTHS: f64 = 1e6;
 const STEP: f64 = 1.0 / 2048.0;
 const TRY: Duration = Duration::from_secs(2);
 
-/// Returns a bound for all statements. Gappa's answers are upper limits. If a smaller one can be proved, the largest
-/// is brought down by halves.
+/// Returns an error bound that Gappa proves for all statements. Gappa answers each statement with an upper bound. The function
+/// then lowers the largest of these bounds by halving, as long as Gappa proves the smaller one.
 ///
 /// # Errors
 /// Fails if Gappa does not do its work. The inner error says in words why Gappa finds no bound.

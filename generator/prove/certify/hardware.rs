@@ -1,4 +1,4 @@
-//! Writes the hardware's computation on one way through it as terms.
+//! Translates the hardware's computation in one case to real expressions with roundings for the prover Gappa.
 
 use std::collections::{BTreeMap, HashMap};
 
@@ -11,7 +11,7 @@ use glint_base::interval::{Interval, wrap};
 use glint_rtl::netlist::RomId;
 use glint_rtl::pipeline::{Cell, Graph, Node, NodeId, NodeOp};
 
-/// A node's raw value.
+/// The raw value of a node, as a term or a constant.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum NodeValue {
     /// The node is this number, on this way.
@@ -28,23 +28,23 @@ pub enum NodeValue {
 /// The operands as terms: by their number in the graph, the variable and its fraction bits.
 pub type Variables = Vec<(String, i32)>;
 
-/// Translates nodes of one case.
+/// Translates the nodes of one case to real terms.
 #[derive(Clone)]
 pub struct Hardware<'a> {
     graph: &'a Graph,
     quotients: &'a BTreeMap<NodeId, Quotient>,
     case: &'a Case,
-    /// The operands, followed by the other nodes that have become variables.
+    /// The variables: first the operands, then other nodes that are treated as variables.
     pub variables: Variables,
     /// The names of the tables.
     tables: &'a [String],
-    /// The intervals of terms that are no nodes.
+    /// Known intervals of terms that belong to no node.
     pub facts: BTreeMap<RealTermId, (f64, f64)>,
     known: HashMap<NodeId, NodeValue>,
 }
 
 impl<'a> Hardware<'a> {
-    /// Prepares the translation of one way. `variables` are the operands.
+    /// Prepares the translation of a case. `variables` are the operands.
     pub fn new(
         view: UnrolledComputation<'a>,
         case: &'a Case,
@@ -148,7 +148,7 @@ impl<'a> Hardware<'a> {
         Some((id, range))
     }
 
-    /// Returns dividend and divisor as terms, with the points at one place.
+    /// Returns the dividend and the divisor of a divider as terms with the same binary point.
     pub fn fraction(
         &mut self,
         terms: &mut RealTerms,
@@ -164,7 +164,7 @@ impl<'a> Hardware<'a> {
         Ok((pointed(terms, dividend, scale, "dividend"), pointed(terms, divisor, scale, "divisor")))
     }
 
-    /// Returns the node as a value.
+    /// Returns a node as a constant or a term.
     ///
     /// # Errors
     /// Fails if an operation has no translation. The error has the name of the operation's result.
@@ -439,7 +439,7 @@ fn pointed(terms: &mut RealTerms, value: NodeValue, scale: i32, name: &str) -> R
     }
 }
 
-/// Returns the term times two to the power of `power`.
+/// Returns the term multiplied by 2 to the power of `power`.
 pub fn scaled(terms: &mut RealTerms, id: RealTermId, power: i32, name: &str) -> RealTermId {
     if power == 0 {
         return id;

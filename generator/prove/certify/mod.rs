@@ -1,9 +1,9 @@
-//! Writes the bound of a contract as statements that Gappa proves.
+//! Translates the error bound of a contract to statements that the prover Gappa can prove. `glint certify` runs Gappa on them.
 //!
-//! The computation is unrolled into a graph of values, and split into [`cases`] at saturations, clamps and tables; the
-//! cases together cover the domain. In each case, the [`hardware`] is an expression with roundings, and the formula is
-//! one without ([`exact`]). A statement says that the two differ by at most the bound. A formula that reads a table
-//! reads the hardware's words.
+//! The computation of a core is unrolled into a graph of values, and split into [`cases`] at saturations, clamps and ROMs. The
+//! cases together cover the domain of the contract. In each case, [`hardware`] writes the hardware's result as an expression with
+//! roundings, and [`exact`] writes the formula as an expression without roundings. A statement says that the two differ by at
+//! most the bound. If the formula reads a ROM, it reads the same words as the hardware.
 
 pub mod cases;
 pub mod exact;
@@ -34,8 +34,8 @@ pub use statement::Statement;
 use statement::Statements;
 use task::Task;
 
-/// Returns the statements whose conjunction is the contract of a sequential design. For example, a saturation of an
-/// output makes a statement for each of its two ways.
+/// Returns the statements that together prove the error bound of a sequential design's contract. For example, an output that may
+/// saturate has one statement for each of the two cases.
 ///
 /// # Errors
 /// Fails if a step has no translation, if the contract states no bound, or if it takes longer than `limit` to write
@@ -53,8 +53,8 @@ pub fn statements(
     }
 }
 
-/// Returns the statements without a bound: each asks how far an output is from the formula, in its units. [`bound`] answers,
-/// and [`Statement::within`] states the answer.
+/// Returns the statements without a bound: each asks Gappa for the largest difference between an output and the formula, in
+/// output units. [`bound`] finds the answer, and [`Statement::within`] inserts it.
 ///
 /// # Errors
 /// Fails as [`statements`] does.
@@ -145,8 +145,8 @@ fn formulas(contract: &dyn Contract) -> Result<Vec<Expression>, String> {
     parsed.collect()
 }
 
-/// Returns the SHA-256 of all scripts of some statements, in their order. Two certificates with one digest are about
-/// the same statements.
+/// Returns the SHA-256 of all scripts of some statements, in their order. Two certificates with the same digest prove the same
+/// statements.
 pub fn digest(statements: &[Statement]) -> String {
     let scripts = statements.iter().flat_map(|statement| &statement.scripts);
     let text: Vec<&str> = scripts.map(String::as_str).collect();

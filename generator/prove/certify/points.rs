@@ -1,5 +1,5 @@
-//! Writes, for Gappa, the statements of one case of a device that computes points: each output differs from the formula
-//! by at most the bound.
+//! Writes the Gappa statements of one case, for a device that computes a single point: each output differs from the formula by at
+//! most the bound.
 
 use std::collections::{BTreeMap, HashMap};
 
@@ -48,7 +48,7 @@ impl Task<'_> {
         words
     }
 
-    /// Adds the statements of one case.
+    /// Adds the statements of one case: one for each output.
     pub(super) fn state(&self, case: &Case, statements: &mut Statements) -> Result<(), String> {
         let variables = self.variables();
         let mut ranges = HashMap::new();

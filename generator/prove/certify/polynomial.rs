@@ -1,15 +1,16 @@
-//! Finds the values that polynomials of the second degree in one operand take, which intervals overestimate. For
-//! example, x² − 16·x for x from 0 to 16 lies between −64 and 0; intervals alone give −256 to 256.
+//! Computes the range of polynomials of degree at most 2 in one operand, which interval arithmetic overestimates.
+//!
+//! For example, x² − 16·x for x from 0 to 16 lies between −64 and 0; interval arithmetic gives −256 to 256.
 
 use glint_base::interval::Interval;
 use glint_rtl::pipeline::NodeId;
 
-/// `factors[0] + factors[1]·x + factors[2]·x²`, in raw values.
+/// The polynomial `factors[0] + factors[1]·x + factors[2]·x²` in the raw value x of a node.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct RawPolynomial {
-    /// x, if it depends on one.
+    /// The node whose raw value is x; `None` for a constant polynomial.
     pub of: Option<NodeId>,
-    /// The factors.
+    /// The coefficients, from the constant up.
     pub factors: [i128; 3],
 }
 
@@ -22,7 +23,7 @@ impl RawPolynomial {
         Self { of: None, factors: [value, 0, 0] }
     }
 
-    /// Makes the polynomial x, for x the value of a node.
+    /// Makes the polynomial x, where x is the raw value of a node.
     pub fn operand(id: NodeId) -> Self {
         Self { of: Some(id), factors: [0, 1, 0] }
     }
@@ -37,7 +38,7 @@ impl RawPolynomial {
         small.then_some(Self { of, factors })
     }
 
-    /// Returns the sum of this polynomial and `times` times the other.
+    /// Returns this polynomial plus `times` times the other.
     pub fn plus(self, other: Self, times: i128) -> Option<Self> {
         let sum = |at: usize| self.factors[at] + times * other.factors[at];
         self.with(other, [sum(0), sum(1), sum(2)])
@@ -53,7 +54,7 @@ impl RawPolynomial {
         self.with(other, [a * d, a * e + b * d, a * f + b * e + c * d])
     }
 
-    /// Returns the smallest and the largest value for integers of an interval.
+    /// Returns the smallest and the largest value of the polynomial for integers x in an interval.
     pub fn range(self, (low, high): Interval) -> Option<Interval> {
         let [a, b, c] = self.factors;
         if low.abs().max(high.abs()) > 1 << 32 || [a, b, c].iter().any(|it| it.abs() > 1 << 62) {

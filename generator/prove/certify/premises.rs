@@ -1,5 +1,8 @@
-//! Writes the premises of statements about outputs as statements of their own. One premise says that a node has only
-//! values of its parabola. Other premises say which values a divider needs and which bounds its steps keep.
+//! Writes the premises of statements about outputs as Gappa statements of their own, so that Gappa proves them too.
+//!
+//! A premise is a fact about an intermediate value that a statement takes for granted. One kind says that a value lies in the
+//! range of a quadratic polynomial. Others give the conditions of a divider, for example that the divisor is positive, and the
+//! bounds that each of its steps keeps.
 
 use super::cases::{Case, UnrolledComputation};
 use super::hardware::{Hardware, NodeValue};
@@ -10,15 +13,15 @@ use super::terms::{RealTerm, RealTermId, RealTerms, number};
 use glint_base::fixed::exp2;
 use glint_rtl::pipeline::NodeId;
 
-/// A statement about a value on the way.
+/// A premise: a statement about an intermediate value that other statements take for granted.
 pub struct Premise {
-    /// The name of the value.
+    /// The name of the intermediate value.
     pub about: String,
-    /// The statement.
+    /// The Gappa script.
     pub script: String,
 }
 
-/// Returns the premises of a case.
+/// Returns the premises of a case's statements.
 ///
 /// # Errors
 /// Fails if a value has no translation.

@@ -1,4 +1,4 @@
-//! Has Gappa prove a statement, and Coq's kernel check its proof.
+//! Runs Gappa on a statement, and optionally lets Coq check the proof that Gappa found.
 
 use std::fs;
 use std::time::Duration;

@@ -1,26 +1,27 @@
-//! Finds dividers that take a bit of the quotient a clock in the unrolled computation.
+//! Finds restoring dividers in an unrolled computation: chains of steps that each compute one bit of a quotient.
 //!
-//! A step doubles the remainder r and subtracts the divisor d if it fits: r' = 2·r − b·d with b = (2·r ≥ d). If 0 ≤ r
-//! ≤ d and d > 0, the same holds for r'. After k steps from r₀, the bits are the number q = Σ bᵢ·2^(k−i), and the
-//! last remainder is 2^k·r₀ − q·d, between 0 and d. Therefore q·2^−k is below r₀/d by 2^−k at most, and never above.
-//! The premises (0 ≤ r₀ ≤ d, d > 0, and the invariant of a step) are statements for Gappa too.
+//! A step doubles the remainder r and subtracts the divisor d if it fits: r' = 2·r − b·d with b = (2·r ≥ d). If 0 ≤ r ≤ d and d >
+//! 0, the same holds for r'. After k steps from r₀, the bits are the number q = Σ bᵢ·2^(k−i), and the last remainder is 2^k·r₀ −
+//! q·d, between 0 and d. Therefore q·2^−k is at most r₀/d, and less than it by at most 2^−k. Gappa also proves the premises: 0 ≤
+//! r₀ ≤ d, d > 0, and the invariant of a step.
 
 use std::collections::BTreeMap;
 
 use glint_rtl::pipeline::{Cell, Graph, NodeId, NodeOp};
 
-/// A quotient that is found bit by bit. For example, 1 by 3 in two bits is q = 1: 0.25 is below 1/3 by less than 2⁻².
+/// A quotient that the hardware computes bit by bit. For example, 1 by 3 in two bits is q = 1: 0.25 is below 1/3 by less than
+/// 2⁻².
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Quotient {
-    /// The first remainder.
+    /// The dividend, which is the first remainder.
     pub dividend: NodeId,
-    /// The divisor, which is subtracted if it fits.
+    /// The divisor, which a step subtracts if it is not larger than the doubled remainder.
     pub divisor: NodeId,
-    /// How many bits.
+    /// The number of bits of the quotient.
     pub bits: u32,
 }
 
-/// Returns the quotients that results depend on, each by the node that joins its bits.
+/// Returns the dividers that `results` depend on, each by the node that concatenates the bits of the quotient.
 pub fn quotients(graph: &Graph, results: &[NodeId]) -> BTreeMap<NodeId, Quotient> {
     let mut found = BTreeMap::new();
     let mut pending = results.to_vec();
@@ -113,7 +114,7 @@ fn is_left(graph: &Graph, id: NodeId, step: &DivisionStep) -> bool {
     graph.node(of).cell == Cell::Op(left) && graph.width(id) >= graph.width(step.divisor)
 }
 
-/// Returns the node that is extended by zeros in this one.
+/// Returns the node that this node extends by zeros, or the node itself.
 pub fn widened(graph: &Graph, id: NodeId) -> NodeId {
     match &graph.node(id).cell {
         Cell::Op(NodeOp::Extend(of)) if !graph.node(*of).format.signed => *of,

@@ -1,4 +1,4 @@
-//! Writes the text of a statement for Gappa: definitions, hypotheses, the goal, and hints.
+//! Writes the text of a Gappa statement: definitions, hypotheses, the goal, and hints for the prover.
 
 use std::collections::{BTreeMap, HashMap};
 use std::fmt::Write as _;
@@ -15,23 +15,23 @@ use glint_base::fixed::exp2;
 const SAMPLES: usize = 24;
 const TRIES: usize = 2_000;
 
-/// The common part of a case's statements.
+/// The common part of the scripts of one case.
 pub struct GappaScript<'a> {
-    /// Hardware and formula.
+    /// The terms of hardware and formula.
     pub terms: &'a RealTerms,
-    /// Terms below this number are the hardware's.
+    /// The number of terms that belong to the hardware. They come first.
     pub hardware_terms: usize,
-    /// Variables with their fraction bits.
+    /// The variables, with the number of their fraction bits.
     pub placed: &'a Variables,
-    /// The values that terms have.
+    /// The intervals of terms that the script takes as hypotheses.
     pub presupposed: &'a BTreeMap<RealTermId, (f64, f64)>,
-    /// How each expression of the formula goes.
+    /// For each expression of the formula, the branch that applies in this case.
     pub ways: &'a [Branch],
 }
 
 impl GappaScript<'_> {
-    /// Writes the statement that the output `out` is within the bound of the formula `f` times a factor, or asks how
-    /// far from it.
+    /// Returns the script of an output: it states that the output is within the bound of the formula `f` times a factor, or asks
+    /// for the bound.
     pub fn text(
         &self,
         out: RealTermId,
@@ -46,8 +46,7 @@ impl GappaScript<'_> {
         self.statement(terms, difference, &goal, &[])
     }
 
-    /// Returns the text of a statement whose goal is about a term. `hints` are added to the hints that hardware and
-    /// formula give.
+    /// Returns the script of a statement about a term. `hints` are added to the hints that follow from hardware and formula.
     pub fn statement(
         &self,
         mut terms: RealTerms,
@@ -340,8 +339,8 @@ fn rounded(value: f64, bits: i32) -> f64 {
     libm::round(value * exp2(bits)) / exp2(bits)
 }
 
-/// Returns the goal of a script. With a bound, it says that the difference is within the bound. Without one, it asks
-/// for a bound. For example, the goals are `|difference_7| <= 0.5` and `|difference_7| in ?`.
+/// Returns the goal of a script. With a bound, the goal states that the difference is within the bound; without one, it asks for
+/// the bound. For example, the goals are `|difference_7| <= 0.5` and `|difference_7| in ?`.
 pub fn goal(difference: &str, bound: Option<f64>) -> String {
     match bound {
         Some(bound) => format!("|{difference}| <= {}", number(bound)),
@@ -349,8 +348,8 @@ pub fn goal(difference: &str, bound: Option<f64>) -> String {
     }
 }
 
-/// Returns the script with its names numbered as they come: equal ones say the same. For example, `sum_2 = 0.5 + x;`
-/// becomes `n0 = 0.5 + n1;`.
+/// Returns the script with numbered names in the order of their first use. Two scripts that become equal state the same. For
+/// example, `sum_2 = 0.5 + x;` becomes `n0 = 0.5 + n1;`.
 pub fn nameless(script: &str) -> String {
     let mut numbers: HashMap<&str, usize> = HashMap::new();
     let is_part = |c: char| c.is_ascii_alphanumeric() || c == '_' || c == '.';

@@ -1,20 +1,20 @@
-//! Writes the statements of devices that show the words of a table of powers of a cosine times a colour, point by
-//! point along a line.
+//! Writes the Gappa statements of devices that compute a line of points by reading a ROM with powers of a cosine. The word is
+//! multiplied by a colour at each point.
 //!
-//! A word serves all angles of a segment. Two kinds of statements are the contract:
+//! A ROM word serves all angles of a segment. The contract follows from two kinds of statements:
 //!
-//! - For each word w, whose segment goes from angle a to angle b (in right angles, 0 ≤ a ≤ b ≤ 1): f(a) ≤ w + E and
-//!   f(b) ≥ w − E, with the bound E of f. As cos falls from 0 to π, f is between f(b) and f(a) at every angle of the
-//!   segment.
-//! - For each output: if a word w and a real f differ by at most that bound, then the output differs from f times the
-//!   colour by at most the contract's bound.
+//! - For each word w, whose segment goes from angle a to angle b (in right angles, 0 ≤ a ≤ b ≤ 1): f(a) ≤ w + E and f(b) ≥ w − E,
+//!   with the bound E of f. As cos falls from 0 to π, f is between f(b) and f(a) at every angle of the segment.
+//! - For each output: if a word w and a real f differ by at most that bound, then the output differs from f times the colour by
+//!   at most the contract's bound.
 //!
-//! Gappa has no cosine. By Taylor cos y = 1 − y²/2! + y⁴/4! − … ± y²ᵐ/(2m)! + ρ·y²ᵐ⁺²/(2m+2)! with |ρ| ≤ 1, for every
-//! real y. The statement is proved for every ρ from −1 to 1, and for every number within 10⁻²⁰ of π/2 in its place.
+//! Gappa has no cosine. By Taylor cos y = 1 − y²/2! + y⁴/4! − … ± y²ᵐ/(2m)! + ρ·y²ᵐ⁺²/(2m+2)! with |ρ| ≤ 1, for every real y.
+//! Gappa proves the statement for every ρ from −1 to 1, and for every number within 10⁻²⁰ of π/2 in place of π/2.
 //!
-//! The angles of each word are found by halving the angle's range until the values in the netlist are decided, as in
-//! [`super::cases`]. All points of a line are the first one at another angle: [`glint_rtl::pipeline::unroll_line`]
-//! has the induction. The formula's angle of a point is the value of the walk's register ([`AngleWalk::angle`]).
+//! The module finds the angles of each word by halving an interval of angles until the word in the netlist is the same for the
+//! whole interval, as in [`super::cases`]. All points of a line are computed as the first one, but at another angle:
+//! [`glint_rtl::pipeline::unroll_line`] has the induction. The formula's angle at a point is the value of the register that adds
+//! up the angle along the line ([`AngleWalk::angle`]).
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;

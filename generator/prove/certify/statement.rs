@@ -1,29 +1,29 @@
-//! Collects the statements of a proof, each once.
+//! Collects the Gappa statements of a proof, and keeps equal statements only once.
 
 use std::collections::HashMap;
 
 use super::script;
 use super::terms::number;
 
-/// The goal of a script that asks for a bound.
+/// The end of a script's goal that asks for a bound.
 pub(super) const ASKED: &str = "| in ? }";
 
 /// A statement for Gappa to prove.
 #[derive(Clone, Debug)]
 pub struct Statement {
-    /// The output that it speaks of, or the value on the way to the outputs.
+    /// The output that the statement is about, or an intermediate value.
     pub output: String,
-    /// Its number among the statements of the output, from 1.
+    /// The number of the statement among the statements of the output, from 1.
     pub number: usize,
-    /// Other outputs that have the same statement, under another name.
+    /// Other outputs whose statement is the same except for names.
     pub also: Vec<String>,
     /// Alternative scripts: Gappa must accept one of them. At a jump of the formula, two values are right.
     pub scripts: Vec<String>,
 }
 
 impl Statement {
-    /// Puts a bound into the statement's scripts in place of the question for one. For example, `|difference_7| in ? }`
-    /// becomes `|difference_7| <= 0.5 }`.
+    /// Returns the statement with a bound in place of the question for one. For example, `|difference_7| in ? }` becomes
+    /// `|difference_7| <= 0.5 }`.
     #[must_use]
     pub fn within(&self, bound: f64) -> Self {
         let stated = format!("| <= {} }}", number(bound));
@@ -32,7 +32,7 @@ impl Statement {
     }
 }
 
-/// Statements, each once.
+/// A collection of statements in which equal statements occur only once.
 #[derive(Default)]
 pub(super) struct Statements {
     pub(super) list: Vec<Statement>,
@@ -41,8 +41,8 @@ pub(super) struct Statements {
 }
 
 impl Statements {
-    /// Adds a statement about an output. If there is one with other names and the same text, the output is added to
-    /// that one.
+    /// Adds a statement about an output. If the collection has a statement that is the same except for names, the output is added
+    /// to that statement.
     pub(super) fn push(&mut self, output: &str, scripts: Vec<String>) {
         let nameless = scripts.iter().map(|script| script::nameless(script)).collect();
         if let Some(&at) = self.known.get(&nameless) {

@@ -1,5 +1,7 @@
-//! Holds the design, the contract and the unrolled computation of a proof. It cuts the domain where the formula or a
-//! table requires it.
+//! Holds the subject of a proof by Gappa: the design, its contract and the unrolled computation.
+//!
+//! It also splits the domain of the contract into parts where the formula or a ROM requires it. For example, `x ** exponent`
+//! becomes one part for each exponent.
 
 use super::cases::{self, NodeIntervals, UnrolledComputation};
 use glint_formula::{Expression, Kind, Operator};
@@ -14,11 +16,11 @@ const SPLIT: i64 = 1024;
 /// A table of at most this number of different words, one after the other, is gone through word by word.
 const RUNS: usize = 16;
 
-/// The task of a proof: a design, its contract, and the computation as a graph.
+/// The subject of a proof: a design, its contract, and the unrolled computation as a graph.
 pub(super) struct Task<'a> {
     pub(super) design: &'a Design,
     pub(super) contract: &'a dyn Contract,
-    /// The bound in units of the outputs; `None` if the statements ask for it.
+    /// The bound in units of the outputs; `None` if the statements ask for a bound.
     pub(super) bound: Option<f64>,
     pub(super) unrolled: &'a Unrolled,
     pub(super) view: UnrolledComputation<'a>,
@@ -44,7 +46,7 @@ impl Task<'_> {
         cases::learn(self.graph(), known, &ranges, node, range)
     }
 
-    /// Returns the node of the operand, if anything depends on it, by its name.
+    /// Returns the node of the operand `name`, if any result depends on it.
     pub(super) fn operand(&self, name: &str) -> Option<NodeId> {
         let mut ports = self.unrolled.operands.iter();
         let at = ports.position(|&port| self.design.net(port).name == name)?;
@@ -53,7 +55,7 @@ impl Task<'_> {
         Some(NodeId(id as u32))
     }
 
-    /// Returns the values that operands have in the contract's domain.
+    /// Returns the interval of each operand in the contract's domain.
     pub(super) fn domain(&self) -> Result<NodeIntervals, String> {
         let mut known = NodeIntervals::new();
         for operand in self.contract.operands() {
@@ -67,7 +69,7 @@ impl Task<'_> {
         Ok(known)
     }
 
-    /// Returns each output with the net that it takes from the last clock.
+    /// Returns each output of the contract, with the node whose value it shows as the result.
     pub(super) fn outputs(&self) -> Result<Vec<(String, NodeId)>, String> {
         let mut outputs = Vec::new();
         for output in self.contract.outputs() {

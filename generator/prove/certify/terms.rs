@@ -1,14 +1,14 @@
-//! Keeps the real expressions of a formula and of the hardware, and writes them as Gappa takes them.
+//! Stores the real expressions of a formula and of the hardware, and writes them in the syntax of Gappa.
 
 use std::collections::HashMap;
 use std::fmt::Write as _;
 
 use glint_base::cone;
 
-/// A number of a [`RealTerms`].
+/// The number of a term in a [`RealTerms`].
 pub type RealTermId = usize;
 
-/// How a value is rounded to a multiple of a power of two.
+/// The direction in which a value is rounded to a multiple of a power of two.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum RoundingDirection {
     /// Down: bits are dropped.
@@ -17,7 +17,7 @@ pub enum RoundingDirection {
     Nearest,
 }
 
-/// An expression over other terms.
+/// A real expression, whose operands are other terms.
 #[derive(Clone, Debug, PartialEq)]
 pub enum RealTerm {
     /// An operand.
@@ -43,7 +43,7 @@ pub enum RealTerm {
     },
 }
 
-/// Terms, each once, with the names of definitions.
+/// A collection of terms, each stored once, with the names of their definitions.
 #[derive(Clone, Debug, Default)]
 pub struct RealTerms {
     terms: Vec<(RealTerm, String)>,
@@ -115,12 +115,12 @@ impl RealTerms {
         self.insert(RealTerm::Number(value), "number")
     }
 
-    /// Returns the term of a number.
+    /// Returns the term with a number.
     pub fn get(&self, id: RealTermId) -> &RealTerm {
         &self.terms[id].0
     }
 
-    /// Returns the name in the script.
+    /// Returns the name of a term in the script.
     pub fn name(&self, id: RealTermId) -> String {
         match self.get(id) {
             RealTerm::Number(value) if *value < 0.0 => format!("({})", number(*value)),
@@ -129,12 +129,12 @@ impl RealTerms {
         }
     }
 
-    /// Returns how many there are.
+    /// Returns the number of terms.
     pub fn count(&self) -> usize {
         self.terms.len()
     }
 
-    /// Returns whether a term is free of roundings and no constant.
+    /// Returns whether a term contains no rounding and is not a constant.
     pub fn is_exact(&self, id: RealTermId) -> bool {
         let of =
             |id: &RealTermId| self.is_exact(*id) || matches!(self.get(*id), RealTerm::Number(_));
@@ -173,12 +173,12 @@ impl RealTerms {
         values
     }
 
-    /// Marks the terms that a root depends on, roots included.
+    /// Marks the terms on which `roots` depend, including the roots.
     pub fn needed(&self, roots: &[RealTermId]) -> Vec<bool> {
         cone::needed(self.terms.len(), roots.iter().copied(), |id| self.operands(id))
     }
 
-    /// Returns the term without its roundings. `known` holds the results so far.
+    /// Returns the term without its roundings. `known` caches the results of earlier calls.
     pub fn unrounded(
         &mut self,
         id: RealTermId,
@@ -209,8 +209,8 @@ impl RealTerms {
         self.insert(make(a, b), "unrounded")
     }
 
-    /// Writes the definitions of the terms that are needed, in order. For example, a sum and its rounding to 4 fraction
-    /// bits are `sum_2 = 0.5 + x;` and `cut_3 = fixed<-4,dn>(sum_2);`.
+    /// Returns the definitions of the terms marked in `needed`, in order. For example, a sum and its rounding to 4 fraction bits
+    /// are `sum_2 = 0.5 + x;` and `cut_3 = fixed<-4,dn>(sum_2);`.
     pub fn definitions(&self, needed: &[bool]) -> String {
         let mut text = String::new();
         for (id, (term, name)) in self.terms.iter().enumerate() {

@@ -1,8 +1,8 @@
-//! Finds a point that satisfies the hypotheses of a script. The point shows that the statement is not about an empty
-//! set.
+//! Finds a point at which all hypotheses of a Gappa script hold.
 //!
-//! The search reads the script's own text: definitions, places of the point (`@FIX`), intervals and signs. It finds a
-//! point by descent on the distance of the hypotheses from holding. The point counts if all of them hold in f64.
+//! Such a point shows that the statement is not vacuous: hypotheses that contradict each other would prove anything. The search
+//! reads the text of the script, and moves a point step by step until no hypothesis is violated. A point counts if all hypotheses
+//! hold in f64.
 
 use std::collections::HashMap;
 
@@ -28,8 +28,8 @@ const NEVER: &str = "1 in [2,3] }";
 /// The text between hypotheses and goal.
 const IMPLIES: &str = "\n  -> ";
 
-/// Returns the script with a goal that follows from a contradiction alone; nothing without hypotheses. For example, the
-/// goal `|square| <= 1` becomes `1 in [2,3]`.
+/// Returns the script with a goal that Gappa can prove only if the hypotheses contradict each other. Returns `None` if the script
+/// has no hypotheses. For example, the goal `|square| <= 1` becomes `1 in [2,3]`.
 pub fn contradiction(script: &str) -> Option<String> {
     let (hypotheses, rest) = script.split_once(IMPLIES)?;
     let (_, hints) = rest.split_once('}')?;
@@ -142,7 +142,7 @@ impl Hypotheses {
     }
 }
 
-/// Returns a point at which the hypotheses of a script hold, in words; `None` if no point is found. For example, `x =
+/// Returns a point at which all hypotheses of a script hold, as text, or `None` if the search finds no point. For example, `x =
 /// -0.5`.
 pub fn witness(script: &str) -> Option<String> {
     if !script.contains(IMPLIES) {

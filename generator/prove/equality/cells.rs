@@ -1,13 +1,13 @@
-//! Evaluates the cells of a module that Yosys has read from Verilog, on terms.
+//! Computes the results of Yosys's cells on symbolic terms instead of numbers, as Yosys documents the cells.
 //!
-//! A cell has the meaning that Yosys documents.
+//! For example, a `$add` cell with the terms a and b has the result a + b.
 
 use anyhow::{Context, Result, bail, ensure};
 
 use super::term::{ADDRESS, VectorTerm, VectorTermId, VectorTerms};
 use glint_base::fixed::MAX_WIDTH;
 
-/// A bit of a connection.
+/// A bit of a cell's connection: a wire or a constant.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Bit {
     Wire(usize),
@@ -17,7 +17,7 @@ pub enum Bit {
 
 pub type Connection = Vec<Bit>;
 
-/// The value of every wire: a bit of a term.
+/// The value of every wire of a module: a bit of a term.
 pub struct WireValues(Vec<Option<(VectorTermId, u32)>>);
 
 impl WireValues {
@@ -26,7 +26,7 @@ impl WireValues {
         Self(vec![None; wires])
     }
 
-    /// Has some wires carry the bits of terms, the lowest first.
+    /// Sets the values of some wires to the bits of terms, the lowest first.
     pub fn set(&mut self, bits: &Connection, columns: &[VectorTermId]) {
         for (at, bit) in bits.iter().enumerate() {
             if let Bit::Wire(wire) = *bit {
@@ -36,7 +36,7 @@ impl WireValues {
         }
     }
 
-    /// Returns the terms of some bits, each of at most 64.
+    /// Returns the values of some bits as terms of at most 64 bits each, the lowest bits first.
     pub fn columns(&self, terms: &mut VectorTerms, bits: &Connection) -> Vec<VectorTermId> {
         let mut columns = Vec::new();
         for column in bits.chunks(MAX_WIDTH as usize) {
@@ -45,8 +45,8 @@ impl WireValues {
         columns
     }
 
-    /// Returns the term of at most 64 bits. Copies of a highest bit are an extension by a sign. For example, the wires
-    /// 6, 7, 7, 7, lowest first, are the bits 6 and 7 with the sign extended to four bits.
+    /// Returns the value of at most 64 bits as one term. Copies of the highest bit become a sign extension. For example, the
+    /// wires 6, 7, 7, 7, lowest first, are the bits 6 and 7 with the sign extended to four bits.
     pub fn word(&self, terms: &mut VectorTerms, bits: &[Bit]) -> VectorTermId {
         let copies = bits.iter().rev().take_while(|bit| Some(*bit) == bits.last()).count();
         if copies > 1 && matches!(bits.last(), Some(Bit::Wire(_))) {
@@ -101,7 +101,7 @@ impl WireValues {
         }
     }
 
-    /// Returns a word of a memory that is never written.
+    /// Returns the term of a read from a memory that the module never writes.
     pub fn rom(
         &self,
         terms: &mut VectorTerms,

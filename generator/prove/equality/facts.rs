@@ -1,9 +1,8 @@
-//! Makes instances of laws about products modulo 2^64 and words of memories. The solver treats both as uninterpreted
-//! functions.
+//! Gives the SMT solver arithmetic facts about the products and memory words in its question.
 //!
-//! The laws say how a product follows from parts of a factor, from a factor 0, 1 or -1, or from bounds on both factors.
-//! A word of a small memory is the word at its address; a word of a larger one is within the bounds of all words. Every
-//! instance is true, whatever the terms are, so an unnecessary one does no harm.
+//! The solver treats a product and the read of a memory as uninterpreted functions and knows nothing about them. The facts say,
+//! for example, that a product with a factor 0 is 0, that a product is the sum of the products of a factor's parts, or that a
+//! memory word lies within the bounds of all words. Every fact is true for all values, so an unnecessary one does no harm.
 
 use std::collections::{HashMap, HashSet};
 
@@ -18,8 +17,8 @@ const ROWS: u32 = 8;
 /// A memory of so few words is written out.
 const WORDS: usize = 16;
 
-/// Returns facts about the terms of a cone. Each fact is one bit, which is 1. With `parts`, facts also say that a
-/// product is the sum of its parts, which adds products.
+/// Returns facts about the terms that some terms depend on. Each fact is a one-bit term that is always 1. With `parts`, the facts
+/// also say that a product is the sum of the products of a factor's parts, which adds products.
 pub fn about(
     terms: &mut VectorTerms,
     roots: &[VectorTermId],
@@ -103,7 +102,7 @@ pub fn divided(
     divided
 }
 
-/// Returns the bits of an extended number, and whether the extension has its sign.
+/// Returns the bits that an extended term extends, and whether the extension copies the sign bit.
 pub fn extended(terms: &VectorTerms, factor: VectorTermId) -> Option<(VectorTermId, bool)> {
     match *terms.term(factor) {
         VectorTerm::SignExtend(bits) => Some((bits, true)),
@@ -234,7 +233,7 @@ fn rows(terms: &mut VectorTerms, bits: VectorTermId, other: VectorTermId) -> Vec
     sum
 }
 
-/// Shifts a term up by `by` bits, with zeros below; the result has 64 bits.
+/// Shifts a term left by `by` bits, with zeros below. The result has 64 bits.
 pub fn shifted(terms: &mut VectorTerms, id: VectorTermId, by: u32) -> VectorTermId {
     if by == 0 {
         return id;

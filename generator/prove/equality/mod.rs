@@ -1,9 +1,9 @@
 //! Proves with an SMT solver that a pipeline and its sequential core compute the same outputs for every point.
 //!
-//! Both netlists are executed symbolically, one clock at a time. The core runs its microprogram from the clock that
-//! takes `start`; the pipeline carries one point, with anything before and behind it. Multiplications and table reads
-//! are uninterpreted functions with a few arithmetic lemmas (`facts`). Each checkpoint is a lemma on the way: once a
-//! value of a stage is proved equal to the core's register, it replaces that register. The code shares nothing with
+//! The module executes both netlists symbolically, one clock at a time. The core runs its microprogram from the clock in which it
+//! takes `start`; the pipeline carries one point, with arbitrary points before and behind it. Multiplications and memory reads
+//! are uninterpreted functions with some arithmetic facts (`facts`). If a pipeline stage carries the value of a core register,
+//! the solver proves this first, and the value is then replaced by the register's term. The code shares nothing with
 //! `hdl/pipeline`, which built the pipeline.
 
 mod cells;
@@ -44,7 +44,7 @@ const TRIALS: usize = 400;
 /// More clocks than a computation takes.
 const MOST_CLOCKS: usize = 8192;
 
-/// The verdict on a pipeline and its sequential core.
+/// The verdict on whether a pipeline computes the same as its sequential core.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Verdict {
     /// Every output is the same for every point.
@@ -55,7 +55,7 @@ pub enum Verdict {
     Open(Open),
 }
 
-/// Why the solver does not decide a question.
+/// The reason why the solver does not decide a question.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Open {
     /// The solver does not know, or it answers with values of products and words that no point has.
@@ -64,18 +64,18 @@ pub enum Open {
     Limit,
 }
 
-/// The parts of a proof.
+/// The numbers of proved facts in a proof that a pipeline equals its sequential core.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct EqualityProof {
-    /// Outputs that are equal.
+    /// The number of outputs that are proved equal.
     pub outputs: usize,
-    /// Registers on the way that are equal, in all ways.
+    /// The number of checkpoints that are proved equal, over all paths through the microprogram.
     pub registers: usize,
-    /// The number of ways through the microprogram, if operands decide.
+    /// The number of paths through the microprogram that operands can select.
     pub ways: usize,
-    /// Products that the solver knows nothing of.
+    /// The number of products that are uninterpreted functions for the solver.
     pub products: usize,
-    /// Questions to the solver; the rest are the same terms.
+    /// The number of questions to the solver. Other equalities need no question, because both sides are the same term.
     pub questions: usize,
 }
 
@@ -83,13 +83,13 @@ pub struct EqualityProof {
 /// 0x20 in the sequential core for cos_gamma=0x3ff".
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct OutputDifference {
-    /// Bit patterns, by name.
+    /// The bit patterns of the operands, by name.
     pub operands: Vec<(String, u64)>,
-    /// The output.
+    /// The name of the output that differs.
     pub output: String,
-    /// The value of the sequential core.
+    /// The bit pattern that the sequential core computes.
     pub sequential: u64,
-    /// The value of the pipeline.
+    /// The bit pattern that the pipeline computes.
     pub pipeline: u64,
 }
 
@@ -107,7 +107,8 @@ impl fmt::Display for OutputDifference {
     }
 }
 
-/// Compares a pipeline with its sequential core, within a time limit on the solver.
+/// Proves that a pipeline computes the same as its sequential core, or finds a point for which they differ. `limit` is the time
+/// limit of the solver.
 ///
 /// # Errors
 /// Fails if the designs have different ports or do not come to an end, or if the solver does not do its work.

@@ -1,6 +1,6 @@
-//! Executes a flat module, as Yosys reads it from Verilog, clock by clock on terms.
+//! Executes a Verilog module, which Yosys has flattened, clock by clock on symbolic terms.
 //!
-//! A bit that is not determined is any bit, a new one wherever it is read; a word beyond the contents of a memory is any word.
+//! Every undetermined bit becomes a new unknown at each read. A read beyond the contents of a memory gives an unknown word.
 
 use std::collections::HashMap;
 
@@ -23,7 +23,7 @@ enum What {
     Read(Read),
 }
 
-/// A port by which a memory is read.
+/// A read port of a memory.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Read {
     pub memory: usize,
@@ -41,7 +41,7 @@ struct ModuleRegister {
     output: Connection,
 }
 
-/// A memory that is written.
+/// A memory that the module writes.
 pub struct Memory {
     /// Read ports.
     pub reads: Vec<Read>,
@@ -56,7 +56,7 @@ struct Write {
     enable: Connection,
 }
 
-/// A module.
+/// A flat Verilog module, as Yosys has read it.
 pub struct Module {
     inputs: Vec<(String, Connection)>,
     outputs: Vec<(String, Connection)>,
@@ -67,7 +67,7 @@ pub struct Module {
     wires: usize,
 }
 
-/// The contents of the registers, each in terms of at most 64 bits, the lowest first.
+/// The values of all registers. Each register has a list of terms of at most 64 bits, the lowest bits first.
 pub type RegisterContents = Vec<Vec<VectorTermId>>;
 
 fn bits(value: &Value) -> Result<Connection> {
@@ -116,7 +116,7 @@ fn port_bits(side_by_side: &Connection, port: usize, width: usize) -> Connection
 }
 
 impl Module {
-    /// Reads a module of Yosys's JSON.
+    /// Parses a module from Yosys's JSON.
     ///
     /// # Errors
     /// Fails if a cell is not known here, or if the module is no clocked circuit with the one clock `clk`.
@@ -304,7 +304,7 @@ impl Module {
         self.registers.iter().map(|it| unknown(terms, it.output.len())).collect()
     }
 
-    /// Returns the value of every wire, from the inputs and the read ports of memories that are written.
+    /// Returns the value of every wire, for given inputs, registers and words at the read ports of memories.
     ///
     /// # Errors
     /// Fails if a cell is not known here, or wider than terms are.
@@ -340,12 +340,12 @@ impl Module {
         Ok(values)
     }
 
-    /// Returns the rising edge.
+    /// Returns the values of the registers after a rising edge of the clock.
     pub fn edge(&self, terms: &mut VectorTerms, values: &WireValues) -> RegisterContents {
         self.registers.iter().map(|it| values.columns(terms, &it.data)).collect()
     }
 
-    /// Returns the outputs by name.
+    /// Returns the values of the outputs, by name.
     pub fn shown(
         &self,
         terms: &mut VectorTerms,
@@ -374,12 +374,12 @@ fn unplaced_driver(cell: &ModuleCell, driver: &[Option<usize>], place: &[usize])
 }
 
 impl Memory {
-    /// Returns any word: a new unknown.
+    /// Returns an unknown word for the memory, with new unknowns.
     pub fn any(&self, terms: &mut VectorTerms) -> Vec<VectorTermId> {
         unknown(terms, self.width)
     }
 
-    /// Returns the values that are written.
+    /// Returns the values at the write port of the memory.
     pub fn written(&self, terms: &mut VectorTerms, values: &WireValues) -> Vec<VectorTermId> {
         values.columns(terms, &self.write.data)
     }

@@ -1,4 +1,6 @@
-//! Evaluates the netlists of a pipeline and of its sequential core for one point.
+//! Compares a pipeline and its sequential core on single points, with numbers instead of symbolic terms.
+//!
+//! This finds most differences quickly, before the SMT solver is asked.
 
 use anyhow::{Context, Result, bail};
 
@@ -11,11 +13,11 @@ const MOST_CLOCKS: usize = 8192;
 pub struct DesignPair<'a> {
     pub sequential: &'a Design,
     pub pipeline: &'a Design,
-    /// The operands by name.
+    /// The names of the operands.
     pub operands: Vec<String>,
-    /// Each output of both by name, in the pipeline and in the core.
+    /// The name of each output, with its net in the pipeline and in the core.
     pub outputs: Vec<(String, NetId, NetId)>,
-    /// Clocks from a point to its results.
+    /// The number of clocks from taking a point to its results.
     pub latency: usize,
 }
 
@@ -64,8 +66,9 @@ impl<'a> DesignPair<'a> {
         })
     }
 
-    /// Returns the bit patterns of the outputs, of the sequential core and of the pipeline, for the bit patterns of the
-    /// `operands`. For example, `[[31, 7], [31, 7]]` has two outputs that are equal.
+    /// Simulates both designs for one point, given by the bit patterns of its `operands`. Returns the bit patterns of the
+    /// outputs: first of the sequential core, then of the pipeline. For example, `[[31, 7], [31, 7]]` are two outputs that
+    /// are equal.
     ///
     /// # Errors
     /// Fails if no result is shown.

@@ -1,4 +1,4 @@
-//! Asks an SMT solver whether terms can be 1 together, and reads its answer.
+//! Asks an SMT solver whether some one-bit terms can all be 1 at once, and reads its answer.
 
 use std::fmt::Write as _;
 use std::fs;
@@ -13,7 +13,7 @@ use super::term::{ADDRESS, VectorTerm, VectorTermId, VectorTerms};
 use glint_tools::transient::Directory;
 use glint_tools::{LimitReached, Tool};
 
-/// The solver's answer on terms that are asked to be 1 together.
+/// The solver's answer to the question whether some terms can all be 1.
 pub enum SolverAnswer {
     /// The terms are never all 1.
     Unsatisfiable,
@@ -23,17 +23,17 @@ pub enum SolverAnswer {
     Undecided(Open),
 }
 
-/// An SMT solver, and how long it may take.
+/// An SMT solver, and the time that it may still take.
 pub struct Solver<'a> {
     tool: &'a Tool,
     end: Instant,
     pub dir: Directory,
-    /// Questions that it was asked.
+    /// The number of questions so far.
     pub asked: usize,
 }
 
 impl<'a> Solver<'a> {
-    /// Gives the solver a directory of its own, and `limit` for all its answers together.
+    /// Makes a directory for the solver's files. `limit` is the time limit of all answers together.
     ///
     /// # Errors
     /// Fails if no temporary directory can be made.

@@ -1,4 +1,7 @@
-//! Finds the nets that may carry a product that was put together from parts.
+//! Finds nets of a design that may carry a product which the hardware adds up from the products of parts.
+//!
+//! The module evaluates all terms with random numbers. A net with the same values as the product is a candidate; the solver must
+//! prove it.
 
 use std::collections::HashMap;
 
@@ -11,7 +14,7 @@ use glint_base::fixed::MAX_WIDTH;
 /// Numbers at random by which terms that may be equal are found.
 const SAMPLES: usize = 4;
 
-/// Values of terms for numbers at random in place of the unknowns: terms that may be equal.
+/// The values of terms at random numbers in place of the unknowns. Terms with the same values may be equal.
 pub struct Candidates {
     values: Vec<HashMap<VectorTermId, u64>>,
     /// The first net of these values, extended by zeros or by its sign bit.
@@ -39,22 +42,22 @@ impl Candidates {
         Self { values, nets: known }
     }
 
-    /// Returns a net that has the values of a term of 64 bits, extended to as many. For example, a net of 20 bits may
-    /// have them with its sign extended.
+    /// Returns a net that has the same values as a term of 64 bits, when the net is extended to 64 bits. For example, a net of 20
+    /// bits may have them with its sign extended.
     pub fn of(&self, id: VectorTermId) -> Option<VectorTermId> {
         let key: Vec<u64> = self.values.iter().map(|values| values[&id]).collect();
         self.nets.get(&key).copied()
     }
 }
 
-/// Returns whether two terms of one width have the same values for numbers at random.
+/// Returns whether two terms of the same width have the same values at random numbers.
 pub fn agree(terms: &VectorTerms, one: VectorTermId, other: VectorTermId) -> bool {
     let cone = terms.cone([one, other]);
     terms.width(one) == terms.width(other)
         && samples(terms, &cone).all(|values| values[&one] == values[&other])
 }
 
-/// Evaluates the terms of a cone `SAMPLES` times, with new random values of the unknowns each time. The seed is fixed.
+/// Evaluates some terms `SAMPLES` times, with new random values of the unknowns each time. The seed is always the same.
 pub fn samples(
     terms: &VectorTerms,
     cone: &[VectorTermId],

@@ -1,20 +1,21 @@
-//! Executes a design clock by clock on terms: operands are unknowns, and every net is an expression of them. For
-//! example, a net that adds the operands a and b is the term a + b, and no number.
+//! Executes a netlist clock by clock on symbolic terms: the operands are unknowns, and every net is an expression of them.
+//!
+//! For example, a net that adds the operands a and b has the term a + b instead of a number.
 
 use super::term::{ADDRESS, VectorTerm, VectorTermId, VectorTerms};
 use glint_base::fixed::MAX_WIDTH;
 use glint_base::interval::Interval;
 use glint_rtl::netlist::{Design, Driver, NetId, Op, Role};
 
-/// A product of 64 bits, and the ranges that the design states for its factors. A range may be used only if the
-/// factor is shown to keep to it.
+/// A product of 64 bits, and the ranges that the design states for its factors. A range may be used only after the solver has
+/// proved that the factor stays in it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Product {
     pub factors: [VectorTermId; 2],
     pub ranges: [Interval; 2],
 }
 
-/// The contents of registers and synchronous memories between two clocks.
+/// The terms in registers and synchronous memories between two clocks.
 #[derive(Clone)]
 pub struct SymbolicState {
     pub registers: Vec<VectorTermId>,
@@ -22,7 +23,7 @@ pub struct SymbolicState {
 }
 
 impl SymbolicState {
-    /// Replaces a condition, one bit, by `value` in the terms of the state.
+    /// Assumes that a condition, a one-bit term, has the value `value`: replaces it in all terms of the state.
     pub fn assume(&mut self, terms: &mut VectorTerms, condition: VectorTermId, value: bool) {
         let mut all = [self.registers.as_slice(), &self.words].concat();
         terms.assuming(condition, value, &mut all);
@@ -31,7 +32,7 @@ impl SymbolicState {
     }
 }
 
-/// A design that terms go through.
+/// A design that is executed with terms in place of numbers.
 pub struct Execution<'a> {
     pub design: &'a Design,
     order: Vec<NetId>,
@@ -62,7 +63,7 @@ impl<'a> Execution<'a> {
         state
     }
 
-    /// Returns the term of every net, with these inputs. It adds the products among them to `products`.
+    /// Returns the term of every net for the given inputs and state, and adds the products among them to `products`.
     pub fn settle(
         &self,
         terms: &mut VectorTerms,
@@ -94,7 +95,7 @@ impl<'a> Execution<'a> {
         values
     }
 
-    /// Returns the rising edge.
+    /// Returns the state after a rising edge of the clock.
     pub fn edge(
         &self,
         terms: &mut VectorTerms,

@@ -1,25 +1,25 @@
-//! Makes and simplifies terms of bit-vectors: the values of nets when operands are unknown.
+//! Stores and simplifies bit-vector terms, the values of nets when the operands are unknown.
 //!
-//! Equal terms are made once and are the same. Constants fold, so that a microprogram can run. Wiring is brought into
-//! one form, so that many values that are equal are the same term.
+//! Equal terms are stored once. Constants are folded, so that a microprogram with unknown operands still runs. Concatenations,
+//! slices and extensions are brought into one normal form, so that many equal values become the same term without the solver.
 
 use std::collections::HashMap;
 
 use glint_base::cone;
 use glint_base::fixed::{MAX_WIDTH, mask};
 
-/// A term of some [`VectorTerms`].
+/// The number of a term in a [`VectorTerms`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct VectorTermId(u32);
 
 impl VectorTermId {
-    /// Returns its number among all terms.
+    /// Returns the number of the term.
     pub fn number(self) -> u32 {
         self.0
     }
 }
 
-/// A term. Operands have the width of the result unless the variant says otherwise.
+/// A bit-vector expression. Its operands have the width of the result unless the variant says otherwise.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub enum VectorTerm {
     /// Any value, the same wherever the number is.
@@ -59,16 +59,16 @@ pub enum VectorTerm {
     },
 }
 
-/// Bits of an address.
+/// The number of bits of a memory address.
 pub const ADDRESS: u32 = 32;
 
-/// Terms, each made once, after its operands.
+/// A collection of terms. Each is stored once, after its operands.
 #[derive(Default)]
 pub struct VectorTerms {
     nodes: Vec<(VectorTerm, u32)>,
     known: HashMap<(VectorTerm, u32), VectorTermId>,
     unknowns: u32,
-    /// The contents of memories, each once.
+    /// The contents of the memories. Equal contents are stored once.
     pub memories: Vec<Vec<u64>>,
     /// The word beyond the contents, by memory and address.
     beyond: HashMap<(usize, VectorTermId), VectorTermId>,
@@ -116,7 +116,7 @@ impl VectorTerms {
         self.nodes[id.0 as usize].1
     }
 
-    /// Returns the term of a number.
+    /// Returns the term with a number, if there is one.
     pub fn numbered(&self, number: u32) -> Option<VectorTermId> {
         ((number as usize) < self.nodes.len()).then_some(VectorTermId(number))
     }
@@ -128,7 +128,7 @@ impl VectorTerms {
         }
     }
 
-    /// Returns all terms that these need, themselves too, each after its operands.
+    /// Returns all terms that `roots` depend on, including the roots, each after its operands.
     pub fn cone(&self, roots: impl IntoIterator<Item = VectorTermId>) -> Vec<VectorTermId> {
         let index = |id: VectorTermId| id.0 as usize;
         let operands = |at: usize| self.nodes[at].0.operands().into_iter().map(index);
@@ -154,7 +154,7 @@ impl VectorTerms {
         values
     }
 
-    /// Returns a new unknown.
+    /// Makes a new unknown with `width` bits.
     pub fn unknown(&mut self, width: u32) -> VectorTermId {
         self.unknowns += 1;
         self.insert(VectorTerm::Unknown(self.unknowns - 1), width)
@@ -173,7 +173,7 @@ impl VectorTerms {
         self.memories.len() - 1
     }
 
-    /// Returns a word that a memory does not have: any, the same for the same address.
+    /// Returns the term of a read beyond the contents of a memory: an unknown, which is the same for the same address.
     pub fn beyond(&mut self, memory: usize, address: VectorTermId, width: u32) -> VectorTermId {
         if let Some(&word) = self.beyond.get(&(memory, address)) {
             return word;
@@ -183,8 +183,8 @@ impl VectorTerms {
         word
     }
 
-    /// Extends a term with zeros above it, or cuts it: to this width. For example, the constant 0b101 becomes 0b0101 at
-    /// a width of 4, and 0b01 at a width of 2.
+    /// Changes a term to the width `width`, by zeros above it or by cutting high bits off. For example, the constant 0b101
+    /// becomes 0b0101 at a width of 4, and 0b01 at a width of 2.
     pub fn resized(&mut self, id: VectorTermId, width: u32) -> VectorTermId {
         let own = self.width(id);
         if width <= own {
@@ -230,12 +230,12 @@ impl VectorTerms {
         self.make(VectorTerm::Choice(condition, then, otherwise), self.width(then))
     }
 
-    /// Returns whether there is such a term.
+    /// Returns whether the collection contains a term.
     pub fn has(&self, term: &VectorTerm, width: u32) -> bool {
         self.known.contains_key(&(ordered(term.clone()), width))
     }
 
-    /// Replaces a condition, one bit, by a value in all of the terms.
+    /// Replaces a condition, a one-bit term, by a constant in all of `terms`.
     pub fn assuming(&mut self, condition: VectorTermId, value: bool, terms: &mut [VectorTermId]) {
         let constant = self.constant(value.into(), 1);
         self.replace(&HashMap::from([(condition, constant)]), terms);
@@ -262,7 +262,7 @@ impl VectorTerms {
         terms.iter_mut().for_each(|term| *term = new[term]);
     }
 
-    /// Returns a term, in the form that all that are the same by simple rules have.
+    /// Returns a term in its simplified form. Terms that simple rules show to be equal have the same form.
     pub fn make(&mut self, term: VectorTerm, width: u32) -> VectorTermId {
         let constants: Option<HashMap<VectorTermId, u64>> =
             term.operands().into_iter().map(|id| Some((id, self.constant_of(id)?))).collect();

@@ -1,4 +1,4 @@
-//! Terms keep their values however they are simplified, and facts hold whatever the operands are.
+//! Tests that simplified terms keep their values, and that the facts for the solver hold for all operands.
 
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{RngCore, SeedableRng};

@@ -1,9 +1,10 @@
-//! Proves that the emitted Verilog of a pipeline shows what its netlist shows, for every point and from any state.
+//! Proves that the emitted Verilog of a pipeline and its netlist have the same outputs, for every point and from any state.
 //!
-//! The netlist and the text, as Yosys reads it, are executed on terms, from registers and memories that hold anything.
-//! A memory that is written must be a delay: a read gives the word of a fixed number of clocks before (`delays`). A
-//! clock in which points stay changes nothing (`stays`), so that it is enough to follow a point while none stays. A
-//! register of the text that is equal to a net takes the net's term, so that the solver sees one clock at a time.
+//! Yosys reads the Verilog. The module executes both the netlist and the Verilog on symbolic terms, with unknown registers and
+//! memories at the beginning. A memory that the pipeline writes must be a delay line: each read returns the word that was written
+//! a fixed number of clocks before (`delays`). A clock in which the pipeline waits must change nothing (`stays`), so that
+//! following a point without waits is enough. A register of the Verilog that equals a net takes the net's term, so that the
+//! solver only has to compare one clock at a time.
 
 use std::collections::{HashMap, HashSet};
 use std::time::Duration;
@@ -22,7 +23,7 @@ use glint_base::fixed::mask;
 use glint_rtl::netlist::{Design, Role};
 use glint_tools::Tool;
 
-/// The verdict on a text and its netlist.
+/// The verdict on whether the emitted Verilog of a pipeline equals its netlist.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum TextVerdict {
     /// Every output is the same for every point.
@@ -35,21 +36,21 @@ pub enum TextVerdict {
     Unread(String),
 }
 
-/// The parts of a proof.
+/// The numbers of proved facts in a proof that the emitted Verilog of a pipeline equals its netlist.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct TextProof {
-    /// Outputs that are equal.
+    /// The number of outputs that are proved equal.
     pub outputs: usize,
-    /// Registers that hold a value of the netlist, counted in every clock of a point.
+    /// The number of Verilog registers that are proved equal to a net of the netlist, counted for every clock of a point.
     pub registers: usize,
-    /// Clocks from write to read of each memory that is written.
+    /// For each memory that the module writes, the number of clocks from write to read.
     pub delays: Vec<usize>,
-    /// Questions to the solver; the rest are the same terms.
+    /// The number of questions to the solver. Other equalities need no question, because both sides are the same term.
     pub questions: usize,
 }
 
-/// Compares the text of a pipeline, as [`glint_tools::elaborate`] reads it, with its netlist, within a time limit on the
-/// solver.
+/// Proves that the emitted Verilog of a pipeline, as [`glint_tools::elaborate`] reads it, equals the pipeline's netlist. `limit`
+/// is the time limit of the solver.
 ///
 /// # Errors
 /// Fails if the design is no pipeline, or if the solver does not do its work.

@@ -1,8 +1,7 @@
-//! Finds products of the core for which the pipeline multiplies only the lowest bits of the factors.
+//! Finds products that a pipeline computes from only the low bits of the factors of a product in the sequential core.
 //!
-//! A pipeline treats the highest bit of a factor separately if the bit is a sign, or if it is set only where all
-//! other bits are 0. The core may have the lowest bits in other terms; the solver then decides whether they are
-//! equal.
+//! A pipeline treats the highest bit of a factor separately if it is a sign, or if it can be set only when all other bits are 0.
+//! The core may contain the low bits as different terms; the solver then decides whether the terms are equal.
 
 use anyhow::Result;
 

@@ -1,5 +1,6 @@
-//! Records where a test reads each word of a table. A fault in a word can show only where the test reads the word, so
-//! that a check need not run the whole test.
+//! Records at which clocks of a test each ROM word is read.
+//!
+//! A fault in a word can only show after a read of the word, so a check of the fault need not run the whole test.
 
 use anyhow::Result;
 
@@ -14,19 +15,19 @@ const PLACES: usize = 6;
 /// Raw values of operands, by name.
 pub(super) type OperandValues = Vec<(String, i64)>;
 
-/// A place in a test. For example, seed 1 and 40 points are the clock of the stream with seed 1 before which 40 results
-/// have come.
+/// A position in a test: a stream, and the number of results before the position. For example, seed 1 and 40 points are the clock
+/// in the stream with seed 1 before which 40 results have come.
 #[derive(Clone)]
 pub(super) struct TestPlace {
     /// The seed of the stream.
     pub(super) seed: u64,
-    /// The results in it up to there.
+    /// The number of results of the stream before the position.
     pub(super) points: u64,
     /// The contents of the operand registers.
     operands: Vec<u64>,
 }
 
-/// For each ROM and word, the first places at which it is read.
+/// For each word of each ROM, the first positions in a test at which it is read.
 pub(super) struct Coverage {
     places: Vec<Vec<Vec<TestPlace>>>,
     /// The operand registers.
@@ -71,7 +72,7 @@ fn no_places(design: &Design) -> Vec<Vec<Vec<TestPlace>>> {
 }
 
 impl Coverage {
-    /// Runs a test of `points` results, and records the places at which it reads each word.
+    /// Runs a test of `points` results, and records the positions at which it reads each ROM word.
     ///
     /// # Errors
     /// Fails if the design cannot be simulated.
@@ -98,7 +99,7 @@ impl Coverage {
         Ok(Self { places: all, operands })
     }
 
-    /// Returns the places at which a word is read.
+    /// Returns the positions at which the test reads a ROM word.
     pub(super) fn places(&self, rom: RomId, word: usize) -> &[TestPlace] {
         &self.places[rom.index()][word]
     }
@@ -124,8 +125,8 @@ impl Coverage {
     }
 }
 
-/// Returns the operand that a register holds, which it takes from a port or from the buffer behind it. For example, the
-/// operand register of `cos_gamma` gives the name of the port, `cos_gamma`.
+/// Returns the operand whose value a register holds, if it loads a port or an operand buffer. For example, the operand register
+/// of `cos_gamma` gives the name of the port, `cos_gamma`.
 pub(super) fn operand_of<'d>(design: &'d Design, register: &NetlistRegister) -> Option<&'d str> {
     let taken = cone::reached(register.data, |net| match &design.net(net).driver {
         Driver::Op(op) => op.operands(),

@@ -1,4 +1,6 @@
-//! Lists the faults of a design, each with a name that stays the same.
+//! Lists the faults that mutation testing plants in a netlist, each with a name that stays the same from run to run.
+//!
+//! For example, `adder15[3]:stuck-at-0` is bit 3 of the net `adder15`, stuck at 0.
 
 use std::collections::BTreeSet;
 
@@ -19,7 +21,7 @@ const SAMPLE: usize = 200;
 const SAMPLED_BITS: usize = 200;
 const NEIGHBOURS: usize = 256;
 
-/// The change of a bit.
+/// A change of a bit: stuck at 0, stuck at 1, or inverted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum BitChange {
     /// It is always 0.
@@ -31,10 +33,10 @@ pub enum BitChange {
 }
 
 impl BitChange {
-    /// All that can be done to a bit.
+    /// All changes of a bit.
     pub const ALL: [Self; 3] = [Self::Stuck0, Self::Stuck1, Self::Inverted];
 
-    /// Returns `bits` with bit number `bit` at fault. For example, bit 0 of 0b1010 inverted gives 0b1011.
+    /// Returns `bits` with this change at bit number `bit`. For example, bit 0 of 0b1010 inverted gives 0b1011.
     pub fn applied(self, bits: u64, bit: u32) -> u64 {
         match self {
             Self::Stuck0 => bits & !(1 << bit),
@@ -44,7 +46,7 @@ impl BitChange {
     }
 }
 
-/// The place of a fault, and the change there.
+/// The place of a fault in a netlist, and the change at this place.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Site {
     /// A bit of a net.
@@ -59,7 +61,7 @@ pub enum Site {
     Words(RomId, Vec<(usize, u64)>),
 }
 
-/// One fault.
+/// A fault in a netlist.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NetlistFault {
     /// Made of the names in the design: `adder15[3]:stuck-at-0`. No two faults of a design have the same. A fault of a
@@ -71,12 +73,12 @@ pub struct NetlistFault {
     pub site: Site,
 }
 
-/// The faults of a design.
+/// The faults that can be planted in a netlist.
 #[derive(Clone, Debug, Default)]
 pub struct Faults(Vec<NetlistFault>);
 
 impl Faults {
-    /// Lists all faults, but of large ROMs a sample that is always the same.
+    /// Lists all faults of a netlist. For large ROMs it lists a sample, which is always the same.
     pub fn of(design: &Design) -> Self {
         let mut faults = Self::default();
         // Left out: the reset, which is the environment's, and the control word, whose fields are nets of their own.
@@ -102,8 +104,8 @@ impl Faults {
         faults
     }
 
-    /// Keeps `most` faults, spread evenly, if there are more. For example, 4 of 10 faults are the third, the fifth, the
-    /// eighth and the tenth.
+    /// Keeps at most `most` faults, spread evenly over the list. For example, 4 of 10 faults are the third, the fifth, the eighth
+    /// and the tenth.
     pub fn thin(&mut self, most: usize) {
         let all = self.0.len();
         let mut at = 0;
@@ -128,7 +130,7 @@ impl Faults {
         self.0.is_empty()
     }
 
-    /// Returns the fault of that id.
+    /// Returns the fault with an id.
     pub fn find(&self, id: &str) -> Option<&NetlistFault> {
         self.0.iter().find(|fault| fault.id == id)
     }

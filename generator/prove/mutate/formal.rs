@@ -1,4 +1,4 @@
-//! Proves with Yosys that the text of a module and one with a fault behave alike.
+//! Proves with Yosys that a Verilog module and the same module with a fault behave alike.
 
 use std::collections::BTreeSet;
 use std::fs;

@@ -1,4 +1,4 @@
-//! The kinds of faults, and their names in tables.
+//! Lists the kinds of faults, and their names in tables.
 
 use std::fmt;
 

@@ -1,8 +1,8 @@
-//! Tests a mutant with operands held at values that lead to a word of a table.
+//! Tests a mutant whose faulty ROM word is read only for a few operand values.
 //!
-//! Random operands would rarely show a fault that one value in a million shows. The test therefore holds the operands
-//! that lead to the faulty word, and draws the others. If an operand is the address, the test tries all values of the
-//! other operands that determine `f`.
+//! Random operands would rarely read the word. The test therefore holds the operands that lead to the word at fixed values, and
+//! draws the others at random. If an operand is the address of the ROM, the test tries all values of the other operands that
+//! determine the reflectance `f`.
 
 use anyhow::Result;
 
@@ -21,13 +21,13 @@ const FEW_POINTS: u64 = 64;
 /// The seed with which the others are drawn.
 const SEED: u64 = 3;
 
-/// All values of operands are tried if they have no more bits than this.
+/// The largest number of operand bits for which all values of the remaining operands are tried.
 pub(super) const MOST_BITS: u32 = 22;
 
-/// All values of all operands are tried for each fault if they have no more bits than this.
+/// The largest number of operand bits for which all values of all operands are tried for each fault.
 pub(super) const NARROW: u32 = 16;
 
-/// Returns the operand whose register addresses a ROM, held at a word. For example, for word 5 of a table that the
+/// Returns the operand that addresses a ROM, with the raw value that selects a word. For example, for word 5 of a ROM that the
 /// operand `exponent` addresses, it returns `exponent` with the raw value 5.
 pub(super) fn addressing(core: &Core, rom: RomId, word: usize) -> Option<OperandValues> {
     let design = &core.design;
@@ -39,7 +39,7 @@ pub(super) fn addressing(core: &Core, rom: RomId, word: usize) -> Option<Operand
     Some(vec![(operand_of(design, register)?.to_owned(), word as i64)])
 }
 
-/// Returns the first difference while these operands are held and the others drawn.
+/// Simulates a mutant with some operands held and the others drawn at random, and returns the first difference.
 ///
 /// # Errors
 /// Fails if the mutant cannot be simulated.
@@ -53,7 +53,7 @@ pub(super) fn drawn(
     Ok(mismatch.map(|mismatch| SignalDifference { held, mismatch }))
 }
 
-/// Runs a few points at which all operands are held.
+/// Simulates a mutant for a few points at which all operands are held.
 ///
 /// # Errors
 /// Fails if the mutant cannot be simulated.
@@ -67,7 +67,7 @@ pub(super) fn alone(
     Ok(mismatch.map(|mismatch| SignalDifference { held, mismatch }))
 }
 
-/// The result of a run through the other operands that determine `f`.
+/// The result of trying all values of the operands that determine `f` and are not held.
 pub(super) enum Tried {
     /// Nothing was tried: the operands have too many values, or the device computes lines.
     Nothing,

@@ -1,4 +1,4 @@
-//! Plants a fault in a design: makes the mutant.
+//! Makes a mutant: a copy of a netlist with one fault.
 
 use std::borrow::Cow;
 
@@ -7,10 +7,10 @@ use glint_rtl::netlist::microcode;
 use glint_rtl::netlist::{Design, Driver, Net, NetId, Op, RegId, RomId};
 
 impl NetlistFault {
-    /// Returns the design with this fault.
+    /// Returns a copy of the design with this fault.
     ///
-    /// The result can be simulated and emitted. Its nets keep the intervals of the fault-free design, which the mutant
-    /// may leave.
+    /// The copy can be simulated and emitted. Its nets keep the intervals of the fault-free design, which their values in the
+    /// copy may leave.
     pub fn planted(&self, design: &Design) -> Design {
         let mut mutant = design.clone();
         match &self.site {

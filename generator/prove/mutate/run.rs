@@ -1,4 +1,4 @@
-//! Takes every fault of a configuration through the checks that may notice it, and gives the verdicts.
+//! Runs all checks on every fault of a configuration, and gives each fault its verdict.
 
 use std::sync::OnceLock;
 
@@ -26,7 +26,8 @@ const FIRST_POINTS: u64 = 256;
 const BEYOND_POINTS: u64 = 1_000_000;
 const BEYOND_SEED: u64 = 2;
 
-/// Plants every one of the faults in turn. `progress` is called after each.
+/// Plants each of the faults in turn, runs the checks on the mutant, and returns the verdicts. It calls `progress` after each
+/// fault.
 ///
 /// # Errors
 /// Fails if a mutant cannot be simulated.

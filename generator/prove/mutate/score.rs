@@ -1,4 +1,4 @@
-//! Counts the verdicts of a run: its score, in numbers and names.
+//! Counts the verdicts on the faults of a run, and decides whether the run passes.
 
 use std::collections::BTreeMap;
 
@@ -8,7 +8,7 @@ use super::kind::FaultKind;
 use super::verdict::{Detector, FaultResult, How, MutantVerdict};
 use super::verilog::{ShippedBench, TextFault, TextFaultResult, TextMutantVerdict};
 
-/// The largest share of the faults that may be undecided.
+/// The largest share of the faults of a configuration that may be undecided.
 pub const TOLERATED: f64 = 0.01;
 
 /// The share of the faults in the Verilog that the shipped bench should notice by itself, among the faults that it or
@@ -19,12 +19,12 @@ pub const GOAL_TEXT: f64 = 0.98;
 /// the bits whose inversion some check notices. Words that are never read are not counted.
 pub const GOAL_MEMORY: f64 = 0.95;
 
-/// Some of the faults.
+/// A share of some faults.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Share {
-    /// The faults that are noticed.
+    /// The number of faults that are noticed.
     pub noticed: usize,
-    /// All that could be.
+    /// The number of all faults that are considered.
     pub of: usize,
 }
 
@@ -35,18 +35,19 @@ impl Share {
     }
 }
 
-/// Faults by their verdicts.
+/// The numbers of faults with each verdict.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Tally {
     /// How many were planted.
     pub planted: usize,
-    /// How many each check noticed first.
+    /// For each check, the number of faults that it noticed first.
     pub caught: BTreeMap<Detector, usize>,
-    /// How many were proved equivalent, by proof.
+    /// For each kind of proof, the number of faults that it proved equivalent.
     pub equivalent: BTreeMap<How, usize>,
-    /// How many are neither.
+    /// The number of undecided faults.
     pub undecided: usize,
-    /// How many the shipped bench notices by itself, and how many it does not though a check does.
+    /// The number of faults that the shipped bench notices. `missed` is the number that it does not notice although another check
+    /// does.
     pub shipped: usize,
     pub missed: usize,
 }
@@ -63,41 +64,41 @@ impl Tally {
         }
     }
 
-    /// Returns how many some check noticed.
+    /// Returns the number of faults that some check noticed.
     pub fn all_caught(&self) -> usize {
         self.caught.values().sum()
     }
 
-    /// Returns how many were proved equivalent.
+    /// Returns the number of faults that were proved equivalent.
     pub fn all_equivalent(&self) -> usize {
         self.equivalent.values().sum()
     }
 
-    /// Returns the share that is undecided. For example, 76 undecided faults of 10 457 are a share of 0.0073, which
+    /// Returns the share of undecided faults. For example, 76 undecided faults of 10 457 are a share of 0.0073, which
     /// [`TOLERATED`] allows.
     pub fn share_undecided(&self) -> f64 {
         if self.planted == 0 { 0.0 } else { self.undecided as f64 / self.planted as f64 }
     }
 
-    /// Returns the shipped bench's share of the faults that anything notices.
+    /// Returns the share of the faults that the shipped bench notices, among the faults that any check notices.
     pub fn of_shipped(&self) -> Share {
         Share { noticed: self.shipped, of: self.shipped + self.missed }
     }
 }
 
-/// The faults of one configuration, or of one place of it.
+/// The verdicts on the faults of one configuration, or of one part of it.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Score {
-    /// All together.
+    /// The numbers for all faults together.
     pub all: Tally,
-    /// By kind.
+    /// The numbers for each kind of fault.
     pub kinds: BTreeMap<FaultKind, Tally>,
     /// The ids of the undecided faults.
     pub undecided: Vec<String>,
 }
 
 impl Score {
-    /// Adds up.
+    /// Counts the verdicts on some faults.
     pub fn of(found: &[FaultResult]) -> Self {
         let mut score = Self::default();
         for one in found {
@@ -111,38 +112,39 @@ impl Score {
         score
     }
 
-    /// Returns whether no more than is tolerated is undecided.
+    /// Returns whether the share of undecided faults is at most [`TOLERATED`].
     pub fn holds(&self) -> bool {
         self.all.share_undecided() <= TOLERATED
     }
 
-    /// Returns the shipped bench's share of the bits in the upper half of the words of tables; nothing without tables.
+    /// Returns the share of inverted bits, in the upper half of ROM words, that the shipped bench notices. Returns `None` for a
+    /// design without ROMs.
     pub fn of_memory(&self) -> Option<Share> {
         self.kinds.get(&FaultKind::RomHighBit).map(Tally::of_shipped)
     }
 }
 
-/// The faults of the Verilog of one configuration.
+/// The verdicts on the faults in the emitted Verilog of one configuration.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct TextScore {
-    /// How many were planted.
+    /// The number of faults that were planted.
     pub planted: usize,
-    /// How many a compiler or lint refuses or warns of.
+    /// The number of faults that a compiler or linter refuses or warns of.
     pub lint: usize,
-    /// How many of the others a bench notices.
+    /// The number of other faults that a test bench notices.
     pub bench: usize,
-    /// How many are proved equivalent.
+    /// The number of faults that are proved equivalent.
     pub equivalent: usize,
-    /// The ids of the others.
+    /// The ids of the faults that nothing decides.
     pub undecided: Vec<String>,
-    /// The shipped bench's share of the faults that it or a longer one notices.
+    /// The share of the faults that the shipped bench notices, among the faults that it or a longer bench notices.
     pub shipped: Share,
     /// The ids of the faults that the shipped bench does not notice.
     pub missed: Vec<String>,
 }
 
 impl TextScore {
-    /// Adds up the findings about `faults`, which `found` gives in the same order.
+    /// Counts the verdicts `found` on the faults `faults`, which are in the same order.
     pub fn of(faults: &[TextFault], found: &[TextFaultResult]) -> Self {
         let mut score = Self::default();
         for (fault, found) in faults.iter().zip(found) {

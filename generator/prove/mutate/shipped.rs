@@ -1,4 +1,4 @@
-//! Runs the shipped bench as a check of its own: it applies the bench's vectors and compares only the outputs.
+//! Runs the test bench that is shipped with a core on a mutant: applies its vectors and compares only the outputs.
 
 use anyhow::Result;
 
@@ -7,7 +7,7 @@ use glint_core::package::Vectors;
 use glint_rtl::netlist::{Design, Role};
 use glint_rtl::sim::Simulator;
 
-/// The bench that goes with a core, as the built-in simulator runs it.
+/// The vectors of the test bench that is shipped with a core. The built-in simulator applies them.
 pub(super) struct Shipped(Vectors);
 
 impl Shipped {
@@ -19,7 +19,7 @@ impl Shipped {
         core.shipped_vectors().map(Self)
     }
 
-    /// Returns whether a mutant differs in an output that the bench compares. The bench cannot see registers.
+    /// Returns whether a mutant differs in an output that the bench compares. The bench does not compare registers.
     ///
     /// # Errors
     /// Fails if the mutant cannot be simulated.

@@ -1,4 +1,4 @@
-//! Compares proofs with the simulation: a fault that is noticed is never proved equivalent.
+//! Tests the equivalence proofs against simulation: a fault that simulation notices must never be proved equivalent.
 
 use std::path::{Path, PathBuf};
 

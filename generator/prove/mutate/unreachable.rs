@@ -1,5 +1,4 @@
-//! Finds faults that a test never comes to and cannot notice: a fact about the stimulus, and not about the
-//! design.
+//! Finds faults that a test cannot notice because its stimulus never exercises them, for example a ROM word that it never reads.
 
 use anyhow::Result;
 
@@ -26,9 +25,9 @@ impl BitWatch<'_> {
     }
 }
 
-/// Returns the faults that the default test never comes to. For example, a bit of a register may be stuck at the value
-/// that it always has. Or the test may never read a word of a table. It says nothing about other faults, for example
-/// swapped inputs of a mux.
+/// Returns the faults that the default test cannot notice, because it never exercises them. For example, a register bit is stuck
+/// at the value that it always has in the test, or the test never reads a ROM word. The function does not decide other faults,
+/// such as swapped inputs of a mux.
 ///
 /// # Errors
 /// Fails if the design cannot be simulated.

@@ -1,4 +1,4 @@
-//! The verdicts on faults: caught, proved equivalent or undecided, and by which check.
+//! Defines the verdicts on faults: caught by a check, proved equivalent, or undecided.
 
 use std::fmt;
 
@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use super::fault::NetlistFault;
 use glint_core::cosim::Mismatch;
 
-/// The check that notices a fault.
+/// The check that noticed a fault first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Detector {
@@ -17,7 +17,7 @@ pub enum Detector {
     Directed,
 }
 
-/// How a fault was proved equivalent.
+/// The way in which a fault was proved equivalent.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum How {
@@ -48,13 +48,13 @@ impl fmt::Display for How {
     }
 }
 
-/// The difference that a check showed.
+/// The difference between mutant and golden model that a check found.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SignalDifference {
     /// Operands that the stimulus held, by name, at raw values ([`glint_core::cosim::Lockstep::holding`]). For example,
     /// `exponent` at 5.
     pub held: Vec<(String, i64)>,
-    /// The signal, on a clock.
+    /// The signal that differs, and the clock.
     pub mismatch: Mismatch,
 }
 
@@ -76,12 +76,12 @@ pub struct FaultResult {
     pub fault: NetlistFault,
     /// The verdict.
     pub verdict: MutantVerdict,
-    /// Whether the vectors of the shipped bench notice it, at the outputs alone.
+    /// Whether the shipped bench notices the fault at the outputs.
     pub shipped: bool,
 }
 
 impl FaultResult {
-    /// Returns whether a check catches the fault and the vectors of the shipped bench do not.
+    /// Returns whether a check catches the fault but the shipped bench does not.
     pub fn is_missed(&self) -> bool {
         matches!(self.verdict, MutantVerdict::Caught(..)) && !self.shipped
     }

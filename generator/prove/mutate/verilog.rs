@@ -1,11 +1,8 @@
-//! Plants faults in the emitted Verilog, and finds whether lint or a bench notices them.
+//! Plants faults in the text of the emitted Verilog, and finds out whether lint or a test bench notices them.
 //!
-//! Each mutant has one fault in the text of the modules, as an emitter could make it. For example, `4'd9` becomes
-//! `4'd8`. Lint, the shipped bench or a longer bench must notice the fault; the score counts the share of the shipped
-//! bench separately.
-//!
-//! No fault moves a register to the other edge of the clock, because only timing analysis can tell: its input is stable
-//! by then.
+//! Each mutant has one fault, as a bug in the emitter could make it. For example, `4'd9` becomes `4'd8`. Lint, the shipped bench
+//! or a longer bench must notice it; the faults that the shipped bench notices are also counted separately. No fault moves a
+//! register to the other clock edge, because in simulation its input is stable by then and only timing analysis could tell.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -31,7 +28,7 @@ const POINTS: u64 = 10_000;
 /// is busy with other things does not make them fail.
 const PROOF_LIMIT: Duration = Duration::from_secs(120);
 
-/// A fault of a text.
+/// A fault in the text of the emitted Verilog.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct TextFault {
     /// The file, the number of the line, the kind, and a number among the faults of this kind in the line. For example,
@@ -45,7 +42,7 @@ pub struct TextFault {
     text: String,
 }
 
-/// The verdict on a fault of a text.
+/// The verdict on a fault in the Verilog.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum TextMutantVerdict {
@@ -59,7 +56,7 @@ pub enum TextMutantVerdict {
     Undecided,
 }
 
-/// The verdict of the shipped bench by itself on a fault of a text.
+/// Whether the shipped bench alone notices a fault in the Verilog.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum ShippedBench {
     /// Icarus Verilog does not build it.
@@ -72,19 +69,19 @@ pub enum ShippedBench {
     Silent,
 }
 
-/// The result for a fault of a text.
+/// The verdicts on a fault in the Verilog.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct TextFaultResult {
-    /// By all checks together.
+    /// The verdict of all checks together.
     pub verdict: TextMutantVerdict,
-    /// By the shipped bench.
+    /// The verdict of the shipped bench alone.
     pub shipped: ShippedBench,
 }
 
 /// The tools to which faults are shown.
 const TOOLS: [&str; 4] = ["iverilog", "vvp", "verilator", "yosys"];
 
-/// The files of a configuration in which faults are planted, and the files that notice the faults.
+/// The Verilog files of a configuration in which faults are planted, and the test benches and proofs that may notice the faults.
 pub struct VerilogText {
     files: Vec<OutputFile>,
     /// A bench with more points, all at random, and its vectors: they take the place of the shipped ones. Golden model
@@ -174,7 +171,7 @@ static OPERATORS: LazyLock<Vec<TextOperator>> = LazyLock::new(|| {
 });
 
 impl VerilogText {
-    /// Collects the fault-free text of a configuration, with its shipped bench.
+    /// Collects the Verilog files of a core and its shipped bench.
     ///
     /// # Errors
     /// Fails if a tool is missing, if golden model and simulation differ, or if the design cannot be written.
@@ -191,7 +188,7 @@ impl VerilogText {
         Ok(text)
     }
 
-    /// Collects the fault-free text of the wrappers around a core, with their shipped benches and proofs.
+    /// Collects the Verilog files of the wrappers around a core, with their shipped benches and proofs.
     ///
     /// # Errors
     /// Fails if golden model and simulation differ, or if the design cannot be written.
@@ -222,12 +219,12 @@ impl VerilogText {
         text
     }
 
-    /// Returns all files.
+    /// Returns all files, without a fault.
     pub fn files(&self) -> &[OutputFile] {
         &self.files
     }
 
-    /// Returns all files, with a fault.
+    /// Returns all files, with one fault.
     pub fn planted(&self, fault: &TextFault) -> Vec<OutputFile> {
         let mut text = String::new();
         for (number, line) in self.files[fault.file].contents.lines().enumerate() {
@@ -245,7 +242,7 @@ impl VerilogText {
         bench.map_or("", OutputFile::main_module)
     }
 
-    /// Returns every fault, in the order of the text.
+    /// Returns every fault that can be planted, in the order of the text.
     pub fn faults(&self) -> Vec<TextFault> {
         let mut faults = Vec::new();
         for &file in &self.modules {

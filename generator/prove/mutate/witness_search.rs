@@ -1,10 +1,9 @@
-//! Searches for a point that shows a fault of a pipeline.
+//! Searches for an operand combination at which a mutant of a pipeline gives a wrong result.
 //!
-//! Some parts exist in a pipeline and not in its core, such as the parts of a product. A fault there may show only
-//! when a carry runs through all bits that are then dropped, too seldom for random points. The pipeline is therefore
-//! simulated beside the mutant, with a point in every lane in each clock that takes one. The search keeps the points
-//! that make a register differ, preferably in a late stage, and changes one operand of them. It ends when a value
-//! that the golden model predicts differs, or finds nothing, which proves nothing.
+//! Some hardware exists in a pipeline but not in its sequential core, such as the parts of a split product. A fault there may
+//! show only if a carry runs through all bits that are later dropped, which random points rarely cause. The search simulates
+//! pipeline and mutant together. It keeps points that make some register differ, preferably in a late stage, and changes one
+//! operand at a time. If it finds nothing, that proves nothing.
 
 use std::sync::Arc;
 
@@ -31,7 +30,7 @@ const KEPT: usize = 32;
 
 const SEED: u64 = 4;
 
-/// The pipeline without a fault.
+/// A fault-free pipeline, prepared for searching points at which mutants differ from it.
 pub(super) struct PointSearch {
     sound: Arc<CompiledDesign>,
     /// How many inputs there are, and which are high after a clock of reset: a point comes and one goes whenever it can.
@@ -94,8 +93,8 @@ impl PointSearch {
         })
     }
 
-    /// Returns `confirm`'s result for the first point that differs at a value that the golden model predicts. Returns
-    /// `None` if no such point is found, or if `confirm` confirms none.
+    /// Searches for a point at which a mutant differs in a value that the golden model predicts, and returns the result of
+    /// `confirm` for it. Returns `None` if the search finds no such point, or if `confirm` confirms none.
     ///
     /// # Errors
     /// Fails if `confirm` fails, or if the mutant cannot be simulated.

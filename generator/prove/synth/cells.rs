@@ -1,8 +1,8 @@
-//! Measures a core in standard cells of 0.18 µm, before layout: Yosys with a liberty file, and OpenSTA for the delay.
+//! Measures a core in standard cells of 0.18 µm before layout, with Yosys for the area and OpenSTA for the delay.
 //!
-//! Nets with a large fan-out are buffered, and cells are sized. Otherwise the clock enable of a pipeline would take
-//! longer than all logic that it enables. The library is the one of Oklahoma State University, in the typical corner,
-//! as Debian's `qflow-tech-osu018` has it. A gate is the area of its NAND2X1.
+//! Yosys buffers nets with a large fan-out and sizes the cells; otherwise the clock enable of a pipeline would be slower than all
+//! logic that it enables. The cell library is from Oklahoma State University, in the typical corner, as Debian's package
+//! `qflow-tech-osu018` has it. One gate is the area of its NAND2X1.
 
 use std::fs;
 use std::path::Path;
@@ -24,7 +24,7 @@ const STATISTICS: &str = "cells.txt";
 const GATE: &str = "NAND2X1";
 const CONSTRAINTS: &str = "cells.constr";
 
-/// Makes sure that there is a library.
+/// Checks that the cell library exists.
 ///
 /// # Errors
 /// Fails if the library is missing; the message says how to get it.

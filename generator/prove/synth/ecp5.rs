@@ -1,4 +1,7 @@
-//! Measures a core on ECP5 with Yosys and nextpnr-ecp5, which times multipliers without registers and block RAMs.
+//! Measures a core on the FPGA family ECP5 with Yosys and nextpnr-ecp5.
+//!
+//! nextpnr-ecp5 knows the delays of block RAMs, and of multipliers that have no register or only a register at the output. The
+//! measurement fails if a multiplier has other registers inside.
 
 use anyhow::{Context, Result};
 use serde_json::Value;

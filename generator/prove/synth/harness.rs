@@ -1,12 +1,13 @@
-//! Generates a module with registers around a core, so that the paths of its ports are measured too, and pins do not
-//! count.
+//! Generates a Verilog module with a register on each side of every port of a core.
+//!
+//! With the registers, timing analysis covers the paths at the ports, and the FPGA's pins do not limit the frequency.
 
 use anyhow::Result;
 use glint_base::fill;
 
 use glint_rtl::netlist::{Design, Port};
 
-/// The name of the module around the core, and of the core's instance in it.
+/// The name of the harness module.
 pub const TOP: &str = "glint_harness";
 pub const CORE: &str = "core";
 
@@ -18,8 +19,8 @@ struct Slice<'a> {
     low: u32,
 }
 
-/// Returns the Verilog of the harness: a shift register feeds every input, and every output is captured in a register of its own,
-/// which is shifted out: four pins, whatever the ports of the core.
+/// Returns the Verilog of the harness. A shift register feeds all inputs of the core. Each output is captured in a register and
+/// then shifted out, so that the harness has four pins, whatever the ports of the core.
 pub fn harness(design: &Design) -> Result<String> {
     let (inputs, fed) = slices(design, design.inputs());
     let (outputs, captured) = slices(design, design.outputs());

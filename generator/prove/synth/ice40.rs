@@ -1,7 +1,7 @@
-//! Measures a core on iCE40 UltraPlus 5K with Yosys, nextpnr-ice40 and icetime.
+//! Measures a core on the FPGA iCE40 UltraPlus 5K with Yosys, nextpnr-ice40 and icetime.
 //!
-//! nextpnr-ice40 treats every DSP block as a register and leaves its delay out. `icetime` knows the delay of a block
-//! only if it is a pure multiplier. [`glint_tools::synthesis`] therefore makes pure multipliers of products.
+//! nextpnr-ice40 takes every DSP block for a register and ignores its delay. `icetime` knows the delay of a block only if the
+//! block is a pure multiplier. [`glint_tools::synthesis`] therefore maps products to pure multipliers.
 
 use std::collections::BTreeMap;
 

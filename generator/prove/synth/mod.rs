@@ -1,8 +1,8 @@
-//! Measures area and frequency of a core: synthesis, placement, routing and timing analysis by outside tools.
+//! Measures area and frequency of a core with outside tools for synthesis, placement, routing and timing analysis.
 //!
-//! A core is measured with a register on each side of every port (`harness`), so that pins do not count. The delay of a
-//! DSP block is never left out. On iCE40 the blocks are pure multipliers, and `icetime` times the blocks, which
-//! nextpnr-ice40 does not. On ECP5, the measurement refuses a netlist with registers inside the blocks.
+//! The core is measured with a register on each side of every port (`harness`), so that pins do not limit the frequency. The
+//! delay of a DSP block is always included. On iCE40, `icetime` times the blocks as pure multipliers, since nextpnr-ice40 does
+//! not time them. On ECP5, the measurement fails if a block has registers inside that nextpnr-ecp5 cannot time.
 
 mod cells;
 mod ecp5;
@@ -30,7 +30,7 @@ use glint_tools::Tool;
 use glint_tools::gates::cells::MAPPING;
 use glint_tools::synthesis::synthesise;
 
-/// A target with the tools that measure for it.
+/// A target, with the tools that measure a core for it.
 pub struct Flow {
     target: Target,
     yosys: Tool,
@@ -40,21 +40,21 @@ pub struct Flow {
     versions: Vec<String>,
 }
 
-/// The subject and the method of a measurement.
+/// The core to be measured, and the settings of the measurement.
 pub struct SynthesisSubject<'a> {
-    /// The core.
+    /// The netlist of the core.
     pub design: &'a Design,
-    /// Its Verilog and ROM contents, pairs of a plain name and contents.
+    /// The Verilog and ROM contents of the core, as pairs of a file name and contents.
     pub files: &'a [(String, String)],
-    /// Runs of place and route, with the seeds 1, 2, …. For example, 3 means the seeds 1, 2 and 3.
+    /// The number of runs of placement and routing, with the seeds 1, 2, …. For example, 3 means the seeds 1, 2 and 3.
     pub seeds: u32,
-    /// After which a run of a tool is given up.
+    /// The time limit of each run of a tool.
     pub limit: Duration,
 }
 
 impl Flow {
-    /// Finds the tools for a target on the search path `search`, which is written as `PATH` is. `liberty` describes the
-    /// cells.
+    /// Finds the tools for a target on the search path `search`, which is written like `PATH`. `liberty` is the file of the cell
+    /// library.
     ///
     /// # Errors
     /// Fails if a tool is missing; the message says how to get it.
@@ -99,8 +99,8 @@ impl Flow {
         package::digest(text.as_bytes())
     }
 
-    /// Returns the steps of work that [`Flow::measure`] reports as done. For example, iCE40 with 3 seeds has 4 steps:
-    /// one synthesis and three routes.
+    /// Returns the number of times that [`Flow::measure`] calls `done`. For example, iCE40 with 3 seeds has 4 steps: one
+    /// synthesis and three routes.
     pub fn steps(target: Target, seeds: u32) -> u64 {
         match target {
             Target::Ice40 | Target::Ecp5 => 1 + u64::from(seeds),
@@ -109,7 +109,7 @@ impl Flow {
         }
     }
 
-    /// Measures a core; `done` is called after each step.
+    /// Measures a core. It calls `done` after each step.
     ///
     /// # Errors
     /// Fails if a tool fails, takes longer than its limit, or does not report a figure.
@@ -157,7 +157,7 @@ fn area(
     Ok(figures)
 }
 
-/// Yosys, with a limit on each of its runs.
+/// Yosys, with the time limit of each run.
 pub struct Yosys<'a>(pub &'a Tool, pub Duration);
 
 impl Synthesis for Yosys<'_> {

@@ -1,4 +1,6 @@
-//! Reads a mapped netlist, and tells its nets and cells by their names in the description.
+//! Reads a netlist after synthesis, and finds the name in the device's description for each of its nets and cells.
+//!
+//! Reports use these names: a critical path then shows, for example, the net `second` instead of a generated name.
 
 use std::collections::BTreeMap;
 
@@ -9,7 +11,7 @@ use super::harness::{CORE, TOP};
 use glint_rtl::netlist::{Design, Driver, Op};
 use glint_show::figures::{PathPoint, rounded};
 
-/// The flat netlist of a core in its harness.
+/// The flat netlist of a core in its harness, after synthesis.
 pub struct Netlist {
     /// By the name of a net's bit, `core.datapath.product[3]`: the name in the description.
     names: BTreeMap<String, String>,
@@ -20,7 +22,7 @@ pub struct Netlist {
 }
 
 impl Netlist {
-    /// Reads the netlist that Yosys's `write_json` has written.
+    /// Parses a netlist that Yosys's command `write_json` has written.
     ///
     /// # Errors
     /// Fails if the JSON has no nets or cells of the harness.
@@ -74,8 +76,8 @@ impl Netlist {
         Ok(Self { names, registers, cells: cells.clone() })
     }
 
-    /// Makes sure that the timing includes the delay of every DSP block: every parameter of the cells of a kind must be
-    /// `timed`.
+    /// Checks that timing analysis can include the delay of every DSP block: all parameters of the cells of kind `kind` must
+    /// satisfy `timed`.
     ///
     /// # Errors
     /// Fails if a parameter is not `timed`; `why` explains the consequence.
@@ -99,12 +101,12 @@ impl Netlist {
         Ok(())
     }
 
-    /// Returns the register that a flip-flop is a bit of, in the description's names.
+    /// Returns the description's name of the register to which a flip-flop belongs.
     pub fn register(&self, cell: &str) -> Option<&str> {
         self.registers.get(cell).map(String::as_str)
     }
 
-    /// Returns the description's name of a net's bit.
+    /// Returns the description's name of the net to which a bit belongs.
     pub fn name(&self, net: &str) -> Option<&str> {
         self.names.get(net).map(String::as_str)
     }

@@ -1,12 +1,12 @@
-//! Runs place and route with several seeds.
+//! Runs placement and routing several times, each with another seed of the tool's random numbers.
 
 use anyhow::{Context, Result};
 use rayon::prelude::*;
 
 use super::{Figures, PathPoint, SynthesisSubject};
 
-/// Puts the results of `route` with each seed into `figures`: a frequency in MHz and the longest path. It does
-/// nothing if `figures` has a reason why the core cannot be timed.
+/// Runs `route` with each seed, and adds the results to `figures`: frequencies in MHz, and longest paths. Does nothing if
+/// `figures` already has a reason why the core cannot be timed.
 ///
 /// # Errors
 /// Fails if a run fails; the message has its seed, for example `seed 2`.

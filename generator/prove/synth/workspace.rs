@@ -1,4 +1,4 @@
-//! Prepares the directory in which a core is synthesised, and runs Yosys and nextpnr in it.
+//! Prepares a directory with the files of a core, and runs Yosys and nextpnr in it.
 
 use anyhow::{Context, Result};
 
@@ -9,19 +9,19 @@ use glint_tools::Tool;
 use glint_tools::sources::YosysSources;
 use glint_tools::synthesis::{self, STATISTICS_COMMAND, Usage};
 
-/// The directory of the core's sources and its harness.
+/// A directory with the Verilog of a core and of its harness.
 pub struct Workspace<'a> {
     pub sources: YosysSources<'a>,
     subject: &'a SynthesisSubject<'a>,
 }
 
-/// The file with the harness, which is not read with the core.
+/// The name of the harness's file. Yosys does not read it when it synthesises the core alone.
 pub const HARNESS: &str = "glint_harness.v";
-/// The file with the netlist.
+/// The name of the file with the netlist after synthesis.
 pub const NETLIST: &str = "harness.json";
 
 impl<'a> Workspace<'a> {
-    /// Writes the sources.
+    /// Writes the Verilog of the core and of its harness into a new directory.
     ///
     /// # Errors
     /// Fails if the sources cannot be written.
@@ -31,8 +31,8 @@ impl<'a> Workspace<'a> {
         Ok(Self { sources, subject })
     }
 
-    /// Runs nextpnr on the netlist with a seed, with the `options` of its family, which a space divides. For example,
-    /// the options begin with `--up5k --package sg48` for iCE40.
+    /// Runs nextpnr on the netlist with a seed. `options` are the options of the FPGA family, separated by spaces. For example,
+    /// they begin with `--up5k --package sg48` for iCE40.
     ///
     /// # Errors
     /// Fails if nextpnr fails or takes too long.
@@ -43,8 +43,8 @@ impl<'a> Workspace<'a> {
         Ok(())
     }
 
-    /// Synthesises the core alone and with the registers around it; returns the area of the first, and the netlist of the second,
-    /// which is left in the file [`NETLIST`].
+    /// Synthesises the core alone, and the core in its harness. Returns the area of the first and the netlist of the second, and
+    /// leaves this netlist in the file [`NETLIST`].
     ///
     /// # Errors
     /// Fails if [`YosysSources::run`] fails.
@@ -64,7 +64,7 @@ impl<'a> Workspace<'a> {
         Ok((synthesis::usage(&self.sources, top, family)?, self.netlist()?))
     }
 
-    /// Reads the netlist that Yosys has left.
+    /// Parses the netlist in the file [`NETLIST`].
     ///
     /// # Errors
     /// Fails if the file is no netlist.

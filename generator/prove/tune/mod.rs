@@ -1,9 +1,9 @@
-//! Finds the smallest configuration of a device for an error.
+//! Finds the smallest configuration of a device whose error stays below a limit that the user gives.
 //!
-//! The proved bound of the accuracy contract decides, so that the answer of [`tune`] keeps the error for every
-//! operand of the domain. The cost is estimated from the netlist ([`model`]). The search changes only keys that
-//! change neither a port nor the formula (`space`). It also changes keys that add microinstructions if a rate is
-//! stated as enough, if DSP blocks are dear, or if nothing else fits the chip.
+//! The error is the proved bound of the accuracy contract, so the answer of [`tune`] holds for every operand of the domain. The
+//! cost is estimated from the netlist ([`model`]). The search changes only keys that change neither a port nor the formula
+//! (`space`). It also changes keys that add microinstructions if the user states a rate that is enough, if DSP blocks are
+//! weighted heavily, or if nothing else fits the chip.
 
 pub mod model;
 mod search;
@@ -36,7 +36,7 @@ pub enum ErrorUnit {
 }
 
 impl ErrorUnit {
-    /// Returns the bound in this unit, which a caller must compare with an error of the same unit.
+    /// Returns an error bound in this unit.
     pub fn of(self, bound: &Bound) -> f64 {
         match self {
             Self::F => bound.f,
@@ -67,22 +67,22 @@ pub enum Objective {
     Memory,
 }
 
-/// The goal of a search.
+/// The limits that the user states, and the cost that the search minimises.
 #[derive(Clone, Debug)]
 pub struct TuningGoal {
-    /// The largest error.
+    /// The largest error bound that a configuration may have.
     pub error: f64,
-    /// The unit of the error.
+    /// The unit of `error`.
     pub unit: ErrorUnit,
-    /// The target of the core.
+    /// The FPGA family for which costs are estimated.
     pub target: Target,
-    /// The cost that is minimised.
+    /// The cost to be minimised.
     pub objective: Objective,
-    /// The slowest clock in MHz, by the estimate.
+    /// The lowest acceptable clock frequency in MHz, by the estimate.
     pub clock: Option<f64>,
-    /// The fewest million points a second, by the estimate of the clock.
+    /// The lowest acceptable rate in million points a second, by the estimate of the clock.
     pub rate: Option<f64>,
-    /// The most DSP blocks.
+    /// The largest acceptable number of DSP blocks.
     pub most_dsps: Option<u64>,
 }
 
@@ -199,8 +199,8 @@ fn of_architecture(
     Ok(if fits(&shared) { shared } else { answer })
 }
 
-/// Returns the smallest configuration that keeps the goal, among all combinations of the `values` of keys. Returns
-/// `None` if none keeps it. This is for tests of the search, and for small spaces.
+/// Tries all combinations of the `values` of keys, and returns the smallest configuration that meets the goal, or `None`. Use it
+/// for tests of the search, and for small spaces.
 ///
 /// # Errors
 /// Fails if `base` makes no design, or if a key does not exist.

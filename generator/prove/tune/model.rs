@@ -1,9 +1,9 @@
-//! Estimates the cost of a configuration from its netlist.
+//! Estimates the area and the clock frequency of a core from its netlist, without synthesis.
 //!
-//! DSP blocks and block RAMs follow from the widths. Look-up tables are a weighted sum of [`Features`], whose weights
-//! `benches/tune/fit` fits to the records in `records/synthesis/`. The clock follows from the longest path between registers.
-//! The delays of its cells are in [`Timing`](glint_base::target::Timing): they were measured for each FPGA family, and the
-//! scheduler of pipelines uses them too.
+//! DSP blocks and block RAMs follow from the bit widths. LUTs are a weighted sum of [`Features`] of the netlist;
+//! `benches/tune/fit` fits the weights to the records in `records/synthesis/`. The frequency follows from the longest path
+//! between registers. The delays of its cells are in [`Timing`](glint_base::target::Timing): they were measured for each FPGA
+//! family, and the scheduler of pipelines uses them too.
 
 use std::collections::BTreeSet;
 
@@ -14,33 +14,33 @@ use glint_base::target::{ECP5, Family};
 use glint_rtl::netlist::{Design, Driver, NetId, Op, RegId};
 use glint_rtl::pipeline::delay_of;
 
-/// The composition of a netlist, as far as look-up tables are concerned.
+/// Counts of a netlist's logic, from which the number of look-up tables is estimated.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Features {
-    /// Bits of sums, differences and comparisons.
+    /// The number of bits of sums, differences and comparisons.
     pub adder: f64,
-    /// Bits of multiplexers, for each input beyond the first. For example, a mux of 3 inputs of 8 bits counts 16.
+    /// The number of bits of muxes, for each input beyond the first. For example, a mux of 3 inputs of 8 bits counts 16.
     pub mux: f64,
-    /// Bits of gates; a reduction or an equality takes a look-up table for three bits.
+    /// The number of bits of gates. A reduction or an equality takes a look-up table for three bits.
     pub logic: f64,
-    /// Bits of ROMs that are look-up tables, in sixteenths.
+    /// The number of bits of the ROMs that are made of look-up tables, divided by 16.
     pub rom: f64,
-    /// Bits of the sums of partial products.
+    /// The number of bits of the sums of partial products.
     pub product: f64,
 }
 
-/// The cost of a configuration on a target.
+/// The estimated cost of a configuration on a target.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Cost {
-    /// Look-up tables.
+    /// The number of look-up tables.
     pub luts: f64,
-    /// DSP blocks.
+    /// The number of DSP blocks.
     pub dsps: u64,
-    /// Block RAMs.
+    /// The number of block RAMs.
     pub block_rams: u64,
-    /// Bits of all ROMs.
+    /// The number of bits of all ROMs.
     pub rom_bits: u64,
-    /// The clock in MHz.
+    /// The clock frequency in MHz.
     pub mhz: f64,
 }
 
@@ -77,8 +77,8 @@ impl Cost {
         }
     }
 
-    /// Returns the area in look-up tables: a block counts as many of them as a chip of the family has to each such
-    /// block. For example, iCE40 UP5K has 5280 look-up tables and 8 DSP blocks, so that a DSP block counts as 660.
+    /// Returns the area in look-up tables. A DSP block or block RAM counts as many look-up tables as a chip of the family has for
+    /// each such block. For example, iCE40 UP5K has 5280 look-up tables and 8 DSP blocks, so that a DSP block counts as 660.
     pub fn area(&self, target: Target) -> f64 {
         let [luts, dsps, blocks] = family(target).chips[0].has.map(|has| has as f64);
         let (dsp, block) = ((luts / dsps).round(), (luts / blocks).round());

@@ -1,5 +1,4 @@
-//! Searches for the smallest configuration: first upward until the bound is kept, then downward as long as it is
-//! kept.
+//! Searches for the smallest configuration: widens values until the error limit is kept, then narrows them as long as it is kept.
 
 use std::cmp::Ordering;
 use std::collections::BTreeMap;
@@ -19,21 +18,21 @@ use glint_show::evidence::comparison::clocks_per_point;
 /// The exponent at which the clocks of a point are counted if they depend on it.
 const EXPONENT: f64 = 35.0;
 
-/// A configuration, with its bound, its cost and its rate.
+/// A configuration that the search has evaluated, with its bound, cost and rate.
 #[derive(Clone, Debug)]
 pub struct Candidate {
     /// The configuration.
     pub config: Config,
-    /// The proved bound.
+    /// The proved error bound.
     pub bound: Bound,
-    /// The estimate of its cost.
+    /// The estimated cost.
     pub cost: Cost,
     /// Clocks from a point to the next, as `glint synth` counts them; `None` if the device shows none.
     pub clocks: Option<f64>,
 }
 
 impl Candidate {
-    /// Returns million points a second at the estimated clock.
+    /// Returns the rate in million points a second, at the estimated clock.
     pub fn rate(&self) -> Option<f64> {
         self.clocks.map(|clocks| self.cost.mhz / clocks)
     }
@@ -44,16 +43,17 @@ impl Candidate {
 pub struct Answer {
     /// The smallest configuration that was found.
     pub best: Candidate,
-    /// The configurations that no other configuration betters both in error and in the objective, by rising error.
-    /// Only configurations that the search has looked at are compared.
+    /// The Pareto front: the configurations for which no other has both a smaller error and a smaller cost, by rising error. It
+    /// covers only configurations that the search has evaluated.
     pub front: Vec<Candidate>,
-    /// The keys that were changed or could have been.
+    /// The keys that the search may change.
     pub free: Vec<&'static str>,
-    /// How many configurations were looked at.
+    /// The number of configurations that the search evaluated.
     pub looked_at: usize,
 }
 
-/// A search in progress. `seen` keeps the candidates by the text of their configurations: `None` is no device.
+/// A search in progress. `seen` caches the candidates by the text of their configurations; `None` marks a configuration that
+/// makes no design.
 pub struct Search<'a> {
     device: &'a Device,
     space: &'a SearchSpace,
@@ -72,7 +72,7 @@ impl<'a> Search<'a> {
         Self { device, space, goal, progress, seen: Mutex::default() }
     }
 
-    /// Searches from `base` up to the goal, then down. The result may be a local minimum.
+    /// Searches from `base` upward until the goal is met, and then downward. The result may be a local minimum.
     pub fn run(&self, base: &Config) -> Result<Answer> {
         let base = self.look(base).context("the configuration to start from makes no design")?;
         let mut best = self.reach(base)?;
@@ -95,7 +95,7 @@ impl<'a> Search<'a> {
         self.seen.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Goes through all combinations of values; the smallest that keeps the goal.
+    /// Evaluates all combinations of values, and returns the smallest configuration that meets the goal.
     pub fn exhaustive(
         &self,
         base: &Config,

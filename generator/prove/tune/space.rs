@@ -1,5 +1,7 @@
-//! Finds the free keys of a configuration, and its neighbours: the configurations with other values of some keys. A key
-//! of the tables `domain` and `function` is never free, because it is part of the question.
+//! Finds the keys that `glint tune` may change, and the neighbours of a configuration: configurations in which some of these keys
+//! have other values.
+//!
+//! A key of the tables `domain` and `function` is never changed, because it is part of the user's question.
 
 use anyhow::{Context, Result};
 
@@ -19,7 +21,7 @@ const STATEMENT: [&str; 2] = ["domain", "function"];
 /// the formula is neither 0 nor flat.
 const POINTS: u32 = 600;
 
-/// The free keys of a device.
+/// The keys that a search may change.
 pub struct SearchSpace {
     schema: Schema,
     free: Vec<&'static str>,
@@ -29,8 +31,8 @@ pub struct SearchSpace {
 }
 
 impl SearchSpace {
-    /// Finds the keys of `base` that change neither ports nor formula, and add no microinstructions unless `slower`,
-    /// without those in `fixed`.
+    /// Finds the keys of `base` that change neither ports nor formula. Keys that add microinstructions are included only if
+    /// `slower`. Keys in `fixed` are left out.
     ///
     /// # Errors
     /// Fails if `base` makes no design.
@@ -71,7 +73,8 @@ impl SearchSpace {
         true
     }
 
-    /// Returns whether the core looks the same from outside, except for its accuracy.
+    /// Returns whether a core has the same ports and the same formula as the base configuration. It must also have the same
+    /// number of microinstructions, unless the search may add some.
     pub fn holds(&self, design: &Design, contract: &dyn Contract) -> bool {
         let own = &self.outside;
         own.ports == ports(design)
@@ -79,7 +82,7 @@ impl SearchSpace {
             && own.has_formula(contract)
     }
 
-    /// Returns the free keys.
+    /// Returns the names of the keys that may be changed.
     pub fn free(&self) -> &[&'static str] {
         &self.free
     }
@@ -89,7 +92,7 @@ impl SearchSpace {
         &self.schema
     }
 
-    /// Returns the changes of one free key that applies.
+    /// Returns the possible changes of a configuration in one key.
     pub fn moves(&self, config: &Config) -> Vec<(&'static str, Value)> {
         let mut moves = Vec::new();
         for key in &self.schema.keys {
@@ -102,7 +105,7 @@ impl SearchSpace {
         moves
     }
 
-    /// Returns a configuration with values replaced, if the device accepts it.
+    /// Returns the configuration with some values replaced, or `None` if the device refuses the result.
     pub fn with(&self, config: &Config, values: &[(&'static str, Value)]) -> Option<Config> {
         with(&self.schema, config, values)
     }

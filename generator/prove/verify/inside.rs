@@ -1,4 +1,4 @@
-//! The checks of a verification that need nothing but Glint: design rules, co-simulation, the error bound, faults.
+//! Defines the checks of `glint verify` that need no outside tool: design rules, co-simulation, the error bound and faults.
 
 use std::ops::ControlFlow;
 
@@ -25,7 +25,7 @@ const AGAIN: u64 = 1 << 24;
 /// Without full effort no more faults than this are planted, evenly from all: a minute or two.
 const MOST_FAULTS: usize = 1 << 11;
 
-/// The description, as it was built.
+/// Checks the design rules of the netlist that the description has built.
 pub const DESIGN: Check = Check {
     id: "design",
     title: "Design rules",
@@ -62,7 +62,7 @@ pub const DESIGN: Check = Check {
     },
 };
 
-/// Golden model and simulation.
+/// Compares the golden model with the simulated netlist.
 pub const LOCKSTEP: Check = Check {
     id: "lockstep",
     title: "Golden model against simulation",
@@ -108,7 +108,7 @@ fn lockstep(subject: &CheckSubject<'_>, progress: &(dyn Fn(u64) + Sync)) -> Resu
     .open("Operands that were not drawn."))
 }
 
-/// The accuracy contract.
+/// Checks the error bound of the contract over all operands.
 pub const CONTRACT: Check = Check {
     id: "contract",
     title: "Golden model against the formula",
@@ -206,7 +206,7 @@ fn without_record(subject: &CheckSubject<'_>, evaluations: u64) -> Finding {
     Finding { complete_with: Some(command), ..Finding::without(CheckVerdict::NotRun, why) }
 }
 
-/// Every combination of operands.
+/// Compares golden model and netlist for every combination of operands.
 pub const CLOCKS: Check = Check {
     id: "clocks",
     title: "Golden model against simulation, every operand",
@@ -237,7 +237,7 @@ pub const CLOCKS: Check = Check {
     },
 };
 
-/// Faults in the netlist.
+/// Plants faults in the netlist, and checks that they are noticed.
 pub const MUTATION: Check = Check {
     id: "mutation",
     title: "Faults in the netlist",

@@ -1,8 +1,8 @@
-//! Runs every check of a configuration, and writes a record and a page about it.
+//! Runs every check of a configuration for `glint verify`, and writes a record and a page about the results.
 //!
-//! A [`Check`] asks one question, with the tools that it names, and gives a [`Finding`]: the answer, its domain, and
-//! the open points. No check knows the finding of another. The same tools give the same findings; durations are
-//! separate, in [`CheckTime`].
+//! A [`Check`] asks one question about a configuration, for example whether golden model and simulation agree. It returns a
+//! [`Finding`]: the answer, the domain for which the answer holds, and the points that it leaves open. Checks do not depend on
+//! each other's findings. The same tools give the same findings; run times are separate, in [`CheckTime`].
 
 mod inside;
 mod outside;
@@ -26,13 +26,13 @@ use glint_tools::{LimitReached, Tool};
 
 /// A configuration to be verified.
 pub struct CheckSubject<'a> {
-    /// The path on the command line.
+    /// The path of the configuration file on the command line.
     pub path: &'a str,
-    /// The configuration and its design.
+    /// The core of the configuration.
     pub core: &'a Core,
-    /// How much is done.
+    /// How much work the verification may do.
     pub effort: Effort,
-    /// The directory of records of `cosim --exhaustive --json`.
+    /// The directory of the records that `cosim --exhaustive --json` writes.
     pub proofs: &'a Path,
     files: OnceLock<OutputFiles>,
 }
@@ -58,7 +58,7 @@ impl<'a> CheckSubject<'a> {
     }
 }
 
-/// A file that a record speaks of.
+/// A file and its digest, in the record of a verification.
 #[derive(Clone, Debug, Serialize)]
 pub struct FileDigest {
     /// The path as `generate` names it, for example `rtl_out/rsqrt/rsqrt.v`.
@@ -67,14 +67,14 @@ pub struct FileDigest {
     pub sha256: String,
 }
 
-/// How much a verification does.
+/// How much work a verification may do.
 #[derive(Clone, Copy, Debug)]
 pub struct Effort {
     /// Everything, however long it takes.
     pub full: bool,
-    /// Only the checks that need no tool outside Glint.
+    /// Whether to run only the checks that need no tool outside Glint.
     pub without_tools: bool,
-    /// After which a run of an outside tool is given up.
+    /// The time limit of each run of an outside tool.
     pub time_limit: Duration,
 }
 
@@ -133,24 +133,24 @@ impl CheckVerdict {
     }
 }
 
-/// The finding of a check.
+/// The answer of a check: the verdict, and its reasons.
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct Finding {
     /// The verdict.
     pub verdict: CheckVerdict,
-    /// The domain of the finding: operands, clocks, faults.
+    /// The domain for which the finding holds, for example operands, clocks or faults.
     pub domain: String,
     /// The outcome in a sentence or two.
     pub words: String,
-    /// The part that the check leaves undecided; may be empty.
+    /// The questions that the check leaves open; may be empty.
     pub open: String,
-    /// The file of the record that replaces a part of the work.
+    /// The file of a record that replaces a part of the work.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub record: Option<String>,
-    /// The command that completes the parts that were not run.
+    /// The command that would run the parts that were left out.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub complete_with: Option<String>,
-    /// The failures, each with its reproducer.
+    /// The failures, each with a command that reproduces it.
     #[serde(rename = "faults")]
     pub failures: Vec<String>,
 }
@@ -180,7 +180,7 @@ impl Finding {
 /// The function that runs a check, with its tools; it tells the steps that are done.
 type CheckFunction = fn(&CheckSubject<'_>, &[Tool], &(dyn Fn(u64) + Sync)) -> Result<Finding>;
 
-/// One question about a configuration.
+/// A check of a configuration, which asks one question.
 pub struct Check {
     /// The name for scripts, for example `lockstep`.
     pub id: &'static str,
@@ -218,7 +218,7 @@ pub const CHECKS: [&Check; 16] = [
 ];
 
 impl Check {
-    /// Returns whether it needs a tool outside Glint.
+    /// Returns whether the check needs a tool outside Glint.
     pub fn is_outside(&self) -> bool {
         !self.tools.is_empty()
     }
@@ -228,14 +228,14 @@ impl Check {
         (self.steps)(subject)
     }
 
-    /// Runs the check. A run cannot fail: a tool that is missing, or that does not do its work, is a finding too.
+    /// Runs the check. It always returns an answer: if a tool is missing or fails, the finding says so.
     pub fn run(&self, subject: &CheckSubject<'_>, progress: &(dyn Fn(u64) + Sync)) -> CheckAnswer {
         let begin = Instant::now();
         let (tools, finding) = self.find(subject, progress);
         self.answer(tools, finding, begin.elapsed())
     }
 
-    /// Returns the answer of a check that is not run on purpose.
+    /// Returns the answer of a check that is not run on purpose, with the reason.
     pub fn left_out(&self, why: &str) -> CheckAnswer {
         let finding = Finding::without(CheckVerdict::LeftOut, why);
         self.answer(Vec::new(), finding, Duration::ZERO)
@@ -285,7 +285,7 @@ impl Check {
     }
 }
 
-/// A check and its finding.
+/// A check, with its finding and the time that it took.
 #[derive(Clone, Debug, Serialize)]
 pub struct CheckAnswer {
     /// [`Check::id`].
@@ -296,7 +296,7 @@ pub struct CheckAnswer {
     pub question: &'static str,
     /// [`Check::reads`].
     pub reads: &'static str,
-    /// Versions of the tools outside Glint.
+    /// The versions of the outside tools that the check used.
     pub tools: Vec<String>,
     /// The finding.
     #[serde(flatten)]
@@ -311,7 +311,7 @@ pub struct CheckAnswer {
 pub struct CheckTime {
     /// [`Check::id`].
     pub check: &'static str,
-    /// Wall-clock seconds.
+    /// The time in seconds.
     pub seconds: f64,
 }
 
@@ -330,8 +330,8 @@ pub enum Conclusion {
 }
 
 impl Conclusion {
-    /// Returns the conclusion from some answers. For example, one check that failed makes it [`Conclusion::Failed`],
-    /// whatever the others found.
+    /// Returns the conclusion from the answers of checks. For example, if one check failed, the conclusion is
+    /// [`Conclusion::Failed`], whatever the others found.
     pub fn of(answers: &[CheckAnswer]) -> Self {
         let verdicts = answers.iter().map(|answer| answer.finding.verdict.conclusion());
         verdicts.max().unwrap_or(Self::Incomplete)
@@ -375,7 +375,7 @@ pub struct VerificationRecord {
 }
 
 impl VerificationRecord {
-    /// Makes the record of the answers of all checks.
+    /// Makes the record of a verification from the answers of all checks.
     pub fn new(subject: &CheckSubject<'_>, checks: Vec<CheckAnswer>) -> Self {
         let mut counts = BTreeMap::new();
         let mut files = Vec::new();

@@ -1,4 +1,4 @@
-//! The checks of a verification that run tools outside Glint, on the emitted files.
+//! Defines the checks of `glint verify` that run outside tools, such as simulators and provers, on the emitted files.
 
 use std::fs;
 use std::path::Path;
@@ -44,7 +44,7 @@ const COCOTB_VERSION: &str = "2.1.0";
 /// Results of a bench around a netlist.
 const GATE_POINTS: u64 = 40;
 
-/// The bound of the contract, proved a second way.
+/// Proves the error bound of the contract with Gappa.
 pub const CERTIFICATE: Check = Check {
     id: "certificate",
     title: "Proof of the error bound",
@@ -108,7 +108,7 @@ pub const CERTIFICATE: Check = Check {
 /// The exit code of the program that recomputes every operand if it decides all but some.
 const SOME_UNDECIDED: i32 = 3;
 
-/// The bound of the contract, by a program that shares nothing with Glint but the formula.
+/// Checks the error bound by a generated C program that recomputes every operand, and shares nothing with Glint but the formula.
 pub const RECOMPUTATION: Check = Check {
     id: "recomputation",
     title: "Every operand recomputed with MPFR",
@@ -179,7 +179,7 @@ pub const RECOMPUTATION: Check = Check {
     },
 };
 
-/// A pipeline and the sequential core of the same description.
+/// Proves that a pipeline and the sequential core of the same description compute the same.
 pub const EQUALITY: Check = Check {
     id: "equality",
     title: "Equal to the sequential core",
@@ -215,7 +215,7 @@ pub const EQUALITY: Check = Check {
     },
 };
 
-/// The emitted Verilog of a pipeline and its netlist.
+/// Proves that the emitted Verilog of a pipeline equals its netlist.
 pub const TEXT: Check = Check {
     id: "text",
     title: "Emitted Verilog equal to the netlist",
@@ -280,7 +280,7 @@ fn undecided(subject: &CheckSubject<'_>, open: equality::Open, limit: Duration) 
     }
 }
 
-/// The emitted text.
+/// Runs linters on the emitted Verilog.
 pub const LINT: Check = Check {
     id: "lint",
     title: "Lint",
@@ -319,7 +319,7 @@ pub const LINT: Check = Check {
     },
 };
 
-/// The emitted Verilog in Icarus Verilog.
+/// Simulates the emitted Verilog in Icarus Verilog.
 pub const ICARUS: Check = Check {
     id: "icarus",
     title: "Emitted Verilog in Icarus Verilog",
@@ -330,7 +330,7 @@ pub const ICARUS: Check = Check {
     run: |subject, _, _| bench(subject, VerilogSimulator::Icarus),
 };
 
-/// The emitted Verilog in Verilator.
+/// Simulates the emitted Verilog in Verilator.
 pub const VERILATOR: Check = Check {
     id: "verilator",
     title: "Emitted Verilog in Verilator",
@@ -364,7 +364,7 @@ fn bench(subject: &CheckSubject<'_>, simulator: VerilogSimulator) -> Result<Find
     .open("Operands that were not drawn."))
 }
 
-/// Synthesis for FPGAs.
+/// Synthesises the core for FPGAs.
 pub const SYNTHESIS: Check = Check {
     id: "synthesis",
     title: "Synthesis",
@@ -394,7 +394,7 @@ pub const SYNTHESIS: Check = Check {
     },
 };
 
-/// Properties of the emitted Verilog.
+/// Proves the formal properties of the emitted Verilog.
 pub const FORMAL: Check = Check {
     id: "formal",
     title: "Proof of the handshake",
@@ -428,7 +428,7 @@ pub const FORMAL: Check = Check {
     },
 };
 
-/// The emitted Verilog driven from Python.
+/// Tests the emitted Verilog from Python with cocotb.
 pub const COCOTB: Check = Check {
     id: "cocotb",
     title: "Emitted Verilog driven from Python",
@@ -488,7 +488,7 @@ fn directory_of<'f>(files: impl IntoIterator<Item = &'f OutputFile>) -> Result<D
     Ok(dir)
 }
 
-/// The synthesised netlists.
+/// Simulates the netlists that synthesis makes.
 pub const GATES: Check = Check {
     id: "gates",
     title: "Netlists at gate level",

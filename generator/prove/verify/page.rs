@@ -1,4 +1,4 @@
-//! Writes a verification as one HTML page that needs nothing but itself.
+//! Writes the results of `glint verify` as one HTML page that needs no other file.
 
 use anyhow::Result;
 use glint_base::template::Template;
@@ -8,7 +8,7 @@ use serde_json::json;
 
 use super::{CheckAnswer, CheckTime, VerificationRecord};
 
-/// The mark of a page that Glint wrote: nothing else is overwritten.
+/// The text by which Glint recognises a page that it wrote. Glint overwrites no other page.
 pub const MARKER: &str = "<meta name=\"generator\" content=\"glint verify\">";
 
 #[glint_base::template::template("verification.html")]
@@ -49,7 +49,7 @@ impl<'a> CheckView<'a> {
     }
 }
 
-/// Returns the page; nothing before its last section depends on the timings.
+/// Returns the HTML page of a verification. Only the last section depends on the run times.
 ///
 /// # Errors
 /// Fails if the template fails.

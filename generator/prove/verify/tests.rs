@@ -1,4 +1,4 @@
-//! Tests that the check for a fault finds it, and that no other check does.
+//! Plants a fault for each check of `glint verify`, and tests that this check finds it and no other check does.
 
 use std::path::Path;
 use std::time::Duration;

@@ -1,4 +1,7 @@
-//! Finds the keys of a configuration that would keep the accuracy contract, or bring its error bound down most.
+//! Finds the configuration keys that would reduce the error bound of a core.
+//!
+//! If the core does not keep its accuracy contract, the module looks for changes that make it do so. Otherwise it names the one
+//! key that reduces the bound most. For example, it suggests `intensity.fraction = 17` in place of 16.
 
 use std::fmt;
 
@@ -22,9 +25,9 @@ const MOST: usize = 40;
 /// would bring the bound to 0.812 units".
 #[derive(Clone, Debug, PartialEq)]
 pub struct Advice {
-    /// Each key with its value, and the value that helps, as TOML.
+    /// The keys to change: for each its name, its present value and the value that helps, as TOML.
     pub changes: Vec<(&'static str, String, String)>,
-    /// The bound with all of them, in output units.
+    /// The error bound with all of these changes, in output units.
     pub units: f64,
 }
 
@@ -44,8 +47,8 @@ struct Better {
     bound: Bound,
 }
 
-/// Returns the changes that keep the accuracy contract, if the configuration does not keep it. If it does, or if no
-/// changes help, returns the change of one key that would bring the error bound down most.
+/// Returns the changes with which a core that violates its accuracy contract would keep it. If the core keeps the contract, or no
+/// changes help, returns the change of one key that reduces the error bound most.
 pub fn of(core: &Core) -> Option<Advice> {
     let (device, bound) = (&core.device, core.contract.bound());
     let first = better(device, &core.config, &bound)?;

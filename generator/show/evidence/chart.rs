@@ -1,8 +1,8 @@
-//! A chart as data: axes, series and marks, which pages plot and tabulate.
+//! Defines charts as data: axes, curves and reference lines. Pages plot them as SVG and print their values as tables.
 
 use serde::Serialize;
 
-/// How an axis is divided.
+/// The scale of an axis: linear or logarithmic.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum AxisScale {
@@ -12,30 +12,30 @@ pub enum AxisScale {
     Logarithmic,
 }
 
-/// An axis.
+/// An axis of a chart.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ChartAxis {
     /// The quantity, with the unit.
     pub label: String,
-    /// How it is divided.
+    /// The scale of the axis.
     pub scale: AxisScale,
-    /// The range that is plotted. Values outside are cut off in the plot, not in the figures.
+    /// The range that is plotted. The plot cuts values outside off; the table of values shows them.
     pub range: (f64, f64),
 }
 
 impl ChartAxis {
-    /// Makes an evenly divided axis.
+    /// Makes a linear axis.
     pub fn linear(label: &str, low: f64, high: f64) -> Self {
         Self { label: label.to_owned(), scale: AxisScale::Linear, range: (low, high) }
     }
 
-    /// Makes an axis of powers of ten.
+    /// Makes a logarithmic axis.
     pub fn logarithmic(label: &str, low: f64, high: f64) -> Self {
         Self { scale: AxisScale::Logarithmic, ..Self::linear(label, low, high) }
     }
 
-    /// Returns the place of a value: the value itself, or its power of ten. Returns `None` if it has no place. For
-    /// example, 100 is at 2 on a logarithmic axis, and 0 has no place there.
+    /// Returns the position of a value on the axis: the value itself, or its power of ten on a logarithmic axis. Returns `None`
+    /// if the value has no position. For example, 100 is at 2 on a logarithmic axis, and 0 has no position there.
     pub fn place(&self, value: f64) -> Option<f64> {
         let place = match self.scale {
             AxisScale::Linear => value,
@@ -46,7 +46,7 @@ impl ChartAxis {
     }
 }
 
-/// One line of a chart.
+/// A curve of a chart.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Series {
     /// The name, for the legend and the table's head.
@@ -55,23 +55,23 @@ pub struct Series {
     pub values: Vec<f64>,
 }
 
-/// A line across a chart, for reference.
+/// A horizontal reference line across a chart, for example the proved bound.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Mark {
     /// The label.
     pub label: String,
-    /// The place where the mark crosses the vertical axis.
+    /// The value on the vertical axis.
     pub at: f64,
 }
 
 /// A chart: several series over one axis.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Chart {
-    /// Unique on the page.
+    /// The identifier in HTML, unique on the page.
     pub id: String,
     /// The heading.
     pub title: String,
-    /// The caption in a sentence or two, which a screen reader says too.
+    /// The caption of a sentence or two, which a screen reader also reads.
     pub caption: String,
     /// The horizontal axis.
     pub x: ChartAxis,
@@ -79,7 +79,7 @@ pub struct Chart {
     pub y: ChartAxis,
     /// Places on the horizontal axis, ascending.
     pub places: Vec<f64>,
-    /// The lines, at most [`crate::pages::plots::STYLES`] of them.
+    /// The curves, at most [`crate::pages::plots::STYLES`].
     pub series: Vec<Series>,
     /// Reference lines.
     pub marks: Vec<Mark>,
@@ -97,8 +97,7 @@ impl Chart {
     }
 }
 
-/// Returns `steps + 1` evenly spread values, both ends among them. For example, 4 steps from 0 to 2 are 0, 0.5, 1, 1.5
-/// and 2.
+/// Returns `steps + 1` evenly spaced values from `low` to `high`. For example, 4 steps from 0 to 2 are 0, 0.5, 1, 1.5 and 2.
 pub fn even(low: f64, high: f64, steps: u32) -> Vec<f64> {
     (0..=steps).map(|step| low + (high - low) * f64::from(step) / f64::from(steps)).collect()
 }

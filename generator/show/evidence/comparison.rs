@@ -1,4 +1,7 @@
-//! Compares devices at one exponent: how near they come to `cosⁿγ`, and the hardware that they take.
+//! Compares devices at one exponent n: how near each one comes to `cosⁿγ`, and how much hardware it takes.
+//!
+//! `cosⁿγ` is Blinn's specular highlight, which every highlight device approximates. The error is measured at 9001 angles from 0
+//! to 90° and split by cause: the device's formula, the rounding of its operands, and its fixed-point arithmetic.
 
 use std::fmt;
 
@@ -19,10 +22,10 @@ pub const ANGLES: u32 = 90 * ANGLES_PER_DEGREE + 1;
 /// An angle at which a device is timed, in degrees.
 const TYPICAL: f64 = 10.0;
 
-/// An absolute error over all [`ANGLES`].
+/// The largest and the mean absolute error over all [`ANGLES`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Spread {
-    /// The largest.
+    /// The largest error.
     pub largest: f64,
     /// The mean over all angles.
     pub mean: f64,
@@ -37,30 +40,31 @@ impl Spread {
     }
 }
 
-/// The error of `f` against `cosⁿγ`, whole and by cause. At every angle the whole error is the sum of the
-/// signed errors by cause; the largest of each may be at different angles.
+/// The error of a device's `f` against `cosⁿγ`, in total and by cause. At every angle the total error is the sum of the signed
+/// errors by cause. Their largest values may be at different angles.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Accuracy {
-    /// The word f against `cosⁿγ`.
+    /// The total error: the computed word f against `cosⁿγ`.
     #[serde(rename = "error")]
     pub whole: Spread,
-    /// The source's formula, in f64 and at the quantised operands, against `cosⁿ` of the angle that these
+    /// The error of the device's formula in f64, at the quantised operands, against `cosⁿ` of the angle that these operands
     /// denote.
     pub formula: Spread,
     /// `cosⁿ` of the angle that the quantised operands denote against `cosⁿγ`. It is 0 if a contract does not tell
     /// that angle ([`Highlight::cosine`]); the formula's error then includes it.
     pub operands: Spread,
-    /// The word f against the formula at the quantised operands.
+    /// The error of the fixed-point arithmetic: the computed word f against the formula at the quantised operands.
     pub fixed_point: Spread,
 }
 
-/// Returns the formula at the quantised operands. At a jump, it is the right value that is nearer to `f`.
+/// Returns the value of the device's formula at the quantised operands. At a jump of the formula, it returns the value on the
+/// side that is nearer to `f`.
 pub fn formula(highlight: &Highlight, control: &[i64], f: f64) -> f64 {
     let [one, other] = highlight.references(control);
     if (f - other).abs() < (f - one).abs() { other } else { one }
 }
 
-/// Returns the errors over the grid of angles; `None` when the operands cannot denote `n`.
+/// Measures the errors of a device at all [`ANGLES`] for the exponent `n`. Returns `None` if the operands cannot represent `n`.
 pub fn accuracy(contract: &dyn Contract, n: f64) -> Option<Accuracy> {
     let highlight = contract.highlight()?;
     let format = highlight.f_format();
@@ -103,12 +107,12 @@ pub fn clocks_per_point(design: &Design, contract: &dyn Contract, n: f64) -> Res
     Ok(f64::from(clocks) / f64::from(points))
 }
 
-/// The widths of the operands of a multiplier, the wider one first. For example, as text: `21x10`.
+/// The operand widths of a multiplier, the wider one first. For example, as text: `21x10`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct MultiplierSize {
-    /// Bits of the wider operand.
+    /// The number of bits of the wider operand.
     pub first: u32,
-    /// Bits of the other.
+    /// The number of bits of the narrower operand.
     pub second: u32,
 }
 

@@ -1,5 +1,7 @@
-//! Measures the error curves of a configuration: its formula against `cosⁿγ`, and its fixed point against its formula,
-//! over the exponent and over the angle.
+//! Measures the error curves of a configuration, over the exponent n and over the angle γ.
+//!
+//! One curve is the error of the device's formula against `cosⁿγ`, Blinn's specular highlight. Another is the error of its
+//! fixed-point results against the formula.
 
 use std::f64::consts::FRAC_PI_2;
 
@@ -10,7 +12,7 @@ use super::comparison;
 use glint_core::registry::Device;
 use glint_golden::{Contract, Highlight, formulas};
 
-/// The exponents at which a device is measured.
+/// The exponents n at which the error curves are measured.
 pub const EXPONENTS: [u32; 20] =
     [1, 2, 3, 4, 6, 8, 11, 16, 23, 32, 45, 64, 91, 128, 181, 256, 362, 512, 724, 1000];
 
@@ -28,37 +30,37 @@ const ANGLES: u32 = 12;
 /// Smaller errors are shown at the bottom of a logarithmic axis.
 const FLOOR: f64 = 1e-6;
 
-/// The curves of a device.
+/// The error curves of a device.
 #[derive(Clone, Debug, Serialize)]
 pub struct DeviceCurves {
-    /// As the registry names it.
+    /// The name of the device in the registry.
     pub device: String,
-    /// Its summary there.
+    /// The summary of the device in the registry.
     pub summary: String,
     /// The proven bound on the error of an output, in output units.
     pub bound_units: f64,
-    /// The largest colour operand, which an error of f is multiplied by.
+    /// The largest value of a colour operand. An error of `f` multiplied by it is an error in output units.
     pub largest_colour: f64,
-    /// Errors by exponent; empty when the operands do not denote γ and n.
+    /// The largest errors for each exponent; empty if no operands of the device denote γ and n.
     pub exponents: Vec<AtExponent>,
-    /// The charts; empty if there are no errors.
+    /// The charts; empty if `exponents` is empty.
     pub charts: Vec<Chart>,
 }
 
-/// The largest errors of f at one exponent, over all angles from 0 to 90°.
+/// The largest errors of `f` at one exponent, over all angles from 0 to 90°.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct AtExponent {
-    /// The exponent.
+    /// The exponent n.
     pub n: u32,
-    /// The formula against `cosⁿγ`.
+    /// The error of the device's formula against `cosⁿγ`.
     pub formula: f64,
-    /// The word f against the formula at the quantised operands.
+    /// The error of the computed word f against the formula at the quantised operands.
     pub fixed_point: f64,
-    /// The word f against `cosⁿγ` at the wanted angle.
+    /// The error of the computed word f against `cosⁿγ`, before the angle is quantised.
     pub whole: f64,
 }
 
-/// The steps of work that [`device`] reports as done.
+/// The number of times that [`device`] calls `done`.
 pub const STEPS: usize = EXPONENTS.len() + SHOWN.len();
 
 /// Errors at one angle.
@@ -68,14 +70,14 @@ struct AtAngle {
     fixed_point: f64,
 }
 
-/// Measures the defaults of a device.
+/// Measures the error curves of a device in its default configuration.
 pub fn device(device: &Device, done: &(dyn Fn() + Sync)) -> DeviceCurves {
     let config = device.defaults();
     let contract = (device.contract)(&config);
     configuration(device, contract.as_ref(), done)
 }
 
-/// Measures a configuration of a device, which has this contract.
+/// Measures the error curves of a configuration of a device, given its contract.
 pub fn configuration(
     device: &Device,
     contract: &dyn Contract,

@@ -1,5 +1,5 @@
-//! Makes the charts of a device that computes one result of one operand and is no highlight: the function, and the
-//! error, over the domain.
+//! Makes the charts of a device that computes a function of one operand, such as a square root: the function and its error over
+//! the domain.
 
 use super::chart::{Chart, ChartAxis, Mark, Series};
 use glint_golden::Contract;
@@ -10,7 +10,8 @@ const PLACES: i64 = 160;
 /// The largest number of operands about each place. The worst of them counts.
 const OPERANDS: i64 = 256;
 
-/// Returns the charts; empty for other devices. A domain of fewer than 160 operands has a place for each operand.
+/// Returns the charts of a device with one operand and one output. Returns no charts for a highlight or another device. If the
+/// domain has fewer than 160 values, the charts show each of them.
 pub fn charts(contract: &dyn Contract) -> Vec<Chart> {
     let ([operand], [output]) = (contract.operands(), contract.outputs()) else {
         return Vec::new();

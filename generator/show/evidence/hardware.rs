@@ -1,4 +1,4 @@
-//! Asks a synthesis tool for the cells that a core takes of each family of FPGAs.
+//! Asks a synthesis tool how many cells a core takes on each FPGA family: LUTs, DSP blocks and block RAMs.
 
 use anyhow::{Context, Result};
 use rayon::prelude::*;
@@ -7,7 +7,7 @@ use serde::Serialize;
 use glint_base::target::{FAMILIES, Family, Usage};
 use glint_core::core::Core;
 
-/// A synthesis tool.
+/// A synthesis tool that counts the cells of a core.
 pub trait Synthesis: Sync {
     /// Returns the version of the tool, for people: for example, `Yosys 0.23`.
     ///
@@ -22,20 +22,20 @@ pub trait Synthesis: Sync {
     fn usage(&self, files: &[(String, String)], top: &str, family: &Family) -> Result<Usage>;
 }
 
-/// The cells of a family that a device takes, before placement.
+/// The number of cells that a core takes on an FPGA family, before placement.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct FamilyUsage {
-    /// The family.
+    /// The name of the FPGA family.
     pub family: &'static str,
-    /// Look-up tables.
+    /// The number of look-up tables.
     pub luts: u64,
-    /// DSP blocks.
+    /// The number of DSP blocks.
     pub dsps: u64,
-    /// Block RAMs.
+    /// The number of block RAMs.
     pub block_rams: u64,
 }
 
-/// Returns the cells that one configuration takes of every family; `done` is called after each.
+/// Returns the number of cells that a configuration takes on every FPGA family. It calls `done` after each family.
 ///
 /// # Errors
 /// Fails if synthesis fails.

@@ -1,4 +1,6 @@
-//! The record of a measurement: written by `glint synth --out`, shown by datasheets, `glint compare` and docs/measurements.md.
+//! Defines the record of a core's measurements, and finds it among the files of a directory.
+//!
+//! `glint synth --out` writes the record, `<name>.json`. Datasheets, `glint compare` and docs/measurements.md show its numbers.
 
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -9,23 +11,23 @@ use serde::{Deserialize, Serialize};
 use super::{Figures, Target};
 use glint_base::input;
 
-/// The directory of this repository's records.
+/// The directory with the synthesis records of this repository.
 pub const DIRECTORY: &str = "records/synthesis";
 
-/// A configuration with all that was measured of it, `<name>.json`.
+/// The record of a configuration's measurements, `<name>.json`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SynthesisRecord<F = Figures> {
-    /// The version of Glint.
+    /// The version of Glint that made the record.
     pub glint: String,
-    /// The file of the configuration.
+    /// The path of the configuration file.
     pub config: String,
     /// The name of the module.
     pub name: String,
     /// The device.
     pub device: String,
-    /// Tells the core from others: [`glint_core::core::Core::core_digest`].
+    /// A digest that identifies the core: [`glint_core::core::Core::core_digest`].
     pub core: String,
-    /// From one `start` to the next; 1 of a pipeline.
+    /// The number of clocks from one `start` to the next. It is 1 for a pipeline that takes a point every clock.
     pub clocks_per_point: f64,
     /// The measurements, one for each target.
     pub targets: Vec<F>,
@@ -48,34 +50,33 @@ impl SynthesisRecord {
         self.targets.iter().find(|figures| figures.target == target)
     }
 
-    /// Returns the tools that measured, each once.
+    /// Returns the tools that made the measurements, each once.
     pub fn tools(&self) -> BTreeSet<&str> {
         tools(&self.targets)
     }
 }
 
-/// Returns the tools of all figures, each once.
+/// Returns the tools that made some measurements, each once.
 pub fn tools<'a>(figures: impl IntoIterator<Item = &'a Figures>) -> BTreeSet<&'a str> {
     figures.into_iter().flat_map(|it| &it.tools).map(String::as_str).collect()
 }
 
-/// How many points a core computes. For example, 50 MHz and 5 clocks a point are 10 million points a second.
+/// The number of points that a core computes per second. For example, 50 MHz and 5 clocks a point are 10 million points a second.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Rate {
-    /// Millions a second, at the median frequency.
+    /// Million points a second, at the median frequency.
     #[serde(rename = "million_points_per_second")]
     pub points: f64,
-    /// Millions a second for each look-up table.
+    /// Million points a second for each look-up table.
     #[serde(rename = "million_points_per_second_per_lut")]
     pub per_lut: Option<f64>,
-    /// Millions a second for each DSP block.
+    /// Million points a second for each DSP block.
     #[serde(rename = "million_points_per_second_per_dsp")]
     pub per_dsp: Option<f64>,
 }
 
 impl Rate {
-    /// Returns the rate of a core that takes `clocks_per_point` clocks a point. Returns `None` if no frequency was
-    /// measured.
+    /// Returns the rate of a core that takes `clocks_per_point` clocks for a point. Returns `None` if no frequency was measured.
     pub fn new(figures: &Figures, clocks_per_point: f64) -> Option<Self> {
         let points = figures.frequency?.median / clocks_per_point;
         let per = |units: Option<u64>| Some(points / units.filter(|units| *units > 0)? as f64);

@@ -1,10 +1,10 @@
-//! A drawing as data (lines, boxes and text, in colours that the page's style sheet decides), and its SVG.
+//! Defines drawings as data (lines, boxes and text) and converts them to SVG. The style sheet of the page decides the colours.
 
 use anyhow::Result;
 use glint_base::fill;
 use glint_base::template::Template;
 
-/// A drawing. Its units are the units of the page at full size. Each [`Item::Open`] must have an [`Item::Close`].
+/// A drawing of lines, boxes and text, in units of the page at full size. Each [`Item::Open`] must have an [`Item::Close`].
 #[derive(Clone, Debug)]
 #[glint_base::template::template("drawing.svg")]
 pub struct Drawing {
@@ -12,17 +12,17 @@ pub struct Drawing {
     pub id: String,
     /// The title.
     pub title: String,
-    /// The description, which a screen reader says.
+    /// A description for screen readers.
     pub description: String,
-    /// From left to right.
+    /// The width.
     pub width: i32,
-    /// From top to bottom.
+    /// The height.
     pub height: i32,
-    /// In order of drawing.
+    /// The parts, in the order of drawing.
     pub items: Vec<Item>,
 }
 
-/// A part of a drawing. Its classes are the style sheet's.
+/// A part of a drawing. Its class selects colours in the style sheet.
 #[derive(Clone, Debug)]
 pub enum Item {
     /// Lines, by SVG's path syntax.
@@ -75,7 +75,7 @@ impl Drawing {
         Ok(self.render()?)
     }
 
-    /// Returns the drawing as a file of its own, ending with a newline.
+    /// Returns the drawing as an SVG file, ending with a newline.
     ///
     /// # Errors
     /// Fails if a template cannot be printed.
@@ -88,10 +88,10 @@ impl Drawing {
     }
 }
 
-/// The size of the type of a drawing.
+/// The font size of drawings.
 pub const SIZE: f64 = 11.0;
 
-/// Estimates how wide a text is in the type of a drawing. For example, 10 characters are 66 units wide.
+/// Estimates the width of a text in a drawing. For example, 10 characters are 66 units wide.
 pub fn text_width(text: &str) -> i32 {
     (text.chars().count() as f64 * SIZE * 0.6).ceil() as i32
 }

@@ -1,4 +1,4 @@
-//! Makes figures of a page from charts: the plot, its legend, and a table of its values.
+//! Makes the figures of a page from charts: the plot, its legend, and a table of some of its values.
 
 use anyhow::Result;
 use rayon::prelude::*;
@@ -9,21 +9,21 @@ use crate::evidence::chart::{AxisScale, Chart};
 /// The rows of the table beside a plot.
 const ROWS: usize = 11;
 
-/// A chart as a page shows it.
+/// A chart as a page shows it: plot, legend and table.
 pub struct Figure<'a> {
     /// The chart.
     pub chart: &'a Chart,
-    /// The place of the figure in the seed; empty for a figure of ours.
+    /// The place of the reproduced figure in the source document; empty for a figure of Glint's own.
     pub source: &'a str,
-    /// The plot.
+    /// The plot as SVG.
     pub svg: String,
-    /// Class and name of each line.
+    /// The class and the name of each curve.
     pub legend: Vec<(String, &'a str)>,
-    /// Some of its figures, for a table: the place, and a value of each series.
+    /// Some values of the chart for the table: a position on the horizontal axis, and the value of each curve.
     pub rows: Vec<(String, Vec<String>)>,
 }
 
-/// Makes figures of charts, each with the place in its source.
+/// Makes the figures of some charts, each given with the place in its source document.
 ///
 /// # Errors
 /// Fails if a chart cannot be plotted.
@@ -61,7 +61,7 @@ fn cell(value: f64, scale: AxisScale) -> String {
     }
 }
 
-/// Returns an error by its magnitude. For example, 0.00123 is `1.2e−3`.
+/// Returns an error in scientific notation, without its sign. For example, 0.00123 is `1.2e−3`.
 pub fn scientific(value: f64) -> String {
     match value {
         0.0 => "0".to_owned(),

@@ -1,7 +1,7 @@
-//! Sets a formula in plain text as MathML.
+//! Converts a formula in plain text to MathML.
 //!
-//! Descriptions write formulas as programs do, `out = colour * (n/2 * (c - 1) + 1)^2`. A formula that this reader
-//! does not understand stays plain text.
+//! A device's description writes a formula in the syntax of programs, for example `out = colour * (n/2 * (c - 1) + 1)^2`. If the
+//! parser does not understand a formula, the page shows it as plain text.
 
 use super::markup::html;
 
@@ -28,8 +28,8 @@ const GREEK: [(&str, &str); 12] = [
     ("psi", "ψ"),
 ];
 
-/// Returns `math` elements with the signs between them, between which a line may end; `None` for a text that is not
-/// understood.
+/// Returns a formula as `math` elements, with operators between them at which a line may break. Returns `None` for a text that
+/// the parser does not understand.
 pub fn mathml(text: &str) -> Option<String> {
     let mut reader = FormulaReader { tokens: tokens(text)?, at: 0 };
     let mut clauses = String::new();

@@ -1,6 +1,6 @@
-//! Writes plain text as HTML.
+//! Converts plain text with names in backquotes to HTML.
 
-/// Writes plain text with names in backquotes as HTML. For example, `` `a<b` `` becomes `<code>a&lt;b</code>`.
+/// Converts plain text with names in backquotes to HTML. For example, `` `a<b` `` becomes `<code>a&lt;b</code>`.
 pub fn html(text: &str) -> String {
     let mut html = String::with_capacity(text.len());
     // An odd backquote is one.

@@ -1,4 +1,4 @@
-//! Makes pages for people: the page of a device, its datasheet.
+//! Makes the pages about a core that people read: its documentation page in Markdown, and its datasheet in HTML.
 
 pub mod account;
 pub mod datasheet;

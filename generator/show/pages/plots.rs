@@ -1,4 +1,4 @@
-//! Plots charts as inline SVG, in colours that the page's style sheet decides.
+//! Plots charts as SVG inside a page. The style sheet of the page decides the colours.
 
 use anyhow::{Result, anyhow};
 use plotters::coord::ranged1d::{DefaultFormatting, KeyPointHint, Ranged};
@@ -7,7 +7,7 @@ use plotters::style::text_anchor::{HPos, Pos, VPos};
 
 use crate::evidence::chart::{AxisScale, Chart, ChartAxis};
 
-/// Lines that the style sheet can tell apart, by colour and by dashes.
+/// The number of curves that the style sheet can distinguish, by colour and by dashes.
 pub const STYLES: usize = 10;
 
 /// The library places points on whole units: this many of them make one of the page's at full size.
@@ -27,13 +27,12 @@ fn style(at: usize) -> RGBColor {
     RGBColor(4, 0, (at % STYLES) as u8)
 }
 
-/// Returns the class of series number `at` in the style sheet. For example, series 0 has the class `s1`, and so has
-/// series 10.
+/// Returns the class of curve number `at` in the style sheet. For example, curve 0 has the class `s1`, and so has curve 10.
 pub fn class(at: usize) -> String {
     format!("s{}", at % STYLES + 1)
 }
 
-/// Returns the chart as an `svg` element, which scales to its place. It takes its colours from the classes `ink`,
+/// Returns the plot of a chart as an `svg` element that scales to the available width. Its colours come from the classes `ink`,
 /// `grid` and `mark`, and from the classes of [`class`].
 ///
 /// # Errors

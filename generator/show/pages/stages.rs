@@ -1,10 +1,11 @@
-//! Tabulates the stages of a pipeline, and the products that its shared multipliers compute in each slot.
+//! Makes the tables of a pipeline for its page: its stages, and the product that each shared multiplier computes in each time
+//! slot.
 
 use super::account::{TextTable, code};
 use glint_rtl::netlist::{Design, Pipeline};
 
-/// Returns the product that each shared multiplier computes in each slot. Returns `None` if no multiplier is shared. A
-/// slot in which the multiplier is idle has the cell `–`.
+/// Returns the table of the product that each shared multiplier computes in each time slot of a pipeline. Returns `None` if no
+/// multiplier is shared. The cell of an idle slot is `–`.
 pub fn reservations(pipeline: &Pipeline) -> Option<TextTable> {
     let slots = (0..pipeline.interval).map(|slot| format!("slot {slot}"));
     let headings: Vec<String> = ["multiplier".to_owned()].into_iter().chain(slots).collect();
@@ -16,7 +17,7 @@ pub fn reservations(pipeline: &Pipeline) -> Option<TextTable> {
     (!pipeline.units.is_empty()).then_some(table)
 }
 
-/// Returns the stages with their microinstructions, values, time and registers.
+/// Returns the table of a pipeline's stages: the microinstructions and values of each stage, its delay and its registers.
 pub fn table(design: &Design, pipeline: &Pipeline) -> TextTable {
     let mut table = TextTable::of(
         "stage: | microinstructions | logic, ns: | slack, ns: | register bits: | in delay lines: | computes",

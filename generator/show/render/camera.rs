@@ -1,10 +1,10 @@
-//! A perspective camera: its place and directions, and where it sees a point.
+//! Defines the perspective camera of a rendered picture: its position and direction, and where a point of the scene appears.
 
 use anyhow::{Context, Result, ensure};
 
 use super::vector::Vector;
 
-/// The place from which a picture is seen. Its own coordinates have x to the right, y upward, and look along −z.
+/// A perspective camera. In its own coordinates, x points to the right, y upward, and the camera looks along −z.
 #[derive(Clone, Copy, Debug)]
 pub struct Camera {
     eye: Vector,
@@ -15,14 +15,14 @@ pub struct Camera {
     half: (f64, f64),
 }
 
-/// The user's settings of the camera; the rest follows from the extent of the scene.
+/// The user's settings of the camera. Settings that are left out follow from the size of the scene.
 #[derive(Clone, Copy, Debug)]
 pub struct View {
-    /// The place of the camera.
+    /// The position of the camera.
     pub eye: Option<Vector>,
-    /// The point that it looks at: the middle of everything by default.
+    /// The point at which the camera looks. The default is the middle of the scene.
     pub target: Option<Vector>,
-    /// The angle between the upper and the lower edge, in degrees.
+    /// The vertical field of view in degrees.
     pub field: f64,
 }
 
@@ -85,12 +85,13 @@ impl Camera {
         needed.fold(0.0, f64::max)
     }
 
-    /// Returns the place of the camera.
+    /// Returns the position of the camera.
     pub fn eye(&self) -> Vector {
         self.eye
     }
 
-    /// Returns a point in the camera's coordinates. For example, a point 5 units in front of the eye is (0, 0, −5).
+    /// Converts a point of the scene to the camera's coordinates. For example, a point 5 units in front of the camera is (0, 0,
+    /// −5).
     #[inline]
     pub fn place(&self, point: Vector) -> Vector {
         let from = point - self.eye;
@@ -105,7 +106,7 @@ impl Camera {
         self.right * x + self.up * y + self.back * z
     }
 
-    /// Returns half the width and half the height of the view at distance 1.
+    /// Returns half the width and half the height of the visible area at distance 1.
     pub fn half(&self) -> (f64, f64) {
         self.half
     }

@@ -1,4 +1,4 @@
-//! Reads height maps, whose slopes turn the normals of a surface.
+//! Reads a height map from a PNG file, and computes its slopes, which tilt the normals of a surface (bump mapping).
 
 use anyhow::{Context, Result, bail, ensure};
 use png::{BitDepth, ColorType, Decoder, Limits, Transformations};
@@ -9,7 +9,7 @@ const LARGEST_SIDE: u32 = 8192;
 /// The largest memory for a map and its decoding, in bytes.
 const MEMORY: usize = 512 << 20;
 
-/// The slopes of a height map. It is repeated in all directions.
+/// The slopes of a height map, which is repeated in all directions.
 #[derive(Clone, Debug)]
 pub struct Relief {
     width: usize,
@@ -23,7 +23,7 @@ pub struct Relief {
 }
 
 impl Relief {
-    /// Reads the map that a PNG file holds.
+    /// Reads a height map from the contents of a PNG file.
     ///
     /// # Errors
     /// Fails if the file is no PNG, has colours or transparency, or is too large.

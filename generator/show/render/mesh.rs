@@ -1,4 +1,4 @@
-//! Triangle meshes, with normals and texture coordinates; normals that are missing are computed.
+//! Defines triangle meshes with normals and texture coordinates, and computes normals that are missing.
 
 use std::collections::HashMap;
 
@@ -6,13 +6,13 @@ use anyhow::{Result, bail, ensure};
 
 use super::vector::Vector;
 
-/// The most triangles, which keeps their numbers in 32 bits and their memory in gigabytes.
+/// The largest number of triangles of a mesh. It keeps indices in 32 bits and memory in gigabytes.
 pub const MOST_TRIANGLES: usize = 20_000_000;
 
-/// The angle, in degrees, beyond which an edge of a mesh without normals is sharp, unless told otherwise.
+/// The default angle, in degrees, beyond which an edge of a mesh without normals is drawn as sharp.
 pub const CREASE: f64 = 40.0;
 
-/// The angle that leaves no edge sharp.
+/// The angle with which no edge is sharp.
 pub const SMOOTH: f64 = 180.0;
 
 /// The largest coordinate: areas and their squares are still numbers.
@@ -21,15 +21,15 @@ const FARTHEST: f64 = 1e30;
 /// Triangles with a normal and perhaps texture coordinates at each corner.
 #[derive(Clone, Debug, Default)]
 pub struct Mesh {
-    /// Points.
+    /// The positions of the corners.
     pub positions: Vec<Vector>,
-    /// Directions of length 1.
+    /// The normals, of length 1.
     pub normals: Vec<Vector>,
-    /// Texture coordinates.
+    /// The texture coordinates.
     pub textures: Vec<[f64; 2]>,
-    /// Corners, as indices into these.
+    /// The triangles. Their corners are indices into the other lists.
     pub triangles: Vec<[Corner; 3]>,
-    /// Triangles without area that were left out.
+    /// The number of triangles without area that were left out.
     pub degenerate: usize,
 }
 
@@ -44,7 +44,7 @@ pub struct Corner {
     pub texture: Option<u32>,
 }
 
-/// A corner as it is given: without a normal, one is computed.
+/// A corner as a file gives it. If it has no normal, one is computed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct RawCorner {
     /// The index of a position.

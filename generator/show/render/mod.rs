@@ -1,9 +1,9 @@
-//! Renders pictures whose highlights a device computes, bit by bit.
+//! Renders pictures whose specular highlights are bit-exact results of a device.
 //!
-//! The host computes visibility, normals, half vectors, and the ambient and diffuse light in f64. An [`Engine`]
-//! computes the specular term of every sample and light, along lines for devices that walk lines. The same picture
-//! has the same bytes on every machine. It depends neither on the engine nor on the number of threads, and
-//! transcendental functions come from `libm`.
+//! The host part in this module computes visibility, normals, half vectors, and the ambient and diffuse light in f64. An
+//! [`Engine`] computes the specular term of every sample and light, point by point or along lines of points. The same picture has
+//! the same bytes on every machine: they depend neither on the engine nor on the number of threads, and transcendental functions
+//! come from `libm`.
 
 mod camera;
 mod height;
@@ -37,19 +37,19 @@ use glint_golden::{Contract, nearer};
 use shade::{Shaded, Shader};
 use visibility::{Raster, Visibility};
 
-/// The most pixels along a side.
+/// The largest width or height of a picture in pixels.
 pub const LARGEST_SIDE: u32 = 8192;
 
-/// The most samples along a side of a pixel.
+/// The largest number of samples along each side of a pixel.
 pub const MOST_SAMPLES: u32 = 8;
 
 /// The most samples of a picture.
 pub const LARGEST: u64 = 1 << 28;
 
-/// The most lights.
+/// The largest number of lights.
 pub const MOST_LIGHTS: usize = 16;
 
-/// The angle between the upper and the lower edge of a picture by default, in degrees.
+/// The default vertical field of view of a picture in degrees.
 pub const FIELD: f64 = 30.0;
 
 /// n by default, if the device takes so large a value.
@@ -58,41 +58,41 @@ const EXPONENT: i64 = 80;
 /// Points, about, that are handed to the device at once.
 const PORTION: usize = 1 << 18;
 
-/// The settings of a picture.
+/// The settings for rendering a picture.
 #[derive(Clone, Debug)]
 pub struct Settings {
-    /// Width and height in pixels.
+    /// The width and the height in pixels.
     pub size: (u32, u32),
-    /// Samples along each side of a pixel, which is their mean.
+    /// The number of samples along each side of a pixel. The colour of the pixel is their mean.
     pub samples: u32,
     /// The settings of the camera.
     pub view: View,
-    /// How things reflect.
+    /// The material of all objects.
     pub material: Material,
-    /// The colour of samples that hit nothing, 0 … 1.
+    /// The colour where no object is visible, from 0 to 1.
     pub background: Vector,
-    /// Whether the picture of Blinn's function in f64 is wanted too.
+    /// Whether to render also Blinn's function cosⁿγ in f64, for comparison.
     pub compare: bool,
-    /// Values of operands that a picture does not have, or that are to stay the same, by name.
+    /// Values of operands by name, for operands that a picture cannot supply or that are to be the same everywhere.
     pub operands: Vec<(String, f64)>,
 }
 
 /// A picture, and the facts about its rendering.
 #[derive(Clone, Debug)]
 pub struct Rendered {
-    /// Through the device.
+    /// The picture with the device's results.
     pub picture: Picture,
-    /// Computations of the device.
+    /// The number of computations of the device.
     pub points: u64,
-    /// The points among these whose dγ was beyond the domain of the device, and was shortened to it.
+    /// The number of points whose roughness angle dγ was beyond the device's domain and was limited to it.
     pub beyond: u64,
-    /// Beside Blinn's function, if that was wanted.
+    /// The comparison with Blinn's function, if the settings ask for it.
     pub comparison: Option<PictureComparison>,
 }
 
 impl Rendered {
-    /// Returns the picture. If Blinn's picture was wanted, it and the difference are beside it, each with its
-    /// caption.
+    /// Returns the picture. If it was compared with Blinn's function, the two pictures and their difference are side by side,
+    /// with captions.
     pub fn whole(&self, device: &str) -> Picture {
         let Some(comparison) = &self.comparison else {
             return self.picture.clone();
@@ -106,31 +106,31 @@ impl Rendered {
     }
 }
 
-/// The device against formulas in f64.
+/// The comparison of a picture with formulas in f64.
 #[derive(Clone, Debug)]
 pub struct PictureComparison {
-    /// The picture with cosⁿγ.
+    /// The picture with Blinn's function cosⁿγ in f64.
     pub exact: Picture,
-    /// Between the two.
+    /// The difference between the device's picture and this picture.
     pub difference: PictureDifference,
     /// The largest error of an output against the device's own formula, in output units.
     pub units: f64,
 }
 
-/// Returns the exponent at which a picture is rendered by default: one that the device takes. For example, 80, or 64
-/// for a device whose domain ends there.
+/// Returns the default exponent n of a picture, which is inside the device's domain. For example, 80, or 64 for a device whose
+/// domain ends there.
 pub fn usual_exponent(contract: &dyn Contract) -> u32 {
     let (least, most) = exponents(contract).unwrap_or((0, i64::MAX));
     EXPONENT.clamp(least, most).max(0) as u32
 }
 
-/// Returns whether a picture has the operands of a device.
+/// Returns whether a picture can supply all operands of a device.
 pub fn draws(core: &Core) -> bool {
     let contract = core.contract.as_ref();
     Feed::new(core.device.name, contract).is_ok()
 }
 
-/// Checks the settings and the scene before they are rendered.
+/// Checks the settings and the scene before rendering.
 ///
 /// # Errors
 /// Fails if a setting is wrong; the sentence says which.
@@ -167,7 +167,7 @@ pub fn check(settings: &Settings, scene: &Scene) -> Result<()> {
     Ok(())
 }
 
-/// Renders a scene; `progress` is called with the number of rows so far.
+/// Renders a scene. It calls `progress` with the number of finished rows.
 ///
 /// # Errors
 /// Fails if [`check`] does, if the camera sees nowhere, if a picture cannot supply an operand, or if the engine

@@ -1,15 +1,14 @@
-//! Reads Wavefront OBJ: the geometry of a mesh.
+//! Reads the geometry of a mesh from a file in Wavefront's OBJ format.
 //!
-//! The reader ignores everything but vertices, normals, texture coordinates and faces: groups, materials, lines,
-//! curves. Glint has its own reader so that it can report a mistake with its line. A file may mix faces whose corners
-//! have normals and faces without.
+//! The reader takes vertices, normals, texture coordinates and faces, and ignores everything else, such as groups, materials and
+//! curves. It reports a mistake with its line number. Some faces of a file may have normals at their corners, and others none.
 
 use anyhow::{Context, Result, anyhow, bail, ensure};
 
 use super::mesh::{Mesh, RawCorner};
 use super::vector::Vector;
 
-/// Returns the mesh that a file describes. If it has no normals, edges beyond `crease` degrees are sharp.
+/// Parses a mesh from the text of an OBJ file. If the file has no normals, edges beyond `crease` degrees are drawn as sharp.
 ///
 /// # Errors
 /// Fails with the number of the line if a number is not one or not finite, or if a face has less than three corners

@@ -1,6 +1,7 @@
-//! Feeds a device: finds the meaning of each operand, and makes the raw operands of a point or a line.
+//! Converts the geometry at a point or along a line of a picture to raw operands of a device.
 //!
-//! Nothing here knows a device. The contract names the operands, and the names tell their meaning.
+//! The contract lists the operands of the device by name. The name decides which quantity an operand gets: for example,
+//! `cos_gamma` gets the cosine between normal and half vector. No code here depends on the name of a device.
 
 use std::f64::consts::FRAC_PI_2;
 
@@ -12,22 +13,22 @@ use glint_base::fixed::{Format, Overflow, Rounding, exp2, nearest};
 use glint_base::program::Program;
 use glint_golden::{Contract, Operand};
 
-/// A point that a light shines on.
+/// A point of a surface under one light, with the quantities from which operands are made.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Point {
-    /// N·H of the smooth surface.
+    /// The cosine N·H of the angle γ between the smooth normal N and the half vector H.
     pub cos_gamma: f64,
     /// The cosine of dγ, the difference between the angle of H with the perturbed normal and γ.
     pub cos_dgamma: f64,
-    /// dγ is negative: the perturbed normal is nearer to H.
+    /// Whether dγ is negative: the perturbed normal is nearer to H than the smooth normal is.
     pub dgamma_negative: bool,
-    /// N − H of the normal that is shaded.
+    /// The vector N − H, with the normal N that is shaded.
     pub difference: Vector,
-    /// N·H of the normal that is shaded.
+    /// The cosine N·H with the normal N that is shaded.
     pub cos_shaded: f64,
-    /// The colour of the light times the specular coefficient, 0 … 1.
+    /// The colour of the light times the specular coefficient, from 0 to 1.
     pub colour: Vector,
-    /// The surface, for a device that computes all of the light.
+    /// The surface at the point, for a device that computes ambient and diffuse light too.
     pub surface: Surface,
 }
 
@@ -40,9 +41,9 @@ pub struct Surface {
     pub light: Vector,
     /// The unit half vector.
     pub half: Vector,
-    /// The ambient light that it gives back, 0 … 1.
+    /// The ambient light that the surface reflects, from 0 to 1.
     pub ambient: Vector,
-    /// The share of the light that it scatters, 0 … 1.
+    /// The share of the light that the surface reflects diffusely, from 0 to 1.
     pub diffuse: Vector,
 }
 
@@ -123,7 +124,7 @@ const OF_LINES: [(&str, OperandMeaning); 5] = [
     ("amplitude", OperandMeaning::Amplitude),
 ];
 
-/// The operands of a device, each with the quantity that it takes.
+/// The operands of a device, each with the quantity of a picture that it gets.
 #[derive(Clone, Debug)]
 pub struct Feed {
     operands: Vec<(OperandMeaning, Format, (i64, i64))>,
@@ -137,14 +138,14 @@ pub struct Feed {
     surfaces: bool,
 }
 
-/// Returns the exponents that a device takes, if it takes any.
+/// Returns the range of the exponent in the device's domain, or `None` if the device has no exponent.
 pub fn exponents(contract: &dyn Contract) -> Option<(i64, i64)> {
     let mut operands = contract.operands().iter();
     let exponent = operands.find(|operand| operand.name == "exponent")?;
     Some(exponent.domain)
 }
 
-/// Returns whether a device walks a line of points from one start.
+/// Returns whether a device computes a line of points after one start.
 pub fn walks_lines(contract: &dyn Contract) -> bool {
     contract.length().is_some()
 }
@@ -247,7 +248,7 @@ impl Feed {
         self.operands.len()
     }
 
-    /// Returns whether the device computes all of the light, and not the highlight alone.
+    /// Returns whether the device computes ambient and diffuse light too, and not only the highlight.
     pub fn shades(&self) -> bool {
         self.surfaces
     }
@@ -259,13 +260,13 @@ impl Feed {
         self.takes(OperandMeaning::CosDgamma)
     }
 
-    /// Returns whether n, or its logarithm, is an operand.
+    /// Returns whether the device has the exponent n, or its logarithm, as an operand.
     pub fn takes_exponent(&self) -> bool {
         self.takes(OperandMeaning::Exponent) || self.takes(OperandMeaning::Shift)
     }
 
-    /// Returns the first of some operands, not yet quantised, that is beyond its domain. The cosine of a surface that faces away
-    /// is the least that there is, and angles of lines are taken modulo a turn.
+    /// Returns the first operand whose value is beyond its domain. `values` are not quantised yet. A negative cosine counts as
+    /// the smallest possible, and angles of lines are taken modulo a full turn.
     pub fn outside(&self, values: &[f64]) -> Option<usize> {
         let mut operands = self.operands.iter().zip(values);
         operands.position(|(&(quantity, format, domain), &value)| match quantity {
@@ -279,7 +280,7 @@ impl Feed {
         })
     }
 
-    /// Returns the most intervals of a line, if the device computes lines.
+    /// Returns the largest length of a line, if the device computes lines of points.
     pub fn longest(&self) -> Option<usize> {
         self.longest
     }
@@ -323,8 +324,7 @@ impl Feed {
         })
     }
 
-    /// Returns the raw operands of a point, and whether dγ was beyond the device's domain. The device must compute
-    /// points, and not lines.
+    /// Returns the raw operands of a point, and whether dγ was beyond the device's domain. The device must compute single points.
     pub fn raw<'a>(
         &'a self,
         point: &'a Point,
@@ -342,7 +342,7 @@ impl Feed {
         (raw, beyond)
     }
 
-    /// Returns the amplitude of full light.
+    /// Returns the amplitude operand that gives full light.
     pub fn full(&self) -> f64 {
         let full = self.find(OperandMeaning::Amplitude);
         full.map_or(0.0, |(_, format, (_, most))| format.to_f64(i128::from(most)))
@@ -395,8 +395,8 @@ impl Feed {
         Ok(self.operands.iter().zip(self.line_values(line)).map(raw).collect())
     }
 
-    /// Returns the results of a point as a colour, 255 at full colour. `outputs` gives the results of the computation
-    /// that has the channel.
+    /// Returns the results of a point as a colour, where 255 is full light. `outputs` returns the results of the computation for
+    /// a colour channel.
     #[inline]
     pub fn colour<'a>(&self, outputs: impl Fn(usize) -> &'a [i64]) -> Vector {
         let of = |channel: usize| outputs(channel)[self.channels[channel]] as f64;

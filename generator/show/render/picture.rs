@@ -1,4 +1,4 @@
-//! Pictures of 8 bits a channel: joins, captions and compares them, and writes them as PNG.
+//! Defines pictures with 8 bits for each colour channel. It joins, captions and compares pictures, and writes them as PNG.
 
 use anyhow::{Context, Result};
 use noto_sans_mono_bitmap::{FontWeight, RasterHeight, get_raster, get_raster_width};
@@ -18,10 +18,10 @@ const STRIP: [u8; 3] = [24, 26, 30];
 /// Its letters.
 const LETTER: [u8; 3] = [232, 233, 235];
 
-/// Pixels in rows from the top.
+/// A picture: rows of pixels, from the top.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Picture {
-    /// Pixels in a row.
+    /// The number of pixels in a row.
     pub width: u32,
     /// Red, green and blue of each pixel.
     pub pixels: Vec<[u8; 3]>,
@@ -38,8 +38,7 @@ impl Picture {
         (self.pixels.len() / self.width as usize) as u32
     }
 
-    /// Puts the picture over a strip with a caption, in the middle; of one that is too long as much as there is room
-    /// for.
+    /// Returns the picture with a strip below it that has a caption in the middle. A caption that is too long is cut off.
     pub fn captioned(&self, caption: &str) -> Self {
         let letter = get_raster_width(FontWeight::Regular, LETTERS);
         let width = self.width as usize;
@@ -60,7 +59,7 @@ impl Picture {
         captioned
     }
 
-    /// Puts pictures side by side. All must have one height.
+    /// Joins pictures of the same height side by side.
     pub fn beside(pictures: &[&Self]) -> Self {
         let mut all = Self::new(pictures.iter().map(|picture| picture.width).sum());
         for row in 0..pictures.first().map_or(0, |picture| picture.height()) as usize {
@@ -90,29 +89,29 @@ impl Picture {
     }
 }
 
-/// Returns a colour of 0 … 255 a channel as a pixel: saturated, and rounded to the nearest. For example, 127.5 is 128,
-/// and 900 is 255.
+/// Converts a colour with 0 … 255 in each channel to a pixel: saturates and rounds to the nearest integer. For example, 127.5 is
+/// 128, and 900 is 255.
 #[inline]
 pub fn pixel(colour: Vector) -> [u8; 3] {
     colour.0.map(|value| (value + 0.5).clamp(0.0, 255.0) as u8)
 }
 
-/// How two pictures differ.
+/// The difference between two pictures.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PictureDifference {
-    /// The largest difference of a channel, in levels of 255.
+    /// The largest difference of a colour channel, from 0 to 255.
     pub largest: u8,
-    /// The peak signal-to-noise ratio in decibels, over the pixels of the things; none when they are equal.
+    /// The peak signal-to-noise ratio in decibels over the pixels that show objects; `None` if the pictures are equal there.
     pub psnr: Option<f64>,
-    /// The factor of the differences in [`PictureDifference::picture`], which makes them visible. For example, a
-    /// largest difference of 30 has the factor 8.
+    /// The factor by which [`PictureDifference::picture`] multiplies the differences to make them visible. For example, a largest
+    /// difference of 30 has the factor 8.
     pub gain: u8,
-    /// The absolute differences.
+    /// A picture of the absolute differences.
     pub picture: Picture,
 }
 
 impl PictureDifference {
-    /// Compares two pictures, which must have one size. `shown` must say of each pixel whether it shows a thing.
+    /// Compares two pictures of the same size. `shown` says for each pixel whether it shows an object.
     pub fn new(a: &Picture, b: &Picture, shown: &[bool]) -> Self {
         let pairs = a.pixels.iter().zip(&b.pixels);
         let differences: Vec<[u8; 3]> =

@@ -1,4 +1,4 @@
-//! The scene of a picture: things with their shapes and colours, lights, and a relief.
+//! Defines the scene of a picture: objects with shapes and colours, lights, and a height map.
 
 use anyhow::Result;
 use clap::ValueEnum;
@@ -8,27 +8,27 @@ use super::mesh::Mesh;
 use super::shapes;
 use super::vector::Vector;
 
-/// Things and lights.
+/// The scene of a picture.
 #[derive(Clone, Debug, Default)]
 pub struct Scene {
-    /// At least one.
+    /// The objects, at least one.
     pub objects: Vec<Object>,
-    /// They shine from everywhere.
+    /// The lights, which are so far away that their directions are the same everywhere.
     pub lights: Vec<Light>,
-    /// The relief that changes the normals of everything.
+    /// The height map that tilts the normals of all objects.
     pub relief: Option<Relief>,
 }
 
-/// A thing.
+/// An object of a scene.
 #[derive(Clone, Debug)]
 pub struct Object {
-    /// Its surface.
+    /// The shape of the object.
     pub shape: Shape,
     /// The colour of its ambient and diffuse light, 0 … 1.
     pub colour: Vector,
 }
 
-/// A surface.
+/// The shape of an object.
 #[derive(Clone, Debug)]
 pub enum Shape {
     /// A ball, exactly.
@@ -45,7 +45,7 @@ pub enum Shape {
 /// A light so far away that its direction is the same everywhere.
 #[derive(Clone, Copy, Debug)]
 pub struct Light {
-    /// Toward the light, of length 1.
+    /// The direction toward the light, of length 1.
     pub direction: Vector,
     /// Its colour, 0 … 1.
     pub colour: Vector,
@@ -64,14 +64,14 @@ pub enum BuiltIn {
     Group,
 }
 
-/// The colour of things by default.
+/// The default colour of objects.
 pub const COLOUR: Vector = Vector::new(0.08, 0.35, 0.54);
 
-/// The colour around things by default.
+/// The default colour of the background.
 pub const BACKGROUND: Vector = Vector::new(0.05, 0.06, 0.08);
 
 impl Light {
-    /// Returns the lights by default: a white one from the upper left, a weaker one from behind on the right.
+    /// Returns the default lights: a white one from the upper left, and a weaker one from behind on the right.
     pub fn usual() -> Vec<Self> {
         let white = Self {
             direction: Vector::new(-0.6, 0.8, 0.9).unit().unwrap_or_default(),
@@ -86,8 +86,8 @@ impl Light {
 }
 
 impl Scene {
-    /// Returns a scene that needs no file; its things have the given colour, or colours of their own. `coarse` ones
-    /// consist of triangles that one can see, for devices that interpolate along them.
+    /// Returns the objects of a scene that needs no file, in `colour` or in colours of their own. With `coarse`, they consist of
+    /// large triangles, for devices that interpolate along lines in a triangle.
     ///
     /// # Errors
     /// Fails only through a bug, not through anything that a user gives.
@@ -130,7 +130,8 @@ impl Scene {
         ((low * 0.5 + high * 0.5), (high * 0.5 - low * 0.5).length())
     }
 
-    /// Returns the balls, with middle and radius, that are all that can be seen; the corners of meshes have no radius.
+    /// Returns balls, each with middle and radius, that contain everything visible. The corners of meshes are balls without a
+    /// radius.
     pub fn balls(&self) -> impl Iterator<Item = (Vector, f64)> {
         self.objects.iter().flat_map(|object| {
             let (ball, mesh) = match &object.shape {

@@ -1,7 +1,7 @@
-//! Computes the host's part of shading: the surface at a point, its ambient and diffuse light, and the operands of
-//! the device.
+//! Computes the host's part of shading: the surface at a point, its ambient and diffuse light, and the operands of the device.
 //!
-//! All of it is f64. Most devices compute the specular term alone; a device that takes normals computes the rest too.
+//! All arithmetic is f64. Most devices compute only the specular term; a device that takes normals computes the ambient and
+//! diffuse terms too.
 
 use std::f64::consts::{PI, TAU};
 
@@ -15,21 +15,21 @@ use super::visibility::Hit;
 use crate::render::setup::Arc;
 use glint_core::cosim::batch::Points;
 
-/// How surfaces reflect; everything is a share of the light.
+/// The material of surfaces: the shares of light that they reflect.
 #[derive(Clone, Copy, Debug)]
 pub struct Material {
     /// The share of the ambient light, which is white and has the strength of one light.
     pub ambient: f64,
-    /// The share of each light, times the cosine of its angle.
+    /// The share of each light that is reflected diffusely. It is multiplied by the cosine of the light's angle.
     pub diffuse: f64,
     /// k_s: the share of each light, times the reflectance f that the device computes.
     pub specular: f64,
-    /// n.
+    /// The exponent n of the highlight.
     pub exponent: u32,
 }
 
 impl Material {
-    /// Returns how things reflect by default.
+    /// Returns the default material.
     pub const fn usual(exponent: u32) -> Self {
         Self { ambient: 0.12, diffuse: 0.75, specular: 0.7, exponent }
     }
@@ -37,26 +37,26 @@ impl Material {
 
 /// The inputs of shading.
 pub struct Shader<'a> {
-    /// Things and lights.
+    /// The objects and lights.
     pub scene: &'a Scene,
     /// The camera from which the scene is seen.
     pub camera: &'a Camera,
-    /// The material of all things.
+    /// The material of all objects.
     pub material: Material,
-    /// The colour of samples that hit nothing, 0 … 255.
+    /// The colour where no object is visible, from 0 to 255.
     pub background: Vector,
-    /// The device's operands.
+    /// The operands of the device, with their quantities.
     pub feed: &'a Feed,
-    /// Whether Blinn's function is wanted too.
+    /// Whether to compute Blinn's function too.
     pub compare: bool,
 }
 
-/// Some samples of a row, shaded except for the light that the device computes.
+/// Some samples of a row, with all light except the results of the device.
 pub struct Shaded {
     /// Ambient and diffuse light or the background, 0 … 255, of each sample, and the number of lights for
     /// which the device computes a result.
     pub samples: Vec<(Vector, u32)>,
-    /// The points that it computes.
+    /// The points that the device must compute.
     pub points: Points,
     /// For each sample and each of its lights, the numbers of the results with its red, green and blue. `None` if
     /// every computation has one result, with all three colours, and the results come in this order.
@@ -64,7 +64,7 @@ pub struct Shaded {
     /// For each sample and each of its lights Blinn's cosⁿγ times the light's colour, 0 … 255; empty unless
     /// it is wanted.
     pub exact: Vec<Vector>,
-    /// Points whose dγ is beyond the device's domain.
+    /// The number of points whose dγ is beyond the device's domain.
     pub beyond: usize,
 }
 

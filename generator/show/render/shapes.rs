@@ -1,4 +1,4 @@
-//! Computes meshes of simple shapes: torus, ball and vase.
+//! Generates the triangle meshes of simple shapes: torus, ball and vase.
 
 use std::f64::consts::{PI, TAU};
 

@@ -1,5 +1,6 @@
-//! Vectors of three components, and their arithmetic. Only the four operations and square roots, so that every machine
-//! computes the same.
+//! Defines vectors of three f64 components, and their arithmetic.
+//!
+//! It uses only addition, subtraction, multiplication, division and square roots, so that every machine computes the same bits.
 
 use std::ops::{Add, Mul, Neg, Sub};
 

@@ -1,8 +1,9 @@
-//! Finds the surface at each sample of the picture: a z-buffer, row bands in parallel.
+//! Finds the visible surface at each sample of a picture with a z-buffer. Threads render horizontal bands of the picture in
+//! parallel.
 //!
-//! Barycentric coordinates of the ray through a sample are its products with the normals of the planes through the eye and the
-//! edges. There is no clipping, and triangles that share an edge leave no gap, since both compute the same number for it, with
-//! opposite signs; where two are at the same depth, the first wins.
+//! The barycentric coordinates of a sample are the products of its ray with the normals of three planes, each through the eye and
+//! an edge of the triangle. Triangles need no clipping. Two triangles that share an edge compute the same number for it, with
+//! opposite signs, and so leave no gap. If two triangles have the same depth, the first wins.
 
 use rayon::prelude::*;
 
@@ -13,34 +14,34 @@ use super::vector::Vector;
 /// Rows of samples that are worked on together.
 const BAND: usize = 16;
 
-/// The first surface that a ray meets.
+/// The first surface that the ray through a sample meets.
 #[derive(Clone, Copy, Debug)]
 pub struct Hit {
-    /// How far along the ray, whose third component is −1: the distance from the eye's plane.
+    /// The distance from the plane of the camera: the factor of the ray, whose third component is −1.
     pub depth: f64,
-    /// The place of the object in the scene.
+    /// The index of the object in the scene.
     pub object: u32,
-    /// The place of the triangle in the object's mesh; 0 for a ball.
+    /// The index of the triangle in the object's mesh; 0 for a ball.
     pub triangle: u32,
-    /// The weights of the second and the third corner.
+    /// The barycentric weights of the triangle's second and third corner.
     pub weights: [f64; 2],
 }
 
 const NOTHING: Hit = Hit { depth: f64::INFINITY, object: u32::MAX, triangle: 0, weights: [0.0; 2] };
 
 impl Hit {
-    /// Returns whether there is anything.
+    /// Returns whether the ray meets a surface.
     pub fn is_something(&self) -> bool {
         self.object != u32::MAX
     }
 }
 
-/// Samples in rows and columns, seen from a camera.
+/// The samples of a picture, in rows and columns.
 #[derive(Clone, Copy, Debug)]
 pub struct Raster {
-    /// Samples in a row.
+    /// The number of samples in a row.
     pub columns: usize,
-    /// Rows, from the top.
+    /// The number of rows.
     pub rows: usize,
     /// Half the width and half the height of the view at distance 1.
     half: (f64, f64),
@@ -72,7 +73,7 @@ impl Raster {
     }
 }
 
-/// A scene in the camera's coordinates, sorted by rows.
+/// A scene in the camera's coordinates, with its triangles sorted by the rows that they cover.
 pub struct Visibility<'a> {
     scene: &'a Scene,
     raster: Raster,
@@ -94,8 +95,8 @@ struct CandidateSurface {
 }
 
 impl<'a> Visibility<'a> {
-    /// Sorts a scene, which must lie in a ball of radius `size`. A surface nearer to the eye than a millionth of `size`
-    /// cannot be seen.
+    /// Prepares a scene, which must lie in a ball of radius `size`. A surface nearer to the camera than a millionth of `size` is
+    /// not visible.
     pub fn new(scene: &'a Scene, camera: &Camera, raster: Raster, size: f64) -> Self {
         let mut visibility = Self {
             scene,
@@ -179,7 +180,7 @@ impl<'a> Visibility<'a> {
         Some(CandidateSurface { object, triangle, columns, rows })
     }
 
-    /// Returns the surfaces of some rows, row by row.
+    /// Returns the first surface at each sample of some rows, row by row.
     pub fn rows(&self, first: usize, end: usize) -> Vec<Hit> {
         let width = self.raster.columns;
         let mut hits = vec![NOTHING; width * (end - first)];

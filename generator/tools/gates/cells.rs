@@ -1,4 +1,4 @@
-//! Makes netlists of standard cells with Yosys, and the Verilog models of the cells.
+//! Synthesises a core to standard cells with Yosys, and provides Verilog models of the cells for gate-level simulation.
 
 use std::fs;
 use std::path::Path;
@@ -9,17 +9,17 @@ use anyhow::{Context, Result};
 use super::super::sources::YosysSources;
 use crate::Tool;
 
-/// The library of Oklahoma State University for 0.18 µm, at the path in Debian's `qflow-tech-osu018`.
+/// The path of Oklahoma State University's library for 0.18 µm in Debian's `qflow-tech-osu018`.
 pub const LIBERTY: &str = "/usr/share/qflow/tech/osu018/osu018_stdcells.lib";
 
-/// How Yosys maps to the cells of `cells.lib`, without the top module.
+/// The Yosys commands that map a design to the cells of `cells.lib`, without the name of the top module.
 pub const MAPPING: &str =
     "dfflibmap -liberty cells.lib; abc -liberty cells.lib -constr cells.constr; opt_clean -purge";
 
-/// The load of a port, in pF. That there are constraints makes Yosys buffer nets and size cells.
+/// The constraints for Yosys: a load of 0.1 pF at every output. Yosys buffers nets and sizes cells only if it gets constraints.
 pub const LOAD: &str = "set_load 0.1 [all_outputs]\n";
 
-/// The contents of the registers before the first clock. No output may depend on them.
+/// The values of the registers before the first clock, in a gate-level simulation. No output may depend on them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Start {
     /// An unknown value.
@@ -31,9 +31,9 @@ pub enum Start {
 }
 
 impl Start {
-    /// Returns the starts from which a bench must pass. A pipeline knows its state by the reset and the points alone,
-    /// so that it may begin unknown. In gates around the registers of a microprogram, unknown values can stay that no
-    /// circuit has.
+    /// Returns the values of the registers with which the test bench must pass. A pipeline must pass with unknown values, since
+    /// reset and points determine its state. In the gates of a core with a microprogram, simulation can keep values unknown that
+    /// are known in a real circuit.
     pub fn of(pipelined: bool) -> &'static [Self] {
         if pipelined { &[Self::Unknown] } else { &[Self::Zeros, Self::Ones] }
     }
@@ -61,8 +61,8 @@ pub fn netlist(
     sources.text(NETLIST)
 }
 
-/// Returns the models of the cells, without their delays and with a flip-flop that begins as `start` says. The
-/// library's own flip-flop becomes unknown by the first value on its constant inputs.
+/// Returns the Verilog models of the cells, without delays. The flip-flop's model is replaced by one that begins as `start` says,
+/// because the library's own model becomes unknown at the first value on its constant inputs.
 ///
 /// # Errors
 /// Fails if the models are not beside the library, or have no flip-flop.

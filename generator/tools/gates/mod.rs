@@ -1,4 +1,5 @@
-//! Makes netlists by synthesis, and puts the test bench of the source around their gates, for a simulator.
+//! Prepares gate-level simulation: synthesises a core to a netlist of FPGA or standard cells, and combines the netlist with the
+//! test bench of the source.
 
 pub mod cells;
 
@@ -15,8 +16,8 @@ use glint_base::target::Family;
 /// Models of the ECP5 cells for which Yosys has none.
 const ECP5: &str = include_str!("ecp5.v");
 
-/// Returns whether all cells to which devices are mapped have a model: in Yosys, or here. For example, it returns true
-/// for iCE40 and ECP5, and false for Xilinx 7.
+/// Returns whether there are models of all cells that a design can be mapped to, in Yosys or in this crate. For example, it
+/// returns true for iCE40 and ECP5, and false for Xilinx 7.
 pub fn is_simulated(family: &Family) -> bool {
     matches!(family.name(), "ice40" | "ecp5")
 }
@@ -54,7 +55,7 @@ pub fn bench(
     Ok(around(sources, rtl, netlist, models(yosys, family)?))
 }
 
-/// Returns the bench's files around a netlist, with the models of its cells.
+/// Replaces the Verilog files of a core by a netlist with models of its cells, and returns the files of the test bench.
 pub fn around(
     sources: Vec<(String, String)>,
     rtl: &[String],
@@ -72,7 +73,7 @@ pub fn around(
     files
 }
 
-/// Returns the models of a family's cells.
+/// Returns the Verilog models of the cells of an FPGA family.
 ///
 /// # Errors
 /// Fails if Yosys's directory does not have the models, or if the family has no models.

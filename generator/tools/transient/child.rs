@@ -1,4 +1,4 @@
-//! Starts child processes, and kills them with all that they have started.
+//! Starts child processes, and kills them together with all processes that they started.
 
 use std::io;
 use std::process::{self, Command, ExitStatus};
@@ -6,8 +6,8 @@ use std::time::Instant;
 
 use super::list;
 
-/// A process of a group of its own. Dropping it before its end kills it with its descendants. For example, an early
-/// return cannot leave a simulator running.
+/// A child process in a process group of its own. Dropping it kills the process and its descendants. For example, an early return
+/// cannot leave a simulator running.
 #[derive(Debug)]
 pub struct Child {
     child: process::Child,
@@ -34,7 +34,7 @@ impl Child {
         self.child.id()
     }
 
-    /// Returns how it ended, if it has.
+    /// Returns the exit status of the process if it has ended.
     ///
     /// # Errors
     /// Fails if there is no such child.
@@ -49,7 +49,7 @@ impl Child {
         Ok(status)
     }
 
-    /// Kills it and everything that it has started, and collects it.
+    /// Kills the process and all processes that it has started, and waits for its end.
     pub fn kill(&mut self) {
         if self.ended {
             return;

@@ -1,5 +1,7 @@
-//! The guard: a shell that outlives this process. If this process is killed, the guard kills the children that it has
-//! started.
+//! Kills the child processes of Glint if Glint itself is killed.
+//!
+//! The guard is a shell that runs beside Glint and outlives it. Glint tells the guard the process numbers of its children. When
+//! the pipe between them closes, Glint has ended, and the guard kills the children that are left.
 
 use std::collections::BTreeSet;
 use std::io::Write;

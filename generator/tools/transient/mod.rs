@@ -1,9 +1,9 @@
-//! Keeps a list of child processes and temporary directories: things that exist only while Glint runs.
+//! Keeps a list of the child processes and temporary directories of this process, so that none is left behind.
 //!
-//! Each thing is on a list until it is gone. If a process is interrupted, [`clear`] ends and deletes all of them. A
-//! child is started, and a temporary path made, under the list's lock: nothing can appear between the end of the
-//! listing and the end of the process. If a process is killed, a guard ends its children, and the next process deletes
-//! its temporary directories, which are locked while in use.
+//! If the process is interrupted, [`clear`] kills all children and deletes all directories on the list. A lock on the list
+//! prevents that a new child or directory appears meanwhile. If the process is killed and cannot call [`clear`], a guard process
+//! kills its children. The next run of Glint then deletes its temporary directories; it recognises them because nobody holds
+//! their lock files.
 
 mod child;
 #[cfg(unix)]

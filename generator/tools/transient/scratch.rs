@@ -1,4 +1,6 @@
-//! Makes temporary directories. Each has a file that names its owner and is locked while the directory is in use.
+//! Makes temporary directories.
+//!
+//! Each directory has a file that names the process that made it. The process locks this file while it uses the directory.
 
 use std::fs;
 use std::io::{self, Write};

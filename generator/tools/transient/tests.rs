@@ -1,4 +1,4 @@
-//! Children that hide their own children, and temporary paths.
+//! Tests that children which hide their own children are killed, and that temporary directories are deleted.
 
 use std::fs;
 use std::process::{Command, Stdio};

@@ -1,4 +1,4 @@
-//! Prints a comparison as tables, as CSV and as JSON.
+//! Prints the result of `glint compare` as tables for people, as CSV and as JSON.
 
 use anyhow::Result;
 use serde::Serialize;

@@ -1,4 +1,5 @@
-//! `glint cosim --simulator`: runs the emitted test bench in an external simulator.
+//! `glint cosim --simulator`: runs the emitted test bench of a configuration in an external simulator, for example Icarus
+//! Verilog.
 
 use anyhow::{Context, Result};
 use rayon::prelude::*;

@@ -1,4 +1,4 @@
-//! `glint cosim --exhaustive`: proves the accuracy contract over all operands, as a whole or as one shard of several.
+//! `glint cosim --exhaustive`: checks the error bound of a contract over all operands, as one run or as one shard of several.
 
 pub mod show;
 

@@ -1,4 +1,4 @@
-//! Prints how the points of a run are spread over the values of `f`.
+//! Prints how many results of a co-simulation run had each value of the reflectance `f`, in nine classes.
 
 use serde_json::{Value, json};
 

@@ -1,4 +1,4 @@
-//! Computes many points: operands come from CSV, results go to CSV or JSON.
+//! Computes many points for `glint eval`: reads operands from a CSV file, and writes results as CSV or JSON.
 
 use std::fmt::Write;
 use std::path::Path;

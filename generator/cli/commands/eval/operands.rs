@@ -1,4 +1,4 @@
-//! Reads operands as the user writes them: `0.99` is a value, `#1038090` a raw integer.
+//! Parses the operands that a user gives on the command line: `0.99` is a value, `#1038090` a raw integer.
 
 use crate::commands::none_of;
 use glint_core::cosim::trial;

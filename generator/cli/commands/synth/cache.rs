@@ -1,4 +1,4 @@
-//! Keeps the measurements of earlier runs in `.glint/`, beside the configuration.
+//! Keeps the measurements of `glint synth` in the folder `.glint/` next to the configuration file, so that they are not repeated.
 
 use std::fs;
 use std::path::{Path, PathBuf};

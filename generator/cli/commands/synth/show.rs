@@ -1,4 +1,4 @@
-//! Prints the figures of synthesis for people and for scripts.
+//! Prints the measurements of `glint synth` for people and for scripts.
 
 use anyhow::Result;
 use serde::Serialize;

@@ -1,4 +1,4 @@
-//! Plots the front of a search as SVG: area over error.
+//! Plots the area of the configurations that `glint tune` found over their errors, as SVG.
 
 use anyhow::{Result, bail};
 

@@ -1,5 +1,7 @@
-//! Computes points with the built-in simulator: a simulator for each thread, with an instance of the design in each
-//! lane.
+//! Computes many points with the built-in simulator.
+//!
+//! [`RustHdl`] has one simulator for each thread. A simulator runs many instances of the design side by side, one in each lane,
+//! and each instance computes a point of its own.
 
 use std::array;
 use std::collections::VecDeque;
@@ -17,13 +19,14 @@ use glint_rtl::netlist::{Design, NetId, Role};
 /// The number of clocks that a computation may take.
 const LIMIT: u64 = 1 << 16;
 
-/// rust_hdl: as many simulators as there are threads, each of many instances of the design.
+/// An [`Engine`] that simulates the design with rust_hdl: one simulator for each thread, with an instance of the design in each
+/// lane.
 pub struct RustHdl {
     teams: Vec<Team>,
 }
 
 impl RustHdl {
-    /// Makes a simulator of a design for each thread, after power-up and reset.
+    /// Makes a simulator of a design for each thread, and resets it.
     ///
     /// # Errors
     /// Fails as [`glint_rtl::sim::Simulator::new`] does, or if the contract names ports that the design does not have.

@@ -1,12 +1,16 @@
-//! Records the features of a computation within a design, as bits: the inputs of muxes that it takes, the sides of
-//! comparisons, the bits that it sets and clears, and the words that it reads.
+//! Records which features of a design each computation exercises.
+//!
+//! A feature is one event at one net of the design: a mux takes one of its inputs, a comparison is true or false, a bit is set or
+//! clear. The words that a computation reads from ROMs are recorded too. `directed` uses the record to choose a few computations
+//! that together exercise every feature.
 
 use super::side_by_side::{LANES, Lanes};
 use glint_base::fixed::mask;
 use glint_rtl::netlist::{Design, Driver, NetId, Op};
 use glint_rtl::sim::Machine;
 
-/// How bright the results of a computation are, by the largest: a thing that is done in the dark shows nothing.
+/// The number of classes of brightness. A feature that a computation exercises counts separately for each class of its largest
+/// result: a fault in a computation with the result 0 seldom shows.
 pub const CLASSES: usize = 3;
 
 /// A net, or some nets, whose features are watched.
@@ -23,7 +27,7 @@ enum Watched {
     Pair(NetId, NetId),
 }
 
-/// The watched features of a design, and the features that the computations in the lanes have shown.
+/// Watches the nets of a simulated design, and records for each lane which features its computation has exercised.
 pub struct Watch {
     watched: Vec<Watched>,
     done: Vec<[u64; LANES]>,
@@ -33,7 +37,7 @@ pub struct Watch {
 }
 
 impl Watch {
-    /// Makes a watch of everything in a design that can be watched.
+    /// Prepares to watch all features of a design.
     pub fn new(design: &Design) -> Self {
         let mut watched = Vec::new();
         for (id, net) in design.iter() {
@@ -76,12 +80,12 @@ impl Watch {
         }
     }
 
-    /// Returns how many features there are, without words.
+    /// Returns the number of features, without the words of ROMs.
     pub fn count(&self) -> usize {
         64 * CLASSES * self.watched.len()
     }
 
-    /// Notes the features of one clock, in the lanes that are busy.
+    /// Records the features that appear in this clock, in the lanes that are `busy`.
     pub fn note(&mut self, machine: &Machine<LANES>, busy: Lanes) {
         for (watched, done) in self.watched.iter().zip(&mut self.done) {
             let mut add = |of: &dyn Fn(usize) -> u64| {
@@ -136,7 +140,7 @@ impl Watch {
         self.note_words(machine, busy);
     }
 
-    /// Notes the words alone of a clock.
+    /// Records only the ROM words that are read in this clock, in the lanes that are `busy`.
     pub fn note_words(&mut self, machine: &Machine<LANES>, busy: Lanes) {
         for &(address, first, count) in &self.addresses {
             let bits = machine.lanes(address);
@@ -149,8 +153,8 @@ impl Watch {
         }
     }
 
-    /// Returns the features of the computation in a lane, for results as bright as this, and the words that it has
-    /// read, numbered through all ROMs. The lane is clean then.
+    /// Returns the features that the computation in a lane has exercised, as features of the brightness class `class`. Also
+    /// returns the words that it has read, numbered through all ROMs. The record of the lane is then empty.
     pub fn take(&mut self, lane: usize, class: usize) -> (Vec<u32>, Vec<u32>) {
         let mut features = Vec::new();
         for (at, done) in self.done.iter_mut().enumerate() {
@@ -168,7 +172,7 @@ impl Watch {
     }
 }
 
-/// Returns the design with all of its nets named, so that each can be watched.
+/// Returns a copy of the design in which every net has a name, because only named nets can be watched in simulation.
 pub fn observable(design: &Design) -> Design {
     let mut design = design.clone();
     design.nets.iter_mut().for_each(|net| net.named = true);

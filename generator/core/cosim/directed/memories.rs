@@ -1,12 +1,15 @@
-//! Copies the tables of a design once for each lane of a machine, so that every lane can have a fault of its own.
+//! Gives each lane of the built-in simulator its own copy of a design's ROMs.
+//!
+//! The search for test computations inverts bits of ROM words to see whether a computation notices. With a copy for each lane,
+//! one simulation tries a different inverted bit in every lane.
 
 use glint_base::fixed::Format;
 use glint_rtl::netlist::{Design, Driver, Net, NetId, Op, Port, Role};
 use glint_rtl::sim::Machine;
 
-/// Where the words of a design's tables are in the copies of every lane.
+/// The addresses of the ROM words of a design in the copies of each lane.
 pub struct Memories {
-    /// The input port that says which copy is read.
+    /// The input port that selects the copy that a lane reads.
     pub lane: NetId,
     /// For each ROM the number of its first word in the design, the number of its first word in the copies, and the distance
     /// between copies.
@@ -14,7 +17,8 @@ pub struct Memories {
 }
 
 impl Memories {
-    /// Gives each of `lanes` lanes, a power of two, its own tables. All lanes share the control memories.
+    /// Changes a design so that each of `lanes` lanes, a power of two, reads its own copy of the datapath's ROMs. The lanes share
+    /// the control ROM.
     pub fn copied(design: &mut Design, lanes: usize) -> Self {
         let lane_bits = lanes.ilog2();
         let lane = add(design, "lane", lane_bits, Driver::Input);

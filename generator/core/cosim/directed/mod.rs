@@ -1,19 +1,19 @@
-//! Chooses the computations of a test bench that notices faults in a core.
+//! Chooses computations for the test bench that is emitted with a core, so that the bench detects faults in the core.
 //!
-//! A user who ports a core, edits a memory or takes another tool relies on the bench that goes with the core. Points at
-//! random reach neither every word of a table nor both sides of every comparison. This module chooses computations from a
-//! pool by their features in the design:
+//! A user who ports the core, edits a memory or changes the synthesis tool relies on this bench. Random points reach neither
+//! every word of a ROM nor both outcomes of every comparison. This module therefore draws a large pool of computations, simulates
+//! them, and chooses some of them:
 //!
-//! - For each ROM word that any computation reads, and each bit of its upper half: one computation whose results differ if
-//!   the bit is inverted. If the pool has none, one near its computations is searched for. Lines, which read a word a clock,
-//!   are chosen if they read the word. If this takes too many clocks, only every second word has such a computation, or
-//!   every third, and so on.
-//! - For a device that walks lines: one line to the end of the domain of its length.
-//! - Every combination of the ends of the control operands.
-//! - For each bit of each net, each input of a mux, each outcome of a comparison and each other watched feature: some
-//!   computations that show it with bright results, some with dim results, some in the dark.
+//! - For each ROM word that any computation reads, and each bit in the upper half of the word: one computation whose results
+//!   change if the bit is inverted. If the pool has none, the module searches near the computations that read the word. For a
+//!   device that computes a line of points, and reads a word a clock, it chooses a line that reads the word. If all this takes
+//!   too many clocks, only every second word has such a computation, or every third, and so on.
+//! - For a device that computes lines: one line of the largest length in the contract's domain.
+//! - Every combination of the smallest and the largest values of the operands that determine `f`.
+//! - For each bit of each net, each input of a mux and each outcome of a comparison: some computations that exercise it with
+//!   large results, some with small results and some with results of 0.
 //!
-//! Nothing here depends on time or on threads: the same design gives the same computations.
+//! The choice depends neither on time nor on threads: the same design always gets the same computations.
 
 mod features;
 mod memories;
@@ -50,16 +50,17 @@ struct PoolComputation {
     read: Vec<u32>,
 }
 
-/// Computations that were chosen already: a core and the pipeline that is made of it have the same.
+/// A cache of chosen computations, by design. A core and the pipeline that is made from it have the same computations.
 #[derive(Default)]
 pub struct ComputationCache(Mutex<HashMap<String, Arc<Mutex<Option<Computations>>>>>);
 
-/// The computations of a bench.
+/// The computations that were chosen for a test bench.
 #[derive(Clone, Default)]
 pub struct Computations {
     /// Their raw operands, in the order of the contract.
     pub operands: Vec<Vec<i64>>,
-    /// A fault in every word of the memories is noticed if this is 1, in every second word if it is 2, and so on.
+    /// The share of ROM words with a computation that detects an inverted bit: every word if this is 1, every second word if it
+    /// is 2, and so on.
     pub word_stride: usize,
 }
 
@@ -90,7 +91,7 @@ impl ComputationCache {
     }
 }
 
-/// Chooses the computations.
+/// Chooses the computations of the test bench of a design.
 ///
 /// # Errors
 /// Fails if the design cannot be simulated, or does not belong to the contract.

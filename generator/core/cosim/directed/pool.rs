@@ -1,4 +1,7 @@
-//! Draws the pool of computations from which the computations of a test bench are chosen.
+//! Draws the candidates from which `directed` chooses the computations of a test bench.
+//!
+//! The pool depends only on the device's contract. It has the corners of the domain, random computations, computations that read
+//! ROM words, and long lines for devices that compute lines of points.
 
 use crate::cosim::{PointSource, Random};
 use glint_golden::{Contract, Highlight};
@@ -32,19 +35,19 @@ const MOST_CORNERS: usize = 128;
 /// The length of a line there.
 const CORNER_LENGTH: i64 = 2;
 
-/// Computations to choose from.
+/// The candidates from which the computations of a test bench are chosen.
 pub struct Pool {
-    /// The computations with every control operand at an end of its domain or of its format.
+    /// Computations in which every operand that determines `f` is at an end of its domain or of its format.
     pub corners: Vec<Vec<i64>>,
-    /// The computations that are watched in all that they do.
+    /// Random computations, whose features are all watched.
     pub drawn: Vec<Vec<i64>>,
-    /// The computations that read words.
+    /// Random computations that are watched only for the ROM words that they read.
     pub readers: Vec<Vec<i64>>,
-    /// Lines that read a table from its beginning to its end.
+    /// Lines of points that read a ROM from its beginning to its end.
     pub sweeps: Vec<Vec<i64>>,
 }
 
-/// Returns the pool for a contract; a function of it alone.
+/// Draws the candidates for a contract. The same contract always gets the same candidates.
 pub fn pool(contract: &dyn Contract) -> Pool {
     let mut random = Random::new(1);
     let mut points = PointSource::new(contract);

@@ -1,4 +1,7 @@
-//! Runs computations side by side, one in each lane of a simulated machine, and records their outputs and their clocks.
+//! Simulates up to 32 computations at once, one in each lane of the built-in simulator.
+//!
+//! It records the outputs of each computation and the clocks in which they appear. Two records are compared to decide whether a
+//! fault changes anything that a user can see.
 
 use anyhow::{Context, Result, bail};
 
@@ -9,21 +12,21 @@ use glint_golden::Contract;
 use glint_rtl::netlist::{Design, NetId};
 use glint_rtl::sim::Machine;
 
-/// Computations that run together.
+/// The number of computations that are simulated at once.
 pub const LANES: usize = 32;
 
 /// The number of clocks that a computation may take.
 const LIMIT: u32 = 1 << 16;
 
-/// A set of lanes.
+/// A set of lanes, one bit for each.
 pub type Lanes = u32;
 
-/// The outputs of a computation.
+/// The outputs of one computation, with the clocks in which they appeared.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct OutputTrace {
-    /// Clocks from `start` to the next.
+    /// The number of clocks from the computation's `start` to the next `start`.
     pub clocks: u32,
-    /// The result outputs whenever `valid` is high, with the clock.
+    /// For each clock in which `valid` is high, the number of the clock and the values of the result outputs.
     pub results: Vec<(u32, Vec<u64>)>,
 }
 
@@ -41,8 +44,8 @@ impl OutputTrace {
     }
 }
 
-/// A design whose lanes each run one computation at a time: all operands are written in the clock of `start`, and
-/// while it runs their ports show the complement.
+/// A simulated design whose lanes run one computation each. All operands are written in the clock of `start`; while a lane is
+/// busy, its operand ports show the complement, so that a late read is noticed.
 pub struct SideBySide {
     pub machine: Machine<LANES>,
     ports: Ports,
@@ -53,7 +56,7 @@ pub struct SideBySide {
 }
 
 impl SideBySide {
-    /// Resets the machine of a design, and drives no computation yet.
+    /// Makes the simulator of a design and resets it.
     ///
     /// # Errors
     /// Fails if contract and design do not belong together.
@@ -71,7 +74,7 @@ impl SideBySide {
         Ok(Self { machine, ports, busy, inputs, copies: None })
     }
 
-    /// Has each lane read tables of its own, the copies that are in the design.
+    /// Lets each lane read its own copy of the ROMs, as [`Memories::copied`] added them to the design.
     ///
     /// # Errors
     /// Fails if the copies belong to another design.
@@ -82,8 +85,8 @@ impl SideBySide {
         Ok(self)
     }
 
-    /// Runs computations as [`SideBySide::run`] does, each lane with these bits of a word inverted. Words are numbered
-    /// through all ROMs.
+    /// Runs computations as [`SideBySide::run`] does, but inverts bits of one ROM word in each lane. Words are numbered through
+    /// all ROMs.
     ///
     /// # Errors
     /// Fails as [`SideBySide::run`] does.
@@ -106,8 +109,8 @@ impl SideBySide {
         }
     }
 
-    /// Runs computations with these raw operands to their ends, as many as there are lanes or fewer. `see` is shown
-    /// every clock before its edge, with the lanes that are busy.
+    /// Runs computations with these raw operands to their ends, at most as many as there are lanes. It calls `see` before each
+    /// clock edge, with the lanes that are busy.
     ///
     /// # Errors
     /// Fails if a computation does not end.

@@ -1,6 +1,8 @@
-//! Finds test computations that detect faults in the words of the datapath's ROMs. A computation detects a fault if its
-//! results change when a bit in the upper half of a word is inverted. If no candidate detects a bit, the search tries
-//! computations near the candidates.
+//! Finds computations that detect faults in the words of a design's ROMs.
+//!
+//! A computation detects a fault if its results change when a bit in the upper half of a word is inverted. The search first
+//! tries the candidates of the pool that read the word. If no candidate detects a bit, it tries other computations with similar
+//! operands.
 
 use std::cmp::Reverse;
 use std::collections::{BTreeMap, BTreeSet};
@@ -16,7 +18,7 @@ use glint_golden::Contract;
 use glint_rtl::netlist::Design;
 use glint_rtl::sim::{CompiledDesign, Machine};
 
-/// Readers of a word that take more clocks than this are not asked: lines that read a table from end to end.
+/// The largest number of clocks of a computation that the search considers for a word. Lines that read a whole ROM take longer.
 pub const LONGEST: u32 = 64;
 
 /// The most clocks that one computation for each word may take. If all words would take more, only every second word has
@@ -32,14 +34,14 @@ const ROUNDS_BEYOND: usize = 6;
 /// The number of tried computations that remain, those which show a larger fault in the word most: others near them are tried next.
 const KEPT: usize = 8;
 
-/// The computations that notice faults in words.
+/// The computations that detect faults in ROM words.
 #[derive(Default)]
 pub struct Chosen {
     /// The numbers of the chosen candidates.
     pub chosen: BTreeSet<usize>,
-    /// Others, by their operands.
+    /// The raw operands of further computations that the search has found.
     pub found: Vec<Vec<i64>>,
-    /// Every word has a computation if this is 1, every second word if it is 2, and so on.
+    /// The share of words with a computation: every word if this is 1, every second word if it is 2, and so on.
     pub word_stride: usize,
 }
 

@@ -1,4 +1,7 @@
-//! Parses the values of an operand that an exhaustive check visits instead of the contract's values.
+//! Parses operand values that the user gives for an exhaustive check in place of the contract's own values.
+//!
+//! For example, `cos_dgamma=908094,950000..960000/1000` names the operand `cos_dgamma`, one raw value, and a range with the step
+//! 1000.
 
 use std::str::FromStr;
 
@@ -10,8 +13,8 @@ use glint_golden::{Contract, Sweep, Values};
 /// The number of values that an axis may have. More are a slip of the pen.
 const MOST_VALUES: usize = 1 << 20;
 
-/// An operand and its raw values, as `cos_dgamma=908094,950000..960000/1000`: single values, and ranges with both
-/// ends and a step.
+/// The raw values of one operand that the user gives for an exhaustive check. For example,
+/// `cos_dgamma=908094,950000..960000/1000` has a single value, and a range with both ends and a step.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct AxisValues {
     name: String,
@@ -59,7 +62,7 @@ fn range(item: &str) -> Option<(i64, i64, usize)> {
     Some((first.parse().ok()?, last.parse().ok()?, step))
 }
 
-/// Returns the sweep of a contract with other values of some operands. Each operand may be named once.
+/// Returns the sweep of a contract, in which `others` replace the values of some operands. Each operand may be named once.
 ///
 /// # Errors
 /// Fails if an operand is no axis of the sweep, or if a value is outside the operand's domain.

@@ -1,5 +1,8 @@
-//! The evidence for a stated bound: a proof in the catalogue, the record of an exhaustive check, a certificate, or its
-//! author's word.
+//! Says which evidence there is for the error bound that a contract states.
+//!
+//! The evidence is one of four: a proof in Rust beside the golden model of a device of the catalogue, the record of an exhaustive
+//! check by `glint cosim --exhaustive`, the record of a proof by `glint certify`, or nothing but the author's statement.
+//! Datasheets and reports print it next to the bound.
 
 use std::fmt;
 use std::path::Path;
@@ -18,7 +21,7 @@ const CERTIFICATES: &str = "certificates";
 /// How far the recorded bound may be from today's, in units.
 const SAME: f64 = 1e-9;
 
-/// The evidence for a stated bound.
+/// The evidence for the error bound that a contract states.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Backing {
     /// The proof beside the golden model of a device of the catalogue.
@@ -36,11 +39,11 @@ pub enum Backing {
 pub struct Certificate {
     /// The version of Glint; a record begins with it.
     pub glint: String,
-    /// As the command line names it.
+    /// The path of the configuration file, as the user gave it.
     pub config: String,
     /// Identifies the proved contract: [`crate::core::Core::contract_digest`].
     pub contract: String,
-    /// In output units.
+    /// The proved bound, in units of the outputs' last place.
     pub bound: f64,
     /// Whether Gappa accepted all statements.
     pub certified: bool,
@@ -53,7 +56,8 @@ pub struct Certificate {
 }
 
 impl Backing {
-    /// Returns the evidence in the records of a directory for a contract outside the catalogue.
+    /// Returns the evidence for the bound of a contract that is not in the catalogue, from the records in `directory`. `digest`
+    /// is the digest of the contract.
     ///
     /// # Errors
     /// Fails if a record cannot be read.
@@ -74,7 +78,7 @@ impl Backing {
         Ok(found.next().map_or(Self::Author, Self::Certificate))
     }
 
-    /// Returns a sentence in front of the terms of the bound.
+    /// Returns a sentence about the evidence, which pages print before the terms of the bound.
     pub fn sentence(&self) -> String {
         match self {
             Self::Catalogue => "The bound is proven, not measured".to_owned(),

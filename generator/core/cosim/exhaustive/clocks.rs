@@ -1,9 +1,9 @@
 //! Compares every register and every output with the golden model at every clock, for every combination of operands.
 //!
-//! A device of full width has too many combinations of operands, so a narrow one is checked instead. Combinations are
-//! numbered by *place*. A block of places goes through the lanes of one simulator, and each lane runs consecutive places from
-//! power-up on. A computation thus begins with the registers that the computation before it in its lane has left. Neither the
-//! order of blocks nor their number has any influence.
+//! This is feasible only for devices whose operands have at most 26 bits in total, so a device of full width is checked through a
+//! narrow configuration of it. The combinations are numbered and cut into blocks. Each lane of a simulator runs some consecutive
+//! combinations from power-up on, and each computation begins with the registers that the previous one left. The result depends
+//! neither on the number of blocks nor on their order.
 
 use std::fmt;
 use std::io::Write;
@@ -22,7 +22,7 @@ use glint_base::program::Program;
 use glint_golden::{Contract, Model};
 use glint_rtl::netlist::Design;
 
-/// The number of bits that all operands together may have. With more, the combinations cannot all be visited.
+/// The largest total number of operand bits for which all combinations are run. For more bits this would take too long.
 pub const MOST_BITS: u32 = 26;
 
 /// Combinations of a lane.
@@ -31,21 +31,21 @@ const RUN: u64 = 512;
 /// Combinations of a block.
 const BLOCK: u64 = RUN * LANES as u64;
 
-/// How far the combinations have come.
+/// The progress of a shard of the check of all combinations.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Steps {
-    /// The number of blocks of the shard that are done, which are the first.
+    /// The number of blocks of the shard that are done. They are the first blocks of the shard.
     pub done: u64,
-    /// The first place at which something differs, after which no other is of interest.
+    /// The place of the first combination for which model and hardware differ. Later places are then not checked.
     pub differs: Option<u64>,
 }
 
 /// The first combination for which model and hardware differ.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Difference {
-    /// Its place.
+    /// The number of the combination.
     pub place: u64,
-    /// Clocks since its `start`: 0 for the one that takes it.
+    /// The number of clocks since `start`, which is 0 in the clock that takes `start`.
     pub clock: u64,
     /// The operands, as bit patterns.
     pub operands: Vec<(String, u64)>,
@@ -69,14 +69,14 @@ impl fmt::Display for Difference {
     }
 }
 
-/// All combinations of the operands of a design, against its golden model: one computation after another in a core, a point
-/// every clock in a pipeline.
+/// The check of a design against its golden model for every combination of operands. A core computes one combination after
+/// another; a pipeline takes one in every clock.
 pub struct Clocks<'a> {
     binding: Binding<'a>,
 }
 
 impl<'a> Clocks<'a> {
-    /// Pairs them by the names of ports and registers.
+    /// Matches the golden model with the ports and registers of a design by name.
     ///
     /// # Errors
     /// Fails if one side has a name that the other does not have.
@@ -88,19 +88,19 @@ impl<'a> Clocks<'a> {
         Ok(Self { binding: Binding::new(design, model, contract)? })
     }
 
-    /// Holds some operands at raw values. The combinations are the combinations of the other operands.
+    /// Holds some operands at raw values, so that the combinations cover only the other operands.
     #[must_use]
     pub fn holding(self, held: &[(String, i64)]) -> Self {
         Self { binding: self.binding.holding(held) }
     }
 
-    /// Returns the bits of all operands together.
+    /// Returns the total number of bits of the operands that are combined.
     pub fn bits(&self) -> u32 {
         self.binding.space.bits()
     }
 
-    /// Returns how many combinations there are; 0 if they are too many to go through. For example, operands of 20 bits in all
-    /// have 1048576 combinations, and operands of 27 bits give 0.
+    /// Returns the number of combinations, or 0 if there are too many to run all. For example, operands of 20 bits in total have
+    /// 1048576 combinations, and operands of 27 bits give 0.
     pub fn count(&self) -> u64 {
         match self.bits() {
             bits @ ..=MOST_BITS => 1 << bits,
@@ -108,8 +108,8 @@ impl<'a> Clocks<'a> {
         }
     }
 
-    /// Returns the part that is not covered, in a sentence: the reason why there are no combinations, or the part that is
-    /// left to random stimulus.
+    /// Returns a sentence about the part that the check does not cover: why it does not run the combinations, or which inputs
+    /// only random tests cover.
     pub fn omits(&self) -> String {
         match self.count() {
             0 => format!(
@@ -126,7 +126,7 @@ impl<'a> Clocks<'a> {
         }
     }
 
-    /// Returns how many blocks they are cut into.
+    /// Returns the number of blocks into which the combinations are cut.
     pub fn blocks(&self) -> u64 {
         self.count().div_ceil(BLOCK)
     }
@@ -135,13 +135,13 @@ impl<'a> Clocks<'a> {
         block * BLOCK..((block + 1) * BLOCK).min(self.count())
     }
 
-    /// Returns how many combinations some blocks have.
+    /// Returns the number of combinations in some blocks.
     pub(super) fn visits(&self, blocks: impl Iterator<Item = u64>) -> u64 {
         blocks.map(|block| self.of_block(block)).map(|places| places.end - places.start).sum()
     }
 
-    /// Returns the first place in some blocks, in ascending order, at which something differs; on all threads of
-    /// rayon's pool. `progress` is called with the number of combinations of each block that is done.
+    /// Checks some blocks, in ascending order, on all threads of rayon's pool. Returns the place of the first combination for
+    /// which model and hardware differ. It calls `progress` with the number of combinations of each finished block.
     ///
     /// # Errors
     /// Fails if the design cannot be simulated, or does not settle.
@@ -173,7 +173,7 @@ impl<'a> Clocks<'a> {
         Ok(mismatch.map(|mismatch| mismatch.seed))
     }
 
-    /// Returns the difference at a place that [`Clocks::check`] found.
+    /// Runs the combination at `place` again, at which [`Clocks::check`] found a difference, and returns the details.
     ///
     /// # Errors
     /// Fails if nothing differs at the place, or as [`Clocks::check`] fails.
@@ -191,7 +191,8 @@ impl<'a> Clocks<'a> {
         })
     }
 
-    /// Writes the waveform of the clocks that end with a difference, from clock `from` of its lane on.
+    /// Writes the waveform that ends with the difference at `place`. It begins with clock `from`, counted from the power-up of
+    /// the lane.
     ///
     /// # Errors
     /// Fails as [`Clocks::difference`] does, or if the file cannot be written.
@@ -207,7 +208,7 @@ impl<'a> Clocks<'a> {
         Runner::new(&self.binding, [course])
     }
 
-    /// Returns how long one combination takes on one thread.
+    /// Measures how long one combination takes on one thread.
     ///
     /// # Errors
     /// Fails as [`Clocks::check`] does.

@@ -1,8 +1,9 @@
-//! Runs a proof as a job that can be interrupted, resumed, and divided among machines.
+//! Runs an exhaustive check as a job that can be interrupted, resumed, and divided among machines.
 //!
-//! The blocks of places are divided among shards: shard i of N has every N-th block, from block i − 1 on. A [`ShardState`] records
-//! the progress of a shard, as a few numbers in a file. Joining the states of all shards gives exactly the result of one
-//! uninterrupted run, because a peak does not depend on the order in which it was found.
+//! The check is cut into numbered blocks, and the blocks are divided among shards: shard i of N has every N-th block, beginning
+//! with block i − 1. For example, shard 2 of 4 has the blocks 1, 5, 9 and so on. A [`ShardState`] records the progress of a
+//! shard, as a few numbers in a file. [`Job::merge`] joins the states of all shards to exactly the result of one uninterrupted
+//! run, because the largest error does not depend on the order in which the blocks were checked.
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -18,7 +19,7 @@ use super::places::{Peak, Places};
 use glint_base::text::grouped;
 use glint_golden::{Contract, Sweep};
 
-/// The number of shards that a job may have. More than any number of machines is a slip of the pen.
+/// The largest number of shards of a job. A larger number is probably a typing error.
 pub const MOST_SHARDS: u64 = 1_000_000;
 
 /// Missing shards that are named.
@@ -27,17 +28,18 @@ const NAMED: usize = 10;
 /// Blocks for each thread between two looks at the state: some tenths of a second.
 const CHUNK: u64 = 4;
 
-/// One part of a divided job. For example, `2/4` is the second of four parts, and has the blocks 1, 5, 9 and so on.
+/// One part of a job that is divided among machines. For example, `2/4` is the second of four parts, and has the blocks 1, 5, 9
+/// and so on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Shard {
-    /// From 1.
+    /// The number of this shard, from 1.
     pub number: u64,
-    /// The number of shards.
+    /// The number of shards of the job.
     pub of: u64,
 }
 
 impl Shard {
-    /// The whole job.
+    /// The only shard of a job that is not divided.
     pub const WHOLE: Self = Self { number: 1, of: 1 };
 
     /// Returns whether there is such a part.
@@ -84,33 +86,33 @@ impl FromStr for Shard {
     }
 }
 
-/// How far one part of a job has come.
+/// The progress of a shard in one part of the check: the errors of `f`, or the products with colours.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Progress {
-    /// The number of blocks of the shard that are done, which are the first.
+    /// The number of blocks of the shard that are done. They are the first blocks of the shard.
     pub done: u64,
-    /// The peak of those.
+    /// The largest error in these blocks.
     pub peak: Peak,
 }
 
-/// How far a shard has come.
+/// The progress of a shard in all parts of the check.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ShardState {
-    /// Identifies one configuration, and the sources that compute with it.
+    /// A digest of the configuration and of the sources that compute; see [`crate::core::Core::fingerprint`].
     pub digest: String,
-    /// The part of the job.
+    /// The shard that this state belongs to.
     pub shard: Shard,
-    /// The sweep of `f`.
+    /// The progress in the sweep that measures the errors of `f`.
     pub f: Progress,
-    /// The colour products.
+    /// The progress in the products of words `f` with colours.
     pub colours: Progress,
-    /// The combinations of operands, clock by clock.
+    /// The progress in the combinations of operands that are compared clock by clock.
     pub clocks: Steps,
 }
 
 impl ShardState {
-    /// Makes the state in which nothing is done.
+    /// Makes the state of a shard that has not begun.
     pub fn new(digest: &str, shard: Shard) -> Self {
         let nothing = Progress { done: 0, peak: Peak::NONE };
         Self {
@@ -123,29 +125,29 @@ impl ShardState {
     }
 }
 
-/// A proof to be made.
+/// An exhaustive check of a configuration.
 pub struct Job<'a> {
-    /// The places of `f`.
+    /// The operand combinations at which the errors of `f` are measured.
     pub f: Places<'a>,
-    /// The colour products.
+    /// The combinations of a word `f` with a colour.
     pub colours: Places<'a>,
-    /// The combinations of operands, clock by clock.
+    /// The combinations of operands that are compared clock by clock, if their number is small enough.
     pub clocks: Option<Clocks<'a>>,
 }
 
 impl<'a> Job<'a> {
-    /// Makes the job that proves a contract.
+    /// Makes the check of the error bound of a contract.
     pub fn new(contract: &'a dyn Contract) -> Self {
         Self::of_sweep(contract, contract.sweep())
     }
 
-    /// Makes the job for a sweep with other values than the contract's sweep.
+    /// Makes the check of the error bound of a contract with other operand values than the contract's sweep has.
     pub fn of_sweep(contract: &'a dyn Contract, sweep: Sweep) -> Self {
         let (f, colours) = (Places::of_sweep(contract, sweep), Places::of_colours(contract));
         Self { f, colours, clocks: None }
     }
 
-    /// Returns how much there is to evaluate, in words.
+    /// Returns a phrase that says how many evaluations the check makes.
     pub fn words(&self) -> String {
         let places = grouped(self.f.count());
         match self.colours.count() {
@@ -156,7 +158,7 @@ impl<'a> Job<'a> {
         }
     }
 
-    /// Adds every combination of operands clock by clock, if they are not too many.
+    /// Adds the comparison of every combination of operands clock by clock, if there are not too many.
     #[must_use]
     pub fn with(mut self, clocks: Clocks<'a>) -> Self {
         self.clocks = Some(clocks);
@@ -168,7 +170,7 @@ impl<'a> Job<'a> {
         self.clocks.as_ref().map_or(0, Clocks::blocks)
     }
 
-    /// Returns how many places of the shard are still to be visited.
+    /// Returns the number of combinations that the shard has still to visit.
     pub fn remaining(&self, state: &ShardState) -> u64 {
         self.parts_remaining(state).iter().sum()
     }
@@ -190,8 +192,8 @@ impl<'a> Job<'a> {
         ]
     }
 
-    /// Makes sure that a state which comes from outside can be one of this job: its numbers are in range, and the
-    /// largest errors are found again where it says that they are.
+    /// Checks that a state that was read from a file can be a state of this job. Its numbers must be in range, and its largest
+    /// errors are computed again at their places.
     ///
     /// # Errors
     /// Fails if the state cannot belong to this job.
@@ -239,7 +241,7 @@ impl<'a> Job<'a> {
         Ok(())
     }
 
-    /// Returns how long the rest of the shard takes on `threads` threads: a short sample of each part is timed.
+    /// Estimates how long the rest of the shard takes on `threads` threads, by timing a short sample of each part.
     ///
     /// # Errors
     /// Fails if the design cannot be simulated, or does not settle.
@@ -258,8 +260,8 @@ impl<'a> Job<'a> {
         Ok(Duration::from_secs_f64(sum / threads.max(1) as f64))
     }
 
-    /// Goes on from `state` to the end of its shard, or until `look`, which sees the state now and then,
-    /// breaks; `progress` is called with the number of places of each block that is done.
+    /// Continues from `state` to the end of its shard. It calls `look` with the state now and then, and stops if `look` breaks.
+    /// It calls `progress` with the number of combinations of each finished block.
     ///
     /// # Errors
     /// Fails if the design cannot be simulated, or does not settle.

@@ -1,4 +1,7 @@
-//! Writes and reads the state of a job as the text of a file. A checksum detects a file that was cut or changed.
+//! Converts the progress of an exhaustive check to the text of a file, and back.
+//!
+//! The file has a checksum, so that a file that was cut or edited is rejected. `glint cosim --exhaustive --resume FILE` keeps its
+//! progress in such a file and continues from it, and `glint merge` reads the files of all shards.
 
 use anyhow::{Context, Result, ensure};
 use serde::{Deserialize, Serialize};
@@ -18,7 +21,7 @@ fn checksum(state: &ShardState) -> Result<String> {
     Ok(digest(&serde_json::to_vec(state)?))
 }
 
-/// Returns the text of a file that keeps a state.
+/// Returns the text of a file that stores the progress of a shard.
 ///
 /// # Errors
 /// Fails if the state cannot be written as JSON.
@@ -27,7 +30,7 @@ pub fn to_text(state: &ShardState) -> Result<String> {
     Ok(serde_json::to_string_pretty(&kept)? + "\n")
 }
 
-/// Returns the state that a file keeps.
+/// Parses the text of a file that stores the progress of a shard.
 ///
 /// # Errors
 /// Fails if the text is not the text of such a file, or was changed since it was written.

@@ -1,8 +1,12 @@
-//! Proves an accuracy contract in factors: every place of its sweep for `f`, every word `f` with every colour, and the sum of
-//! both errors. For a device with few bits of operands, it also checks every combination of operands clock by clock.
+//! Checks the error bound of a contract for all operands, instead of a random sample.
 //!
-//! Places are numbered, the last axis fastest, and cut into blocks. Any set of blocks may be checked on any machine and in
-//! any order, and the outcomes are joined. The result does not depend on how the work was divided.
+//! A highlight device multiplies each colour by a reflectance `f`, so the check has two parts. The first measures the error of
+//! `f` for every operand combination in the contract's sweep. The second measures the rounding of every possible word `f` times
+//! every colour. The sum of both largest errors bounds the error of an output, and is compared with the contract. For a device
+//! with few operand bits, [`Clocks`] also compares model and hardware clock by clock.
+//!
+//! All combinations are numbered and cut into blocks. Any machine may check any blocks in any order; the joined result is the
+//! same.
 
 pub mod axis;
 mod backing;
@@ -24,29 +28,29 @@ pub use record::Record;
 
 use glint_golden::{Contract, Sweep};
 
-/// Where records are by default.
+/// The default directory of the records of exhaustive checks.
 pub const PROOFS: &str = "records/proofs";
 
 /// The rounding of f64 itself, in units.
 const F64: f64 = 1e-6;
 
-/// The result of the proof.
+/// The result of an exhaustive check of the error bound.
 #[derive(Clone, Debug)]
 pub struct Proof {
     /// Whether the sweep measures the f of a highlight, and not the outputs themselves.
     of_f: bool,
-    /// The largest error of `f`, or of an output in units.
+    /// The largest error of `f`. For a device that is no highlight, the largest error of an output, in units.
     pub f: Peak,
     /// The error of f in output units, for the largest colour.
     pub f_units: f64,
     /// The largest error of a colour multiplier, in output units.
     pub colours: Peak,
-    /// The failures: an error above the stated bound, or one unit and more though the bound is below.
+    /// Sentences about the errors that exceed the contract's bound; empty if the bound holds.
     pub failures: Vec<String>,
 }
 
 impl Proof {
-    /// Weighs the peaks against the contract's bound.
+    /// Compares the largest errors `f` and `colours` with the contract's bound.
     pub fn new(contract: &dyn Contract, f: Peak, colours: Peak) -> Self {
         let colour = contract.operands().iter().find(|operand| operand.colour);
         let largest = colour.map_or(1.0, |operand| operand.domain.1 as f64);
@@ -77,8 +81,8 @@ impl Proof {
         proof
     }
 
-    /// Returns the verdict: "proved" only if the sweep left no control operands out, and only of a bound that keeps
-    /// the contract.
+    /// Returns the verdict. It is "proved" only if the sweep left out no operand that determines `f`, and if the bound keeps the
+    /// contract.
     pub fn verdict(&self, contract: &dyn Contract, sweep: &Sweep) -> &'static str {
         if !self.failures.is_empty() {
             "FAILS"
@@ -93,7 +97,7 @@ impl Proof {
         }
     }
 
-    /// Returns the largest errors in words, `at` after the first.
+    /// Returns a phrase with the largest errors. The text `at` is inserted after the first error, for example its place.
     pub fn words(&self, at: &str) -> String {
         if !self.of_f {
             return format!("an output is off by {:.3} units at most{at}", self.together());
@@ -107,7 +111,8 @@ impl Proof {
         )
     }
 
-    /// Returns the most by which an output can be off, in its units.
+    /// Returns an upper bound of the error of an output in units: the largest error of `f`, plus the largest error of a colour
+    /// multiplier.
     pub fn together(&self) -> f64 {
         self.f_units + self.colours.error
     }

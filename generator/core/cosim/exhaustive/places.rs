@@ -1,4 +1,7 @@
-//! Numbers the places that an exhaustive check goes through, and finds the largest error among them, block by block.
+//! Numbers the combinations of operands that an exhaustive check visits, and finds the largest error among them, block by block.
+//!
+//! The number of a combination is its *place*; the last operand changes fastest. For example, with operands of 2 and of 3 values,
+//! place 4 has the second value of each.
 
 use std::ops::Range;
 use std::time::{Duration, Instant};
@@ -8,16 +11,16 @@ use serde::{Deserialize, Deserializer, Serialize};
 
 use glint_golden::{Axis, Contract, Sweep, Values};
 
-/// Places of a block: some milliseconds of work.
+/// The number of places in a block, which takes some milliseconds.
 pub const BLOCK: u64 = 1 << 17;
 
 /// The number of places that are timed, and about the number of places of a glimpse.
 const SAMPLE: u64 = 4096;
 
-/// The largest error of some places, and the first of them at which it occurs.
+/// The largest error in some places, and the first place at which it occurs.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Peak {
-    /// Absolute; infinite where the formula has no value.
+    /// The absolute error. It is infinite if the formula has no value at the place.
     #[serde(deserialize_with = "or_infinite")]
     pub error: f64,
     /// The number of the place.
@@ -30,10 +33,10 @@ fn or_infinite<'de, D: Deserializer<'de>>(number: D) -> Result<f64, D::Error> {
 }
 
 impl Peak {
-    /// The peak of no places.
+    /// The peak before any place was visited.
     pub const NONE: Self = Self { error: 0.0, place: u64::MAX };
 
-    /// Returns the peak of two sets of places together.
+    /// Returns the peak of both sets of places together.
     #[must_use]
     pub fn join(self, other: Self) -> Self {
         let later = self.place > other.place;
@@ -50,7 +53,7 @@ enum PlaceMeasure {
     Colour,
 }
 
-/// The places of a contract, by number, the last axis fastest.
+/// The operand combinations that a check of the error bound visits, each with a number. The last operand changes fastest.
 pub struct Places<'a> {
     contract: &'a dyn Contract,
     measure: PlaceMeasure,
@@ -58,17 +61,18 @@ pub struct Places<'a> {
 }
 
 impl<'a> Places<'a> {
-    /// Makes the places of the contract's sweep of `f`.
+    /// Makes the places of the contract's own sweep, at which the error of `f` is measured.
     pub fn of_f(contract: &'a dyn Contract) -> Self {
         Self::of_sweep(contract, contract.sweep())
     }
 
-    /// Makes the places of a sweep of `f` with other values than the contract's sweep.
+    /// Makes the places of another sweep, at which the error of `f` is measured.
     pub fn of_sweep(contract: &'a dyn Contract, sweep: Sweep) -> Self {
         Self { contract, measure: PlaceMeasure::F, sweep }
     }
 
-    /// Makes the places of every word `f` with every value of a colour operand (they are all alike).
+    /// Makes the places that combine every word `f` with every value of a colour operand. All colour operands are alike, so one
+    /// is enough.
     pub fn of_colours(contract: &'a dyn Contract) -> Self {
         let axis = |name: &str, values| Axis { name: name.to_owned(), values };
         let colour = contract.operands().iter().find(|operand| operand.colour);
@@ -90,17 +94,17 @@ impl<'a> Places<'a> {
         }
     }
 
-    /// Returns the axes, and the operands that they leave out.
+    /// Returns the operands with their values, and the operands that the sweep leaves out.
     pub fn sweep(&self) -> &Sweep {
         &self.sweep
     }
 
-    /// Returns how many places there are.
+    /// Returns the number of places.
     pub fn count(&self) -> u64 {
         self.sweep.axes.iter().map(|axis| axis.values.count()).product()
     }
 
-    /// Returns how many blocks they are cut into.
+    /// Returns the number of blocks into which the places are cut.
     pub fn blocks(&self) -> u64 {
         self.count().div_ceil(BLOCK)
     }
@@ -137,7 +141,7 @@ impl<'a> Places<'a> {
         self.error_at(&self.place(number))
     }
 
-    /// Returns the errors at some places that are spread evenly.
+    /// Returns the errors at some places that are spread evenly over all.
     pub fn glimpse(&self) -> Vec<f64> {
         let step = (self.count() / SAMPLE).max(1);
         (0..self.count()).step_by(step as usize).map(|place| self.error(place)).collect()
@@ -155,7 +159,7 @@ impl<'a> Places<'a> {
         if error.is_nan() { f64::INFINITY } else { error }
     }
 
-    /// Returns the block that has a place.
+    /// Returns the number of the block that contains a place.
     pub(super) fn block_of(place: u64) -> u64 {
         place / BLOCK
     }
@@ -165,12 +169,12 @@ impl<'a> Places<'a> {
         block * BLOCK..((block + 1) * BLOCK).min(self.count())
     }
 
-    /// Returns how many places some blocks have.
+    /// Returns the number of places in some blocks.
     pub(super) fn visits(&self, blocks: impl Iterator<Item = u64>) -> u64 {
         blocks.map(|block| self.of_block(block)).map(|places| places.end - places.start).sum()
     }
 
-    /// Returns how long one place takes on one thread.
+    /// Measures how long one place takes on one thread.
     pub(super) fn pace(&self) -> Duration {
         let count = self.count().min(SAMPLE);
         let first = (self.count() - count) / 2;
@@ -205,7 +209,8 @@ impl<'a> Places<'a> {
         peak
     }
 
-    /// Returns the peak of some blocks, on all cores; `progress` is called with the number of places of each block that is done.
+    /// Measures the errors at all places of some blocks on all processors, and returns the largest. It calls `progress` with the
+    /// number of places of each finished block.
     pub fn check(
         &self,
         blocks: impl IntoParallelIterator<Item = u64>,

@@ -1,5 +1,7 @@
-//! Reads the record of an exhaustive check, as `glint cosim --exhaustive --json` writes it. It finds the record by the
-//! contract's digest, and checks a part of the record again.
+//! Reads the records of exhaustive checks, which `glint cosim --exhaustive --json` writes.
+//!
+//! A record belongs to a configuration if it has the digest of its contract. The record is not simply trusted: a part of the
+//! check is computed again and compared with it.
 
 use std::path::{Path, PathBuf};
 
@@ -14,13 +16,13 @@ use glint_golden::{Axis, Contract, Sweep, Values};
 /// The largest difference between a recorded figure and the figure that is computed today.
 const SAME: f64 = 1e-9;
 
-/// The record of a check.
+/// The record of an exhaustive check of a configuration.
 #[derive(Clone, Debug, Deserialize)]
 pub struct Record {
     axes: Vec<RecordedAxis>,
-    /// Evaluations of f.
+    /// The number of evaluations of `f`.
     pub evaluations: u64,
-    /// Words f times colours; 0 of a device that is no highlight.
+    /// The number of products of a word `f` with a colour. It is 0 for a device that is no highlight.
     pub colour_products: u64,
     /// The largest error of f. For a device that is no highlight, the largest error of an output, in units.
     pub f: RecordedPeak,
@@ -35,12 +37,12 @@ pub struct Record {
     pub path: PathBuf,
 }
 
-/// The largest error of f.
+/// The largest error of `f` in a record.
 #[derive(Clone, Copy, Debug, Deserialize)]
 pub struct RecordedPeak {
-    /// Absolute.
+    /// The absolute error.
     pub error: f64,
-    /// In output units, for the largest colour.
+    /// The error in output units, for the largest colour.
     pub units: f64,
     /// Where it is.
     place: u64,
@@ -101,7 +103,8 @@ impl Record {
         Ok(None)
     }
 
-    /// Returns the sweep of the check: the contract's, or more values of an axis that lists some.
+    /// Returns the sweep of the recorded check: the contract's sweep, or one with more values of an operand for which the
+    /// contract lists some.
     pub fn sweep(&self, contract: &dyn Contract) -> Sweep {
         let axes = self.axes.iter().map(RecordedAxis::axis).collect();
         Sweep { axes, omits: contract.sweep().omits }
@@ -122,8 +125,8 @@ impl Record {
         Ok(())
     }
 
-    /// Returns whether the check went through every combination of operands, and its errors are within today's bound. The
-    /// error at the recorded place is computed again.
+    /// Returns whether the record proves the contract's bound. The check must have visited every combination of operands, and its
+    /// errors must be within the bound that the contract states today. The error at the recorded place is computed again.
     pub fn proves(&self, contract: &dyn Contract) -> bool {
         let sweep = self.sweep(contract);
         let is_whole = sweep.omits.is_empty();
@@ -138,19 +141,19 @@ impl Record {
         Proof::new(contract, f, Peak { error: self.colour_units, place: 0 })
     }
 
-    /// Returns the largest errors in words.
+    /// Returns a phrase with the largest errors of the record.
     pub fn words(&self, contract: &dyn Contract) -> String {
         self.proof(contract).words("")
     }
 
-    /// Returns how many evaluations [`Record::recheck`] makes if it is to make about `places` of `f`.
+    /// Returns the number of evaluations that [`Record::recheck`] makes if it visits about `places` places of `f`.
     pub fn steps(&self, contract: &dyn Contract, places: u64) -> u64 {
         let f = Places::of_sweep(contract, self.sweep(contract));
         let colours = Places::of_colours(contract);
         f.visits(part(&f, places).into_iter()) + colours.count()
     }
 
-    /// Checks a part of the places again: about `places` spread evenly over all, the place of the largest error, and all
+    /// Computes a part of the recorded check again: about `places` evenly spread places, the place of the largest error, and all
     /// products with colours. Returns the number of evaluations of `f`, and the differences from the record.
     pub fn recheck(
         &self,

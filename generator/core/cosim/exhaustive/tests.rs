@@ -1,4 +1,4 @@
-//! Tests places, division into shards and joining, on a contract whose errors are known.
+//! Tests the numbering of operand combinations, the division into shards and the merging, on a contract whose errors are known.
 
 use std::ops::ControlFlow;
 

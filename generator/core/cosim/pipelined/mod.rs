@@ -1,9 +1,9 @@
-//! Predicts a pipelined core clock by clock, from the golden model of the sequential core.
+//! Predicts the signals of a pipelined core at every clock, from the golden model of the sequential core.
 //!
-//! The model runs each point on its own. After every clock the handshake is predicted, and so are the results and the side
-//! channel if there are any. A checkpoint is a net of the pipeline with the value that a register of the sequential core has
-//! in some microinstruction. The net's value for the point in its stage is predicted as the value of the model's register in
-//! that microinstruction.
+//! The model computes each point on its own. This module tracks in which stage each point is, and predicts the handshake, the
+//! results and the side channel. It also predicts *checkpoints*: nets in a stage of the pipeline that carry the same value as a
+//! register of the sequential core after some microinstruction. For the point in that stage, it expects the value of that
+//! register in the model.
 
 mod reference;
 #[cfg(test)]
@@ -33,14 +33,14 @@ struct PipelinedPoint {
     taken: u64,
 }
 
-/// The points on their way through a pipeline.
+/// The points that are in a pipeline, with the predicted signals.
 #[derive(Clone)]
 pub(super) struct Pipe {
     columns: Arc<Vec<(ComparedValue, usize)>>,
     reference: Reference,
     stages: Occupancy<PipelinedPoint>,
     out_ready: bool,
-    /// Whether the offer of the latest clock was taken.
+    /// Whether the pipeline took a point in the latest clock.
     pub(super) taken: bool,
 }
 
@@ -55,8 +55,8 @@ enum ComparedValue {
 }
 
 impl Pipe {
-    /// Returns a pipeline without points. It also returns the nets that are compared after a clock, the first to be reported
-    /// first, and the nets of the results among them.
+    /// Returns a pipeline without points. Also returns the nets whose values are compared after each clock, in the order in which
+    /// differences are reported, and the nets of the results among them.
     ///
     /// # Errors
     /// Fails if one side has a name that the other does not have.
@@ -95,8 +95,8 @@ impl Pipe {
         Ok((pipe, nets, results))
     }
 
-    /// Moves the points by the inputs of a clock; one that is taken has this place. The error of a result is taken
-    /// by `measure`, if there is one.
+    /// Advances the points by one clock with the given inputs. A point that is taken gets the number `place`. If `measure` is
+    /// given, it measures the errors of the results.
     ///
     /// # Errors
     /// Fails if the model does not end.
@@ -131,7 +131,7 @@ impl Pipe {
         Ok(())
     }
 
-    /// Returns the expected value, after the latest clock, of the compared net at this position.
+    /// Returns the predicted value of compared net number `at` after the latest clock, if it is known.
     #[inline]
     pub(super) fn expected(&self, at: usize) -> Option<u64> {
         let (column, stage) = self.columns[at];
@@ -145,17 +145,18 @@ impl Pipe {
         }
     }
 
-    /// Returns the place of the point that the net at this position speaks of, and the clock that took it.
+    /// Returns the number of the point whose value compared net number `at` carries, and the clock in which the pipeline took the
+    /// point.
     pub(super) fn point(&self, at: usize) -> Option<(u64, u64)> {
         self.stages.stage(self.columns[at].1).map(|point| (point.place, point.taken))
     }
 
-    /// Returns whether a point is taken in the next clock if the results are.
+    /// Returns whether the pipeline takes a point in the next clock, provided that the receiver takes the results.
     pub(super) fn is_ready(&self) -> bool {
         self.stages.takes(true)
     }
 
-    /// Returns whether a point is on its way with a place before this one.
+    /// Returns whether a point with a number below `place` is in the pipeline.
     pub(super) fn has_before(&self, place: u64) -> bool {
         self.stages.points().any(|(_, point)| point.place < place)
     }

@@ -1,4 +1,6 @@
-//! Runs the golden model for one point, and returns its results and the value of its register at each checkpoint.
+//! Runs the golden model of the sequential core for one point.
+//!
+//! It returns the results, and the register values that a pipeline must show at its checkpoints.
 
 use anyhow::{Result, bail};
 
@@ -10,7 +12,7 @@ use glint_rtl::netlist::{Design, NetId, Pipeline};
 /// The number of clocks that a computation may take.
 const MOST_CLOCKS: usize = 8192;
 
-/// The golden model of the sequential core, run a point at a time.
+/// The golden model of the sequential core, which computes one point at a time.
 #[derive(Clone)]
 pub(super) struct Reference {
     model: Driven,
@@ -24,17 +26,18 @@ pub(super) struct Reference {
     visits: Vec<usize>,
 }
 
-/// The values that are expected of a point.
+/// The values that a pipeline must show for a point.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Expected {
-    /// The results, bit patterns.
+    /// The bit patterns of the results.
     pub results: Vec<u64>,
-    /// For each checkpoint the value of its register, if the point came there.
+    /// For each checkpoint, the value of its register, or `None` if the computation does not reach the checkpoint's
+    /// microinstruction.
     pub registers: Vec<Option<u64>>,
 }
 
 impl Reference {
-    /// Finds the signals of the model that the checkpoints and the results are compared with.
+    /// Finds the signals of the model that belong to the checkpoints and the results of a pipeline.
     ///
     /// # Errors
     /// Fails if one side has a name that the other does not have.
@@ -64,8 +67,8 @@ impl Reference {
         })
     }
 
-    /// Runs one computation on the bit patterns of the operands, in the order of the ports, and returns its results and
-    /// its registers at the checkpoints.
+    /// Computes one point from the bit patterns of its operands, in the order of the ports. Returns its results, and its register
+    /// values at the checkpoints.
     ///
     /// # Errors
     /// Fails if the model does not end.

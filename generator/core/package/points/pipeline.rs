@@ -1,5 +1,6 @@
-//! Generates the test bench that sends a list of points through a pipeline: operands come from one file, results go to
-//! another.
+//! Generates a Verilog test bench that sends a list of points through a pipeline.
+//!
+//! It reads the operands of each point from one file and writes the results to another.
 
 use anyhow::{Context, Result};
 use glint_base::fill;
@@ -10,7 +11,7 @@ use glint_rtl::verilog::text::{Names, literal};
 
 fresh_names!(Variables { points, results, read, clocks, offered, total, tick, dut });
 
-/// Returns the bench of a pipeline, whose last results come in less than `limit` clocks.
+/// Returns the test bench of a pipeline. After the last point, the last results must come in less than `limit` clocks.
 ///
 /// # Errors
 /// Fails if the design lacks the handshake of a pipeline.

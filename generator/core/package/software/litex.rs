@@ -1,4 +1,6 @@
-//! Generates `<name>_litex.py`: the core for LiteX, with CSRs, between streams, or with its own registers on a bus.
+//! Generates `<name>_litex.py`, the core as a Python module for the SoC builder LiteX.
+//!
+//! The LiteX module connects the core by CSRs, by its two streams, or by its own registers on a bus.
 
 use anyhow::{Result, bail};
 use glint_base::fill;
@@ -37,7 +39,7 @@ struct LitexStream<'a> {
     last: bool,
 }
 
-/// Adds the module.
+/// Adds the LiteX module of a core.
 ///
 /// # Errors
 /// Fails if CSRs cannot drive the core and it has no stream.

@@ -1,7 +1,7 @@
-//! Generates `software/<name>/`: the files from which a driver's author can start before there is hardware.
+//! Generates `software/<name>/`: a bit-exact model of the core in C, register headers and other files for the author of a driver.
 //!
-//! The model in C computes the same results as the core, bit for bit. It is generated from the netlist, by way of its
-//! microprogram, and does not use the golden model. Tests compare it with the golden model.
+//! The author can start with these files before there is hardware. Glint generates the C model from the netlist and its
+//! microprogram, and not from the golden model. Tests compare the two, so each checks the other.
 
 mod litex;
 mod model;

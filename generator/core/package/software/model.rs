@@ -1,4 +1,4 @@
-//! Generates the model of a core in C: header, functions, and an example in Python.
+//! Generates the bit-exact model of a core in C: a header, the functions, and an example in Python that calls them.
 
 use glint_base::fill;
 use std::collections::BTreeMap;
@@ -18,23 +18,23 @@ use glint_rtl::pipeline::{
 };
 use glint_rtl::verilog::text::{Names, ascii, constant_name, statement};
 
-/// An operand or a result in C.
+/// An operand or a result as a member of a C structure.
 #[derive(Clone)]
 pub struct CField {
-    /// As a structure has it.
+    /// The name of the member.
     pub name: String,
     /// The upper-case name with the module's before it. For example, `ROUGH_COS_GAMMA`.
     constant: String,
-    /// The type of the raw integer.
+    /// The C type of the raw integer.
     pub kind: &'static str,
     /// The format of the port.
     pub format: Format,
-    /// Format and meaning.
+    /// A comment with the format and the meaning.
     pub doc: String,
 }
 
 impl CField {
-    /// Makes the field of a structure for a port.
+    /// Makes the member of a structure for a port.
     pub fn new(design: &Design, port: &Port) -> Self {
         let net = design.net(port.net);
         Self {
@@ -113,7 +113,7 @@ impl CField {
     }
 }
 
-/// Adds the model, and returns the ROMs that it reads. The model is generated from the design with the microprogram.
+/// Adds the C model, and returns the ROMs that it reads. The model is generated from the sequential netlist and its microprogram.
 ///
 /// # Errors
 /// Fails if the core cannot become a function. It must not wait for `start` in the middle, have a loop without a bound, or have
@@ -346,7 +346,7 @@ fn roms(graph: &Graph, wanted: &[NodeId]) -> Vec<RomId> {
     needed.filter_map(rom).collect()
 }
 
-/// Returns the array of each ROM.
+/// Returns the name of the C array of each ROM.
 pub fn table_names(design: &Design) -> Vec<String> {
     let mut names = Names::new(design.nets.iter().map(|net| net.name.as_str()));
     design.roms.iter().map(|rom| names.fresh(&format!("{}_table", rom.name))).collect()

@@ -1,7 +1,7 @@
-//! Prints values of a computation as expressions and statements of C99.
+//! Prints the values of an unrolled computation as expressions and statements of C99.
 //!
-//! Every value is a bit pattern in an unsigned type of 32 or 64 bits, with zeros above its width. C defines only this
-//! arithmetic on every machine. Signs are made by `(x ^ s) - s`, with s the sign bit's weight.
+//! Every value is a bit pattern in `uint32_t` or `uint64_t`, with zeros above its width, because C defines unsigned arithmetic
+//! fully on every machine. A value is sign-extended by `(x ^ s) - s`, where s is the weight of its sign bit.
 
 use std::collections::BTreeMap;
 
@@ -20,12 +20,12 @@ const TAKEN: &str = "
     INT32_C INT64_C UINT32_C UINT64_C
     operands results points count capacity at point";
 
-/// Returns the names that a function or a structure may not use for its own.
+/// Returns the names that a generated function or structure must not use for its own variables.
 pub fn taken() -> Names {
     Names::new(TAKEN.split_ascii_whitespace())
 }
 
-/// Returns a field of a structure: the port's name, unless that is a word of C.
+/// Returns the name of a structure's member for a port: the port's name, changed if it is a reserved word of C.
 pub fn field(port: &str) -> String {
     taken().fresh(port)
 }
@@ -54,7 +54,7 @@ impl CExpression {
     }
 }
 
-/// Prints the values of a function.
+/// Prints the values of an unrolled computation as C.
 pub struct Printer<'a> {
     graph: &'a Graph,
     design: &'a Design,
@@ -70,7 +70,7 @@ pub struct Printer<'a> {
 
 /// A statement, and the microinstruction that it belongs to.
 pub struct CStatement {
-    /// The number of the step.
+    /// The number of the microinstruction's step in the computation.
     pub step: usize,
     /// The text, without indentation.
     pub text: String,
@@ -88,7 +88,7 @@ impl<'a> Printer<'a> {
         Self { graph, design, operands, tables, locals: BTreeMap::new(), states }
     }
 
-    /// Returns the statements that compute `wanted`.
+    /// Returns the statements that compute the values `wanted`.
     pub fn lines(&mut self, names: &mut Names, wanted: &[NodeId]) -> Vec<CStatement> {
         let graph = self.graph;
         let needed = graph.cone(wanted.iter().copied());
@@ -121,12 +121,12 @@ impl<'a> Printer<'a> {
         lines
     }
 
-    /// Returns whether a value stays the same, whatever becomes of the state.
+    /// Returns whether a value no longer changes when the statements assign to registers and memories.
     pub fn is_settled(&self, id: NodeId) -> bool {
         self.locals.contains_key(&id) || self.graph.constant_of(id).is_some()
     }
 
-    /// Returns a value that the statements have computed.
+    /// Returns the C expression of a value that the statements have computed.
     pub fn text(&self, id: NodeId) -> String {
         self.value(id).0
     }
@@ -316,7 +316,7 @@ impl<'a> Printer<'a> {
     }
 }
 
-/// Returns a comment of one line.
+/// Returns a C comment of one line.
 pub fn comment(text: &str) -> String {
     // Nothing in a heading may end the comment.
     format!("/* {} */", ascii(text).replace("*/", "* /").replace("/*", "/ *"))

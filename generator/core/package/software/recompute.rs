@@ -1,6 +1,7 @@
-//! Writes a C program that recomputes the result of every operand and compares it with the formula, evaluated by MPFR.
+//! Writes a C program that computes the result for every value of a core's only operand, and compares it with the formula.
 //!
-//! The program is evidence for the error bound that does not depend on Glint's own arithmetic.
+//! The program evaluates the formula with the multiple-precision library MPFR. It is therefore evidence for the error bound that
+//! does not depend on Glint's own arithmetic.
 
 use anyhow::Result;
 
@@ -47,7 +48,7 @@ fn recomputation_error(name: &str, why: &str) -> KeyError {
     KeyError::new("package.recomputation", message, "remove it")
 }
 
-/// Checks that a configuration asks for the program only where there is one.
+/// Checks that the program can be written for a core.
 ///
 /// # Errors
 /// Fails if the core has several operands or results, or if its contract states no formula.
@@ -55,7 +56,7 @@ pub fn check(name: &str, facts: &ContractFacts) -> Result<(), KeyError> {
     RecomputedFormula::new(name, facts).map(drop)
 }
 
-/// Adds the program. `read` are the ROMs that the model reads.
+/// Adds the program to `files`. `read` are the ROMs that the C model reads.
 ///
 /// # Errors
 /// Fails as [`check`] does.

@@ -1,4 +1,4 @@
-//! Generates the description of the registers for software: a C header, a Rust module without `std`, and SystemRDL.
+//! Generates descriptions of a core's bus registers for software: a C header, a Rust module without `std`, and SystemRDL.
 
 use anyhow::Result;
 use glint_base::fill;
@@ -75,7 +75,7 @@ impl OperandConversion {
     }
 }
 
-/// Adds the files.
+/// Adds the C header, the Rust module and the SystemRDL file of the bus registers.
 ///
 /// # Errors
 /// Fails if a template fails.

@@ -1,5 +1,7 @@
-//! Generates the host's part of a device that walks lines, in C and Python. It computes the operands from vectors or angles
-//! at the ends of a line. The formulas are the formulas of `render::setup`, and tests compare both.
+//! Generates the host's part of a device that computes a line of points, in C and in Python.
+//!
+//! The host starts such a device once for a whole line. The generated functions compute the operands of a line from the vectors
+//! or angles at its two ends. They use the same formulas as `render::setup`, and tests compare the results.
 
 use anyhow::Result;
 use glint_base::fill;
@@ -41,7 +43,8 @@ impl LineSetup<'_> {
     }
 }
 
-/// Adds the files. Adds none if the device walks no line, or takes other operands.
+/// Adds the C and Python files. Adds nothing if the device computes no line of points, or if it has other operands than the
+/// formulas give.
 ///
 /// # Errors
 /// Fails if a template fails.

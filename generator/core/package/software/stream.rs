@@ -1,4 +1,7 @@
-//! Generates `<name>_stream.h` and `<name>_stream.py`, which fill and read the transfers of the streams in memory.
+//! Generates `<name>_stream.h` and `<name>_stream.py`: functions that pack operands into the bytes of an AXI4-Stream, and unpack
+//! results.
+//!
+//! A program uses them to fill and to read the memory of a DMA engine that feeds the core's stream wrapper.
 
 use anyhow::Result;
 use glint_base::fill;
@@ -91,7 +94,7 @@ impl Bytes {
     }
 }
 
-/// Adds the files for a program that fills and empties the memory of the streams.
+/// Adds the C header and the Python file that pack and unpack the transfers of the streams.
 ///
 /// # Errors
 /// Fails if a template fails.

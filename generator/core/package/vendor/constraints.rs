@@ -1,5 +1,7 @@
-//! Generates `<top>.sdc` and `<top>.xdc`: constraints of the clock. They constrain nothing that depends on the unknown system
-//! around the module.
+//! Generates the clock constraints of a module, `<top>.sdc` for Quartus and open tools, and `<top>.xdc` for Vivado.
+//!
+//! Only the clock is constrained. Delays at ports, for example, depend on the system around the module, which Glint does not
+//! know.
 
 use anyhow::Result;
 use glint_base::fill;

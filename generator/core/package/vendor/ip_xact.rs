@@ -1,4 +1,4 @@
-//! Generates `<top>.xml`: each module as a component of IP-XACT, IEEE 1685-2014.
+//! Generates `<top>.xml`: the description of a module as a component of IP-XACT, IEEE 1685-2014.
 
 use anyhow::Result;
 

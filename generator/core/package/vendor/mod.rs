@@ -1,4 +1,4 @@
-//! Generates files for vendors' tools beside the Verilog: constraints, Tcl, IP-XACT.
+//! Generates files for the tools of FPGA vendors: constraints, Tcl scripts and IP-XACT descriptions.
 
 mod constraints;
 mod ip_xact;

@@ -1,4 +1,4 @@
-//! Generates Tcl for Vivado and Quartus: builds of a module alone, and descriptions of it as IP.
+//! Generates Tcl scripts for Vivado and Quartus: one builds a module alone, another describes the module as IP.
 
 use anyhow::Result;
 use glint_base::fill;

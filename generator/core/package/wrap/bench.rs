@@ -1,5 +1,6 @@
-//! Generates the test benches of the wrappers, `<name>_axis_tb.v`, and `<name>_axil_tb.v` or `<name>_wb_tb.v`, with the
-//! points of the core's bench.
+//! Generates the test benches of a core's wrappers, `<name>_axis_tb.v`, and `<name>_axil_tb.v` or `<name>_wb_tb.v`.
+//!
+//! The benches send the same computations through the wrapper as the core's own bench sends through the core.
 
 use anyhow::Result;
 use glint_base::fill;

@@ -1,5 +1,6 @@
-//! Lays operands and results side by side in whole bytes, as the transfers of a stream carry them. For example, a result of
-//! 12 bits occupies 2 bytes.
+//! Lays out operands and results as bytes, as the transfers of an AXI4-Stream carry them.
+//!
+//! Each value begins at a byte and is padded to whole bytes. For example, a result of 12 bits occupies 2 bytes.
 
 use anyhow::{Context, Result};
 
@@ -7,14 +8,14 @@ use crate::package::emit_job::EmitJob;
 use glint_rtl::netlist::{Design, Port, Role};
 use glint_rtl::verilog::text::{ascii, literal, statement};
 
-/// An operand or a result in the bytes of a stream.
+/// An operand or a result in a transfer of an AXI4-Stream.
 pub struct StreamField {
     pub name: String,
     /// Name and format, for comments.
     pub label: String,
     pub signed: bool,
     pub width: u32,
-    /// Its lowest bit.
+    /// The lowest bit of the value in the transfer.
     pub low: u32,
     /// The port that writes it, if it is an operand of a core with a microprogram.
     pub strobe: String,
@@ -85,7 +86,7 @@ fn side_by_side<'a>(
     ports.map(field).collect()
 }
 
-/// The fields of a transfer, and the bits of all of it.
+/// The layout of a transfer: its fields, and its total number of bits.
 pub struct Transfer {
     pub fields: Vec<StreamField>,
     pub bits: u32,
@@ -130,7 +131,7 @@ impl Transfer {
         self.fields.iter().find(|field| field.name == name)
     }
 
-    /// Returns whether a result has copies of its sign above it.
+    /// Returns whether a result is padded with copies of its sign bit.
     pub fn has_signs(&self) -> bool {
         self.fields.iter().any(|field| field.signed && field.padded() > field.width)
     }
@@ -143,7 +144,7 @@ impl Transfer {
         (above > 0).then(|| literal(0, above)).into_iter().chain(fields).collect()
     }
 
-    /// Returns the bits that only fill bytes, as parts of `net`.
+    /// Returns the padding bits of a transfer, as part-selects of the net `net`.
     pub fn padding(&self, net: &str) -> Vec<String> {
         let fields = self.fields.iter();
         let of_fields = fields.map(|field| (field.high() + 1, field.low + field.padded()));

@@ -1,4 +1,4 @@
-//! Generates wrappers in Verilog between a core and a system, and the properties that are proved of them.
+//! Generates Verilog wrappers that connect a core to a system, by AXI4-Streams or by bus registers, and their formal properties.
 
 mod bench;
 pub(super) mod fields;

@@ -1,4 +1,6 @@
-//! Extracts the finished computations from the vectors of a core's test bench, for the test benches of its wrappers.
+//! Extracts the finished computations from the vectors of a core's test bench.
+//!
+//! The test benches of the core's wrappers replay these computations through the wrapper.
 
 use std::collections::VecDeque;
 

@@ -1,5 +1,8 @@
-//! Generates `<name>_registers.v` and its bus, `<name>_axil.v` or `<name>_wb.v`, which put the core behind registers,
-//! and the properties proved of them.
+//! Generates the bus wrapper of a core: `<name>_registers.v` with the registers, and `<name>_axil.v` or `<name>_wb.v` with the
+//! bus.
+//!
+//! A host writes the operands to registers, starts the core and reads the results. The module also generates the formal
+//! properties of both files.
 
 use anyhow::Result;
 use glint_base::fill;

@@ -1,5 +1,4 @@
-//! Writes the Verilog of registers: the test whether an address is within a range, and the word that a read of each register
-//! gives.
+//! Writes the Verilog that decodes a register address, and the word that a read of each bus register returns.
 
 use super::fields::{Transfer, results};
 use crate::package::map::{self, BusRegister, Map, PortBits, PortPlacement};

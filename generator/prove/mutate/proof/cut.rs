@@ -1,5 +1,6 @@
-//! Finds the fewest bits that determine some nets: a minimum cut. For example, a sum of 5 bits is a smaller cut than
-//! its two operands of 4 bits.
+//! Finds a minimum cut in a netlist: the nets with the fewest bits that together determine some wanted nets.
+//!
+//! For example, a sum of 5 bits is a smaller cut than its two operands of 4 bits each.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -8,8 +9,8 @@ use glint_rtl::netlist::{Design, Driver, NetId};
 /// Vertices of the flow: each net is divided in two, and the flow into it goes through its bits.
 type Vertex = (NetId, bool);
 
-/// Returns the nets with the fewest bits together that determine `wanted`. The cut cannot have a net in `affected`.
-/// Returns `None` if they have more than `most` bits, or if a net of `affected` is no cell.
+/// Returns the nets with the fewest bits that together determine the nets `wanted`. No net of `affected` may be in the cut.
+/// Returns `None` if the cut has more than `most` bits, or if a net of `affected` is driven by something else than a cell.
 pub(super) fn smallest_cut(
     design: &Design,
     wanted: &BTreeSet<NetId>,

@@ -1,11 +1,13 @@
-//! Makes the design that one point sees of a pipeline: its registers pass on their inputs.
+//! Makes a copy of a pipeline in which every register passes on its input, except the registers of the handshake.
+//!
+//! The copy computes the same results for a single point, and a proof can look across the stages.
 
 use std::collections::BTreeMap;
 
 use glint_rtl::netlist::{Design, Driver, Net, NetId, Op, Pipeline};
 
-/// A pipeline whose registers pass on their inputs, so that a window reaches over stages. The logic that decides when
-/// points move stays as it is.
+/// A pipeline whose data registers pass on their inputs, so that a window can reach over several stages. The registers of the
+/// handshake stay.
 pub(super) struct Flat {
     pub(super) design: Design,
     /// For each net of a multiplier that several products share, one net for each product.

@@ -1,7 +1,7 @@
-//! Finds the interval of values of each net from its driver and the driver's operands.
+//! Computes the interval of values of each net from the cell that drives it and the intervals of the cell's operands.
 //!
-//! Only registers use the intervals that the description states. The stated interval of a view of a shared multiplier
-//! holds under some selections only.
+//! The device's description also states intervals. The module uses them only for registers: the stated interval of an operand of
+//! a shared multiplier may hold for some of its products only.
 
 use super::pairs::{self, Pairs};
 use glint_base::interval::{Interval, fits, hull, of_values};

@@ -1,10 +1,9 @@
-//! Proves that a fault changes nothing that is compared.
+//! Proves that a fault never changes an output or a register that the golden model predicts.
 //!
-//! One proof is an induction over clocks. In every microinstruction, it evaluates the fault-free design and the
-//! mutant side by side, over the pairs of bits that a net can have in both ([`pairs`]). Registers inside of blocks
-//! may differ as far as earlier microinstructions let them. If no output and no register that the golden model
-//! predicts differs in any microinstruction, they never do. The other proof tries every combination of values around
-//! the fault ([`window`]).
+//! There are two proofs. The first is an induction over clocks: in every microinstruction, it evaluates the fault-free design and
+//! the mutant together, and tracks which pairs of values each bit can have in the two ([`pairs`]). Registers inside of blocks may
+//! differ as far as earlier microinstructions allow. If no output and no predicted register differs in any microinstruction, the
+//! mutant is equivalent. The second proof tries every combination of values on the nets around the fault ([`window`]).
 
 mod cut;
 mod flat;
@@ -22,7 +21,7 @@ use super::verdict::How;
 use glint_base::fixed::mask;
 use glint_rtl::netlist::{Design, Driver, NetId, RegisterKind};
 
-/// Proves faults of one design equivalent.
+/// Proves that faults of a design are equivalent.
 pub(super) struct Prover<'a> {
     order: Order<'a>,
     /// For each microinstruction, the values that each net of the fault-free design can have, whatever the inputs
@@ -50,7 +49,7 @@ impl<'a> Prover<'a> {
         Some(Self { nets, order, following, compared, windows: Windows::of(design)? })
     }
 
-    /// Returns how it is proved, if it is, that nothing that is compared ever differs with this fault.
+    /// Returns how the fault is proved equivalent, or `None` if no proof succeeds.
     pub(super) fn proves(&self, site: &Site) -> Option<How> {
         if self.by_induction(site) {
             Some(How::Induction)

@@ -1,4 +1,7 @@
-//! Finds the pairs of bits that a net can have, in the fault-free design and in the mutant, through each kind of cell.
+//! Tracks the pairs of values that each bit of a net can have, one in the fault-free design and one in the mutant, through each
+//! kind of cell.
+//!
+//! For example, an AND with a bit that is 0 in both designs gives 0 in both.
 
 use std::array::from_fn;
 

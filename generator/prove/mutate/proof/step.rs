@@ -1,5 +1,6 @@
-//! Evaluates one microinstruction, of the fault-free design or of a mutant beside it. A pipeline has none: each of its
-//! slots is taken as one.
+//! Evaluates one microinstruction, for the fault-free design or for a mutant together with it.
+//!
+//! A pipeline has no microinstructions; each of its time slots counts as one.
 
 use super::interval;
 use super::pairs::{self, Pairs};

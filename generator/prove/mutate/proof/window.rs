@@ -1,8 +1,8 @@
-//! Proves faults equivalent if their neighbourhood is small, by trying every combination of values around the fault.
+//! Proves a fault equivalent by trying every combination of values on the nets around it.
 //!
-//! A window reaches from the fault forward over some cells, at most to multipliers, registers, ROMs and outputs. It
-//! reaches backward to the fewest bits that determine it: a minimum cut. Each net of the cut takes every value of its
-//! interval. For example, the window of an inverted bit may end at an AND that masks the bit.
+//! A window is a part of the netlist. It reaches forward from the fault over some cells, at most to multipliers, registers, ROMs
+//! and outputs. It reaches backward to a minimum cut: the fewest bits that determine the window. The proof tries every value in
+//! the intervals of these nets. For example, the window of an inverted bit may end at an AND that masks the bit.
 
 use std::borrow::Cow;
 use std::collections::{BTreeMap, BTreeSet};
@@ -102,7 +102,7 @@ impl<'a> Windows<'a> {
         })
     }
 
-    /// Returns whether the fault never leaves its window.
+    /// Returns whether no combination of values in the window lets the fault change a value outside.
     pub(super) fn proves(&self, site: &Site) -> bool {
         match site {
             Site::Words(rom, words) if *rom != self.design.control.rom => {

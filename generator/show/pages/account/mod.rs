@@ -1,6 +1,7 @@
-//! Writes tables and sentences about a configuration, for pages of any format.
+//! Writes the tables and sentences that describe a configuration, for pages in Markdown and in HTML.
 //!
-//! A cell and a sentence are plain text with names in backquotes: for example, `clk`.
+//! The text of cells and sentences is plain, with names in backquotes, for example `clk`. Each page format converts the
+//! backquotes.
 
 pub mod blocks;
 mod table;
@@ -21,33 +22,33 @@ pub use table::{Align, Column, TextTable, code};
 /// The heading of the column with the source's numbers.
 const NUMBER: &str = "no.";
 
-/// The facts of a page beyond the design.
+/// The facts that a page shows in addition to the netlist.
 pub struct PageInputs<'a> {
-    /// The configuration as the command line names it, `configs/<name>.toml`.
+    /// The path of the configuration file, as the user gave it: `configs/<name>.toml`.
     pub path: &'a str,
-    /// The values of the keys.
+    /// The values of the configuration's keys.
     pub config: &'a Config,
-    /// The keys.
+    /// The keys of the device.
     pub schema: &'a Schema,
     /// The accuracy contract.
     pub contract: &'a dyn Contract,
-    /// The evidence for its bound.
+    /// The evidence for the contract's error bound.
     pub backing: &'a Backing,
-    /// The key that would bring the bound down most.
+    /// The key that would reduce the error bound most.
     pub advice: Option<Advice>,
-    /// Clocks.
+    /// The number of clocks between the events of the handshake.
     pub timing: &'a HandshakeTiming,
-    /// One computation with all its numbers.
+    /// A computation with the values of all operands and outputs.
     pub example: &'a WorkedExample,
-    /// Clocks of a line, for a device that walks lines.
+    /// The clocks of a line, if the device computes lines of points.
     pub line: Option<&'a LineClocks>,
 }
 
-/// The formats, in a sentence.
+/// A sentence that explains the notation of formats.
 pub const FORMATS: &str = "Formats: `uI.F` is unsigned, `sI.F` two's complement, with I integer bits (a sign bit apart) \
                            and F fraction bits; the value of a signal is its integer times 2⁻ᶠ.";
 
-/// Returns the source whose numbers the blocks carry.
+/// Returns the name of the source, such as a patent, whose figure numbers the blocks.
 pub fn numbering(design: &Design) -> &'static str {
     if design.nets.iter().any(|net| net.block.is_some()) {
         "In order of their numbers in the source's figure; those without a number are ours."
@@ -64,7 +65,7 @@ pub fn format_text(format: Format) -> String {
     }
 }
 
-/// Returns the key that would bring the bound down most, in a sentence; empty if there is no such key.
+/// Returns a sentence with the key that would reduce the error bound most. It is empty if there is no such key.
 pub fn limit(inputs: &PageInputs) -> String {
     match &inputs.advice {
         Some(advice) => format!("The key that helps most: {advice}."),
@@ -72,7 +73,7 @@ pub fn limit(inputs: &PageInputs) -> String {
     }
 }
 
-/// Returns the bound, in sentences.
+/// Returns sentences about the error bound and the evidence for it.
 pub fn accuracy(contract: &dyn Contract, backing: &Backing) -> String {
     let bound = contract.bound();
     if !bound.is_stated() {
@@ -99,7 +100,7 @@ pub fn accuracy(contract: &dyn Contract, backing: &Backing) -> String {
     )
 }
 
-/// Returns the sentence on the domain of an exhaustive check.
+/// Returns a sentence about the operands that an exhaustive check of the configuration visits.
 pub fn proof(inputs: &PageInputs) -> String {
     let sweep = inputs.contract.sweep();
     let mut ranges: Vec<String> = Vec::new();
@@ -263,7 +264,7 @@ pub fn microprogram(design: &Design) -> TextTable {
     table
 }
 
-/// Tabulates in which clock after `start` each event of the handshake is.
+/// Returns a table of the clocks after `start` in which each event of the handshake happens.
 pub fn clocks(timing: &HandshakeTiming, line: Option<&LineClocks>) -> TextTable {
     let mut events: Vec<(&str, Option<u32>, Option<Linear>)> =
         vec![("`valid` is high, first", timing.start_to_valid, None)];
@@ -285,7 +286,7 @@ pub fn clocks(timing: &HandshakeTiming, line: Option<&LineClocks>) -> TextTable 
     table
 }
 
-/// Returns how points enter and leave a pipeline, in sentences.
+/// Returns sentences about the handshake by which points enter and leave a pipeline.
 pub fn handshake(pipeline: &Pipeline) -> &'static str {
     if pipeline.stall {
         "A point is taken in each clock in which `in_valid` and `in_ready` are high: the operands of that clock are its \
@@ -297,7 +298,7 @@ pub fn handshake(pipeline: &Pipeline) -> &'static str {
     }
 }
 
-/// Tabulates how many clocks after a pipeline takes a point each event is.
+/// Returns a table of the number of clocks from taking a point to each event of a pipeline.
 pub fn pipeline_clocks(pipeline: &Pipeline) -> TextTable {
     let mut table = TextTable::of("event | clock:");
     table.row(["the next point is taken".to_owned(), "1".to_owned()]);
@@ -306,7 +307,7 @@ pub fn pipeline_clocks(pipeline: &Pipeline) -> TextTable {
     table
 }
 
-/// Returns the terms of a bound.
+/// Returns a table of the terms that add up to an error bound.
 pub fn terms(bound: &Bound) -> TextTable {
     let mut table = TextTable::of("key | units: | what rounds or approximates");
     for term in &bound.terms {
@@ -315,7 +316,7 @@ pub fn terms(bound: &Bound) -> TextTable {
     table
 }
 
-/// Returns the operands, and for which values of them the contract is stated.
+/// Returns a table of the operands, with the values for which the contract holds.
 pub fn domain(design: &Design, contract: &dyn Contract) -> TextTable {
     let mut table = TextTable::of("operand | format | from: | to: | what it is");
     for operand in contract.operands() {
@@ -335,7 +336,7 @@ pub fn domain(design: &Design, contract: &dyn Contract) -> TextTable {
     table
 }
 
-/// Returns the worked example beside the formula.
+/// Returns a table of the worked example, with the values of the formula next to the outputs.
 pub fn example(contract: &dyn Contract, example: &WorkedExample) -> TextTable {
     let mut table = TextTable::of("port | integer: | value: | formula in f64:");
     let operands: Vec<i64> = example.operands.iter().map(|it| it.raw as i64).collect();
@@ -358,7 +359,7 @@ pub fn example(contract: &dyn Contract, example: &WorkedExample) -> TextTable {
     table
 }
 
-/// Returns the keys of the device, and the keys that every device shares if they are not at their defaults.
+/// Returns a table of the device's keys. Keys that every device has are listed only if they are not at their defaults.
 pub fn keys(schema: &Schema, config: &Config) -> TextTable {
     let mut table = TextTable::of("key | value | accepts | what it governs");
     let mut keys: Vec<&Key> = schema.keys.iter().collect();
@@ -394,7 +395,7 @@ fn shortened(text: String) -> String {
     }
 }
 
-/// Returns a value in six decimals, without the zeros at their end. For example, `0.866026`, `-0.25` and `1000`.
+/// Returns a value with six decimals, without trailing zeros. For example, `0.866026`, `-0.25` and `1000`.
 pub fn short(value: f64) -> String {
     let text = format!("{value:.6}");
     text.trim_end_matches('0').trim_end_matches('.').to_owned()

@@ -1,4 +1,4 @@
-//! A table of text, with headings and alignment, for pages of any format.
+//! Defines a table of plain text with headings and column alignment, which pages print as Markdown or HTML.
 
 /// The alignment of the cells of a column.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -18,18 +18,18 @@ pub struct Column {
     pub align: Align,
 }
 
-/// A table; its cells are plain text with names in backquotes.
+/// A table of plain text, in which names are in backquotes.
 #[derive(Clone, Debug)]
 pub struct TextTable {
-    /// From the left.
+    /// The columns, from left to right.
     pub columns: Vec<Column>,
-    /// From the top, with a cell for each column.
+    /// The rows, from top to bottom. Each has a cell for each column.
     pub rows: Vec<Vec<String>>,
 }
 
 impl TextTable {
-    /// Makes a table with these headings, which bars part, yet without rows. The cells below a heading with a colon
-    /// behind it are numbers. For example, `port | bits:` has a column of words and a column of numbers.
+    /// Makes a table without rows from its headings, which are separated by `|`. A heading with a colon at its end belongs to a
+    /// column of numbers. For example, `port | bits:` has a column of words and a column of numbers.
     pub fn of(headings: &str) -> Self {
         let column = |heading: &'_ str| match heading.strip_suffix(':') {
             Some(heading) => Column { heading: heading.to_owned(), align: Align::Right },
@@ -60,7 +60,7 @@ impl TextTable {
     }
 }
 
-/// Returns a name or a number as the files write it; nothing for nothing. For example, clk becomes `clk` in backquotes.
+/// Puts a name or a number into backquotes; an empty text stays empty. For example, clk becomes `clk` in backquotes.
 pub fn code(text: &str) -> String {
     match text {
         "" => String::new(),

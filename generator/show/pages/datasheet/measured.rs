@@ -1,4 +1,5 @@
-//! Tabulates the record of `glint synth` for the datasheet: area, frequency, rate and critical path on each target.
+//! Makes the datasheet's tables of measurements from a record of `glint synth`: area, frequency, points a second and critical
+//! path on each target.
 
 use super::table::TableView;
 use crate::figures::{Figures, Frequency, Rate, SynthesisRecord};
@@ -7,18 +8,18 @@ use crate::pages::account::TextTable;
 /// The cell of a target without such a thing, or without a measurement.
 const NONE: &str = "–";
 
-/// The record as the page prints it.
+/// The measurements of a core as the datasheet prints them.
 pub struct RecordView {
     pub table: TableView,
-    /// A target, and its longest path.
+    /// For each target, its name and its longest path.
     pub paths: Vec<(String, String)>,
-    /// Why a target has no frequency.
+    /// For each target without a frequency, its name and the reason.
     pub untimed: Vec<(String, String)>,
     pub tools: String,
 }
 
 impl RecordView {
-    /// Makes the tables of a record. The first row has the figures of `target`, if it was measured.
+    /// Makes the tables of a record. The row of `target` comes first, if it was measured.
     pub fn new(record: &SynthesisRecord, target: Option<&str>) -> Self {
         let mut measured: Vec<&Figures> = record.targets.iter().collect();
         measured.sort_by_key(|figures| Some(figures.target.name()) != target);

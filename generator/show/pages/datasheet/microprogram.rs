@@ -1,42 +1,43 @@
-//! Tabulates the microprogram as the patents do: a row for each microinstruction, a column for each control line.
+//! Makes the datasheet's table of the microprogram, as the patents print it: a row for each microinstruction, a column for each
+//! control line.
 
 use crate::pages::account;
 use crate::pages::markup::html;
 use glint_rtl::netlist::{Design, FieldKind};
 
-/// The table of microinstructions and lines.
+/// The microprogram as a table: a row for each microinstruction, a column for each control line.
 pub struct Microprogram {
-    /// Whether the source numbers any line.
+    /// Whether the source's figure has numbers for the control lines.
     pub numbered: bool,
-    /// The fields of the control word, from the top bits.
+    /// The fields of the control word, from the highest bits to the lowest.
     pub fields: Vec<FieldView>,
     /// The microinstructions, from address 0.
     pub rows: Vec<MicroinstructionRow>,
 }
 
-/// A field.
+/// A field of the control word.
 pub struct FieldView {
     /// Its name.
     pub name: String,
-    /// For each of its lines the number in the source's figure, or else the bit of the control word.
+    /// For each control line of the field, its number in the source's figure, or else its bit in the control word.
     pub lines: Vec<String>,
 }
 
-/// A microinstruction.
+/// A row of the table: a microinstruction.
 pub struct MicroinstructionRow {
-    /// Its number.
+    /// The address of the microinstruction.
     pub address: usize,
     /// The name of the operation.
     pub name: String,
     /// For each line: whether a field begins here, whether it is 1, and the meaning of the field's value. For example,
     /// the value 2 of a field of two bits has a line with `(true, true, …)` and a line with `(false, false, …)`.
     pub bits: Vec<(bool, bool, String)>,
-    /// The successor, as HTML.
+    /// The following microinstruction, as HTML.
     pub then: String,
 }
 
 impl Microprogram {
-    /// Tabulates the microprogram of a design.
+    /// Makes the table of a design's microprogram.
     pub fn new(design: &Design) -> Self {
         let control = &design.control;
         let numbered = control.fields.iter().any(|field| !field.lines.is_empty());

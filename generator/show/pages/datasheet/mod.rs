@@ -1,7 +1,7 @@
-//! Makes the datasheet of a configuration, as a vendor's product guide would present it: one HTML page that needs
-//! nothing but itself.
+//! Makes the datasheet of a configuration: one HTML page, like a vendor's product guide, that needs no other file and no network.
 //!
-//! Everything on it comes from the design, the golden model and simulation; nothing knows a device by name.
+//! All content comes from the netlist, the golden model, the contract and simulation. No code here depends on the name of a
+//! device.
 
 mod measured;
 mod microprogram;
@@ -31,28 +31,28 @@ const SIDE: u32 = 260;
 /// Samples along each side of a pixel.
 const SAMPLES: u32 = 2;
 
-/// The subject of a datasheet.
+/// The core that a datasheet describes, with the evidence and measurements that it shows.
 pub struct Subject<'a> {
-    /// The configuration.
+    /// The core.
     pub core: &'a Core,
-    /// The configuration as the command line names it; the page has its label.
+    /// The path of the configuration file, as the user gave it. The page shows its label.
     pub path: &'a str,
-    /// The evidence for its contract's bound.
+    /// The evidence for the error bound of the contract.
     pub backing: Backing,
     /// The record of the core's exhaustive check, if there is one.
     pub proof: Option<Record>,
-    /// The measurements of `glint synth`, if there is a record.
+    /// The record of the core's measurements by `glint synth`, if there is one.
     pub figures: Option<figures::SynthesisRecord>,
-    /// The tool that synthesises the core if there is no record. Without the tool, the page says how to synthesise
-    /// it.
+    /// The tool that counts the core's cells if there is no record. Without record and tool, the page explains how to synthesise
+    /// the core.
     pub synthesis: Option<&'a dyn Synthesis>,
 }
 
-/// A datasheet that was written.
+/// A finished datasheet.
 pub struct Datasheet {
-    /// The page. Its last line vouches for the lines above; see [`glint_core::package::is_sealed`].
+    /// The HTML page. Its last line has a digest of the lines above; see [`glint_core::package::is_sealed`].
     pub page: String,
-    /// The timing diagram for WaveDrom.
+    /// The timing diagram as JSON for WaveDrom.
     pub wavedrom: String,
 }
 
@@ -84,13 +84,13 @@ struct HighlightPicture {
     gain: u8,
 }
 
-/// Returns the steps of work that [`datasheet`] reports as done. For example, without synthesis there are 26: 25 for
-/// the curves and 1 for the picture.
+/// Returns the number of times that [`datasheet`] calls `done`. For example, without synthesis it is 26: 25 times for the curves
+/// and once for the picture.
 pub fn steps(synthesis: bool) -> usize {
     curves::STEPS + 1 + if synthesis { FAMILIES.len() } else { 0 }
 }
 
-/// Makes the page of a configuration.
+/// Makes the datasheet of a core. It calls `done` after each step of work.
 ///
 /// # Errors
 /// Fails if the device never ends, or if synthesis fails.
@@ -124,7 +124,7 @@ pub fn datasheet(subject: &Subject, done: &(dyn Fn() + Sync)) -> Result<Datashee
     Ok(Datasheet { page: page::page(subject, &measured)?, wavedrom: measured.waves.wavedrom()? })
 }
 
-/// Returns the timing diagram of a core as a file of its own, and its description in words.
+/// Returns the timing diagram of a core as an SVG file, and a description of the diagram in words.
 ///
 /// # Errors
 /// Fails if the device never ends.

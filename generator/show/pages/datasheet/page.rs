@@ -1,5 +1,4 @@
-//! Gathers everything that is known of a configuration into views, which the template of the datasheet prints as the
-//! page.
+//! Collects all facts about a configuration in views, plain structs, which the template of the datasheet prints as an HTML page.
 
 use anyhow::Result;
 use base64::Engine;
@@ -114,7 +113,7 @@ struct HighlightView {
     gain: u8,
 }
 
-/// Returns the page.
+/// Returns the HTML page of a datasheet.
 ///
 /// # Errors
 /// Fails if a chart cannot be plotted, or if a template cannot be printed.

@@ -1,4 +1,4 @@
-//! Prepares tables for HTML.
+//! Converts tables of plain text to the HTML tables of a datasheet.
 
 use crate::pages::account::{Align, TextTable};
 use crate::pages::markup::html;
@@ -6,9 +6,9 @@ use crate::pages::markup::html;
 /// The width of a phone, in characters of a table; a wider one is shown there a row below the other.
 const NARROW: usize = 36;
 
-/// A table as the page prints it.
+/// A table as the template of the datasheet prints it.
 pub struct TableView {
-    /// The text for a screen reader.
+    /// A description of the table for screen readers.
     pub label: &'static str,
     /// Whether a narrow page shows each row as lines of its own. For example, a table with a sentence in a cell stacks.
     pub stacks: bool,
@@ -20,16 +20,16 @@ pub struct TableView {
 
 /// A cell of a table.
 pub struct CellView {
-    /// Its class.
+    /// The class of the cell in the style sheet.
     pub class: &'static str,
     /// The heading of its column, as plain text, for a narrow page that has no room for columns.
     pub label: String,
-    /// The text, as HTML.
+    /// The contents of the cell, as HTML.
     pub text: String,
 }
 
 impl TableView {
-    /// Prepares a table of plain text with names in backquotes.
+    /// Converts a table of plain text, in which names are in backquotes.
     pub fn new(label: &'static str, table: &TextTable) -> Self {
         let class = |align| match align {
             Align::Left => "",

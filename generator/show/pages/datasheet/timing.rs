@@ -1,4 +1,4 @@
-//! Draws the timing diagram of a waveform.
+//! Draws a recorded waveform as the timing diagram of a datasheet.
 
 use std::ops::Range;
 
@@ -29,7 +29,7 @@ const ROOM: i32 = 1120;
 /// Between strips of a waveform that is wider.
 const APART: i32 = 22;
 
-/// Draws a waveform, in as many strips as it takes.
+/// Draws a waveform. If it is too long for one strip, it is continued in strips below.
 pub fn drawing(waves: &Waves) -> Drawing {
     let widest = waves.lanes.iter().map(|lane| text_width(&label(lane)));
     let left = widest.max().unwrap_or(0) + 16;

@@ -1,5 +1,6 @@
-//! Takes the waveform of one computation, or of points through a pipeline, from the built-in simulator: lanes of
-//! values, and WaveDrom's JSON of them.
+//! Records the waveform of one computation, or of some points in a pipeline, with the built-in simulator.
+//!
+//! A waveform has one lane for each signal. It can be written as JSON for the drawing tool WaveDrom.
 
 use anyhow::Result;
 use serde_json::{Value, json};
@@ -20,20 +21,21 @@ const HEAD: usize = 24;
 /// Clocks that are shown of its end.
 const TAIL: usize = 8;
 
-/// The name of the lane that says which microinstruction is executed.
+/// The name of the lane that shows which microinstruction is executed.
 pub const MICROINSTRUCTION: &str = "microinstruction";
 
-/// A recording, clock by clock.
+/// A recorded waveform.
 pub struct Waves {
     /// The name of the module.
     pub name: String,
-    /// Points through a pipeline, and not one computation.
+    /// Whether the waveform shows several points in a pipeline; otherwise it shows one computation.
     pub pipelined: bool,
-    /// A caption in some words.
+    /// A short caption.
     pub what: &'static str,
-    /// The clocks that are shown, from 0; a number that is not one more than that before follows a gap.
+    /// The numbers of the clocks that are shown, from 0. If a number is not one more than the number before it, clocks between
+    /// them are left out.
     pub clocks: Vec<usize>,
-    /// One below the other.
+    /// The signals, from top to bottom.
     pub lanes: Vec<Lane>,
 }
 
@@ -41,9 +43,9 @@ pub struct Waves {
 pub struct Lane {
     /// The signal.
     pub name: String,
-    /// The number of its block in the source's figure.
+    /// The number in the source's figure of the block that drives the signal.
     pub number: Option<u16>,
-    /// How it is drawn.
+    /// The style in which the lane is drawn.
     pub shape: LaneStyle,
     /// The value in each clock that is shown; `None` if it means nothing yet. For example, a result is `None` before
     /// the first `valid`.
@@ -166,7 +168,7 @@ impl Waves {
         Self { name: design.name.clone(), pipelined, what, clocks: shown, lanes }
     }
 
-    /// Returns the first clock in which a signal is 1.
+    /// Returns the first clock in which the signal `name` is 1.
     pub fn first(&self, name: &str) -> Option<u32> {
         let lane = self.lanes.iter().find(|lane| lane.name == name)?;
         let at = lane.values.iter().position(|value| value.as_deref() == Some("1"))?;

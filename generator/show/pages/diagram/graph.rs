@@ -1,5 +1,5 @@
-//! Makes the graph of a block diagram from the netlist: nodes (ports, blocks and the control unit) and the wires
-//! between them.
+//! Makes the graph of a core's block diagram from the netlist. Its nodes are ports, blocks and the control unit; its edges are
+//! the wires between them.
 
 use std::collections::HashMap;
 
@@ -7,34 +7,34 @@ use crate::pages::account::blocks::{Block, BlockKind, Blocks};
 use crate::pages::account::format_text;
 use glint_rtl::netlist::{Design, Driver, FieldId, NetId, Role, Sequence};
 
-/// Boxes and the wires between them.
+/// The graph of a block diagram: boxes, and the wires between them.
 pub struct DiagramGraph {
-    /// Ports, blocks, and the control unit.
+    /// The boxes: ports, blocks, and the control unit.
     pub boxes: Vec<DiagramBox>,
-    /// From the output of a box to another's input, one for each input.
+    /// The wires. Each leads from the output of a box to one input of another.
     pub wires: Vec<DiagramWire>,
-    /// The number of stages; 0 without a pipeline.
+    /// The number of stages of a pipeline; 0 for another design.
     pub stages: usize,
 }
 
 /// A box of the diagram.
 #[derive(Default)]
 pub struct DiagramBox {
-    /// How it is drawn.
+    /// The shape of the box.
     pub form: BoxForm,
-    /// In the source's figure.
+    /// The number of the block in the source's figure.
     pub number: Option<u16>,
     /// Its name.
     pub name: String,
-    /// Its kind and format.
+    /// The kind of the block and its number format.
     pub caption: String,
-    /// The other names of its output.
+    /// Further names of the box's output.
     pub aliases: Vec<String>,
-    /// The lines that control it, by number or name; may be empty.
+    /// The control lines of the block, by number or name; may be empty.
     pub control: String,
-    /// Its tooltip.
+    /// The text that appears when the pointer is on the box.
     pub title: String,
-    /// In a pipeline, the stage of the box; `None` for a port.
+    /// The stage of the box in a pipeline; `None` for a port.
     pub stage: Option<usize>,
 }
 
@@ -54,17 +54,17 @@ pub enum BoxForm {
     Empty,
 }
 
-/// A wire.
+/// A wire from one box to another.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct DiagramWire {
-    /// The box that drives it.
+    /// The index of the box that drives the wire.
     pub from: usize,
-    /// The box that takes it.
+    /// The index of the box that reads the wire.
     pub to: usize,
 }
 
 impl DiagramGraph {
-    /// Makes the graph of a design.
+    /// Makes the block diagram's graph of a design.
     pub fn new(design: &Design) -> Self {
         let stages = design.pipeline.as_ref().map_or(0, |pipeline| pipeline.stages.len());
         let mut builder = GraphBuilder {

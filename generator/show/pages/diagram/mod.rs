@@ -1,9 +1,8 @@
-//! Draws the block diagram: the blocks of the netlist, laid out in ranks from the inputs to the outputs.
+//! Draws the block diagram of a core as SVG, with the blocks in columns from the inputs to the outputs.
 //!
-//! For a pipeline, each stage has a band, and a wire has a mark where it goes through a register from one stage to
-//! the next. `place` and `route` lay the diagram out from left to right, and the page shows it turned, from top to
-//! bottom. A datapath has more ranks than blocks in one rank, so the turned form fits a page, on a screen and on
-//! paper.
+//! `place` assigns the blocks to columns from left to right, and `route` draws the wires. The finished diagram is turned, so that
+//! it reads from top to bottom: a datapath has more columns than blocks in one column, and the turned form fits a page. For a
+//! pipeline, each stage has a band, and a mark on a wire shows a register between two stages.
 
 mod graph;
 mod place;
@@ -49,7 +48,7 @@ const ASIDE: i32 = 140;
 /// From the boxes of a stage to the registers at its end.
 const REGISTERS: f64 = 7.0;
 
-/// Draws the blocks of a design.
+/// Draws the block diagram of a design.
 pub fn drawing(design: &Design) -> Drawing {
     let graph = DiagramGraph::new(design);
     let back = place::back(&graph);
@@ -110,7 +109,7 @@ pub fn drawing(design: &Design) -> Drawing {
     }
 }
 
-/// Returns the drawing as a file of its own, ending with a newline.
+/// Returns the block diagram of a design as an SVG file, ending with a newline.
 ///
 /// # Errors
 /// Fails if the template cannot be printed.

@@ -1,4 +1,4 @@
-//! Places the boxes of a block diagram in columns from left to right, by the layered layout of the `dagre` library.
+//! Places the boxes of a block diagram in columns from left to right, with the layered layout algorithm of the `dagre` library.
 
 use dagre::graph::{Graph as Layered, GraphOptions};
 use dagre::{EdgeLabel, LayoutOptions, NodeLabel, RankDir, Ranker, layout};
@@ -22,23 +22,24 @@ const LAST: i32 = 20;
 /// The end of the diagram, to which the outputs of the datapath are tied.
 const END: &str = "outputs";
 
-/// The place of everything, from above. Columns are numbered from the left.
+/// The positions of the boxes of a block diagram. Columns are numbered from the left.
 pub struct Placement {
     /// The column of each box.
     pub column: Vec<usize>,
-    /// The middle of the place of each box.
+    /// The vertical position of the middle of each box.
     pub middle: Vec<f64>,
-    /// How many columns there are.
+    /// The number of columns.
     pub columns: usize,
     /// Whether each wire leads back to the left.
     pub back: Vec<bool>,
-    /// The places at which each wire passes the columns between its ends, in the wire's own direction.
+    /// For each wire, the columns that it passes between its ends, with its vertical position in each, in the direction of the
+    /// wire.
     pub passes: Vec<Vec<(usize, f64)>>,
 }
 
 impl Placement {
-    /// Puts boxes of these `heights` into columns; `back` marks the wires that lead back, as [`back`] does. Among
-    /// four layouts, it takes the one with the least height, which is the width of the page.
+    /// Places boxes of these `heights` in columns; `back` marks the wires that lead back, as the function [`back`] does. It
+    /// computes four layouts and takes the lowest, because the turned diagram then has the smallest width.
     pub fn new(graph: &DiagramGraph, heights: &[f64], back: &[bool]) -> Self {
         let variants = [
             (Ranker::NetworkSimplex, false),
@@ -210,8 +211,8 @@ fn driven_by_control(graph: &DiagramGraph, output: usize) -> bool {
     drivers.any(|wire| graph.boxes[wire.from].form == BoxForm::Control)
 }
 
-/// Marks the wires that lead back. In each loop, it is the wire into the mux that chooses among the most inputs, if the
-/// loop has one. For example, in an accumulator it is the wire from the register to the mux in front of the adder.
+/// Marks the wires that lead back to an earlier column, one in each loop. If the loop has a mux, it is the wire into the mux with
+/// the most inputs. For example, in an accumulator it is the wire from the register to the mux in front of the adder.
 pub fn back(graph: &DiagramGraph) -> Vec<bool> {
     let mut order: Vec<usize> = (0..graph.wires.len()).collect();
     order.sort_by_key(|&wire| std::cmp::Reverse(back_weight(graph, graph.wires[wire].to)));

@@ -1,5 +1,7 @@
-//! Routes the wires of a block diagram: horizontally through columns, vertically between them, around a box where they
-//! lead back.
+//! Routes the wires of a block diagram.
+//!
+//! A wire runs horizontally through the columns of boxes, and vertically in the gaps between two columns. A wire that leads back
+//! to an earlier column goes around the boxes.
 
 use std::collections::HashMap;
 
@@ -16,24 +18,24 @@ const MARGIN: f64 = 14.0;
 /// From the border of a box to its first pin.
 const EDGE: f64 = 8.0;
 
-/// The width of the way around a box for each wire that leads back.
+/// The width that each wire which leads back takes on its way around a box.
 pub const LANE: f64 = 10.0;
 
-/// A box as the routes see it, from above.
+/// The size and position of a box.
 #[derive(Clone, Copy, Debug)]
 pub struct Body {
-    /// The y coordinate at which lanes around it begin.
+    /// The vertical position at which the wires around the box begin.
     pub top: f64,
     /// The upper edge of the box.
     pub upper: f64,
     /// The lower edge.
     pub lower: f64,
-    /// From left to right.
+    /// The width of the box.
     pub width: f64,
 }
 
 impl Body {
-    /// Moves it down.
+    /// Moves the box down by a distance.
     pub fn lower(&mut self, by: f64) {
         for edge in [&mut self.top, &mut self.upper, &mut self.lower] {
             *edge += by;
@@ -41,7 +43,7 @@ impl Body {
     }
 }
 
-/// A straight piece, horizontal or vertical.
+/// A straight piece of a wire, horizontal or vertical.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WireSegment {
     /// One end.
@@ -50,7 +52,7 @@ pub struct WireSegment {
     pub to: (f64, f64),
 }
 
-/// The way of all wires that one box drives.
+/// The pieces of all wires that one box drives.
 #[derive(Clone, Debug, Default)]
 pub struct WireRoute {
     /// In no order.
@@ -61,15 +63,15 @@ pub struct WireRoute {
     pub pins: Vec<(f64, f64)>,
 }
 
-/// A finished layout.
+/// The finished layout of a block diagram.
 pub struct Routes {
     /// The left edge of each box.
     pub left: Vec<f64>,
-    /// By the box that drives it.
+    /// For each box, the route of the wires that it drives.
     pub nets: Vec<WireRoute>,
-    /// From left to right.
+    /// The width of the diagram.
     pub width: f64,
-    /// The beginning and the end of each column.
+    /// The left and the right edge of each column.
     pub columns: Vec<(f64, f64)>,
 }
 
@@ -123,7 +125,7 @@ pub fn lanes(graph: &DiagramGraph, back: &[bool]) -> Vec<Vec<usize>> {
     lanes
 }
 
-/// Routes the wires between boxes at the places of `placement`.
+/// Routes the wires between the boxes of a placement.
 pub fn routes(
     graph: &DiagramGraph,
     placement: &Placement,

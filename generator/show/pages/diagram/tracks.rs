@@ -1,5 +1,6 @@
-//! Gives the wires between two columns their tracks: vertical trunks, each on a track of its own where it would touch
-//! another.
+//! Assigns the vertical pieces of wires in the gap between two columns of a block diagram to parallel tracks.
+//!
+//! Two pieces that would overlap get different tracks. The order of the tracks is chosen so that few wires cross.
 
 /// Nearer than this, lines seem to touch.
 const NEAR: f64 = 5.0;
@@ -7,7 +8,7 @@ const NEAR: f64 = 5.0;
 /// Worse than any number of crossings: two wires would lie upon each other.
 const OVERLAP: usize = 1000;
 
-/// The border of the gap at which a wire comes or goes.
+/// The side of the gap between two columns at which a wire enters or leaves the gap.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Side {
     /// Toward lower columns.
@@ -16,16 +17,16 @@ pub enum Side {
     Right,
 }
 
-/// The course of one net through a gap: a vertical line with taps to both sides.
+/// The vertical piece of one box's wires in the gap between two columns, with horizontal taps to both sides.
 #[derive(Clone, Debug)]
 pub struct Trunk {
-    /// The box that drives it.
+    /// The index of the box that drives the wires.
     pub net: usize,
-    /// The place and the side at which it comes in; the first tap.
+    /// The vertical position and the side at which the wire enters the gap.
     pub entry: (f64, Side),
-    /// The places and the sides at which it leaves.
+    /// The vertical positions and the sides at which the wires leave the gap.
     pub exits: Vec<(f64, Side)>,
-    /// From the left; set by [`assign`].
+    /// The number of the track, from the left; [`assign`] sets it.
     pub track: usize,
 }
 
@@ -35,7 +36,7 @@ impl Trunk {
         std::iter::once(self.entry).chain(self.exits.iter().copied())
     }
 
-    /// Returns the upper and the lower end.
+    /// Returns the upper and the lower end of the vertical piece.
     pub fn reach(&self) -> (f64, f64) {
         let (mut low, mut high) = (f64::MAX, f64::MIN);
         for (y, _) in self.taps() {
@@ -51,7 +52,7 @@ impl Trunk {
         (low..=high).contains(&y)
     }
 
-    /// Returns whether it goes straight from side to side.
+    /// Returns whether the wire crosses the gap straight, without a vertical piece.
     pub fn is_straight(&self) -> bool {
         let (low, high) = self.reach();
         high - low < 0.5

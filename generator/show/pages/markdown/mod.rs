@@ -1,4 +1,4 @@
-//! Writes the page of a configuration in Markdown: a description of the device for people.
+//! Writes the documentation page of a configuration in Markdown: ports, timing, microprogram, accuracy and more.
 
 mod prose;
 
@@ -68,7 +68,7 @@ impl ControlTables {
     }
 }
 
-/// Returns the page of a design, ending with a newline.
+/// Returns the documentation page of a design in Markdown, ending with a newline.
 ///
 /// # Errors
 /// Fails if the template cannot be printed.

@@ -1,9 +1,9 @@
-//! Writes tables in Markdown, and escapes text that Markdown would take for something else.
+//! Writes tables in Markdown, and escapes characters in text that Markdown would interpret.
 
 use crate::pages::account::{Align, TextTable};
 
-/// Returns the lines of a table, without the last newline. Its columns are padded, so that it reads well as text too; the last
-/// one is not.
+/// Returns a table in Markdown, without the last newline. All columns except the last are padded, so that the table is also
+/// readable as text.
 pub fn table(table: &TextTable) -> String {
     let headings: Vec<String> = table.columns.iter().map(|column| prose(&column.heading)).collect();
     let mut rows: Vec<Vec<String>> = Vec::new();
@@ -47,8 +47,8 @@ fn line(table: &TextTable, widths: &[usize], cells: &[String]) -> String {
     format!("| {} |", padded.join(" | "))
 }
 
-/// Escapes prose so that no sign is Markdown's, except names in backquotes. For example, `a*b` outside of backquotes
-/// becomes `a\*b`.
+/// Escapes the characters of a text that Markdown would interpret, except inside backquotes. For example, `a*b` outside of
+/// backquotes becomes `a\*b`.
 pub fn prose(text: &str) -> String {
     let mut plain = String::with_capacity(text.len());
     let mut name = false;

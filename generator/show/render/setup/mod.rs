@@ -1,12 +1,13 @@
-//! Computes the host's set-up of a line, in f64, for devices that walk lines (seed 000).
+//! Computes the operands of a line in f64, for devices that compute a whole line of points after one start. A host does this
+//! once for each line, from the vectors at its two ends.
 //!
-//! Along a line the half vector goes from H₁ to H₂ on a great circle while the normal goes from N₁ to N₂. The seed
-//! turns the second end so that the normals coincide: H₂′ is H₂ turned as N₂ is turned into N₁. The result is one
-//! half vector on the circle through H₁ and H₂′. The cosine of its angle to N₁ is `A·cos(ζ)`, with ζ growing evenly:
-//! [`Arc`]. So `I·k_s·cosⁿδ = C·cosⁿζ` with `C = I·k_s·Aⁿ`: [`LineParameters`]. The raw operands are the operands of
-//! [`Feed::line`](super::Feed::line).
+//! The method is from document 000, the source of these devices. Along a line, the normal turns from N₁ to N₂ on a great circle,
+//! and the half vector from H₁ to H₂. The method rotates H₂ as N₂ is rotated into N₁, and calls the result H₂′. The normal is
+//! then always N₁, and one half vector turns on the circle through H₁ and H₂′.
 //!
-//! `templates/setup.c` and `templates/setup.py` compute the same, in the same order.
+//! The cosine of the angle δ between them is `A·cos(ζ)`, with an angle ζ that grows evenly along the line: [`Arc`]. So
+//! `I·k_s·cosⁿδ = C·cosⁿζ` with `C = I·k_s·Aⁿ`: [`LineParameters`]. [`Feed::line`](super::Feed::line) converts these parameters
+//! to raw operands. `templates/setup.c` and `templates/setup.py` compute the same, in the same order.
 //!
 //! ```
 //! use glint_show::render::{Vector, setup::Arc};
@@ -34,7 +35,7 @@ const STILL: f64 = 1e-8;
 /// By how much the cosine of the least angle to the normal may exceed 1 through rounding.
 const ROUNDING: f64 = 1e-6;
 
-/// Why a line cannot be set up.
+/// The reason why the operands of a line cannot be computed.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Error {
     /// A vector has no direction: its length is 0 or not finite. Which one.
@@ -113,7 +114,7 @@ impl Arc {
         )
     }
 
-    /// Sets up an arc from θ₁, θ₂ and γ, each from 0 to π.
+    /// Makes an arc from θ₁, θ₂ and γ, each from 0 to π.
     ///
     /// # Errors
     /// Fails with [`Error::OppositeHalves`] or [`Error::NoSuchAngles`].
@@ -209,7 +210,7 @@ fn angle(a: Vector, b: Vector) -> f64 {
     libm::atan2(a.cross(b).length(), a.dot(b))
 }
 
-/// A line before it is quantised. Angles are in radians.
+/// The parameters of a line before they are quantised. Angles are in radians.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LineParameters {
     /// C = I·k_s·Aⁿ, in output units.
@@ -225,7 +226,7 @@ pub struct LineParameters {
 }
 
 impl LineParameters {
-    /// Returns ζ of point number `index`.
+    /// Returns the angle ζ of point number `index`.
     pub fn zeta(&self, index: u32) -> f64 {
         self.zeta_start + f64::from(index) * self.delta_zeta
     }

@@ -1,4 +1,4 @@
-//! Prints the outcome of `cosim --exhaustive` and `merge`.
+//! Prints the result of an exhaustive check, for `glint cosim --exhaustive` and `glint merge`.
 
 use std::collections::BTreeMap;
 

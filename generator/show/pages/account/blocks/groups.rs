@@ -1,27 +1,29 @@
-//! Groups nets into blocks: one block for each statement of the description.
+//! Groups the nets of a netlist into blocks for a block diagram: one block for each statement of the device's description.
 //!
-//! A net is *made from* sources: blocks, ports and tables that reach it through wires and gates. If several sources
-//! meet and an operator takes the result, the meeting point is a *joint*, a block of gates or wiring.
+//! For each net, the module finds its *sources*: the blocks, ports and ROMs whose values reach it through wiring and gates alone.
+//! If several sources meet in one net, and an operator such as an adder takes the net, that net is a *joint*. A joint is drawn as
+//! a block of gates or wiring.
 
 use std::collections::BTreeSet;
 
 use super::kind::{MULTIPLIER, MUX, operator};
 use glint_rtl::netlist::{Design, Driver, Net, NetId, Op, Partition, Role, RomId};
 
-/// The groups of a design's nets, and the sources of each.
+/// The nets of a design, grouped into blocks, and the sources of each net.
 pub struct Groups<'a> {
     /// The design.
     pub design: &'a Design,
-    /// The nets that belong together, as the lowest of them.
+    /// For each net, the number of its group: the lowest number of a net in the group.
     pub group: Vec<usize>,
-    /// The nets that are registers, tables or operators, or shown because the source numbers or documents them.
+    /// For each net, whether it makes its group a block: it is a register, a ROM or an operator, or the description documents or
+    /// numbers it.
     pub cell: Vec<bool>,
     /// For each net, the blocks, ports and tables that it is made from within a clock. In a pipeline the clocks between
     /// do not matter.
     pub sources: Vec<Vec<NetId>>,
-    /// For each group with a cell its output.
+    /// For each group that is a block, its output net.
     pub head: Vec<Option<NetId>>,
-    /// Nets at which several signals meet by wiring or gates, and which an operator takes.
+    /// The joints: nets at which several signals meet by wiring or gates, and which an operator takes.
     pub joints: BTreeSet<NetId>,
 }
 
@@ -171,8 +173,8 @@ impl<'a> Groups<'a> {
         std::ptr::eq(self.design.net(one).location, self.design.net(other).location)
     }
 
-    /// Returns whether an adder adds a bit to a number, as rounding does. For example, `upper + half` rounds if `half`
-    /// is 0 or 1.
+    /// Returns whether an adder only adds a single bit to a number, as rounding does. For example, `upper + half` rounds if
+    /// `half` is 0 or 1.
     pub fn rounds(&self, adder: NetId) -> bool {
         self.operands(adder).iter().any(|operand| self.design.net(*operand).range == (0, 1))
     }
@@ -303,7 +305,7 @@ impl<'a> Groups<'a> {
         self.joints = read.into_iter().filter_map(|net| self.joint(net)).collect();
     }
 
-    /// Returns the outputs of the groups that have a cell.
+    /// Returns the output nets of the groups that are blocks.
     pub fn heads(&self) -> impl Iterator<Item = NetId> {
         self.head.iter().copied().flatten()
     }
@@ -349,7 +351,7 @@ impl<'a> Groups<'a> {
         }
     }
 
-    /// Returns the nets that are inside the block with this output: its cells, and wiring behind them.
+    /// Returns the nets of the block with this output: its cells, and wiring that passes on the value of the block.
     pub fn inside(&self, head: NetId) -> Vec<NetId> {
         let group = self.group[head.index()];
         let mut inside = Vec::new();
@@ -361,7 +363,7 @@ impl<'a> Groups<'a> {
         inside
     }
 
-    /// Returns the block or port that drives the value of a net.
+    /// Returns the block or port whose value a net carries.
     pub fn driver(&self, net: NetId) -> Option<NetId> {
         match self.sources[net.index()][..] {
             [] => None,
@@ -370,7 +372,7 @@ impl<'a> Groups<'a> {
         }
     }
 
-    /// Returns the registers of a pipeline that hold the value of a block or port.
+    /// Returns the registers of a pipeline that only delay the value of a block or port.
     pub fn held(&self, source: NetId) -> Vec<NetId> {
         let mut held = Vec::new();
         for (id, net) in self.design.iter() {

@@ -1,4 +1,4 @@
-//! The kinds of blocks in a datapath (register, ROM, adder, mux, …), and their names.
+//! Names the kinds of blocks in a datapath, for example register, ROM, adder and mux.
 
 use std::fmt;
 
@@ -83,12 +83,12 @@ impl fmt::Display for BlockKind {
     }
 }
 
-/// The places of some of them.
+/// The indices of some operators in [`OPERATORS`].
 pub const MULTIPLIER: usize = 0;
 pub const ADDER: usize = 1;
 pub const MUX: usize = 4;
 
-/// Returns the place of an operator among [`OPERATORS`].
+/// Returns the index in [`OPERATORS`] of the operator that drives a net.
 pub fn operator(driver: &Driver) -> Option<usize> {
     match driver {
         Driver::Op(Op::Mul(..)) => Some(MULTIPLIER),

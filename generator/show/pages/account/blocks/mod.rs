@@ -1,8 +1,8 @@
-//! Finds the blocks of a datapath: every register, table and operator of the netlist is in one of them.
+//! Finds the blocks of a datapath, which pages list and the block diagram draws.
 //!
-//! A statement of the description makes one block: a rounding with its limits, a tree of muxes, a product in parts.
-//! Wires, and gates with one signal, are part of the way from block to block. In a pipeline, a register belongs to the
-//! block whose value it holds.
+//! A block is the hardware of one statement in the device's description, for example a rounding with its limits, a tree of muxes,
+//! or a product in parts. Every register, ROM and operator of the netlist is in exactly one block. Wiring, and gates with one
+//! signal, belong to the connection between two blocks. In a pipeline, a register belongs to the block whose value it delays.
 
 mod groups;
 mod kind;
@@ -15,7 +15,8 @@ use groups::Groups;
 pub use kind::BlockKind;
 use kind::{ADDER, MULTIPLIER, operator};
 
-/// Returns the blocks in order of their number. Blocks without a number in the source follow.
+/// Returns the table of a design's blocks, in the order of their numbers in the source's figure. Blocks without a number come
+/// last.
 pub fn table(design: &Design) -> TextTable {
     let blocks = Blocks::new(design, false);
     let mut table = TextTable::of("no.: | block | kind | format | takes | what it is");
@@ -50,29 +51,29 @@ fn stage(design: &Design, pipeline: &Pipeline, cell: NetId) -> usize {
     }
 }
 
-/// A block of the datapath.
+/// A block of a datapath: the hardware of one statement of the description.
 #[derive(Clone, Debug)]
 pub struct Block {
-    /// Its number in the source's figure.
+    /// The number of the block in the source's figure.
     pub number: Option<u16>,
     /// Its name.
     pub name: String,
     /// The kind of the block.
     pub kind: BlockKind,
-    /// The format of its output.
+    /// The number format of the block's output.
     pub format: String,
-    /// The net by which other blocks name it.
+    /// The net that the block drives.
     pub output: NetId,
     /// The blocks, ports, constants and ROMs that it reads, by the nets that they drive. An operator has one for each
     /// operand.
     pub inputs: Vec<NetId>,
-    /// The select inputs: a field of the control word, or blocks.
+    /// For a mux, the select inputs: a field of the control word, or blocks.
     pub selected_by: Vec<NetId>,
     /// One line; may be empty.
     pub doc: String,
-    /// The nets of the registers, tables and operators that it is made of.
+    /// The nets of the registers, ROMs and operators inside the block.
     pub cells: Vec<NetId>,
-    /// In a pipeline, the names of the values that its output has besides its own.
+    /// In a pipeline, the further names of the value that the block computes.
     pub aliases: Vec<String>,
 }
 
@@ -89,7 +90,7 @@ impl<'a> Blocks<'a> {
         Self { design, groups: Groups::new(design, figure) }
     }
 
-    /// Returns all blocks, in order of their number. Blocks without a number follow.
+    /// Returns all blocks, in the order of their numbers. Blocks without a number come last.
     pub fn all(&self) -> Vec<Block> {
         let mut blocks: Vec<Block> = Vec::new();
         for head in self.groups.heads() {
@@ -403,7 +404,7 @@ impl<'a> Blocks<'a> {
         &self.groups.sources[net.index()]
     }
 
-    /// Returns the stages of a pipeline in which the operators of a block are.
+    /// Returns the first and the last stage of a pipeline in which the block has operators.
     pub fn stages(&self, block: &Block) -> (usize, usize) {
         let design = self.design;
         let Some(pipeline) = &design.pipeline else { return (0, 0) };
