@@ -1,8 +1,9 @@
 //! Operands and colour outputs that the hardware descriptions of several devices share.
 //!
 //! The operands are `cos_gamma` (c = cos γ, γ being the angle between the surface normal and the half vector) and `exponent` (the
-//! specular exponent n). The colour outputs are the colours times the reflectance f. [`outputs_note`] writes a paragraph about
-//! writes while the device computes, and about the time for which the outputs keep their values.
+//! specular exponent n). The colour outputs are the colours times the reflectance f. [`outputs_note`] writes a paragraph for the
+//! device's page. It tells the user that the device ignores operands that the host writes while it is busy, and until when the
+//! outputs keep their values.
 
 use glint_base::fixed::{Format, Rounding};
 use glint_keys::common as keys;
@@ -63,9 +64,9 @@ impl<'d> ColourProducts<'d> {
     }
 }
 
-/// Returns a paragraph for the page of a device: on writes while the device computes, and on how long its outputs keep their
-/// values. If each colour has its own multiplier, the outputs follow the register that `follow` names, until the next computation
-/// does `until`. For example, `follow` is "the accumulator", and `until` is "begins".
+/// Returns a paragraph for the page of a device. It says that the device ignores operands that the host writes while it is busy,
+/// and until when the outputs keep their values. If each colour has its own multiplier, the outputs follow the register that
+/// `follow` names, until the next computation does `until`. For example, `follow` is "the accumulator", and `until` is "begins".
 pub fn outputs_note(keys: &keys::ColourKeys, follow: &str, until: &str) -> Note {
     if keys.in_turn() {
         return Topic::Writes.note(
@@ -79,7 +80,8 @@ pub fn outputs_note(keys: &keys::ColourKeys, follow: &str, until: &str) -> Note 
     ))
 }
 
-/// The numbers that seed 000 gives to the inputs and blocks of the accumulator, which walks along a scan line.
+/// The numbers that seed 000 gives to the inputs and blocks of the accumulator, which computes the angles of the points along a
+/// scan line. Seed 000 is the patent of the device `quad-cosine`.
 pub const LINE_BLOCKS: LineBlocks = LineBlocks {
     delta: OperandBlocks { inputs: (17, 18), register: 2 },
     start: OperandBlocks { inputs: (19, 20), register: 3 },

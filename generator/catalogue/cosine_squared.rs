@@ -2,8 +2,8 @@
 //!
 //! δ is the angle at a point of the line; a = √(n/2) with the specular exponent n; f is the reflectance, the factor by which the
 //! device multiplies an amplitude. The host multiplies its angles by a, so that the accumulated angle in register 8 addresses a
-//! single table. The accumulator is the same as in `quad-cosine`. The source is the prototype that seed 000 cites (Abbas,
-//! Szirmay-Kalos, Horváth 2000).
+//! single table. The accumulator is the same as in `quad-cosine`. The source is a prototype (Abbas, Szirmay-Kalos, Horváth 2000),
+//! which the patent of `quad-cosine` (Glint calls it seed 000) cites.
 
 use glint_config::Config;
 use glint_keys::cosine_squared::Keys;

@@ -1,9 +1,10 @@
 //! The hardware description of the device `gauss`, which computes f = exp(−n·γ²/2).
 //!
 //! γ = arccos c is the angle between the surface normal and the half vector; n is the specular exponent; f is the reflectance,
-//! the factor by which the device multiplies colours. The source is a paper (seed 002) that compares this function with others
-//! and gives no circuit. The paper prints the angle as ∠(H,L), but its formulas use ∠(N,H), and so does this device. It computes
-//! exp(−n·γ²/2) as 2^(−n·decay) with the decay γ²/(2 ln 2), which is 1 − c times a smooth function of 1 − c.
+//! the factor by which the device multiplies colours. The source is the paper "A model for reproducing the specular component of
+//! colour in computer graphics" (in Ukrainian; Glint calls it seed 002), which compares this function with others and gives no
+//! circuit. The paper prints the angle as ∠(H,L), but its formulas use ∠(N,H), and so does this device. It computes exp(−n·γ²/2)
+//! as 2^(−n·decay) with the decay γ²/(2 ln 2), which is 1 − c times a smooth function of 1 − c.
 
 use glint_base::fixed::Format;
 use glint_config::Config;

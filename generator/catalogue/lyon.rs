@@ -2,8 +2,9 @@
 //!
 //! D = N − H is the difference of the unit normal N and the unit half vector H; D² is its squared length; β = n/(2·m) with the
 //! specular exponent n; f is the reflectance, the factor by which the device multiplies colours. The source is the patent US 5
-//! 739 820 (Fig. 7C and 7D), which seed 000 cites. Seed 000 lists only the blocks: two adders, four multipliers, shift register,
-//! counter, comparator and mux. Glint chose the wiring, and numbers each kind of block from 1: adder 1, multiplier 1.
+//! 739 820 (Fig. 7C and 7D), which the patent of the device `quad-cosine` (Glint calls it seed 000) cites. Seed 000 lists only
+//! the blocks: two adders, four multipliers, shift register, counter, comparator and mux. Glint chose the wiring, and numbers
+//! each kind of block from 1: adder 1, multiplier 1.
 
 use glint_base::fixed::{Format, Overflow, Rounding};
 use glint_config::{Config, Shared};

@@ -2,7 +2,7 @@
 //!
 //! δ is the angle at a point of the line; n is the specular exponent; f is the reflectance, the factor by which the device
 //! multiplies an amplitude. Decoder 10 chooses k from n: 1 for n = 1, 2 for n = 2, 4 for n = 3 to 6, and 16 for all other n. The
-//! source, called seed 000, is a patent that claims this device. All numbers of blocks and outputs are the numbers in the
+//! source is a patent that claims this device; Glint calls it seed 000. All numbers of blocks and outputs are the numbers in the
 //! patent's figure.
 //!
 //! Block 14 is the control unit. In the patent it consists of triggers; here it is a microprogram with the same order of events.

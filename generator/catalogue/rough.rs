@@ -3,8 +3,8 @@
 //!
 //! γ is the angle between the surface normal and the half vector; dγ is the deviation of the normal on a rough surface; n is the
 //! specular exponent; f is the reflectance, the factor by which the device multiplies colours. The source is the patent UA 60139
-//! (seed 001), and block numbers are the numbers in its figure. Multiplier 10 computes four products one after the other, and the
-//! select lines V1 and V2 choose its operands. The microprogram equals table 1 of the patent, word by word.
+//! (Glint calls it seed 001), and block numbers are the numbers in its figure. Multiplier 10 computes four products one after the
+//! other, and the select lines V1 and V2 choose its operands. The microprogram equals table 1 of the patent, word by word.
 
 mod sine;
 

@@ -215,7 +215,7 @@ impl Core {
     /// them.
     ///
     /// # Errors
-    /// Fails if the device does not end.
+    /// Fails if a simulated computation does not finish within 65 536 clocks.
     pub fn timing(&self) -> Result<HandshakeTiming> {
         trial::timing(&self.design, self.contract.as_ref())
     }
@@ -223,7 +223,7 @@ impl Core {
     /// Returns a worked example: one computation with the values of all operands and outputs.
     ///
     /// # Errors
-    /// Fails if the device does not end.
+    /// Fails if a simulated computation does not finish within 65 536 clocks.
     pub fn example(&self) -> Result<WorkedExample> {
         trial::example(&self.design, self.contract.as_ref())
     }
@@ -231,7 +231,7 @@ impl Core {
     /// Returns the number of clocks of a line as a function of its length. Returns `None` if the device computes single points.
     ///
     /// # Errors
-    /// Fails if the device does not end.
+    /// Fails if a simulated computation does not finish within 65 536 clocks.
     pub fn line(&self) -> Result<Option<LineClocks>> {
         trial::line(&self.design, self.contract.as_ref())
     }

@@ -1,8 +1,8 @@
 //! Computes formulas without rounding if their values are rational numbers, multiples of π, or logarithms of rational numbers.
 //!
 //! For example, `0.1 * 10` is 1, `16 ^ (1 / 2)` is 4, and `sin(pi * 0.5)` is 1, which floating-point arithmetic cannot show.
-//! Interval arithmetic decides everything except one question: on which side of a jump a value counts that lies exactly on the
-//! jump. This module answers it.
+//! Intervals alone cannot decide on which side of a jump a value counts if it lies exactly on the jump. For example, the floor of
+//! `0.1 * 10` is 1, but an interval around `0.1 * 10` also contains values below 1, whose floor is 0. The exact value decides it.
 
 use dashu_base::{Abs, BitTest, Signed, SquareRootRem};
 use dashu_int::{IBig, UBig};

@@ -1,7 +1,7 @@
 //! Interval arithmetic of any precision. It stores a value exactly if the value is known exactly.
 //!
-//! It is slow, so it only decides questions that `f64` intervals leave open: on which side of a jump a value lies, or a value
-//! beyond the range of `f64`. For example, `exp(1000)` in `1 / (1 + exp(1000))` is beyond that range.
+//! It is slow, so it only decides questions that `f64` intervals leave open: on which side of a jump (for example of `floor` at
+//! 1) a value lies, or a value beyond the range of `f64`. For example, `exp(1000)` in `1 / (1 + exp(1000))` is beyond that range.
 
 use std::cmp::Ordering;
 

@@ -2,7 +2,8 @@
 //!
 //! c = cos γ, where γ is the angle between the surface normal and the half vector; n is the specular exponent; the configuration
 //! chooses m = 2, 4, 8 or 16; f is the reflectance, the factor by which the device multiplies colours. f is 0 if the base is
-//! negative. The source is a paper (seed 002), which calls the function W(n, γ) and proposes it as an approximation of cⁿ.
+//! negative. The source is the paper "A model for reproducing the specular component of colour in computer graphics" (in
+//! Ukrainian; Glint calls it seed 002). The paper calls the function W(n, γ) and proposes it as an approximation of cⁿ.
 
 use std::sync::Arc;
 

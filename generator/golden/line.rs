@@ -1,5 +1,6 @@
-//! Models two blocks that the devices `quad-cosine` and `cosine-squared` (seed 000) share: the accumulator that walks along a
-//! scan line and the table of powers of a cosine.
+//! Models two blocks that the devices `quad-cosine` and `cosine-squared` share: the accumulator that computes the angles of the
+//! points along a scan line, and the table of powers of a cosine. The patent that Glint calls seed 000 claims `quad-cosine` and
+//! cites `cosine-squared`.
 //!
 //! The accumulator starts at the operand `zeta_start` and adds `delta_zeta` for every further point of the line. Angles are in
 //! right angles: with F fraction bits, the raw value 2^F is 90°.
@@ -19,10 +20,10 @@ pub fn raw_angle(operand: &Operand, angle: f64) -> i64 {
     raw.clamp(low, high)
 }
 
-/// Adds the accumulator that walks along a scan line to `frame`: control block 14, counter 5, adder 6, mux 7 and register 8 of
-/// seed 000, and the operands `delta_zeta`, `zeta_start` and `length`. The angles have the format `format`. Returns the slot of
-/// register 8, the angle of the current point, and the microinstructions. The outputs show a point `stages` clocks after the
-/// pulse on output 37 (`write_angle`) that loads its angle.
+/// Adds the accumulator, which computes the angles of the points along a scan line, to `frame`: control block 14, counter 5,
+/// adder 6, mux 7 and register 8 of seed 000, and the operands `delta_zeta`, `zeta_start` and `length`. The angles have the
+/// format `format`. Returns the slot of register 8, the angle of the current point, and the microinstructions. The outputs show a
+/// point `stages` clocks after the pulse on output 37 (`write_angle`) that loads its angle.
 pub fn walker(
     frame: &mut Frame,
     format: Format,

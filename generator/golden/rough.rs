@@ -2,8 +2,8 @@
 //!
 //! γ is the angle between the surface normal and the half vector; dγ is the deviation of the normal on a rough surface; n is the
 //! specular exponent; f is the reflectance, the factor by which the device multiplies colours. The operands are cos γ and cos dγ,
-//! and a table gives the sines. The source is the patent UA 60139 (seed 001); the golden model follows the steps that the patent
-//! describes.
+//! and a table gives the sines. The source is the patent UA 60139 (Glint calls it seed 001); the golden model follows the steps
+//! that the patent describes.
 
 mod analysis;
 mod bound;

@@ -1,8 +1,9 @@
 //! The golden model and the accuracy contract of the device `schlick`, which computes f = c / (n − n·c + c).
 //!
 //! c = cos γ, where γ is the angle between the surface normal and the half vector; n is the specular exponent; f is the
-//! reflectance, the factor by which the device multiplies colours. This is Schlick's approximation of cⁿ; the source is a paper
-//! (seed 002). For example, c = 0.5 and n = 1 give 0.5.
+//! reflectance, the factor by which the device multiplies colours. This is Schlick's approximation of cⁿ; the source is the paper
+//! "A model for reproducing the specular component of colour in computer graphics" (in Ukrainian; Glint calls it seed 002). For
+//! example, c = 0.5 and n = 1 give 0.5.
 
 use super::contract::{self, ErrorShare};
 use super::frame::{Frame, idle, step};

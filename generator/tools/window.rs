@@ -3,7 +3,8 @@
 use anyhow::Result;
 use glint_base::fill;
 
-/// The file to which the module writes. The bench must not write a file of this name.
+/// The name of the waveform file (VCD) that the generated Verilog module writes. The Verilog test bench inside the module must
+/// not write a file of this name.
 pub const WINDOW_FILE: &str = "window.vcd";
 
 /// Units of time in which the bench has a clock.

@@ -108,8 +108,8 @@ fn areas_are_those_of_the_record() {
     }
 }
 
-/// And here: a run is no slower than nine tenths of the slowest run in the record. That much a placement may lose by
-/// chance where a net has another name; the spread over seeds in the records is as wide.
+/// The clock frequency after place and route is at least nine tenths of the lowest frequency in the record. That much a placement
+/// may lose by chance where a net has another name; the spread over seeds in the records is as wide.
 #[test]
 fn frequencies_are_those_of_the_record() {
     let timed = recorded().into_iter().filter(|(_, figures)| figures.frequency.is_some());

@@ -1,4 +1,4 @@
-//! Defines the interface of the engines that compute many points at once.
+//! Defines the interface of the engines that compute many points (sets of operands) at once.
 //!
 //! An [`Engine`] takes the operands of many computations as [`Points`], and returns their results. There are three engines: the
 //! golden model ([`Golden`]), the built-in simulator (`RustHdl`) and the emitted Verilog under an outside simulator. All three
@@ -87,7 +87,8 @@ pub trait Engine {
     /// Returns the raw outputs, in the order of the [`Contract`], result after result.
     ///
     /// # Errors
-    /// Fails if the device does not end, if it shows more or fewer results than expected, or if an outside tool fails.
+    /// Fails if the device does not finish a computation, if it shows more or fewer results than expected, or if an outside tool
+    /// fails.
     fn compute(&mut self, points: &Points) -> Result<Vec<i64>>;
 }
 

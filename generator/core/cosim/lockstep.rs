@@ -1,9 +1,9 @@
 //! Simulates a design and its golden model side by side, and compares every predicted signal at every clock.
 //!
 //! A run is divided into *streams*. Each stream starts at power-up and has its own random inputs. The number of streams, their
-//! seeds and their points depend only on the seed and the number of points of the run. Up to [`LANES`] streams share a simulator,
-//! and each thread has a simulator; neither number changes the result. The result covers the streams in order, up to the first
-//! stream in which model and hardware differ.
+//! seeds and their points depend only on the seed and the number of points (sets of operands) of the run. Up to [`LANES`] streams
+//! share a simulator, and each thread has a simulator; neither number changes the result. The result covers the streams in order,
+//! up to the first stream in which model and hardware differ.
 
 use std::io::Write;
 use std::ops::Range;

@@ -1,4 +1,4 @@
-//! Drives the inputs of a pipeline with random points and a random valid/ready handshake, clock by clock.
+//! Drives the inputs of a pipeline with random points (sets of operands) and a random valid/ready handshake, clock by clock.
 //!
 //! [`Offers`] raises `in_valid` with the operands of a point, and keeps both until the pipeline takes the point. It pauses at
 //! random between points, and now and then withdraws a point that the pipeline has not taken, lowers `out_ready` so that results

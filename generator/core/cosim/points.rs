@@ -1,7 +1,7 @@
 //! Draws the operands of computations at random, and prefers operands at which an error would show.
 //!
 //! A highlight device multiplies colours by a reflectance `f`, from 0 to 1. Over most of the domain `f` is 0, so evenly drawn
-//! operands test little. Three of four points are therefore drawn *by the value of the formula* for `f`:
+//! operands test little. Three of four points (sets of operands) are therefore drawn *by the value of the formula* for `f`:
 //!
 //! 1. [`PointSource`] draws operands in the domain, and a target value for `f`. It draws half of the targets evenly, and half
 //!    with an evenly drawn logarithm.

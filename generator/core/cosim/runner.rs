@@ -98,7 +98,7 @@ impl<'a, const LANES: usize> Runner<'a, LANES> {
     /// Runs some clocks of all streams that have not ended, and returns the number of results in these clocks.
     ///
     /// # Errors
-    /// Fails if the simulation does not settle, if the VCD cannot be written, or if a model does not end.
+    /// Fails if the simulation does not settle, if the VCD cannot be written, or if a golden model does not finish a computation.
     pub(super) fn run(&mut self) -> Result<u64> {
         let points = |streams: &[Stream]| streams.iter().map(|it| it.seen.points).sum::<u64>();
         let before = points(&self.streams);
@@ -110,7 +110,7 @@ impl<'a, const LANES: usize> Runner<'a, LANES> {
     /// Computes the inputs and the predictions of the next clocks, for all streams that have not ended.
     ///
     /// # Errors
-    /// Fails if a model does not end.
+    /// Fails if a golden model does not finish a computation.
     pub(super) fn prepare(&mut self) -> Result<()> {
         let single = self.ahead.len() == 1;
         for (lane, stream) in (0..LANES).zip(&mut self.streams) {

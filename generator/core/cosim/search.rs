@@ -1,9 +1,9 @@
 //! Searches for the operands with the largest output error by hill climbing.
 //!
-//! Random points rarely hit an input at which every rounding errs in the same direction. The search starts from random points
-//! and changes one operand, or a pair of operands with fraction bits, by powers of two while the error grows. For a highlight
-//! it first climbs the error of `f`, and then the error of an output, with the worst colour. Around the highest places it
-//! tries every value of each pair of operands, since rounding makes the last steps too rough to climb. Its result is a lower
+//! At a random point (one set of operands), the roundings rarely all err in the same direction. The search starts from random
+//! points and changes one operand, or a pair of operands with fraction bits, by powers of two while the error grows. For a
+//! highlight it first climbs the error of `f`, and then the error of an output, with the worst colour. Around the highest places
+//! it tries every value of each pair of operands, since rounding makes the last steps too rough to climb. Its result is a lower
 //! bound of the true maximum, not a proof.
 
 use rayon::prelude::*;

@@ -1,4 +1,8 @@
-//! Runs one stream: draws the inputs of a simulated instance from power-up on, and predicts its signals with the golden model.
+//! Makes the inputs of one simulated instance, clock by clock from power-up on, and predicts its signals with the golden model.
+//!
+//! The inputs are random, or count through operand combinations, or come from a recording. The module does not simulate: its
+//! caller gives the inputs to the simulator, and then calls `compare`, which notes the first signal that differs from the
+//! prediction.
 
 use anyhow::Result;
 
@@ -50,8 +54,7 @@ impl Source {
     }
 }
 
-/// A stream: the inputs of one simulated instance, and the predictions of its signals. The caller compares the predictions with
-/// the simulation.
+/// A stream: the inputs of one simulated instance, and the predictions of its signals.
 pub(super) struct Stream {
     pub(super) seen: StreamRecord,
     /// The kind of inputs and their seed or number, from which the same stream can be made again.

@@ -78,13 +78,15 @@ impl Products {
         }
     }
 
-    /// Returns the products; if `in_turn`, one multiplier makes them one after the other, each in a microinstruction of its own.
+    /// Sets how the hardware makes the products f · colour. If `in_turn`, one multiplier makes them one after the other, each in
+    /// a microinstruction of its own; otherwise they are combinational logic behind f and the colours.
     #[must_use]
     pub fn in_turn(self, in_turn: bool) -> Self {
         Self { schedule: if in_turn { ProductOrder::InTurn } else { ProductOrder::AtOnce }, ..self }
     }
 
-    /// Returns the products; if `at_edges`, registers take them at every rising edge.
+    /// Sets how the hardware makes the products f · colour. If `at_edges`, registers take the products at every rising edge;
+    /// otherwise the products are combinational logic behind f and the colours.
     #[must_use]
     pub fn at_edges(self, at_edges: bool) -> Self {
         Self {

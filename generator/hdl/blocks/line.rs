@@ -1,5 +1,5 @@
-//! Builds the accumulator that walks along a scan line: the register `angle` starts at the operand `zeta_start` and grows by the
-//! operand `delta_zeta` every clock.
+//! Builds the accumulator that computes the angles of the points along a scan line: the register `angle` starts at the operand
+//! `zeta_start` and grows by the operand `delta_zeta` every clock.
 //!
 //! The devices `quad-cosine` and `cosine-squared` use it. [`Line`] holds the operands, the adder, the mux, the register and the
 //! counter of intervals, and writes the microprogram of such a device.

@@ -1,7 +1,9 @@
-//! Checks the rules that every [`Design`] must satisfy, whoever made it: rules on names, drivers, widths, loops and the
-//! microprogram.
+//! Checks the structure of a [`Design`]: its names, drivers, widths, combinational loops and microprogram.
 //!
-//! rust_hdl's own `check_all` finds unconnected pins and writes to inputs; these rules find all other mistakes.
+//! The description language runs these checks on every design that a user describes; tests run them on generated pipelines. For
+//! example, they report a net without a driver, and a product that is narrower than both factors together. rust_hdl's own
+//! `check_all` only finds unconnected pins and writes to inputs. No check here notices a wrong formula: co-simulation with the
+//! golden model does.
 
 use std::collections::HashMap;
 
@@ -12,7 +14,7 @@ use glint_base::fixed::{MAX_WIDTH, mask};
 use glint_base::identifier;
 
 impl Design {
-    /// Returns every mistake in the names, the structure and the microprogram.
+    /// Returns every mistake in the names and the structure. If there are none, it returns the mistakes in the microprogram.
     pub fn verify(&self) -> Vec<Diagnostic> {
         let mut found = self.verify_structure();
         self.names(&mut found);

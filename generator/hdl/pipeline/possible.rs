@@ -12,8 +12,9 @@ const MOST_BITS: u32 = 16;
 /// The most bits of a node that selects among a number for each of its values.
 const MOST_SELECTED: u32 = 6;
 
-/// Returns whether `condition`, one bit, is ever 1, whatever the nodes `free` and all leaves are; `None` if it
-/// depends on too many bits to try them all.
+/// Returns whether some values of the leaves make `condition`, one bit, 1. The nodes `free` count as leaves: they may have any
+/// value in their range. Returns `None` if `condition` depends on more than 16 bits. For example, `count > 3` can be 1 if `count`
+/// is a leaf of 3 bits, and cannot if it has 2.
 pub fn ever(graph: &Graph, condition: NodeId, free: &[NodeId]) -> Option<bool> {
     let cone = Cone::of(graph, &[condition], free);
     if cone.bits > MOST_BITS {

@@ -1,4 +1,5 @@
-//! Proves with an SMT solver that a pipeline and its sequential core compute the same outputs for every point.
+//! Proves with an SMT solver that a pipeline and its sequential core compute the same outputs for every point (one set of
+//! operands).
 //!
 //! The module executes both netlists symbolically, one clock at a time. The core runs its microprogram from the clock in which it
 //! takes `start`; the pipeline carries one point, with arbitrary points before and behind it. Multiplications and memory reads

@@ -1,4 +1,4 @@
-//! Compares a pipeline and its sequential core on single points, with numbers instead of symbolic terms.
+//! Compares a pipeline and its sequential core on single points (sets of operands), with numbers instead of symbolic terms.
 //!
 //! This finds most differences quickly, before the SMT solver is asked.
 

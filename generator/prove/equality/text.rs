@@ -1,10 +1,11 @@
-//! Proves that the emitted Verilog of a pipeline and its netlist have the same outputs, for every point and from any state.
+//! Proves that the emitted Verilog of a pipeline and its netlist have the same outputs, for every point (one set of operands) and
+//! from any state.
 //!
 //! Yosys reads the Verilog. The module executes both the netlist and the Verilog on symbolic terms, with unknown registers and
 //! memories at the beginning. A memory that the pipeline writes must be a delay line: each read returns the word that was written
-//! a fixed number of clocks before (`delays`). A clock in which the pipeline waits must change nothing (`stays`), so that
-//! following a point without waits is enough. A register of the Verilog that equals a net takes the net's term, so that the
-//! solver only has to compare one clock at a time.
+//! a fixed number of clocks before (`delays`). A clock in which the pipeline waits must change nothing (`stays`). It is therefore
+//! enough to execute the clocks from the one in which a point enters the pipeline to the one with its results, without waits. A
+//! register of the Verilog that equals a net takes the net's term, so that the solver only has to compare one clock at a time.
 
 use std::collections::{HashMap, HashSet};
 use std::time::Duration;

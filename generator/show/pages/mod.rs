@@ -22,10 +22,11 @@ use crate::evidence::advice;
 use glint_base::input;
 use glint_core::core::Core;
 
-/// Returns the page of a configuration, which the command line knows as `config`, a path; `proofs` is the directory of records.
+/// Returns the documentation page of `core` in Markdown. `config` is the path of its configuration on the command line; `proofs`
+/// is the directory of the proof records.
 ///
 /// # Errors
-/// Fails if the device does not end, or if a record cannot be read.
+/// Fails if a simulated computation does not finish within 65 536 clocks, or if a record cannot be read.
 pub fn of(core: &Core, config: &str, proofs: &Path) -> Result<String> {
     let line = core.line()?;
     let inputs = PageInputs {

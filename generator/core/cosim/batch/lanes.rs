@@ -1,4 +1,4 @@
-//! Computes many points with the built-in simulator.
+//! Computes many points (sets of operands) with the built-in simulator.
 //!
 //! [`RustHdl`] has one simulator for each thread. A simulator runs many instances of the design side by side, one in each lane,
 //! and each instance computes a point of its own.

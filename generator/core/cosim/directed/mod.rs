@@ -1,8 +1,8 @@
 //! Chooses computations for the test bench that is emitted with a core, so that the bench detects faults in the core.
 //!
-//! A user who ports the core, edits a memory or changes the synthesis tool relies on this bench. Random points reach neither
-//! every word of a ROM nor both outcomes of every comparison. This module therefore draws a large pool of computations, simulates
-//! them, and chooses some of them:
+//! A user who ports the core, edits a memory or changes the synthesis tool relies on this bench. Random points (sets of operands)
+//! reach neither every word of a ROM nor both outcomes of every comparison. This module therefore draws a large pool of
+//! computations, simulates them, and chooses some of them:
 //!
 //! - For each ROM word that any computation reads, and each bit in the upper half of the word: one computation whose results
 //!   change if the bit is inverted. If the pool has none, the module searches near the computations that read the word. For a

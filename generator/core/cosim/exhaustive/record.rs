@@ -44,7 +44,7 @@ pub struct RecordedPeak {
     pub error: f64,
     /// The error in output units, for the largest colour.
     pub units: f64,
-    /// Where it is.
+    /// The number of the operand combination with this error.
     place: u64,
 }
 
@@ -125,8 +125,9 @@ impl Record {
         Ok(())
     }
 
-    /// Returns whether the record proves the contract's bound. The check must have visited every combination of operands, and its
-    /// errors must be within the bound that the contract states today. The error at the recorded place is computed again.
+    /// Returns whether the record proves the contract's bound. The recorded check must have visited every combination of
+    /// operands, and its errors must be within the bound that the contract states today. The record names the combination with
+    /// the largest error of `f`; the function computes this error again, and it must equal the recorded error up to 1e-9.
     pub fn proves(&self, contract: &dyn Contract) -> bool {
         let sweep = self.sweep(contract);
         let is_whole = sweep.omits.is_empty();

@@ -1,9 +1,9 @@
 //! Predicts the signals of a pipelined core at every clock, from the golden model of the sequential core.
 //!
-//! The model computes each point on its own. This module tracks in which stage each point is, and predicts the handshake, the
-//! results and the side channel. It also predicts *checkpoints*: nets in a stage of the pipeline that carry the same value as a
-//! register of the sequential core after some microinstruction. For the point in that stage, it expects the value of that
-//! register in the model.
+//! The model computes each point (one set of operands) on its own. This module tracks in which stage each point is, and predicts
+//! the handshake, the results and the side channel. It also predicts *checkpoints*: nets in a stage of the pipeline that carry
+//! the same value as a register of the sequential core after some microinstruction. For the point in that stage, it expects the
+//! value of that register in the model.
 
 mod reference;
 #[cfg(test)]
@@ -99,7 +99,7 @@ impl Pipe {
     /// given, it measures the errors of the results.
     ///
     /// # Errors
-    /// Fails if the model does not end.
+    /// Fails if the golden model does not finish a computation.
     pub(super) fn clock(
         &mut self,
         ports: &Ports,

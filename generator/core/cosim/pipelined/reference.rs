@@ -1,4 +1,4 @@
-//! Runs the golden model of the sequential core for one point.
+//! Runs the golden model of the sequential core for one point (one set of operands).
 //!
 //! It returns the results, and the register values that a pipeline must show at its checkpoints.
 
@@ -71,7 +71,7 @@ impl Reference {
     /// values at the checkpoints.
     ///
     /// # Errors
-    /// Fails if the model does not end.
+    /// Fails if the golden model does not finish the computation.
     pub(super) fn point(&mut self, patterns: impl Iterator<Item = u64>) -> Result<Expected> {
         self.model.start(patterns);
         self.visits.fill(0);

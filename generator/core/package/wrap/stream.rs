@@ -13,7 +13,8 @@ use glint_rtl::netlist::Role;
 use glint_rtl::verilog::rows::separated;
 use glint_rtl::verilog::text::literal;
 
-/// The line of a core that walks lines: the operand that says how long one is, and the buffer.
+/// The facts about a core that walks lines, which computes all points along a scan line after one `start`: the operand with the
+/// length of a line, and the width of the buffer.
 struct LineStream {
     length: String,
     length_low: u32,
@@ -47,7 +48,7 @@ impl LineStream {
     }
 }
 
-/// Adds the wrapper and its proof. If the core walks lines, it also adds the wrapper's buffer.
+/// Adds the wrapper and its proof. If the core computes lines of points, it also adds the wrapper's buffer.
 ///
 /// # Errors
 /// Fails if the core lacks the handshake of a microprogram, operands or results.
