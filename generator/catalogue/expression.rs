@@ -9,11 +9,8 @@ use glint_base::fixed::{Format, Overflow, Rounding};
 use glint_base::text;
 use glint_config::{Config, Shared};
 use glint_keys::expression::{Keys, found};
-use glint_plan::{
-    ExpressionPlan, NodeId, Operation, PlanNode, PlanSchedule, PlanStep, ProvedPlan,
-    normalising_shifts,
-};
-use glint_rtl::blocks::shift::right_by;
+use glint_plan::{ExpressionPlan, NodeId, Operation, PlanNode, PlanSchedule, PlanStep, ProvedPlan};
+use glint_rtl::blocks::shift::{normalise, normalise_by_pairs, right_by};
 use glint_rtl::dsl::{Designer, Register, Signal, Step, end, step, valid};
 use glint_rtl::netlist::About;
 
@@ -215,10 +212,13 @@ impl<'d, 'p> PlanDatapath<'d, 'p> {
             }
             Operation::FractionPart(a, _) => input(a).bits(0, *format),
             Operation::Normalise { word, by_pairs } => {
-                let [normalised, places] = normalised(d, name, input(word), *by_pairs);
+                let found = match by_pairs {
+                    true => normalise_by_pairs(d, name, input(word)),
+                    false => normalise(d, name, input(word)),
+                };
                 // The node of the places follows the word.
-                self.signals[id.0 + 1] = Some(places);
-                normalised.read_as(*format)
+                self.signals[id.0 + 1] = Some(found.zeros);
+                found.word.read_as(*format)
             }
             Operation::Places(_) => {
                 return self.signals[id.0].expect("the places of a normalised word");
@@ -333,32 +333,6 @@ fn number<'d>(d: &'d Designer, name: &str, x: Signal<'d>, it: &Piecewise) -> Sig
     let first = d.raw_constant("first", origin, Format::holding(origin, origin, 0));
     let number = d.sub(&format!("{name}_number"), whole, first);
     if number.format() == integer(bits) { number } else { number.bits(0, integer(bits)) }
-}
-
-/// Returns a word shifted left until its top bit is 1, or one of its two top bits by pairs, and the places or pairs.
-fn normalised<'d>(
-    d: &'d Designer,
-    name: &str,
-    word: Signal<'d>,
-    by_pairs: bool,
-) -> [Signal<'d>; 2] {
-    let integer = |bits: u32| Format::unsigned(bits as i32, 0);
-    let width = word.format().width();
-    let mut word = word.read_as(integer(width));
-    let mut places = Vec::new();
-    for shift in normalising_shifts(width, by_pairs) {
-        let top = word.bits(width - shift, integer(shift));
-        let is_used = d.any(&format!("{name}_top{shift}"), top);
-        let rest = word.bits(0, integer(width - shift));
-        let shifted = rest.with_fraction(shift as i32).shift_left(shift as i32);
-        word = d.choose(&format!("{name}_by{shift}"), is_used, [shifted, word]);
-        places.push(d.not(&format!("{name}_free{shift}"), is_used));
-    }
-    if places.is_empty() {
-        return [word, d.raw_constant("no_places", 0, Format::BIT)];
-    }
-    let count = integer(places.len() as u32);
-    [word, d.join(&format!("{name}_count"), &places, count)]
 }
 
 /// Returns x · 2^places in a format, with the bits above the format dropped.

@@ -41,6 +41,13 @@ fn of_device(schema: &Schema) -> Json {
         root.insert(name.to_owned(), entry);
     }
     for key in schema.all_keys() {
+        if let KeyKind::Table { fields, shorthand, .. } = &key.kind {
+            // Shared keys can be in the same table, as `operands.buffered` among operands.
+            let entries = properties(&mut device).entry(key.name).or_insert_with(table);
+            entries["additionalProperties"] = record(fields, *shorthand);
+            entries["description"] = json!(key.doc);
+            continue;
+        }
         let (tables, leaf) = key.table_and_leaf();
         let mut level = properties(&mut device);
         for name in tables.split('.').filter(|name| !name.is_empty()) {
@@ -91,12 +98,7 @@ fn of_key(key: &Key) -> Json {
             "minItems": len_min,
             "maxItems": len_max,
         }),
-        KeyKind::Table { fields, shorthand, least, most } => json!({
-            "type": "object",
-            "additionalProperties": record(fields, *shorthand),
-            "minProperties": least,
-            "maxProperties": most,
-        }),
+        KeyKind::Table { .. } => unreachable!("`{}` is a table of entries", key.name),
     };
     entry["default"] = match &key.default {
         Value::Text(value) => choice(key, value),

@@ -42,7 +42,7 @@ mod schedule;
 mod statement;
 
 pub use find::{ProofKind, ProvedPlan, find};
-pub use node::{Approximation, NodeId, Operation, PlanNode, normalising_shifts};
+pub use node::{Approximation, NodeId, Operation, PlanNode};
 pub use plan::ExpressionPlan;
 pub use refusal::PlanRefusal;
 pub use schedule::{PlanSchedule, PlanStep};

@@ -41,13 +41,31 @@ pub struct Normalised<'d> {
 /// number whose bits are all ones. For example, 22 in 8 bits has 3 leading zeros and becomes 176.
 #[track_caller]
 pub fn normalise<'d>(d: &'d Designer, name: &str, x: Signal<'d>) -> Normalised<'d> {
+    normalise_in_steps(d, name, x, 1)
+}
+
+/// Shifts `x` to the left by pairs of places until one of its two top bits is 1, and returns the shifted bits and the number of
+/// pairs. For example, 22 in 8 bits has one pair of leading zeros and becomes 88.
+#[track_caller]
+pub fn normalise_by_pairs<'d>(d: &'d Designer, name: &str, x: Signal<'d>) -> Normalised<'d> {
+    normalise_in_steps(d, name, x, 2)
+}
+
+/// Shifts `x` to the left by multiples of `least` places, a power of two, until one of its `least` top bits is 1.
+#[track_caller]
+fn normalise_in_steps<'d>(
+    d: &'d Designer,
+    name: &str,
+    x: Signal<'d>,
+    least: u32,
+) -> Normalised<'d> {
     let width = x.format().width();
     let integer = |bits: u32| Format::unsigned(bits as i32, 0);
     let mut word = x.read_as(integer(width));
     let mut count = Vec::new();
     for bit in (0..(width - 1).max(1).ilog2() + 1).rev() {
         let step = 1u32 << bit;
-        if step >= width {
+        if step >= width || step < least {
             continue;
         }
         let used = d.any(&format!("{name}_top{step}"), word.bits(width - step, integer(step)));
