@@ -117,7 +117,11 @@ pub fn commented(schema: &Schema, config: &Config, given: &[String]) -> String {
                 text.push('\n');
             }
             text += &comment(&sentence(key.doc));
-            let mut rule = format!("{}, default {}", key.accepts(), key.default.toml());
+            let mut rule = match key.kind {
+                // The lines below show the entries, which are too long for a sentence.
+                KeyKind::Table { .. } => key.accepts(),
+                _ => format!("{}, default {}", key.accepts(), key.default.toml()),
+            };
             if let Some(condition) = key.condition {
                 rule += &format!("; only with {}", condition.words(config.value(condition.key)));
             }
