@@ -14,10 +14,7 @@ use glint_rtl::blocks::shift::{normalise, normalise_by_pairs, right_by};
 use glint_rtl::dsl::{Designer, Register, Signal, Step, end, step, valid};
 use glint_rtl::netlist::About;
 
-use crate::piecewise::{PolynomialDatapath, StepMultiplier, Tables, flipped};
-
-/// The fewest bits of a table that a family of FPGAs has a block memory for.
-const BLOCK: u64 = 2048;
+use crate::piecewise::{PolynomialDatapath, StepMultiplier, Tables, number};
 
 /// Describes the hardware of `expression`: a datapath and a microprogram for the plan of the configuration's formulas.
 ///
@@ -237,11 +234,10 @@ impl<'d, 'p> PlanDatapath<'d, 'p> {
     /// Builds a table of polynomials and its registers, and returns the last of them.
     fn polynomial(&mut self, id: NodeId, operand: Signal<'d>, it: &'p Piecewise) -> Signal<'d> {
         let name = &self.plan.node(id).name;
-        let number = number(self.d, name, operand, it);
+        let number = number(self.d, &format!("{name}_number"), operand, it);
         let registers = [name.clone(), format!("{name}_sum1"), format!("{name}_sum2")];
         let registers: Vec<&str> = registers.iter().map(String::as_str).collect();
-        let split = self.is_pipelined && it.rom_bits() < BLOCK;
-        let tables = Tables { split, synchronous: true };
+        let tables = Tables::of(it, self.is_pipelined);
         let prefix = format!("{name}_");
         let datapath = PolynomialDatapath::new(self.d, &prefix, &registers, number, it, tables);
         let q = datapath.q();
@@ -314,25 +310,6 @@ impl<'d, 'p> PlanDatapath<'d, 'p> {
             _ => before.read_as(node.format),
         }
     }
-}
-
-/// Returns the number of a raw operand within the domain of a table, as [`Piecewise::number`].
-fn number<'d>(d: &'d Designer, name: &str, x: Signal<'d>, it: &Piecewise) -> Signal<'d> {
-    let width = x.format().width() as i32;
-    let integer = |bits: i32| Format::unsigned(bits, 0);
-    let bits = it.segments.bits as i32;
-    let origin = i128::from(it.origin);
-    if origin == it.operand.min_raw() {
-        return match it.operand.signed {
-            true => flipped(d, &format!("{name}_number"), x, integer(width)),
-            false => x.read_as(integer(width)),
-        };
-    }
-    let Format { signed, .. } = x.format();
-    let whole = x.read_as(Format { signed, int: width - i32::from(signed), frac: 0 });
-    let first = d.raw_constant("first", origin, Format::holding(origin, origin, 0));
-    let number = d.sub(&format!("{name}_number"), whole, first);
-    if number.format() == integer(bits) { number } else { number.bits(0, integer(bits)) }
 }
 
 /// Returns x · 2^places in a format, with the bits above the format dropped.

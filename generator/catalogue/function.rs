@@ -6,14 +6,13 @@
 mod reduction;
 
 use glint_approximate::{Outside, Piecewise};
-use glint_base::fixed::Format;
 use glint_base::text;
 use glint_config::{Config, Shared};
 use glint_keys::function::{Keys, found};
-use glint_rtl::dsl::{Designer, Signal, end, step, valid};
+use glint_rtl::dsl::{Designer, end, step, valid};
 use glint_rtl::netlist::About;
 
-use crate::piecewise::{PolynomialDatapath, StepMultiplier, Tables, flipped};
+use crate::piecewise::{PolynomialDatapath, StepMultiplier, Tables, number};
 
 /// Describes the hardware of `function`: a table of coefficients, and Horner's rule with one multiplier.
 ///
@@ -32,13 +31,13 @@ pub fn describe(d: &Designer, config: &Config) {
     };
     let x = operand.doc("the operand").q();
     let (number, restoring) = match &it.reduction {
-        None => (number(d, x, &it), None),
+        None => (number(d, "number", x, &it), None),
         Some(reduction) => {
             let (number, restoring) = reduction::reduced(d, x, &it, reduction);
             (number, Some(restoring))
         }
     };
-    let tables = Tables { split: is_split(config, &it), synchronous: true };
+    let tables = Tables::of(&it, Shared::of(config).architecture == "pipelined");
     let polynomial = PolynomialDatapath::new(d, "", &it.registers(), number, &it, tables);
     let names = ["factors_select", "factor", "offset_of_step", "product"];
     let multiplier = StepMultiplier::new(d, names, &[&polynomial], &[]);
@@ -61,40 +60,6 @@ pub fn describe(d: &Designer, config: &Config) {
     steps.push(step("result", [valid(), end()]));
     d.output("result_out", result);
     d.microprogram(steps);
-}
-
-/// Returns an operand's raw value.
-fn whole(x: Signal) -> Signal {
-    let Format { signed, .. } = x.format();
-    let int = x.format().width() as i32 - i32::from(signed);
-    x.read_as(Format { int, frac: 0, ..x.format() })
-}
-
-/// Returns the operand's number within the domain, without a sign.
-fn number<'d>(d: &'d Designer, x: Signal<'d>, it: &Piecewise) -> Signal<'d> {
-    let width = x.format().width() as i32;
-    let integer = |bits: i32| Format::unsigned(bits, 0);
-    let bits = it.segments.bits as i32;
-    let origin = i128::from(it.origin);
-    if origin == it.operand.min_raw() {
-        return if it.operand.signed {
-            flipped(d, "number", x, integer(width))
-        } else {
-            x.read_as(integer(width))
-        };
-    }
-    let first = d.raw_constant("first", origin, Format::holding(origin, origin, 0));
-    let number = d.sub("number", whole(x), first);
-    if number.format() == integer(bits) { number } else { number.bits(0, integer(bits)) }
-}
-
-/// The fewest bits of a table that a family of FPGAs has a block memory for.
-const BLOCK: u64 = 2048;
-
-/// Returns whether each coefficient has a table of its own: in a pipeline the address then waits in place of the coefficient,
-/// which is wider. A block memory has all.
-fn is_split(config: &Config, it: &Piecewise) -> bool {
-    Shared::of(config).architecture == "pipelined" && it.rom_bits() < BLOCK
 }
 
 fn about(keys: &Keys, proof: &str, it: &Piecewise) -> About {

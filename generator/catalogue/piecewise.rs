@@ -85,6 +85,41 @@ pub struct Tables {
     pub synchronous: bool,
 }
 
+/// The bits of the smallest table for which a family of FPGAs has a block memory.
+const SMALLEST_BLOCK: u64 = 2048;
+
+impl Tables {
+    /// Returns how a table that is read at the rising edge stores its coefficients. In a pipeline each coefficient has its own
+    /// table: the address then waits in place of the coefficient, which is wider. A block memory has all coefficients.
+    pub fn of(it: &Piecewise, is_pipelined: bool) -> Self {
+        Self { split: is_pipelined && it.rom_bits() < SMALLEST_BLOCK, synchronous: true }
+    }
+}
+
+/// Returns the raw value of a signal, as an integer.
+pub(super) fn whole(x: Signal) -> Signal {
+    let Format { signed, .. } = x.format();
+    let int = x.format().width() as i32 - i32::from(signed);
+    x.read_as(Format { int, frac: 0, ..x.format() })
+}
+
+/// Returns the number of an operand within the domain of a table, without a sign, as [`Piecewise::number`] computes it.
+pub(super) fn number<'d>(d: &'d Designer, name: &str, x: Signal<'d>, it: &Piecewise) -> Signal<'d> {
+    let width = x.format().width() as i32;
+    let integer = |bits: i32| Format::unsigned(bits, 0);
+    let bits = it.segments.bits as i32;
+    let origin = i128::from(it.origin);
+    if origin == it.operand.min_raw() {
+        return match it.operand.signed {
+            true => flipped(d, name, x, integer(width)),
+            false => x.read_as(integer(width)),
+        };
+    }
+    let first = d.raw_constant("first", origin, Format::holding(origin, origin, 0));
+    let number = d.sub(name, whole(x), first);
+    if number.format() == integer(bits) { number } else { number.bits(0, integer(bits)) }
+}
+
 /// The table, the registers and the sums of one piecewise polynomial in a device.
 pub struct PolynomialDatapath<'d, 'p> {
     d: &'d Designer,

@@ -228,23 +228,13 @@ impl Expression {
     /// Replaces operands by formulas. `replacement` returns the formula for a name, or `None` for an operand that stays. A
     /// replacement gets the place of the operand in the text; all other parts keep their places.
     pub fn with_operands(&self, replacement: &dyn Fn(&str) -> Option<Self>) -> Self {
-        let inner = |part: &Self| Box::new(part.with_operands(replacement));
-        let kind = match &self.kind {
-            Kind::Operand(name) => {
-                return match replacement(name) {
-                    Some(formula) => formula.at(&self.span),
-                    None => self.clone(),
-                };
-            }
-            Kind::Word(rom, at) => Kind::Word(rom.clone(), inner(at)),
-            Kind::Unary(function, a) => Kind::Unary(*function, inner(a)),
-            Kind::Binary(operator, a, b) => Kind::Binary(*operator, inner(a), inner(b)),
-            Kind::If(it, a, b) => {
-                let (left, right) = (inner(&it.left), inner(&it.right));
-                Kind::If(Comparison { left, right, or_equal: it.or_equal }, inner(a), inner(b))
-            }
-            leaf => leaf.clone(),
-        };
+        if let Kind::Operand(name) = &self.kind {
+            return match replacement(name) {
+                Some(formula) => formula.at(&self.span),
+                None => self.clone(),
+            };
+        }
+        let kind = self.kind.with_parts(&|part| part.with_operands(replacement));
         Self::new(kind, self.span.clone())
     }
 
@@ -260,8 +250,16 @@ impl Expression {
         if self == old {
             return new.clone();
         }
-        let inner = |part: &Self| Box::new(part.substitute(old, new, call));
-        let kind = match &self.kind {
+        let kind = self.kind.with_parts(&|part| part.substitute(old, new, call));
+        Self::new(kind, call.clone())
+    }
+}
+
+impl Kind {
+    /// Returns the kind with other parts: `new` returns the part that replaces a part.
+    fn with_parts(&self, new: &dyn Fn(&Expression) -> Expression) -> Self {
+        let inner = |part: &Expression| Box::new(new(part));
+        match self {
             Kind::Word(rom, at) => Kind::Word(rom.clone(), inner(at)),
             Kind::Unary(function, a) => Kind::Unary(*function, inner(a)),
             Kind::Binary(operator, a, b) => Kind::Binary(*operator, inner(a), inner(b)),
@@ -270,8 +268,7 @@ impl Expression {
                 Kind::If(Comparison { left, right, or_equal: it.or_equal }, inner(a), inner(b))
             }
             leaf => leaf.clone(),
-        };
-        Self::new(kind, call.clone())
+        }
     }
 }
 

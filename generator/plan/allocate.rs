@@ -12,6 +12,9 @@ use super::statement::ExpressionStatement;
 /// The guard with which each place begins.
 const FIRST_GUARD: i32 = -3;
 
+/// The guard with which the places begin at most, where no plan has fewer bits.
+const MOST_FIRST_GUARD: i32 = 9;
+
 /// The most bits that a place gets beyond the bits of the results.
 const MOST_GUARD: i32 = 24;
 
@@ -26,18 +29,18 @@ const DIVISIONS: usize = 400;
 pub(super) fn allocated(
     statement: &ExpressionStatement,
 ) -> Result<(Guards, ExpressionPlan), PlanRefusal> {
-    let mut guards = Guards(Vec::new());
-    let mut plan = with_guards(statement, &mut guards)?;
+    let (mut guards, mut plan) = first_plan(statement)?;
     while let Some(excess) = largest_excess(statement, &plan) {
         let source = excess.source(statement, &plan, &guards)?;
         guards.add_bit(source);
-        plan = with_guards(statement, &mut guards)?;
+        plan = with_guards(statement, &mut guards, FIRST_GUARD)
+            .map_err(|_| excess.refusal(statement, &plan))?;
     }
     for source in 0..guards.0.len() {
         while guards.0[source] > FIRST_GUARD {
             let mut fewer = guards.clone();
             fewer.0[source] -= 1;
-            let candidate = with_guards(statement, &mut fewer)?;
+            let Ok(candidate) = with_guards(statement, &mut fewer, FIRST_GUARD) else { break };
             if largest_excess(statement, &candidate).is_some() {
                 break;
             }
@@ -48,17 +51,38 @@ pub(super) fn allocated(
     Ok((guards, plan))
 }
 
-/// Returns the plan with these guards. A choice of fraction bits that has none yet gets the first.
+/// Returns the first plan, with the fewest bits for which there is one. With fewer bits a divisor may be rounded to 0, for
+/// example.
+fn first_plan(statement: &ExpressionStatement) -> Result<(Guards, ExpressionPlan), PlanRefusal> {
+    let mut guards = Guards(Vec::new());
+    let mut refusal = match with_guards(statement, &mut guards, FIRST_GUARD) {
+        Ok(plan) => return Ok((guards, plan)),
+        Err(refusal) => refusal,
+    };
+    for first in FIRST_GUARD + 1..=MOST_FIRST_GUARD {
+        let mut guards = Guards(Vec::new());
+        match with_guards(statement, &mut guards, first) {
+            Ok(plan) => return Ok((guards, plan)),
+            // With very many bits a part is too wide, which is not the reason.
+            Err(other) if first <= 0 => refusal = other,
+            Err(_) => {}
+        }
+    }
+    Err(refusal)
+}
+
+/// Returns the plan with these guards. An operation that has no guard yet gets the guard `first`.
 fn with_guards(
     statement: &ExpressionStatement,
     guards: &mut Guards,
+    first: i32,
 ) -> Result<ExpressionPlan, PlanRefusal> {
     loop {
-        let (plan, sources) = lowered(statement, guards, &FoundPolynomials::default())?;
+        let (plan, sources) = lowered(statement, guards, first, &FoundPolynomials::default())?;
         if sources <= guards.0.len() {
             return Ok(plan);
         }
-        guards.0.resize(sources, FIRST_GUARD);
+        guards.0.resize(sources, first);
     }
 }
 
@@ -112,7 +136,7 @@ impl ExcessiveResult {
 
     fn refusal(&self, statement: &ExpressionStatement, plan: &ExpressionPlan) -> PlanRefusal {
         let message = format!(
-            "the error of `{}` {} for {}, whatever the widths are",
+            "the error of `{}` {} for {}, whatever the widths of the parts are",
             statement.results[self.result].name,
             self.worst.words(plan),
             statement.place(&self.worst.limits)

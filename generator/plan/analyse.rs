@@ -181,8 +181,12 @@ impl ErrorAnalysis<'_> {
             self.limit(&mut branch.values, word, octave);
             // The bits of the word are a fraction of as many bits.
             let factor = exp2(shift as i32 + format.frac - format.width() as i32);
-            let NodeError { ideal, error, .. } = branch.values[word.0];
-            branch.values.push(NodeError::new(scaled(ideal, factor), scaled(error, factor)));
+            let NodeError { ideal, error, actual } = branch.values[word.0];
+            branch.values.push(NodeError {
+                ideal: scaled(ideal, factor),
+                error: scaled(error, factor),
+                actual: scaled(actual, factor),
+            });
             let count = Enclosure::exactly(f64::from(shift / step));
             self.with_places(branch, count, operands, visit);
         }
@@ -295,9 +299,7 @@ impl ErrorAnalysis<'_> {
                 let a = input(*a);
                 condition(is_nonzero(a.ideal), is_nonzero(a.actual), a.error == NOTHING)
             }
-            Operation::Choose { condition, cases, is_continuous } => {
-                self.chosen(*condition, *cases, *is_continuous, values)
-            }
+            Operation::Choose { condition, cases } => chosen(*condition, *cases, values),
             Operation::Scale(a) => {
                 let factor = exp2(self.plan.node(*a).format.frac - node.format.frac);
                 let NodeError { ideal, error, .. } = input(*a);
@@ -364,6 +366,7 @@ impl ErrorAnalysis<'_> {
             return Ok(value);
         }
         let value = value.within(node.limits).limited(self.actual(node, values));
+        let value = value.limited(node.actual_limits);
         if matches!(node.operation, Operation::Narrow(..) | Operation::ShiftLeft(..)) {
             check_fit(id, value, node.format)?;
         }
@@ -392,40 +395,31 @@ impl ErrorAnalysis<'_> {
             _ => ANYTHING,
         }
     }
+}
 
-    /// Returns the limits of a choice.
-    ///
-    /// If rounding can make the condition wrong, the hardware may give the other case than the formula has. Both cases then
-    /// count, and how far they are apart, except where both have the same value.
-    fn chosen(
-        &self,
-        condition: NodeId,
-        cases: [NodeId; 2],
-        is_continuous: bool,
-        values: &[NodeError],
-    ) -> NodeError {
-        let [zero, one] = cases.map(|case| values[case.0]);
-        let condition = values[condition.0];
-        // Where nothing was rounded before the condition, the hardware decides as the formula does.
-        let decides_alike = is_continuous || condition.error == NOTHING;
-        match (fixed(condition.actual), fixed(condition.ideal)) {
-            (Some(taken), ideal) if decides_alike || ideal == Some(taken) => {
-                return if taken == 0.0 { zero } else { one };
-            }
-            (Some(taken), _) => {
-                let (taken, other) = if taken == 0.0 { (zero, one) } else { (one, zero) };
-                let error = taken.error + (taken.ideal - other.ideal).hull(NOTHING);
-                return NodeError::new(taken.ideal.hull(other.ideal), error);
-            }
-            _ => {}
-        }
+/// Returns the limits of a choice.
+///
+/// If rounding can make the condition wrong, the hardware may give the other case than the formula has. Both cases then count,
+/// and how far they are apart.
+fn chosen(condition: NodeId, cases: [NodeId; 2], values: &[NodeError]) -> NodeError {
+    let [zero, one] = cases.map(|case| values[case.0]);
+    let condition = values[condition.0];
+    // If nothing was rounded before the condition, the hardware decides as the formula does.
+    let decides_alike = condition.error == NOTHING;
+    let ideal = zero.ideal.hull(one.ideal);
+    let Some(bit) = fixed(condition.actual) else {
         let mut error = zero.error.hull(one.error);
         if !decides_alike {
             let apart = zero.ideal - one.ideal;
             error = error + apart.hull(-apart).hull(NOTHING);
         }
-        NodeError::new(zero.ideal.hull(one.ideal), error)
+        return NodeError::new(ideal, error);
+    };
+    let (taken, other) = if bit == 0.0 { (zero, one) } else { (one, zero) };
+    if decides_alike || fixed(condition.ideal) == Some(bit) {
+        return taken;
     }
+    NodeError::new(ideal, taken.error + (taken.ideal - other.ideal).hull(NOTHING))
 }
 
 /// Returns the values of a bit, which is 1 for the whole box, or 0 for the whole box, or neither.

@@ -24,6 +24,12 @@ impl ExpressionPlan {
     /// # Panics
     /// Panics as [`ExpressionPlan::values`] does.
     pub fn value(&self, id: NodeId, operands: &[i64], known: &dyn Fn(NodeId) -> i128) -> i128 {
+        // Operands outside their domains can give values beyond the format, as in the hardware.
+        wrapped(self.node(id), self.whole_value(id, operands, known))
+    }
+
+    /// Returns the value of a node before the bits beyond its format are dropped.
+    fn whole_value(&self, id: NodeId, operands: &[i64], known: &dyn Fn(NodeId) -> i128) -> i128 {
         let node = self.node(id);
         // The value of an input with as many fraction bits as the other input, or as the result, has.
         let aligned =
@@ -49,24 +55,19 @@ impl ExpressionPlan {
                 i128::from(aligned(*a, frac) < aligned(*b, frac))
             }
             Operation::NonZero(a) => i128::from(known(*a) != 0),
-            Operation::Choose { condition, cases, .. } => {
+            Operation::Choose { condition, cases } => {
                 let chosen = cases[known(*condition) as usize];
                 aligned(chosen, node.format.frac)
             }
             Operation::Scale(a) => known(*a),
             Operation::Narrow(a, rounding) => {
                 let places = self.node(*a).format.frac - node.format.frac;
-                let rounded = if places > 0 {
-                    rounding.shift(known(*a), places)
-                } else {
-                    known(*a) << -places
-                };
-                wrapped(node, rounded)
+                if places > 0 { rounding.shift(known(*a), places) } else { known(*a) << -places }
             }
-            Operation::Saturate(a) => known(*a).min(node.format.max_raw()),
+            Operation::Saturate(a) => known(*a).clamp(0, node.format.max_raw()),
             Operation::Bit(a, number) => known(*a) >> number & 1,
             Operation::IntegerPart(a) => known(*a) >> self.node(*a).format.frac,
-            Operation::FractionPart(a, _) => node.format.raw(node.format.bits(known(*a))),
+            Operation::FractionPart(a, _) => known(*a),
             Operation::Normalise { word, by_pairs } => {
                 normalised(known(*word), self.node(*word).format.width(), *by_pairs).0
             }
@@ -77,12 +78,12 @@ impl ExpressionPlan {
                 };
                 normalised(known(word), self.node(word).format.width(), by_pairs).1
             }
-            Operation::ShiftLeft(a, places) => wrapped(node, known(*a) << known(*places)),
+            Operation::ShiftLeft(a, places) => known(*a) << known(*places),
             Operation::ShiftRight(a, places) => known(*a) >> known(*places),
             Operation::Polynomial(a, approximation) => {
                 let polynomials = approximation.polynomials.as_ref();
                 let polynomials = polynomials.expect("a plan whose polynomials are known");
-                wrapped(node, polynomials.result(known(*a) as i64).into())
+                polynomials.result(known(*a) as i64).into()
             }
         }
     }

@@ -83,7 +83,7 @@ fn searched(statement: &ExpressionStatement) -> Result<ProvedPlan, PlanRefusal> 
     while let Some(excess) = largest_excess(statement, &plan) {
         let source = excess.source(statement, &plan, &guards)?;
         guards.add_bit(source);
-        let estimate = lowered(statement, &guards, &FoundPolynomials::default())?.0;
+        let estimate = lowered(statement, &guards, 0, &FoundPolynomials::default())?.0;
         plan = with_polynomials(statement, &guards, estimate)?;
     }
     let mut bounds = enclosed_errors(statement, &plan)?;
@@ -121,7 +121,7 @@ fn with_polynomials(
         if is_complete {
             return Ok(plan);
         }
-        plan = lowered(statement, guards, &found)?.0;
+        plan = lowered(statement, guards, 0, &found)?.0;
     }
 }
 

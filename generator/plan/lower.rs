@@ -17,9 +17,9 @@ use glint_base::fixed::{Format, Rounding, exp2, nearest};
 use glint_formula::{Comparison, Enclosure, Expression, Function, Kind, Operator, RBig};
 
 use super::boxes::ResultProof;
-use super::node::{Approximation, NodeId};
+use super::node::{Approximation, NodeId, Operation};
 use super::plan::ExpressionPlan;
-use super::range::range_of;
+use super::range::{NoRange, range_of};
 use super::refusal::PlanRefusal;
 use super::statement::{ExpressionStatement, StatedResult};
 
@@ -79,6 +79,7 @@ impl FoundPolynomials {
 pub(super) struct Lowering<'s> {
     statement: &'s ExpressionStatement,
     guards: &'s Guards,
+    first_guard: i32,
     found: &'s FoundPolynomials,
     plan: ExpressionPlan,
     /// The parts of formulas that have a node already, with their nodes.
@@ -89,19 +90,22 @@ pub(super) struct Lowering<'s> {
     finest: i32,
 }
 
-/// Returns the plan of a statement, and the number of places where it rounds. A place beyond `guards` has the guard 0.
+/// Returns the plan of a statement, and the number of places where it rounds. A place beyond `guards` has the guard
+/// `first_guard`.
 ///
 /// # Errors
 /// Fails if a formula has a part that no rule computes, or a part with too many bits.
 pub(super) fn lowered(
     statement: &ExpressionStatement,
     guards: &Guards,
+    first_guard: i32,
     found: &FoundPolynomials,
 ) -> Result<(ExpressionPlan, usize), PlanRefusal> {
     let finest = statement.results.iter().map(|result| result.fraction as i32).max();
     let mut lowering = Lowering {
         statement,
         guards,
+        first_guard,
         found,
         plan: ExpressionPlan::default(),
         known: Vec::new(),
@@ -144,10 +148,16 @@ impl<'s> Lowering<'s> {
 
     /// Returns limits of the values of a part where something is promised.
     fn range(&self, part: &Expression) -> Result<Enclosure, PlanRefusal> {
-        range_of(self.statement, part).map_err(|limits| {
-            let place = self.statement.place(&limits);
-            let message = format!("this is not finite, or has no value, for {place}");
-            PlanRefusal::new(message, LIMIT_THE_OPERANDS).at(&part.span)
+        range_of(self.statement, part).map_err(|error| match error {
+            NoRange::NotFinite(limits) => {
+                let place = self.statement.place(&limits);
+                let message = format!("this is not finite, or has no value, for {place}");
+                PlanRefusal::new(message, LIMIT_THE_OPERANDS).at(&part.span)
+            }
+            NoRange::NothingPromised => PlanRefusal::new(
+                "no operands of the domains satisfy `where`",
+                "change `where`, or the domains of the operands",
+            ),
         })
     }
 
@@ -160,7 +170,7 @@ impl<'s> Lowering<'s> {
     ) -> Result<NodeId, PlanRefusal> {
         let source = self.sources;
         self.sources += 1;
-        let guard = self.guards.0.get(source).copied().unwrap_or(0);
+        let guard = self.guards.0.get(source).copied().unwrap_or(self.first_guard);
         let before = self.plan.nodes.len();
         let node = make(self, frac + guard)?;
         if node.0 >= before {
@@ -332,10 +342,10 @@ impl<'s> Lowering<'s> {
         if comparison.or_equal {
             // left >= right, unless left < right.
             let is_less = self.plan.less("is_less", left, right)?;
-            self.plan.choose("chosen", is_less, [yes, no], false)
+            self.plan.choose("chosen", is_less, [yes, no])
         } else {
             let is_larger = self.plan.less("is_larger", right, left)?;
-            self.plan.choose("chosen", is_larger, [no, yes], false)
+            self.plan.choose("chosen", is_larger, [no, yes])
         }
     }
 
@@ -408,23 +418,26 @@ impl<'s> Lowering<'s> {
     fn largest_error(&self, node: NodeId) -> f64 {
         let mut plan = self.plan.clone();
         plan.results = vec![node];
-        let mut statement = self.statement.clone();
-        let first = statement.results.first().cloned().expect("a statement has a result");
-        let promise = match &self.statement.results[..] {
-            [only] => only.promise.clone(),
-            // Each result has a promise of its own: no operand is left out.
-            _ => None,
-        };
-        statement.results = vec![StatedResult { fraction: 0, promise, ..first }];
-        let proof = ResultProof::new(&statement, &plan, 0);
-        let worst = proof.worst(0.0, DIVISIONS_FOR_AN_ERROR);
-        worst.map_or(0.0, |worst| if worst.units.is_finite() { worst.units } else { 1.0 })
+        let mut largest: Option<f64> = None;
+        for result in &self.statement.results {
+            let mut statement = self.statement.clone();
+            statement.results = vec![StatedResult { fraction: 0, ..result.clone() }];
+            let proof = ResultProof::new(&statement, &plan, 0);
+            let worst = proof.worst(0.0, DIVISIONS_FOR_AN_ERROR);
+            // A result that does not read the node can be promised where the node has no value.
+            let units = worst.map_or(0.0, |worst| worst.units);
+            if units.is_finite() {
+                largest = Some(largest.unwrap_or(0.0).max(units));
+            }
+        }
+        largest.unwrap_or(1.0)
     }
 
     /// Returns whether the value of a node has no rounding error.
     fn is_exact(&self, node: NodeId) -> bool {
         let node = self.plan.node(node);
-        node.source.is_none() && node.operation.inputs().into_iter().all(|it| self.is_exact(it))
+        let rounds = node.source.is_some() || matches!(node.operation, Operation::Saturate(_));
+        !rounds && node.operation.inputs().into_iter().all(|it| self.is_exact(it))
     }
 }
 

@@ -27,6 +27,8 @@ pub struct PlanNode {
     /// An interval that contains the node's value in real-number arithmetic, for all operands for which a result is promised. The
     /// rewriting of the formula knows it; for example, the smaller of two numbers divided by the larger is at most 1.
     pub limits: Enclosure,
+    /// An interval that contains the value that the hardware computes, for the same operands.
+    pub actual_limits: Enclosure,
     /// The index of the number of fraction bits on which the node's rounding depends; `None` for an exact operation.
     pub source: Option<usize>,
 }
@@ -65,9 +67,6 @@ pub enum Operation {
         condition: NodeId,
         /// The result if the condition is 0, and the result if it is 1.
         cases: [NodeId; 2],
-        /// Whether both cases have equal real values where the condition changes, as in |a|. If so, a wrong decision due to
-        /// rounding errors does no harm.
-        is_continuous: bool,
     },
     /// The same bits with another weight: the value times a power of two. The format of the result says which power.
     Scale(NodeId),
@@ -126,7 +125,6 @@ impl Operation {
         let more = match self {
             Self::Operand(_) | Self::Constant { .. } | Self::Polynomial(..) => return None,
             Self::Narrow(..) | Self::ShiftRight(..) | Self::ShiftLeft(..) => return None,
-            Self::Choose { is_continuous, .. } => u32::from(*is_continuous),
             Self::Normalise { by_pairs, .. } => u32::from(*by_pairs),
             Self::Bit(_, number) => *number,
             _ => 0,
@@ -157,7 +155,7 @@ impl Operation {
             | Self::FractionPart(a, b)
             | Self::ShiftLeft(a, b)
             | Self::ShiftRight(a, b) => vec![*a, *b],
-            Self::Choose { condition, cases, .. } => vec![*condition, cases[0], cases[1]],
+            Self::Choose { condition, cases } => vec![*condition, cases[0], cases[1]],
         }
     }
 }

@@ -75,6 +75,7 @@ impl ExpressionPlan {
             format,
             range,
             limits: ANYTHING,
+            actual_limits: ANYTHING,
             source: None,
         });
         Ok(NodeId(self.nodes.len() - 1))
@@ -257,11 +258,10 @@ impl ExpressionPlan {
         name: &str,
         condition: NodeId,
         cases: [NodeId; 2],
-        is_continuous: bool,
     ) -> Result<NodeId, PlanRefusal> {
         let (first, second, frac) = self.aligned(cases[0], cases[1]);
         let range = (first.0.min(second.0), first.1.max(second.1));
-        self.exact(name, Operation::Choose { condition, cases, is_continuous }, range, frac)
+        self.exact(name, Operation::Choose { condition, cases }, range, frac)
     }
 
     /// Adds a · 2^`exponent`, which only reads the bits of a with another point.
@@ -392,6 +392,7 @@ impl ExpressionPlan {
         places: NodeId,
     ) -> Result<NodeId, PlanRefusal> {
         let node = self.node(a);
+        assert!(!node.format.signed, "`{name}` shifts a number with a sign to the right");
         let (format, range) = (node.format, (0, node.range.1));
         self.insert(name, Operation::ShiftRight(a, places), format, range)
     }

@@ -15,6 +15,15 @@ const DIVISIONS_TO_LIMITS: usize = 1 << 12;
 /// The divisions of the domain that bring each limit nearer to the true one.
 const DIVISIONS_OF_AN_END: usize = 300;
 
+/// Why a part has no limits of its values.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum NoRange {
+    /// The part is not finite, or has no value, for operands in this box.
+    NotFinite(OperandBox),
+    /// No operands satisfy `where`.
+    NothingPromised,
+}
+
 /// A box with the limits of the values in it.
 #[derive(Clone)]
 struct BoxValues {
@@ -69,7 +78,7 @@ impl Ord for BoxEnd {
 pub(super) fn range_of(
     statement: &ExpressionStatement,
     formula: &Expression,
-) -> Result<Enclosure, OperandBox> {
+) -> Result<Enclosure, NoRange> {
     // A part that is made of others, as a size, is in no formula: it counts for every result.
     let reads = |result: &&StatedResult| result.formula.count(&|part| part == formula) > 0;
     let mut readers: Vec<&StatedResult> = statement.results.iter().filter(reads).collect();
@@ -99,12 +108,11 @@ pub(super) fn range_of(
         let halves = best_halves(&next.limits, &values_in);
         match halves {
             Some(halves) if divisions <= DIVISIONS_TO_LIMITS => open.extend(halves),
-            _ => return Err(next.limits),
+            _ => return Err(NoRange::NotFinite(next.limits)),
         }
     }
     if finite.is_empty() {
-        // Nothing is promised at all.
-        return Ok(Enclosure::exactly(0.0));
+        return Err(NoRange::NothingPromised);
     }
     let high_of = |it: BoxValues| BoxEnd { limits: it.limits, end: it.values.high };
     let low_of = |it: BoxValues| BoxEnd { limits: it.limits, end: -it.values.low };

@@ -4,7 +4,7 @@
 //! restores the result for x. For example, an odd function needs a polynomial for x ≥ 0 only: the logic takes |x|, and negates
 //! the result if x is negative.
 
-use super::whole;
+use crate::piecewise::whole;
 use glint_approximate::{Piecewise, Reduction, Rule};
 use glint_base::fixed::{Format, Overflow, Rounding};
 use glint_rtl::blocks::quadrant::{mirrored, quadrant};

@@ -73,7 +73,7 @@ impl Lowering<'_> {
         let octave = self.octave(larger, Enclosure::between(0.0, most), false)?;
         // The smaller coordinate comes behind the octave of the larger, which limits both in the proof.
         let smaller = self.plan.minimum("smaller", x_size, y_size)?;
-        let ratio = self.ratio_in_octave(smaller, &octave, 1.0)?;
+        let ratio = self.ratio_in_octave(smaller, &octave, 1.0, true)?;
         let finest = self.finest;
         // A tangent is at most 1, and rounded at most a unit above it.
         let tangent = self.rounding(finest + 2, |own, frac| {
@@ -89,7 +89,7 @@ impl Lowering<'_> {
         let is_steep = self.plan.less("is_steep", x_size, y_size)?;
         let quarter = self.number(&scaling.of(number("pi / 2")))?;
         let mirrored = self.plan.subtract("octant_mirrored", quarter, in_octant)?;
-        let in_quadrant = self.plan.choose("quadrant", is_steep, [in_octant, mirrored], true)?;
+        let in_quadrant = self.plan.choose("quadrant", is_steep, [in_octant, mirrored])?;
         let in_half = self.mirrored_where_negative("half", in_quadrant, x_node, Some(scaling))?;
         let whole = self.mirrored_where_negative("direction", in_half, y_node, None)?;
         Ok(whole)
@@ -118,6 +118,6 @@ impl Lowering<'_> {
             None => self.plan.negate(&format!("{name}_mirrored"), angle)?,
         };
         // At the negative x axis the direction jumps, so that a wrong sign would do harm.
-        self.plan.choose(name, is_negative, [angle, mirrored], scaling.is_some())
+        self.plan.choose(name, is_negative, [angle, mirrored])
     }
 }

@@ -37,7 +37,7 @@ impl Lowering<'_> {
             self.plan.multiply("ratio", dividend, inverse)?
         } else {
             let octave = self.octave(size, sizes, false)?;
-            self.ratio_in_octave(dividend, &octave, largest)?
+            self.ratio_in_octave(dividend, &octave, largest, false)?
         };
         if divisors.low >= 0.0 {
             return Ok(quotient);
@@ -46,7 +46,7 @@ impl Lowering<'_> {
         let zero = self.plan.constant("zero", 0, frac)?;
         let is_negative = self.plan.less("divisor_is_negative", divisor, zero)?;
         let negated = self.plan.negate("quotient_negated", quotient)?;
-        self.plan.choose("quotient", is_negative, [quotient, negated], false)
+        self.plan.choose("quotient", is_negative, [quotient, negated])
     }
 
     /// Returns whether every result that has the quotient a / b is promised only where a < b, and a is never below 0.
@@ -59,37 +59,45 @@ impl Lowering<'_> {
         is_not_negative && self.statement.results.iter().all(promises_it)
     }
 
-    /// Returns dividend / divisor, for a divisor that is known as a fraction within one octave.
+    /// Returns dividend / divisor, for a divisor that is known as a fraction within one octave. `largest` is the largest size of
+    /// the quotient. `is_never_larger` says that the hardware's dividend is never larger than its divisor.
     pub(super) fn ratio_in_octave(
         &mut self,
         dividend: NodeId,
         octave: &Octave,
         largest: f64,
+        is_never_larger: bool,
     ) -> Result<NodeId, PlanRefusal> {
         let reciprocal = number("1 / x");
         let finest = self.finest;
         let inverse = self.rounding(finest + 2, |own, frac| {
             own.approximation("inverse", octave.mantissa, &reciprocal, octave.domain, frac)
         })?;
-        let format = self.plan.node(dividend).format;
-        // The dividend is at most the largest quotient times the divisor, and the shifted divisor below 2^exponent.
-        let most = largest * exp2(octave.exponent);
+        let frac = self.plan.node(dividend).format.frac;
         let is_signed = self.plan.node(dividend).range.0 < 0;
-        let low = if is_signed { -most } else { 0.0 };
-        let shifted_format = if largest <= 1.0 {
+        let is_exact = self.is_exact(dividend) && self.is_exact(octave.word);
+        let fits_below = is_never_larger || is_exact && largest <= 1.0;
+        let format = if fits_below {
             // The shifted divisor is below 2^exponent, and the shifted dividend not above it.
-            let above = exp2(octave.exponent + format.frac) as i128;
-            Format::holding(if is_signed { 1 - above } else { 0 }, above - 1, format.frac)
+            let above = exp2(octave.exponent + frac) as i128;
+            Format::holding(if is_signed { 1 - above } else { 0 }, above - 1, frac)
         } else {
-            holding(Enclosure::between(low, most), format.frac)
+            // The dividend is at most the largest quotient times the divisor. A divisor that was rounded can have been larger: the
+            // proof then shows that a bit more is enough.
+            let most = largest * exp2(octave.exponent) * if is_exact { 1.0 } else { 2.0 };
+            holding(Enclosure::between(if is_signed { -most } else { 0.0 }, most), frac)
         };
+        let shifted = self.plan.shift_left("dividend_shifted", dividend, octave.places, format)?;
         let limits = Enclosure::between(
-            low.max(shifted_format.to_f64(shifted_format.min_raw())),
-            most.min(shifted_format.to_f64(shifted_format.max_raw())),
+            format.to_f64(if is_signed { format.min_raw() } else { 0 }),
+            format.to_f64(format.max_raw()),
         );
-        let shifted =
-            self.plan.shift_left("dividend_shifted", dividend, octave.places, shifted_format)?;
-        self.plan.nodes[shifted.0].limits = limits;
+        if is_exact {
+            self.plan.nodes[shifted.0].limits = limits;
+        }
+        if is_never_larger {
+            self.plan.nodes[shifted.0].actual_limits = limits;
+        }
         let shifted = self.rounding(finest + octave.exponent, |own, frac| {
             if own.plan.node(shifted).format.width() <= WIDEST_FACTOR {
                 return Ok(shifted);
@@ -99,7 +107,7 @@ impl Lowering<'_> {
         let product = self.plan.multiply("ratio", shifted, inverse)?;
         let ratio = self.plan.scale("ratio_scaled", product, -octave.exponent)?;
         self.plan.nodes[ratio.0].limits =
-            Enclosure::between(if low < 0.0 { -largest } else { 0.0 }, largest);
+            Enclosure::between(if is_signed { -largest } else { 0.0 }, largest);
         Ok(ratio)
     }
 }

@@ -69,6 +69,17 @@ impl Lowering<'_> {
         function: &Expression,
         DoubledExponent(doubled): DoubledExponent,
     ) -> Result<Option<NodeId>, PlanRefusal> {
+        let at_one = function.enclose(&[("x", Enclosure::exactly(1.0))]);
+        if at_one.is_ok_and(|value| value.high < 0.0) {
+            let negated = |formula: &Expression| {
+                let kind = Kind::Unary(Function::Negate, Box::new(formula.clone()));
+                Expression::new(kind, formula.span.clone())
+            };
+            let exponent = DoubledExponent(doubled);
+            let positive = self.power(&negated(part), core, &negated(function), exponent)?;
+            let Some(positive) = positive else { return Ok(None) };
+            return self.plan.negate("power_negated", positive).map(Some);
+        }
         let range = self.range(core)?;
         let node = self.part(core)?;
         let format = self.plan.node(node).format;
@@ -100,7 +111,7 @@ impl Lowering<'_> {
         }
         let zero = self.plan.constant("zero", 0, self.plan.node(shifted).format.frac)?;
         let is_some = self.plan.nonzero("is_nonzero", octave.word)?;
-        self.plan.choose("power_or_zero", is_some, [zero, shifted], false).map(Some)
+        self.plan.choose("power_or_zero", is_some, [zero, shifted]).map(Some)
     }
 
     /// Returns a word that is not below 0 as a fraction within one octave.

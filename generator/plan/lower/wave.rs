@@ -78,7 +78,7 @@ impl Lowering<'_> {
         let back = self.plan.subtract("angle_back", one, way)?;
         // At 1 itself the sine is flat, so that the nearest angle below has nearly the same sine, and the table needs no word more.
         let back = self.plan.saturate("angle_back_kept", back, Format::unsigned(0, bits))?;
-        let angle = self.plan.choose("angle_in_quadrant", is_odd, [way, back], true)?;
+        let angle = self.plan.choose("angle_in_quadrant", is_odd, [way, back])?;
         let finest = self.finest;
         let domain = (0, (1i64 << bits) - 1);
         let table = number("sin(pi / 2 * x)");
@@ -87,6 +87,6 @@ impl Lowering<'_> {
         })?;
         let is_negative = self.plan.bit("is_negative", quadrant, 1)?;
         let negated = self.plan.negate("wave_negated", size)?;
-        self.plan.choose("wave_with_sign", is_negative, [size, negated], true).map(Some)
+        self.plan.choose("wave_with_sign", is_negative, [size, negated]).map(Some)
     }
 }
