@@ -29,6 +29,12 @@ const WIDEST_OPERAND: u32 = 20;
 /// The widest factor of a product. A wider one, which comes from a product itself, is shortened first.
 const WIDEST_FACTOR: u32 = 18;
 
+/// The cost of a product of two numbers that vary, if a product with a constant costs 1.
+const PRODUCT: u32 = 2;
+
+/// The cost of products up to which a function of one number is computed by products, in place of a table.
+const MOST_PRODUCTS: u32 = 3;
+
 /// The most fraction bits that a constant may need to count as exact.
 const MOST_CONSTANT_BITS: u32 = 18;
 
@@ -194,7 +200,8 @@ impl<'s> Lowering<'s> {
             return self.number(part);
         }
         let core = core_of(part);
-        if products_of(part, core).is_some_and(|products| products <= 1) || core == part {
+        if products_of(part, core).is_some_and(|products| products <= MOST_PRODUCTS) || core == part
+        {
             return self.operation(part);
         }
         let core = core.clone();
@@ -363,16 +370,23 @@ impl<'s> Lowering<'s> {
         let (low, high) = self.plan.node(node).range;
         // The node may be off by the roundings before it.
         let error = if self.is_exact(node) { 0.0 } else { self.largest_error(node) };
-        let slack = (error * unit).ceil();
-        let first = ((range.low * unit - slack).ceil() as i128).max(low);
-        let last = ((range.high * unit + slack).floor() as i128).min(high);
+        let domain_with = |slack: f64| {
+            let first = ((range.low * unit - slack).ceil() as i128).max(low);
+            let last = ((range.high * unit + slack).floor() as i128).min(high);
+            (first as i64, last as i64)
+        };
+        let mut domain = domain_with((error * unit).ceil());
+        if function_range(function, operand, domain).is_none() {
+            // As a root below 0: the proof shows whether the node can be there.
+            domain = domain_with(0.0);
+        }
+        let (first, last) = domain;
         if last <= first {
             return Err(PlanRefusal::new(
                 "this part has a single value",
                 "write the value as a number",
             ));
         }
-        let domain = (first as i64, last as i64);
         let finest = self.finest;
         self.rounding(finest + 2, |own, frac| own.approximation(name, node, function, domain, frac))
     }
@@ -457,8 +471,8 @@ fn core_of(formula: &Expression) -> &Expression {
     core
 }
 
-/// Returns the number of multiplications by which sums, products and squares compute a formula from its core;
-/// `None` if they do not. For example, `x * (1 - x)` takes one.
+/// Returns the cost of the multiplications by which sums, products and squares compute a formula from its core; `None` if these
+/// operations do not compute it. For example, `3 * x * (1 - x)` costs 3: a product with a constant, and one of two numbers.
 fn products_of(formula: &Expression, core: &Expression) -> Option<u32> {
     if formula == core {
         return Some(0);
@@ -482,12 +496,13 @@ fn products_of(formula: &Expression, core: &Expression) -> Option<u32> {
                 factor.operands().is_empty() && power_of_two(factor, *operator).is_some();
             match (is_shift, operator) {
                 (true, _) => Some(both),
-                (false, Operator::Mul) => Some(both + 1),
+                (false, Operator::Mul) if factor.operands().is_empty() => Some(both + 1),
+                (false, Operator::Mul) => Some(both + PRODUCT),
                 (false, _) => None,
             }
         }
         Kind::Binary(Operator::Power, a, b) if **b == number("2") => {
-            Some(products_of(a, core)? + 1)
+            Some(products_of(a, core)? + PRODUCT)
         }
         _ => None,
     }
