@@ -168,12 +168,12 @@ impl<'d, 'p> PlanDatapath<'d, 'p> {
             Operation::Minimum(a, b) => {
                 let (a, b) = (input(a), input(b));
                 let is_first = d.less(&format!("{name}_is_first"), a, b);
-                d.choose(&format!("{name}_chosen"), is_first, [b, a])
+                d.choose(&format!("{name}_chosen"), is_first, aligned([b, a]))
             }
             Operation::Maximum(a, b) => {
                 let (a, b) = (input(a), input(b));
                 let is_second = d.less(&format!("{name}_is_second"), a, b);
-                d.choose(&format!("{name}_chosen"), is_second, [a, b])
+                d.choose(&format!("{name}_chosen"), is_second, aligned([a, b]))
             }
             Operation::Less(a, b) => {
                 let zero = matches!(plan.node(*b).operation, Operation::Constant { raw: 0, .. });
@@ -185,8 +185,9 @@ impl<'d, 'p> PlanDatapath<'d, 'p> {
                 };
             }
             Operation::NonZero(a) => return d.any(name, input(a)),
-            Operation::Choose { condition, cases, .. } => {
-                d.choose(&format!("{name}_chosen"), input(condition), cases.map(|it| input(&it)))
+            Operation::Choose { condition, cases } => {
+                let cases = aligned(cases.map(|it| input(&it)));
+                d.choose(&format!("{name}_chosen"), input(condition), cases)
             }
             Operation::Scale(a) => input(a).read_as(*format),
             Operation::Narrow(a, rounding) => {
@@ -310,6 +311,12 @@ impl<'d, 'p> PlanDatapath<'d, 'p> {
             _ => before.read_as(node.format),
         }
     }
+}
+
+/// Returns two signals with as many fraction bits as the finer one has.
+fn aligned(signals: [Signal<'_>; 2]) -> [Signal<'_>; 2] {
+    let [first, second] = signals.map(|signal| signal.format().frac);
+    signals.map(|signal| signal.with_fraction(first.max(second)))
 }
 
 /// Returns x · 2^places in a format, with the bits above the format dropped.

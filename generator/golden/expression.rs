@@ -10,8 +10,9 @@ use super::device::{self, Formula};
 use super::frame::{Frame, FrameStep, Slot, State, idle, step_by};
 use super::polynomial::Polynomial;
 use super::{Contract, Model, Term};
+use glint_base::fixed::exp2;
 use glint_config::Config;
-use glint_formula::Enclosure;
+use glint_formula::{Enclosure, RBig};
 use glint_keys::expression::found;
 use glint_plan::{ExpressionPlan, NodeId, Operation, PlanStep, ProvedPlan};
 
@@ -139,6 +140,9 @@ pub fn contract(config: &Config) -> Box<dyn Contract> {
     device(&found).contract(ProvedFormulas { found })
 }
 
+/// The widest interval of a formula's value, in units of the result's last place, whose middle measures the error well enough.
+const WIDEST_VALUE: f64 = 1e-6;
+
 /// The formulas with the bounds that were proved.
 struct ProvedFormulas {
     found: Arc<ProvedPlan>,
@@ -153,15 +157,31 @@ impl ProvedFormulas {
         }
         named
     }
+
+    /// Returns the operands by their names, as rational numbers.
+    fn rational(&self, operands: &[f64]) -> Vec<(&str, RBig)> {
+        let mut named = Vec::with_capacity(operands.len());
+        for (operand, value) in self.found.statement.operands.iter().zip(operands) {
+            let value = RBig::try_from(*value).expect("an operand is a finite number");
+            named.push((operand.name.as_str(), value));
+        }
+        named
+    }
 }
 
 impl Formula for ProvedFormulas {
-    /// Returns the values of the formulas; no number where one has no value.
+    /// Returns the values of the formulas; no number where one has no value. A formula is evaluated in f64, and again with more
+    /// bits if f64 is not exact enough for the result's last place.
     fn exact(&self, operands: &[f64]) -> Vec<f64> {
         let enclosed = self.enclosed(operands);
         let mut values = Vec::with_capacity(self.found.statement.results.len());
         for result in &self.found.statement.results {
-            values.push(result.formula.enclose(&enclosed).map_or(f64::NAN, Enclosure::middle));
+            let widest = exp2(-(result.fraction as i32)) * WIDEST_VALUE;
+            let value = match result.formula.enclose(&enclosed) {
+                Ok(value) if value.high - value.low <= widest => Ok(value),
+                _ => result.formula.evaluate_exactly(&self.rational(operands)),
+            };
+            values.push(value.map_or(f64::NAN, Enclosure::middle));
         }
         values
     }

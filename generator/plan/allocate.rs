@@ -18,37 +18,82 @@ const MOST_FIRST_GUARD: i32 = 9;
 /// The most bits that a place gets beyond the bits of the results.
 const MOST_GUARD: i32 = 24;
 
-/// The divisions of the domain for an estimate of the error.
-const DIVISIONS: usize = 400;
+/// The divisions of the domain for an estimate of the error, in the order in which they are tried. Few divisions are faster. With
+/// more, a decision that rounding can make wrong is seen to be wrong for few operands.
+const DIVISIONS: [usize; 2] = [400, 20_000];
+
+/// The fraction bits of a plan's parts with which every result keeps its error.
+pub(super) struct Allocation {
+    pub(super) guards: Guards,
+    /// The plan with these guards. Its polynomials are estimates.
+    pub(super) plan: ExpressionPlan,
+    /// The divisions of the domain by which the errors are known.
+    pub(super) divisions: usize,
+}
 
 /// Returns guards with which every result keeps its error, as far as the estimates of the polynomials' errors tell, and the
 /// plan with them.
 ///
 /// # Errors
 /// Fails if a formula has no plan, or if no number of bits is enough.
-pub(super) fn allocated(
+pub(super) fn allocated(statement: &ExpressionStatement) -> Result<Allocation, PlanRefusal> {
+    let [few, many] = DIVISIONS;
+    allocated_with(statement, few).or_else(|_| allocated_with(statement, many))
+}
+
+/// Returns guards with which every result keeps its error, where the errors are computed with so many divisions of the domain.
+fn allocated_with(
     statement: &ExpressionStatement,
-) -> Result<(Guards, ExpressionPlan), PlanRefusal> {
-    let (mut guards, mut plan) = first_plan(statement)?;
-    while let Some(excess) = largest_excess(statement, &plan) {
-        let source = excess.source(statement, &plan, &guards)?;
-        guards.add_bit(source);
-        plan = with_guards(statement, &mut guards, FIRST_GUARD)
-            .map_err(|_| excess.refusal(statement, &plan))?;
-    }
+    divisions: usize,
+) -> Result<Allocation, PlanRefusal> {
+    let (mut guards, mut plan) = match grown(statement, divisions) {
+        Ok(enough) => enough,
+        Err(refusal) => equally_many(statement, divisions).ok_or(refusal)?,
+    };
     for source in 0..guards.0.len() {
         while guards.0[source] > FIRST_GUARD {
             let mut fewer = guards.clone();
             fewer.0[source] -= 1;
             let Ok(candidate) = with_guards(statement, &mut fewer, FIRST_GUARD) else { break };
-            if largest_excess(statement, &candidate).is_some() {
+            if largest_excess(statement, &candidate, divisions).is_some() {
                 break;
             }
             guards = fewer;
             plan = candidate;
         }
     }
+    Ok(Allocation { guards, plan, divisions })
+}
+
+/// Returns guards that grow, where the largest share of an error is, until every result keeps its error.
+fn grown(
+    statement: &ExpressionStatement,
+    divisions: usize,
+) -> Result<(Guards, ExpressionPlan), PlanRefusal> {
+    let (mut guards, mut plan) = first_plan(statement)?;
+    while let Some(excess) = largest_excess(statement, &plan, divisions) {
+        let source = excess.source(statement, &plan, &guards)?;
+        guards.add_bit(source);
+        plan = with_guards(statement, &mut guards, FIRST_GUARD)
+            .map_err(|_| excess.refusal(statement, &plan))?;
+    }
     Ok((guards, plan))
+}
+
+/// Returns the same guard for all operations, with which every result keeps its error; `None` if there is none. This finds a plan
+/// where one operation alone gets so many bits that a product is too wide.
+fn equally_many(
+    statement: &ExpressionStatement,
+    divisions: usize,
+) -> Option<(Guards, ExpressionPlan)> {
+    for guard in (0..=MOST_FIRST_GUARD).step_by(3) {
+        let mut guards = Guards(Vec::new());
+        let Ok(plan) = with_guards(statement, &mut guards, guard) else { continue };
+        if largest_excess(statement, &plan, divisions).is_none() {
+            return Some((guards, plan));
+        }
+    }
+    None
 }
 
 /// Returns the first plan, with the fewest bits for which there is one. With fewer bits a divisor may be rounded to 0, for
@@ -97,11 +142,12 @@ pub(super) struct ExcessiveResult {
 pub(super) fn largest_excess(
     statement: &ExpressionStatement,
     plan: &ExpressionPlan,
+    divisions: usize,
 ) -> Option<ExcessiveResult> {
     let mut largest: Option<(f64, ExcessiveResult)> = None;
     for (result, stated) in statement.results.iter().enumerate() {
         let proof = ResultProof::new(statement, plan, result);
-        let Some(worst) = proof.worst(stated.error, DIVISIONS) else { continue };
+        let Some(worst) = proof.worst(stated.error, divisions) else { continue };
         let factor = worst.units / stated.error;
         if factor < 1.0 || largest.as_ref().is_some_and(|(most, _)| *most >= factor) {
             continue;

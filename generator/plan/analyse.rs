@@ -367,7 +367,13 @@ impl ErrorAnalysis<'_> {
         }
         let value = value.within(node.limits).limited(self.actual(node, values));
         let value = value.limited(node.actual_limits);
-        if matches!(node.operation, Operation::Narrow(..) | Operation::ShiftLeft(..)) {
+        // A result's format holds all values that are within the allowed error, so that its error tells whether it fits.
+        let drops_bits = match node.operation {
+            Operation::ShiftLeft(..) => true,
+            Operation::Narrow(..) => !self.plan.results.contains(&id),
+            _ => false,
+        };
+        if drops_bits {
             check_fit(id, value, node.format)?;
         }
         Ok(value)
@@ -379,7 +385,16 @@ impl ErrorAnalysis<'_> {
         match node.operation {
             Operation::Add(a, b) => input(a) + input(b),
             Operation::Subtract(a, b) => input(a) - input(b),
+            Operation::Multiply(a, b) if a == b => squared(input(a)),
             Operation::Multiply(a, b) => input(a) * input(b),
+            Operation::Minimum(a, b) => {
+                let (a, b) = (input(a), input(b));
+                Enclosure::between(a.low.min(b.low), a.high.min(b.high))
+            }
+            Operation::Maximum(a, b) => {
+                let (a, b) = (input(a), input(b));
+                Enclosure::between(a.low.max(b.low), a.high.max(b.high))
+            }
             Operation::Narrow(a, rounding) => {
                 let before = self.plan.node(a).format;
                 let places = before.frac - node.format.frac;
@@ -442,15 +457,17 @@ fn fixed(limits: Enclosure) -> Option<f64> {
 }
 
 fn product(a: NodeError, b: NodeError, is_square: bool) -> NodeError {
-    let mut ideal = a.ideal * b.ideal;
-    if is_square {
-        ideal = Enclosure::between(ideal.low.max(0.0), ideal.high);
-        if a.ideal.low <= 0.0 && a.ideal.high >= 0.0 {
-            ideal.low = 0.0;
-        }
-    }
+    let ideal = if is_square { squared(a.ideal) } else { a.ideal * b.ideal };
     let error = a.ideal * b.error + b.ideal * a.error + a.error * b.error;
     NodeError::new(ideal, error)
+}
+
+/// Returns limits of the square of a value, which is never below 0.
+fn squared(a: Enclosure) -> Enclosure {
+    let square = a * a;
+    let holds_zero = a.low <= 0.0 && a.high >= 0.0;
+    let least = if holds_zero { 0.0 } else { square.low };
+    Enclosure::between(least.max(0.0), square.high)
 }
 
 fn negated(a: NodeError) -> NodeError {

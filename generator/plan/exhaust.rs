@@ -9,6 +9,10 @@ use super::plan::ExpressionPlan;
 use super::refusal::PlanRefusal;
 use super::statement::ExpressionStatement;
 
+/// The widest interval in which f64 gives the value of a formula, in units of the result's last place. Wider ones are computed
+/// anew with more bits.
+const WIDEST_VALUE: f64 = 1e-6;
+
 /// Returns the largest error of each result, in units of its last place, over every combination of operands for which the
 /// result is promised.
 ///
@@ -76,13 +80,13 @@ fn add_errors(
         if result.is_promised(&operands) == Some(false) {
             continue;
         }
+        let unit = exp2(result.fraction as i32);
         let exact = match result.formula.enclose(&operands) {
-            Ok(value) if value.is_finite() => value,
+            Ok(value) if (value.high - value.low) * unit <= WIDEST_VALUE => value,
             _ => evaluated_exactly(statement, number, raw)?,
         };
         let values = values.get_or_insert_with(|| plan.values(raw));
         let hardware = values[plan.results[number].0] as f64;
-        let unit = exp2(result.fraction as i32);
         let off = (hardware - exact.low * unit).abs().max((hardware - exact.high * unit).abs());
         // A difference of 0 is exact. Any other may have been rounded down.
         let error = if off == 0.0 { 0.0 } else { off.next_up() };

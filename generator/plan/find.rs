@@ -6,7 +6,7 @@ use std::sync::{Arc, LazyLock, Mutex};
 
 use glint_approximate::{Piecewise, TargetFunction, Wish};
 
-use super::allocate::{allocated, largest_excess};
+use super::allocate::{Allocation, allocated, largest_excess};
 use super::boxes::ResultProof;
 use super::exhaust::largest_errors;
 use super::lower::{FoundPolynomials, Guards, lowered};
@@ -14,8 +14,8 @@ use super::plan::ExpressionPlan;
 use super::refusal::PlanRefusal;
 use super::statement::ExpressionStatement;
 
-/// The divisions of the domain for the last bound.
-const DIVISIONS: usize = 4000;
+/// The divisions of the domain for the last bound, at least.
+pub(super) const DIVISIONS: usize = 4000;
 
 /// Every combination of operands is computed if there are at most 2 to this power.
 const MOST_COMBINATIONS: u32 = 20;
@@ -77,16 +77,16 @@ pub fn find(statement: &ExpressionStatement) -> FindResult {
 }
 
 fn searched(statement: &ExpressionStatement) -> Result<ProvedPlan, PlanRefusal> {
-    let (mut guards, estimate) = allocated(statement)?;
+    let Allocation { mut guards, plan: estimate, divisions } = allocated(statement)?;
     let mut plan = with_polynomials(statement, &guards, estimate)?;
     // The polynomials can have other formats than was estimated, and then another error.
-    while let Some(excess) = largest_excess(statement, &plan) {
+    while let Some(excess) = largest_excess(statement, &plan, divisions) {
         let source = excess.source(statement, &plan, &guards)?;
         guards.add_bit(source);
         let estimate = lowered(statement, &guards, 0, &FoundPolynomials::default())?.0;
         plan = with_polynomials(statement, &guards, estimate)?;
     }
-    let mut bounds = enclosed_errors(statement, &plan)?;
+    let mut bounds = enclosed_errors(statement, &plan, divisions.max(DIVISIONS))?;
     let mut proof = ProofKind::Enclosed;
     if statement.combinations() <= 1 << MOST_COMBINATIONS {
         proof = ProofKind::EveryCombination;
@@ -144,15 +144,16 @@ fn cheapest_polynomials(function: &TargetFunction) -> Result<Arc<Piecewise>, Pla
         .map_err(|refusal| PlanRefusal::new(refusal.message, refusal.remedy))
 }
 
-/// Returns a proved bound of the error of each result.
+/// Returns a proved bound of the error of each result, after so many divisions of the domain.
 pub(super) fn enclosed_errors(
     statement: &ExpressionStatement,
     plan: &ExpressionPlan,
+    divisions: usize,
 ) -> Result<Vec<f64>, PlanRefusal> {
     let mut bounds = Vec::new();
     for (result, stated) in statement.results.iter().enumerate() {
         let proof = ResultProof::new(statement, plan, result);
-        let Some(worst) = proof.worst(0.0, DIVISIONS) else {
+        let Some(worst) = proof.worst(0.0, divisions) else {
             // Nothing is promised for any operand.
             bounds.push(0.0);
             continue;

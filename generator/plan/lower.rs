@@ -149,7 +149,10 @@ impl<'s> Lowering<'s> {
         let format = Format::holding(low.min(high), high.max(low), frac);
         let name = format!("{}_rounded", result.name);
         let node = self.plan.narrow(&name, node, format, Rounding::Nearest)?;
-        Ok(node)
+        match self.plan.node(node).operation {
+            Operation::Operand(_) => self.plan.copy(&name, node),
+            _ => Ok(node),
+        }
     }
 
     /// Returns limits of the values of a part where something is promised.
@@ -344,7 +347,15 @@ impl<'s> Lowering<'s> {
         yes: &Expression,
         no: &Expression,
     ) -> Result<NodeId, PlanRefusal> {
-        let (left, right) = (self.part(&comparison.left)?, self.part(&comparison.right)?);
+        let (first, second) = (&*comparison.left, &*comparison.right);
+        let (left, right) = (self.part(first)?, self.part(second)?);
+        if (yes, no) == (second, first) {
+            // Of two numbers that are nearly equal, rounding can make the other one the larger: the error is small all the same.
+            return self.plan.minimum("smaller", left, right);
+        }
+        if (yes, no) == (first, second) {
+            return self.plan.maximum("larger", left, right);
+        }
         let (yes, no) = (self.part(yes)?, self.part(no)?);
         if comparison.or_equal {
             // left >= right, unless left < right.

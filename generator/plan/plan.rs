@@ -281,6 +281,13 @@ impl ExpressionPlan {
         self.insert(name, Operation::Scale(a), format, range)
     }
 
+    /// Adds a node with the value of another. A result that is an operand itself needs one, because its register has a name of
+    /// its own.
+    pub(super) fn copy(&mut self, name: &str, a: NodeId) -> Result<NodeId, PlanRefusal> {
+        let PlanNode { format, range, .. } = *self.node(a);
+        self.insert(name, Operation::Scale(a), format, range)
+    }
+
     /// Adds a in a format. The caller must prove that no value leaves the format.
     pub(super) fn narrow(
         &mut self,

@@ -27,6 +27,7 @@ mod multipliers;
 mod mutants;
 mod playground;
 mod random_configurations;
+mod random_expressions;
 mod random_netlists;
 mod recompute;
 mod schema;

@@ -298,8 +298,8 @@ def expression(results, *, let=None, fraction=None, error=None, where=None, keys
     """A core for formulas of several operands: `glint.expression("x / y", x=(0, 1, 16), y=(0.5, 1, 16), fraction=15)`.
 
     An operand is a domain with its fraction bits, `x=(-1, 1, 15)`, or its fields, `x={"bits": 16, "fraction": 15, "signed": True}`.
-    `results` is a formula, whose result is named `r`, or a dictionary of formulas by name. In place of a formula a result can have
-    its fields, `{"formula": "x / y", "fraction": 15, "where": "y > x"}`; `fraction`, `error` and `where` are for the results
+    `results` is a formula, whose result is named `r`, or a dictionary of formulas by name. A core with several results gives them
+    under the names of their ports, `core(x, y)["r_out"]`. In place of a formula a result can have its fields, `{"formula": "x / y", "fraction": 15, "where": "y > x"}`; `fraction`, `error` and `where` are for the results
     that do not state them. `let` has named parts, and `keys` any other keys, `{"architecture": "pipelined"}`.
     """
     if isinstance(results, str):

@@ -69,8 +69,8 @@ def test_expressions_of_several_operands_are_within_their_bounds():
     x, y = np.meshgrid(np.linspace(-1, 0.99, 41), np.linspace(-0.99, 0.98, 37))
     x, y = np.round(x * 2**11) / 2**11, np.round(y * 2**11) / 2**11
     found = core(x, y)
-    assert np.abs(found["r"] - np.hypot(x, y)).max() * 2**11 <= core.bound < 1
-    turns = (found["angle"] - np.arctan2(y, x) / np.pi + 1) % 2 - 1
+    assert np.abs(found["r_out"] - np.hypot(x, y)).max() * 2**11 <= core.bound < 1
+    turns = (found["angle_out"] - np.arctan2(y, x) / np.pi + 1) % 2 - 1
     assert np.abs(turns).max() * 2**11 <= core.bound
     assert core.cosim(2000) is None
     quotient = glint.expression("x / y", x=(0, 1, 8), y=(Fraction(1, 2), 1, 8), fraction=7, keys={"architecture": "pipelined"})

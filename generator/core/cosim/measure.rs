@@ -2,7 +2,7 @@
 
 use anyhow::{Context, Result, ensure};
 
-use super::outcome::{StreamRecord, Worst};
+use super::outcome::{ROUNDING_OF_F64, StreamRecord, Worst};
 use glint_base::fixed::{Format, MAX_WIDTH, exp2};
 use glint_golden::{Contract, Output, nearer};
 use glint_rtl::netlist::{Design, NetId};
@@ -47,7 +47,8 @@ impl<'a> Measure<'a> {
         let largest = contract.bound().units;
         let weight = |number: usize| {
             let own = contract.output_bound(number);
-            if own == largest || own <= 0.0 { 1.0 } else { largest / own }
+            // A bound of 0 would give no weight.
+            if own == largest { 1.0 } else { largest / own.max(ROUNDING_OF_F64) }
         };
         let quantity = |(number, Output { name, format }): (usize, &Output)| {
             let at = |net| Some((nets.iter().position(|&it| it == net)?, net));

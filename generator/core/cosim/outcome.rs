@@ -9,6 +9,10 @@ use super::random::Random;
 use super::recorded::Recording;
 use glint_golden::Bound;
 
+/// The rounding of the formulas' evaluation in f64, in units of the result's last place. A measured error may exceed a proven
+/// bound by this.
+pub(super) const ROUNDING_OF_F64: f64 = 1e-6;
+
 /// The outcome of a co-simulation run.
 #[derive(Clone, Debug, Default)]
 pub struct Outcome {
@@ -70,7 +74,7 @@ impl Outcome {
                 operands.collect::<Vec<_>>().join(", ")
             ));
         } else if let Some(worst) = &self.worst
-            && worst.weighted > bound.units
+            && worst.weighted > bound.units + ROUNDING_OF_F64
         {
             // The bound of the output itself.
             let own = bound.units * worst.units / worst.weighted;

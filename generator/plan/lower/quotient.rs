@@ -29,10 +29,10 @@ impl Lowering<'_> {
             false => values.low.abs().max(values.high.abs()),
         };
         let size = self.plan.absolute("divisor_size", divisor)?;
-        let sizes = Enclosure::between(0.0, divisors.low.abs().max(divisors.high.abs()));
+        let sizes = sizes_of(divisors);
         let is_short = self.plan.node(size).format.width() <= WIDEST_OPERAND;
-        let quotient = if is_short && divisors.high < divisors.low * FEW_OCTAVES {
-            let inverse = self.function("inverse", size, &number("1 / x"), divisors)?;
+        let quotient = if is_short && sizes.high < sizes.low * FEW_OCTAVES {
+            let inverse = self.function("inverse", size, &number("1 / x"), sizes)?;
             let dividend = self.factor(a)?;
             self.plan.multiply("ratio", dividend, inverse)?
         } else {
@@ -110,4 +110,12 @@ impl Lowering<'_> {
             Enclosure::between(if is_signed { -largest } else { 0.0 }, largest);
         Ok(ratio)
     }
+}
+
+/// Returns limits of the sizes of values, without their signs. For example, values from −3 to −1 have sizes from 1 to 3.
+fn sizes_of(values: Enclosure) -> Enclosure {
+    let (low, high) = (values.low.abs(), values.high.abs());
+    let has_both_signs = values.low < 0.0 && values.high > 0.0;
+    let least = if has_both_signs { 0.0 } else { low.min(high) };
+    Enclosure::between(least, low.max(high))
 }

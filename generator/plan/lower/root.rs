@@ -92,7 +92,9 @@ impl Lowering<'_> {
         // The shift by which the word was enlarged is undone, times the exponent.
         let scale = doubled * octave.exponent / 2;
         let frac = self.finest + 2 + if doubled > 0 { scale } else { 0 };
+        let fewest = fewest_fraction_bits(function);
         let of_mantissa = self.rounding(frac, |own, frac| {
+            let frac = frac.max(fewest);
             own.approximation("power", octave.mantissa, function, octave.domain, frac)
         })?;
         let source = self.plan.node(of_mantissa).source;
@@ -121,6 +123,7 @@ impl Lowering<'_> {
         range: Enclosure,
         by_pairs: bool,
     ) -> Result<Octave, PlanRefusal> {
+        let node = self.without_negative_rounding(node)?;
         // Far from 0, a word has more bits than any result needs.
         let octaves_below_1 = -floor_of_log2(range.low);
         let is_far = octaves_below_1 < MOST_OCTAVES_BELOW_1;
@@ -153,6 +156,17 @@ impl Lowering<'_> {
         Ok(Octave { word, mantissa, places, exponent: word_format.int, domain })
     }
 
+    /// Returns a node that is not below 0 but for its rounding, with 0 in place of the negative values.
+    fn without_negative_rounding(&mut self, node: NodeId) -> Result<NodeId, PlanRefusal> {
+        let is_negative = self.plan.node(node).range.0 < 0;
+        if !is_negative || self.is_exact(node) {
+            return Ok(node);
+        }
+        let frac = self.plan.node(node).format.frac;
+        let zero = self.plan.constant("zero", 0, frac)?;
+        self.plan.maximum("not_negative", node, zero)
+    }
+
     /// Returns a number of places times a small constant.
     fn multiple(&mut self, places: NodeId, factor: i32) -> Result<NodeId, PlanRefusal> {
         if factor == 1 {
@@ -161,6 +175,17 @@ impl Lowering<'_> {
         let factor = self.plan.constant("shift_factor", factor.into(), 0)?;
         self.plan.multiply("shift", places, factor)
     }
+}
+
+/// Returns the fewest fraction bits with which a positive power of 1/4 and of 1 is at least two units, so that no rounding makes
+/// a result of its table negative. For example, the square root needs 2 bits, for which 1/2 is two units.
+fn fewest_fraction_bits(function: &Expression) -> i32 {
+    let mut least = f64::INFINITY;
+    for mantissa in [0.25, 1.0] {
+        let value = function.enclose(&[("x", Enclosure::exactly(mantissa))]);
+        least = least.min(value.map_or(f64::INFINITY, |value| value.low));
+    }
+    1 - floor_of_log2(least)
 }
 
 /// Returns the format with `frac` fraction bits of values within limits, and of values a unit beyond them.

@@ -26,13 +26,11 @@ pub use job::{Job, MOST_SHARDS, Progress, Shard, ShardState};
 pub use places::{Peak, Places};
 pub use record::Record;
 
+use super::outcome::ROUNDING_OF_F64;
 use glint_golden::{Contract, Sweep};
 
 /// The default directory of the records of exhaustive checks.
 pub const PROOFS: &str = "records/proofs";
-
-/// The rounding of f64 itself, in units.
-const F64: f64 = 1e-6;
 
 /// The result of an exhaustive check of the error bound.
 #[derive(Clone, Debug)]
@@ -64,14 +62,14 @@ impl Proof {
             ));
             return proof;
         }
-        if f.error > bound.f + F64 / largest {
+        if f.error > bound.f + ROUNDING_OF_F64 / largest {
             let what = if of_f { "f is" } else { "an output is, in units," };
             proof.failures.push(format!(
                 "{what} off by {:e}, beyond the stated bound of {:e}",
                 f.error, bound.f
             ));
         }
-        if proof.together() > bound.units + F64 {
+        if proof.together() > bound.units + ROUNDING_OF_F64 {
             proof.failures.push(format!(
                 "an output may be off by {:.4} units, beyond the stated bound of {:.4}",
                 proof.together(),
