@@ -513,10 +513,12 @@ fn rounding_error(places: i32, format: Format, rounding: Rounding) -> Enclosure 
 /// Returns the smallest and the largest raw value of a format that a value within limits can have.
 fn raw_limits(value: Enclosure, format: Format) -> (i128, i128) {
     let unit = exp2(format.frac);
-    let (low, high) = format.range();
-    let floor = (value.low * unit).floor().max(low as f64);
-    let ceiling = (value.high * unit).ceil().min(high as f64);
-    (floor as i128, ceiling as i128)
+    let (least, most) = format.range();
+    let (low, high) = (value.low * unit, value.high * unit);
+    // A raw value is an integer.
+    let (first, last) = (low.ceil(), high.floor());
+    let (first, last) = if first <= last { (first, last) } else { (low.floor(), high.ceil()) };
+    (first.max(least as f64) as i128, last.min(most as f64) as i128)
 }
 
 /// Checks that the bits that a node drops at the top are copies of the sign.
