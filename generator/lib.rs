@@ -9,13 +9,13 @@
 //! | to | see |
 //! |---|---|
 //! | describe a datapath and its microprogram | [`dsl`], [`hdl::blocks`] |
-//! | make it of others | [`dsl::Designer::instance`], [`golden::frame::Frame::part`] |
-//! | predict it, clock by clock and by its formula | [`golden::device`], [`golden::highlight`] |
-//! | state its keys, and read a configuration | [`config`] |
+//! | build a device from other devices | [`dsl::Designer::instance`], [`golden::frame::Frame::part`] |
+//! | predict a device, clock by clock and by its formula | [`golden::device`], [`golden::highlight`] |
+//! | state the keys of a device, and read a configuration | [`config`] |
 //! | simulate a design in the program | [`hdl::sim::Simulator`] |
-//! | have all of it for a configuration: model, contract, files, co-simulation | [`core::Core`] |
+//! | get everything for a configuration: model, contract, files, co-simulation | [`core::Core`] |
 //!
-//! What has no page here is public for the tests of this crate, and may change in any version.
+//! Items without documentation here are public only for the tests of this crate, and may change in any version.
 //!
 //! ```
 //! use glint::config::Config;

@@ -1,4 +1,4 @@
-//! The command line of the catalogue.
+//! The program `glint`: the command line with the devices of Glint's own registry.
 
 use std::process::ExitCode;
 

@@ -15,9 +15,9 @@ use glint::golden::{Contract, nearer};
 /// Points that one thread computes at a time.
 const PIECE: usize = 1 << 12;
 
-/// An operand of many points: one number for all of them, or a number each.
+/// An operand column that Python passes: one number for all points, or an array with one number for each point.
 ///
-/// Arrays come first: before NumPy 2.4, an array of one integer is an integer to Python as well.
+/// Arrays are tried first: before NumPy 2.4, an array of one integer is an integer to Python as well.
 #[derive(FromPyObject)]
 pub enum OperandColumn<'py> {
     Integers(PyReadonlyArray1<'py, i64>),
@@ -41,10 +41,11 @@ enum RawColumn<'a> {
 }
 
 impl<'a> OperandTable<'a> {
-    /// Takes a column for each operand of a contract; of values, or of raw integers.
+    /// Converts the columns from Python, one for each operand of the contract. `raw` says whether they are raw integers; otherwise
+    /// they are values.
     ///
     /// # Errors
-    /// Columns of different lengths, and numbers that the format of the operand has not.
+    /// Fails if columns have different lengths, or if the format of an operand cannot represent a number.
     pub fn new(
         contract: &dyn Contract,
         columns: &'a [OperandColumn<'_>],
@@ -124,7 +125,7 @@ impl<'a> OperandTable<'a> {
         Ok(Self { columns: taken, points: points.unwrap_or(1) })
     }
 
-    /// Returns the number of points.
+    /// Returns the number of points in the table.
     pub fn len(&self) -> usize {
         self.points
     }
@@ -157,7 +158,7 @@ pub enum ResultColumns {
 }
 
 impl ResultColumns {
-    /// Computes the results with the golden model, as raw integers or as values.
+    /// Computes the results of all points with the golden model. `raw` asks for raw integers; otherwise the results are values.
     pub fn golden(contract: &dyn Contract, operands: &OperandTable, raw: bool) -> Self {
         let results = |points: ChunksExact<i64>, out: &mut Vec<i64>| {
             points.for_each(|point| contract.results(point, 0, out));
@@ -173,7 +174,7 @@ impl ResultColumns {
         }))
     }
 
-    /// Computes the values of the formula.
+    /// Computes the exact results of all points with the formula.
     pub fn exact(contract: &dyn Contract, operands: &OperandTable) -> Self {
         let mut columns = each(contract, operands, |points, out| {
             for point in points {
@@ -185,7 +186,7 @@ impl ResultColumns {
         )
     }
 
-    /// Computes the distance of the golden model's results from the formula, in units of the outputs' last place.
+    /// Computes the distances of the golden model's results from the formula, in units of the last bit of each output.
     pub fn errors(contract: &dyn Contract, operands: &OperandTable) -> Self {
         let units = units(contract);
         Self::Values(each(contract, operands, |points, out| {

@@ -44,7 +44,7 @@ const BESIDE: f64 = 1.0 / 1024.0;
 pub const MOST_BITS: u32 = 26;
 
 glint_config::choices! {
-    /// The result that a device gives for an operand outside the function's domain.
+    /// The results that a device may give for an operand outside the function's domain.
     #[derive(Hash)]
     pub enum Outside {
         /// The result of the nearer end.
@@ -69,30 +69,31 @@ pub enum Curve {
 /// A function on a domain, and the formats that its operand and result have.
 #[derive(Clone, Debug)]
 pub struct TargetFunction {
-    /// The formula or the samples.
+    /// The function to approximate: a formula, or a curve through samples.
     pub curve: Curve,
-    /// The raw operands, first and last. For example, the domain from 1 to below 4 with 16 fraction bits is (65536, 262143).
+    /// The smallest and the largest raw operand of the domain. For example, the domain from 1 to below 4 with 16 fraction bits is
+    /// (65536, 262143).
     pub domain: (i64, i64),
-    /// The format of the operand.
+    /// The fixed-point format of the operand x.
     pub operand: Format,
-    /// The result for operands outside the domain.
+    /// The result that the device gives for operands outside the domain.
     pub outside: Outside,
     /// The number of fraction bits of the result.
     pub fraction: u32,
-    /// The largest error that is allowed, in units of the last place of the result.
+    /// The largest allowed error, in units of the last bit of the result.
     pub error: f64,
 }
 
-/// The reason why no approximation was found, with a remedy.
+/// The reason why no approximation was found, with the key that the user should change.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Refusal {
     /// The configuration key that the user should change.
     pub key: &'static str,
     /// The range of bytes in the formula, if the reason concerns a part of it.
     pub place: Option<Range<usize>>,
-    /// The reason, as a message.
+    /// The reason why no approximation was found, for the user.
     pub message: String,
-    /// The remedy, as a message.
+    /// The remedy, for the user. For example, it names a larger error that can be reached.
     pub remedy: String,
 }
 
@@ -103,7 +104,8 @@ impl Refusal {
     }
 }
 
-/// The numbers of bits of one step of Horner's rule: a step multiplies a sum by the offset in the segment, and cuts off low bits.
+/// The bit widths of one step of Horner's rule. Let p be the partial sum and t the offset of the operand in its segment: a step
+/// computes p·t, drops low bits of the product, and adds the next coefficient.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct HornerStep {
     /// The number of leading bits of the offset that the step multiplies.
@@ -126,15 +128,15 @@ impl HornerStep {
 /// A piecewise polynomial in integers: the table of coefficients, and all bit widths of its hardware.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Piecewise {
-    /// The format of the operand.
+    /// The fixed-point format of the operand x of the device.
     pub operand: Format,
     /// The smallest and the largest raw operand of the domain.
     pub domain: (i64, i64),
-    /// The result for operands outside the domain.
+    /// The result that the device gives for operands outside the domain.
     pub outside: Outside,
     /// The range reduction that maps an operand to the polynomial's shorter domain, if there is one.
     pub reduction: Option<Reduction>,
-    /// The raw operand of the polynomial that has the number 0 in [`Segments`].
+    /// The raw operand that has the number 0 in [`Segments`], which numbers the operands of the polynomial from 0.
     pub origin: i64,
     /// The segments, which map the number of an operand to a word of the table.
     pub segments: Segments,
@@ -142,19 +144,19 @@ pub struct Piecewise {
     pub coefficients: Vec<Format>,
     /// The words of the table, one for each segment. A word consists of the coefficients, the constant first.
     pub words: Vec<Vec<i64>>,
-    /// The bit widths of the product that is added to coefficient k, for each k.
+    /// The bit widths of Horner's steps, by the coefficient that a step adds: entry k belongs to coefficient k.
     pub steps: Vec<HornerStep>,
-    /// The format of the partial sum from coefficient k on, for each k. The first is the format of the whole polynomial.
+    /// The formats of the partial sums of Horner's rule. Entry k is the format of the sum that contains the coefficients from k on;
+    /// entry 0 is the format of the whole polynomial.
     pub sums: Vec<Format>,
     /// The format of the result. It is the format of the polynomial if there is no range reduction.
     pub result: Format,
-    /// The proved bound of the error, in units of the last place of the result.
+    /// The proved bound of the error, in units of the last bit of the result.
     pub bound: f64,
 }
 
 impl TargetFunction {
-    /// Returns an interval that contains the exact value of the function at a raw operand, in units of the last place of the
-    /// result.
+    /// Returns an interval that contains the exact value of the function at a raw operand, in units of the last bit of the result.
     ///
     /// A formula is first evaluated in `f64`. It is evaluated again with more bits if `f64` leaves a comparison undecided,
     /// overflows, or is not exact enough for the allowed error.
@@ -249,7 +251,8 @@ impl TargetFunction {
 }
 
 impl Piecewise {
-    /// Returns the names of the registers of the partial sums, starting with the register of the whole polynomial.
+    /// Returns the names of the registers that hold the partial sums of Horner's rule, starting with the register of the whole
+    /// polynomial.
     pub fn registers(&self) -> [&'static str; 3] {
         [if self.reduction.is_some() { "polynomial" } else { "result" }, "sum1", "sum2"]
     }
@@ -265,26 +268,28 @@ impl Piecewise {
         self.reduction.as_ref().map_or((raw, Restore::default()), |it| it.reduce(raw))
     }
 
-    /// Returns the number of a raw operand, from which [`Segments`] finds its segment.
+    /// Returns the number of a raw operand. Numbers run from 0 over the polynomial's domain, and [`Segments`] finds the segment of
+    /// a number.
     pub fn number(&self, raw: i64) -> u64 {
         (self.reduced(raw).0 - self.origin) as u64 & ((1 << self.segments.bits) - 1)
     }
 
-    /// Returns the word and the offset of a raw operand. An operand beyond the words of the domain gets the last word.
+    /// Returns the segment of a raw operand, and the offset of the operand in it. An operand beyond the domain gets the last
+    /// segment.
     pub fn place(&self, raw: i64) -> SegmentOffset {
         let SegmentOffset { word, offset } = self.segments.place(self.number(raw));
         SegmentOffset { word: word.min(self.words.len() - 1), offset }
     }
 
-    /// Returns the partial sum from coefficient k on, with all its upper bits. `above` is the partial sum from coefficient k + 1
-    /// on.
+    /// Returns the partial sum of Horner's rule that contains the coefficients from k on, with all its upper bits. `place` is the
+    /// segment and the offset; `above` is the partial sum from coefficient k + 1 on.
     pub fn sum(&self, k: usize, place: SegmentOffset, above: i64) -> i64 {
         let coefficient = self.words[place.word][k];
         let Some(step) = self.steps.get(k) else { return coefficient };
         coefficient + step.product(above, place.offset, self.segments.rest())
     }
 
-    /// Returns the number of fraction bits of the last sum that the result drops.
+    /// Returns the number of fraction bits that the result drops from the value of the polynomial.
     pub fn guard(&self) -> u32 {
         (self.coefficients[0].frac - self.sums[0].frac) as u32
     }
@@ -302,12 +307,13 @@ impl Piecewise {
         sums
     }
 
-    /// Returns the result of a raw operand.
+    /// Returns the raw result that the hardware computes for a raw operand.
     pub fn result(&self, raw: i64) -> i64 {
         self.restored(raw, self.sums_of(raw)[0])
     }
 
-    /// Returns the result of a raw operand, given the value of the polynomial at that operand.
+    /// Returns the raw result for a raw operand, given the raw value of the polynomial. With a range reduction, the function undoes
+    /// the reduction.
     pub fn restored(&self, raw: i64, polynomial: i64) -> i64 {
         self.reduced(raw).1.result(polynomial)
     }
@@ -319,8 +325,8 @@ impl Piecewise {
         self.words.len() as u64 * u64::from(width)
     }
 
-    /// Proves a bound on the error at every operand of the domain: the distance of the result from the exact value is never
-    /// larger.
+    /// Proves a bound on the error at every operand of the domain, and returns it in units of the last bit of the result. The
+    /// result is never further than the bound from the exact value.
     ///
     /// # Errors
     /// Fails if the sums of an operand leave their formats, if its result is further off than the function allows, or if the

@@ -38,12 +38,12 @@ impl Identity {
     }
 }
 
-/// A range reduction: it maps an operand to a number of `bits` bits, which is the operand of the polynomial.
+/// A range reduction: it maps an operand of the large domain to a number of `bits` bits, at which the polynomial is evaluated.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Reduction {
-    /// The rule by which an operand gets its number.
+    /// The rule that maps an operand to its number.
     pub rule: Rule,
-    /// The width of the number.
+    /// The width of the number in bits.
     pub bits: u32,
     /// The number of fraction bits that the polynomial has more than the result.
     pub guard: u32,
@@ -81,7 +81,8 @@ pub enum Rule {
     },
 }
 
-/// The steps that restore the result of an operand from the value of the polynomial.
+/// The steps that compute the result for an operand from the value of the polynomial at its number. For example, an odd function
+/// negates the value.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Restore {
     /// The value that is added to the polynomial.
@@ -95,7 +96,7 @@ pub struct Restore {
 }
 
 impl Restore {
-    /// Returns the result for a value of the polynomial.
+    /// Returns the result, given the value `polynomial` of the polynomial.
     pub fn result(self, polynomial: i64) -> i64 {
         if self.zero {
             return 0;
@@ -122,8 +123,8 @@ impl Restore {
 }
 
 impl Reduction {
-    /// Returns the number of a raw operand, and the steps that restore its result from the polynomial. For example, an even
-    /// function gives the raw operands 3 and −3 the same number 3.
+    /// Returns the number to which a raw operand is mapped, and the steps that restore the operand's result from the polynomial.
+    /// For example, an even function maps the raw operands 3 and −3 to the same number 3.
     pub fn reduce(&self, raw: i64) -> (i64, Restore) {
         let mask = (1i64 << self.bits) - 1;
         let mirrored = |low: i64| if low == 0 { mask } else { mask + 1 - low };
@@ -158,7 +159,8 @@ impl Reduction {
         }
     }
 
-    /// Returns the number of bits by which the integer of an operand's exponent shifts the polynomial.
+    /// Returns the number of bits by which the hardware shifts the value of the polynomial, which follows from the integer part of
+    /// the operand's exponent. It is 0 for a rule without an exponent.
     pub fn places(&self, raw: i64) -> u32 {
         match self.rule {
             Rule::Exponent { scale, whole, .. } => {

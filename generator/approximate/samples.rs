@@ -76,7 +76,7 @@ impl Samples {
         Ok(Self(points.map(|((raw, value), slope)| (raw, value, slope)).collect()))
     }
 
-    /// Returns the number of samples.
+    /// Returns the number of samples in the list.
     pub fn count(&self) -> usize {
         self.0.len()
     }

@@ -9,14 +9,14 @@ use super::{
 };
 use glint_base::fixed::MAX_WIDTH;
 
-/// The choices that the user has made for an approximation. The search makes all other choices.
+/// The choices that the user has made for an approximation. The search is free in all other choices.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Wish {
     /// The degree of the polynomials, or `None` for the cheapest.
     pub degree: Option<u32>,
     /// The layout of the segments, or `None` for the cheapest.
     pub layout: Option<Layout>,
-    /// The identity of the range reduction.
+    /// The identity that the range reduction uses, for example f(−x) = f(x).
     pub identity: Identity,
 }
 

@@ -23,16 +23,19 @@ impl Layout {
     }
 }
 
-/// A domain of the numbers from 0 to 2^bits − 1, cut into segments. An octave is the block of numbers with the same highest bit.
-/// The numbers below the last octave form one more block, and all blocks have the same number of segments. For example, `bits =
-/// 8`, `octaves = 0` and `prefix = 4` give 16 segments of 16 numbers.
+/// A domain of the numbers from 0 to 2^bits − 1, cut into segments. Segments may become shorter toward 0, by octaves.
+///
+/// An octave is the block of numbers with the same highest bit, such as 128 to 255. The numbers below the last octave form one more
+/// block, and all blocks have the same number of segments. For example, `bits = 8`, `octaves = 0` and `prefix = 4` give 16 segments
+/// of 16 numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Segments {
     /// The number of bits of an operand's number.
     pub bits: u32,
-    /// The layout of the segments.
+    /// The layout of the segments: all equally long, or shorter toward one end of the domain.
     pub layout: Layout,
-    /// The number of octaves, or 0 for segments of one length.
+    /// The number of octaves (blocks of numbers with the same highest bit) that have segments of their own length, or 0 if all
+    /// segments are equally long.
     pub octaves: u32,
     /// The number of bits that select a segment within a block.
     pub prefix: u32,
@@ -54,8 +57,8 @@ impl Segments {
         self.bits - self.prefix - u32::from(self.octaves > 0)
     }
 
-    /// Returns the number of bits of an offset in a segment of a block. Block 0 lies below the octaves, and the last is
-    /// the highest octave.
+    /// Returns the number of bits of an offset in a segment of a block. Block 0 lies below the octaves; the last block is the
+    /// highest octave.
     pub fn rest_of(&self, block: u32) -> u32 {
         (self.bits + block.max(1) - 1) - self.octaves - self.prefix
     }
@@ -93,8 +96,8 @@ impl Segments {
         SegmentOffset { word, offset: ((low << places) as i64) - middle }
     }
 
-    /// Returns the numbers in the segment of a word: the lowest, and how many there are. For example, word 3 of 16 uniform
-    /// segments over 8 bits gives (48, 16).
+    /// Returns the numbers in the segment of a table word: the lowest number, and how many there are. For example, word 3 of 16
+    /// uniform segments over 8 bits gives (48, 16).
     pub fn numbers(&self, word: usize) -> (u64, u64) {
         let block = (word >> self.prefix) as u32;
         let rest = self.rest_of(block);

@@ -1,9 +1,9 @@
 //! Proves a bound on the error of a piecewise polynomial by intervals, for domains with too many operands to compute each.
 //!
-//! If the offset is treated as a real number t, a word of the table is a polynomial P(t). The result of the hardware is less than
-//! P(t) by the bits that roundings drop; this lag has limits for a whole segment. Within an interval, the distance between the
-//! function and P is at most the distance in the middle plus the largest derivative times half of the length. If this bound is
-//! too large, the interval is halved, down to single operands.
+//! The proof treats the offset of an operand in its segment as a real number t. A word of the table is then a polynomial P(t). The
+//! hardware drops bits, so its result is less than P(t); the proof bounds this difference for a whole segment. Within an interval,
+//! the distance between the function and P is at most the distance in the middle plus the largest derivative times half of the
+//! length. If this bound is too large, the interval is halved, down to single operands.
 
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -22,7 +22,7 @@ const FEW: i64 = 4;
 
 /// The sums of a segment between their limits.
 pub(super) struct Walk {
-    /// The interval of the partial sum from each coefficient on, in units of its last place.
+    /// For each coefficient, the interval of the partial sum from this coefficient on, in units of the sum's last bit.
     pub sums: Vec<Interval>,
     /// The limits of the lag: how much the result is below the polynomial, in units of the result.
     lag: Enclosure,

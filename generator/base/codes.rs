@@ -8,61 +8,61 @@ use std::fmt;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Code(u16);
 
-/// A value or a signal that its format cannot represent.
+/// G0101: a constant, a memory word or a signal has a value that its format cannot represent.
 pub const FORMAT: Code = Code(101);
-/// Binary points that differ, or fraction bits that would be dropped.
+/// G0102: two operands have different binary points, or an operation would drop fraction bits without a stated rounding.
 pub const POINT: Code = Code(102);
-/// A format with too many bits, or with its binary point too far from its bits.
+/// G0103: a format has too many bits, or its binary point is too far from its bits.
 pub const WIDE: Code = Code(103);
-/// Widths that do not match.
+/// G0104: the operands of an operation do not have the widths that the operation needs.
 pub const WIDTH: Code = Code(104);
-/// A signed signal where only an unsigned one is allowed.
+/// G0105: an operation that takes only unsigned signals has a signed operand.
 pub const SIGN: Code = Code(105);
-/// An address that exceeds the words of a memory.
+/// G0106: the address of a ROM can exceed the number of words.
 pub const MEMORY: Code = Code(106);
-/// A net with two drivers.
+/// G0201: two drivers drive the same net.
 pub const TWO_DRIVERS: Code = Code(201);
-/// A net without a driver.
+/// G0202: nothing drives a net.
 pub const UNDRIVEN: Code = Code(202);
-/// A combinational loop.
+/// G0203: nets form a combinational loop.
 pub const LOOP: Code = Code(203);
-/// Logic that no output depends on.
+/// G0204: no output depends on a net or an operand, so the synthesiser would remove it.
 pub const UNUSED: Code = Code(204);
-/// A name that is no Verilog identifier.
+/// G0205: a signal or a setting belongs to another `Designer`.
 pub const FOREIGN: Code = Code(205);
-/// A name that two things have.
+/// G0206: the netlist refers to a net, a memory or a field that does not exist.
 pub const REFERENCE: Code = Code(206);
-/// A description without a microprogram, or with two.
+/// G0301: a name is no legal Verilog identifier. For example, `wire` is a keyword.
 pub const NAME: Code = Code(301);
-/// A microinstruction without a successor, or one that no other reaches.
+/// G0302: two nets, memories, parts or microinstructions have the same name.
 pub const NAME_TWICE: Code = Code(302);
-/// A first microinstruction that does more than wait for `start`.
+/// G0401: the description has no microprogram, or two.
 pub const MICROPROGRAM: Code = Code(401);
-/// `valid` in a microinstruction whose result is not loaded yet.
+/// G0402: a microinstruction has no successor, or no other microinstruction leads to it.
 pub const SUCCESSOR: Code = Code(402);
-/// A first microinstruction that does more than wait.
+/// G0403: the first microinstruction, in which the device waits for `start`, also loads or raises something.
 pub const IDLE: Code = Code(403);
-/// Two settings of one field in the same microinstruction.
+/// G0404: a microinstruction raises `valid` although a register has not loaded the result yet.
 pub const VALID: Code = Code(404);
-/// A field that no microinstruction uses.
+/// G0405: a loop never ends, because nothing in it changes its condition.
 pub const ENDLESS: Code = Code(405);
-/// A setting that selects an input which the mux does not have.
+/// G0406: one microinstruction gives two values to the same field of the control word.
 pub const CLASH: Code = Code(406);
-/// A register that takes a product while other operands are selected.
+/// G0407: no microinstruction uses a mux input, a choice or a register that the description declares.
 pub const UNUSED_CONTROL: Code = Code(407);
-/// A part that cannot be used in this description.
+/// G0408: a microinstruction selects a signal that is no input of the mux.
 pub const PICK: Code = Code(408);
-/// Operand buffers that this description cannot have.
+/// G0409: a register loads a product while the muxes select other operands of the multiplier.
 pub const PRODUCT: Code = Code(409);
-/// Output registers that this description cannot have.
+/// G0501: an instance of another description does not fit. For example, it lacks an operand.
 pub const PART: Code = Code(501);
-/// A microprogram that cannot be unrolled into a pipeline.
+/// G0502: a microprogram waits for `start` in the middle, so the description cannot have operand buffers.
 pub const BUFFER: Code = Code(502);
-/// A pipeline that cannot meet its options.
+/// G0503: the microinstruction that shows the results decides on a condition, so the outputs cannot have registers.
 pub const OUTPUT_REGISTER: Code = Code(503);
-/// A microprogram that no pipeline can be made of.
+/// G0601: a microprogram cannot be unrolled into a pipeline. For example, one of its loops has no fixed limit.
 pub const UNROLL: Code = Code(601);
-/// A pipeline that its options do not allow.
+/// G0602: no pipeline meets the requested clock, number of stages or interval.
 pub const SCHEDULE: Code = Code(602);
 
 const PAGES: &str = include_str!("diagnostics.md");

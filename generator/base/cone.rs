@@ -1,4 +1,5 @@
-//! Searches graphs: for the nodes on which given nodes depend, and for the nodes that can be reached from given nodes.
+//! Searches graphs for the nodes on which given nodes depend, and for the nodes that can be reached from given nodes. For example,
+//! the description language finds operands on which no output depends.
 
 use std::collections::HashSet;
 use std::hash::Hash;

@@ -6,18 +6,18 @@ use std::panic::Location;
 use crate::codes::Code;
 use crate::program::Program;
 
-/// A line of the Rust source of a hardware description.
+/// A line of the Rust source of a hardware description. For example, the line that declares a register.
 pub type SourceLocation = &'static Location<'static>;
 
 /// A mistake in a hardware description. It prints as `error[G0203]: …`, followed by a line with `  --> ` and the place in the
 /// Rust source.
 #[derive(Clone, Debug)]
 pub struct Diagnostic {
-    /// The kind of the mistake.
+    /// The code of the kind of mistake, such as `G0203`.
     pub code: Code,
     /// The message, which names the signals.
     pub message: String,
-    /// The place in the Rust source.
+    /// The line of the Rust source that contains the mistake.
     pub location: SourceLocation,
     /// Other places in the Rust source that contribute to the mistake, each with a remark.
     pub notes: Vec<(String, SourceLocation)>,

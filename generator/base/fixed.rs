@@ -37,12 +37,12 @@ pub fn nearest(x: f64) -> f64 {
 }
 
 impl Format {
-    /// Makes the unsigned format `uI.F`.
+    /// Makes the unsigned format `uI.F` with I = `int` and F = `frac`. For example, `unsigned(1, 20)` is `u1.20`.
     pub const fn unsigned(int: i32, frac: i32) -> Self {
         Self { signed: false, int, frac }
     }
 
-    /// Makes the signed format `sI.F`.
+    /// Makes the signed format `sI.F` with I = `int` and F = `frac`. For example, `signed(1, 20)` is `s1.20`.
     pub const fn signed(int: i32, frac: i32) -> Self {
         Self { signed: true, int, frac }
     }
@@ -70,13 +70,14 @@ impl Format {
         u32::try_from(self.int + self.frac + i32::from(self.signed)).expect("a positive width")
     }
 
-    /// Returns the smallest raw value. If the format is too wide for any net, the result is limited to the range of an
-    /// `i128`.
+    /// Returns the smallest raw value that the format can represent. For example, `s2.0` gives −4, and every unsigned format gives
+    /// 0. If the format is too wide for any net, the result is limited to the range of an `i128`.
     pub fn min_raw(self) -> i128 {
         if self.signed { i128::MIN >> 128u32.saturating_sub(self.width()) } else { 0 }
     }
 
-    /// Returns the largest raw value. If the format is too wide for any net, the result is limited to the range of an `i128`.
+    /// Returns the largest raw value that the format can represent. For example, `u0.8` gives 255. If the format is too wide for
+    /// any net, the result is limited to the range of an `i128`.
     pub fn max_raw(self) -> i128 {
         i128::MAX >> 127u32.saturating_sub(self.width().saturating_sub(u32::from(self.signed)))
     }
@@ -86,7 +87,7 @@ impl Format {
         (self.min_raw(), self.max_raw())
     }
 
-    /// Returns whether the format can represent `raw`.
+    /// Returns whether the format can represent the raw value `raw`. For example, `u2.0` can represent 3, but not 4 or −1.
     pub fn holds(self, raw: i128) -> bool {
         (self.min_raw()..=self.max_raw()).contains(&raw)
     }
@@ -98,10 +99,11 @@ impl Format {
         value * exp2(-self.frac)
     }
 
-    /// Returns the raw value nearest to `x`, ties upward; `None` if `x` is not a number or is more than half a place beyond
-    /// the values of the format.
+    /// Returns the raw value nearest to `x`, ties upward. Returns `None` if `x` is not a number, or if rounding takes it outside
+    /// the format.
     ///
-    /// For example, `u0.8` holds 0 to 255/256: 0.998 is rounded to 255/256, and 0.999 gives `None`.
+    /// For example, `u0.8` represents 0 to 255/256: 0.998 is rounded to 255/256, and 0.999 gives `None`, since its nearest multiple
+    /// of 1/256 is 1.0.
     pub fn nearest_raw(self, x: f64) -> Option<i128> {
         let raw = nearest(x * exp2(self.frac));
         let (low, high) = (self.min_raw() as f64, self.max_raw() as f64);
@@ -181,9 +183,10 @@ impl FromStr for Format {
 /// How a conversion treats fraction bits that it drops.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Rounding {
-    /// Drops them, which rounds toward minus infinity. It costs no logic.
+    /// Drops the fraction bits, which rounds toward minus infinity. Truncation costs no logic. For example, 1.75 becomes 1, and
+    /// −1.25 becomes −2.
     Truncate,
-    /// Rounds to the nearest value, ties upward. It costs an incrementer.
+    /// Rounds to the nearest value, ties upward. Rounding costs an incrementer. For example, 1.5 becomes 2, and −1.5 becomes −1.
     Nearest,
 }
 
@@ -203,9 +206,9 @@ impl Rounding {
 /// How a conversion treats a value that its format cannot represent.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Overflow {
-    /// Drops the upper bits: arithmetic modulo 2^width.
+    /// Drops the upper bits, which is arithmetic modulo 2^width. For example, 260 in `u8.0` becomes 4.
     Wrap,
-    /// Takes the nearest value that the format can represent.
+    /// Saturates: takes the nearest value that the format can represent. For example, 260 in `u8.0` becomes 255.
     Saturate,
 }
 

@@ -91,7 +91,7 @@ pub fn records<T: DeserializeOwned>(directory: &Path) -> Result<Vec<(PathBuf, T)
     Ok(records)
 }
 
-/// Returns the message on a record that cannot be understood.
+/// Returns the error message for a record file whose contents cannot be understood.
 pub fn damaged(path: &Path) -> String {
     format!(
         "the record `{}` is damaged: restore it, move it away, or make it again with the command that wrote it",

@@ -15,7 +15,7 @@ use std::fmt;
 pub struct KeyError {
     /// The dotted name of the key. For example, `cosine.fraction`. It is empty if the error concerns the whole file.
     pub key: String,
-    /// The message.
+    /// The description of the error, for the user. For example, "`core` cannot run at 900 MHz".
     pub message: String,
     /// The remedy. For example, it lists the integers that the key accepts.
     pub remedy: String,

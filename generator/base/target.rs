@@ -23,13 +23,13 @@
 //! | into a registered multiplier 9 | 5.27 | out of a registered multiplier | 1.70 |
 //! | into a registered multiplier 18 | 5.37 | | |
 
-/// A small memory made of look-up tables, as a target offers it. A pipeline uses it for values that nothing reads for several
-/// stages.
+/// A small memory made of look-up tables, in the size that a target offers. A pipeline keeps a value in such a memory if no stage
+/// reads the value for several stages. For example, on ECP5 16 words of 4 bits take six look-up tables.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct DelayMemory {
-    /// The number of its words.
+    /// The number of words that the memory can store.
     pub words: u32,
-    /// The bits of a word.
+    /// The number of bits of a word.
     pub width: u32,
     /// The number of look-up tables that it occupies, including the tables that write it.
     pub tables: u32,
@@ -46,67 +46,68 @@ impl DelayMemory {
     }
 }
 
-/// The delays of a multiplier with a register at its output. They do not include the delay of an ordinary register.
+/// The delays of a multiplier with a register at its output, in nanoseconds. They do not include the delay of an ordinary register.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Registered {
-    /// From the operands of the multiplier to the setup of its register.
+    /// The delay from the operands of the multiplier to the setup of its output register.
     pub product: f64,
-    /// From the rising edge to the output of the multiplier.
+    /// The delay from the rising edge to the output of the multiplier.
     pub output: f64,
 }
 
-/// The delays and the multipliers of a target, by which Glint schedules pipelines.
+/// The delays of a target in nanoseconds, and the sizes of its multipliers and memories. The scheduler of pipelines reads them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Timing {
     /// The name of the target, which the configuration key `pipeline.target` gives.
     pub name: &'static str,
     /// The largest operand widths of a multiplier, unsigned, the wider operand first.
     pub multiplier: (u32, u32),
-    /// The largest number of bits in all rows of a partial product that should be added in look-up tables instead of taking a
-    /// multiplier. On ECP5 three rows of 21 bits and their sums take about 110 look-up tables, and four of 22 bits 160; the
-    /// smaller iCE40 chips have few multipliers.
+    /// The largest size of a partial product that Glint adds up in look-up tables instead of using a multiplier: the number of bits
+    /// in all its rows. On ECP5 three rows of 21 bits and their sums take about 110 look-up tables, and four rows of 22 bits take
+    /// 160. The limit is higher for iCE40, because its smaller chips have few multipliers.
     pub row_bits: u32,
-    /// From the rising edge to the output of a register, and on to the input of the next register with its setup.
+    /// The delay from the rising edge to the output of a register, plus the wire to the next register and the setup of that
+    /// register.
     pub register: f64,
-    /// The part of the clock that passes outside of the core before an operand arrives.
+    /// The part of the clock period that passes outside of the core before an operand arrives at an input port.
     pub input: f64,
-    /// One level of look-up tables, with the wire to the next level.
+    /// The delay of one level of look-up tables, with the wire to the next level.
     pub logic: f64,
-    /// The start and the end of a carry chain.
+    /// The delay of the start and the end of a carry chain together, whatever its length.
     pub carry: f64,
-    /// One bit of a carry chain.
+    /// The delay that each bit of a carry chain adds.
     pub carry_bit: f64,
-    /// A multiplier without a register.
+    /// The delay of a multiplier that has no output register.
     pub product: f64,
     /// The delays of a multiplier with an output register, if they were measured.
     pub registered: Option<Registered>,
-    /// From the rising edge to the output of a block memory, in addition to the delay of a register.
+    /// The delay from the rising edge to the output of a block memory, without the delay of a register.
     pub block: f64,
     /// The extra delay of the wire to the address of a block memory, compared with a wire to a register: block memories
     /// occupy only a few columns of the chip.
     pub address: f64,
-    /// The smallest number of bits of a ROM that becomes a block memory.
+    /// The smallest size of a synchronous ROM, in bits, that synthesis puts into a block memory.
     pub block_bits: u64,
     /// A memory of look-up tables that is read without a clock. `None` if the target has none, or if synthesis itself makes shift
     /// registers of look-up tables.
     pub delay_memory: Option<DelayMemory>,
 }
 
-/// A chip and its resources.
+/// An FPGA chip, with the number of its look-up tables, DSP blocks and block RAMs.
 #[derive(Debug)]
 pub struct Chip {
     /// The name of the chip, as people write it.
     pub name: &'static str,
     /// The options with which nextpnr selects the chip and its package.
     pub options: &'static str,
-    /// The number of look-up tables, DSP blocks and block RAMs.
+    /// The numbers of look-up tables, DSP blocks and block RAMs on the chip, in this order.
     pub has: [u64; 3],
 }
 
 impl Chip {
-    /// Returns each resource that the chip has too little of: its index, the amount wanted and the amount on the chip. The
-    /// index counts look-up tables, DSP blocks and block RAMs from 0. For example, a design with 6000 look-up tables and 8 DSP
-    /// blocks gives `(0, 6000, 5280)` on the iCE40 UP5K.
+    /// Returns the resources that a design needs more of than the chip has. For each it gives the index of the resource (0: look-up
+    /// tables, 1: DSP blocks, 2: block RAMs), the amount that the design needs, and the amount on the chip. For example, a design
+    /// with 6000 look-up tables and 8 DSP blocks gives `(0, 6000, 5280)` on the iCE40 UP5K.
     pub fn lack(&self, wanted: [u64; 3]) -> Vec<(usize, u64, u64)> {
         let all = wanted.into_iter().zip(self.has).enumerate();
         all.filter(|(_, (wanted, has))| wanted > has)
@@ -115,10 +116,11 @@ impl Chip {
     }
 }
 
-/// The numbers with which the cost of a core is estimated.
+/// The numbers with which Glint estimates the cost of a core without running synthesis.
 #[derive(Debug)]
 pub struct Estimate {
-    /// The weights of `tune::Features`, including the constant number of look-up tables of every core.
+    /// The weight of each number in `tune::Features` in the estimate of look-up tables. One weight is the constant number of
+    /// look-up tables of every core.
     pub weights: [f64; 6],
     /// The measured clock period divided by the clock period that the delays predict.
     pub scale: f64,
@@ -136,7 +138,7 @@ pub struct Estimate {
 /// 2)` counts each carry cell of ECP5 as two look-up tables.
 pub type Kinds = &'static [(&'static str, u64)];
 
-/// A family of FPGAs, with all data that Glint has about it.
+/// An FPGA family, with all data that Glint has about it: delays, Yosys commands, cell names and chips.
 #[derive(Debug)]
 pub struct Family {
     /// The name of the family, as people write it.
@@ -196,7 +198,7 @@ const PURE_MULTIPLIERS: &str = "synth_ice40 -top {top} -run begin:coarse; opt; w
 // on iCE40 (33 % too many), one core on ECP5 (24 % off), and `schlick_pipelined` on Xilinx 7 (51 % too few: its adders
 // divide, and the adders of other cores go into DSP blocks).
 
-/// Lattice iCE40 UP5K.
+/// Data of the family Lattice iCE40, for the chip UP5K.
 pub const ICE40: Family = Family {
     title: "iCE40",
     timing: Timing {
@@ -240,7 +242,7 @@ pub const ICE40: Family = Family {
     },
 };
 
-/// Lattice ECP5, speed grade 6.
+/// Data of the family Lattice ECP5, for speed grade 6.
 pub const ECP5: Family = Family {
     title: "ECP5",
     timing: Timing {
@@ -281,7 +283,7 @@ pub const ECP5: Family = Family {
     },
 };
 
-/// AMD 7 series, speed grade -1.
+/// Data of the family AMD 7 series, for speed grade −1.
 pub const XILINX7: Family = Family {
     title: "Xilinx 7",
     timing: Timing {
@@ -362,13 +364,13 @@ impl Timing {
 /// The resources that a design takes after synthesis, before placement.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Usage {
-    /// The number of look-up tables.
+    /// The number of look-up tables that the design takes.
     pub luts: u64,
-    /// The number of DSP blocks.
+    /// The number of DSP blocks that the design takes.
     pub dsps: u64,
-    /// The number of block RAMs.
+    /// The number of block RAMs that the design takes.
     pub block_rams: u64,
-    /// The number of flip-flops.
+    /// The number of flip-flops that the design takes.
     pub flip_flops: u64,
 }
 

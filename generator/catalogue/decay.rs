@@ -15,15 +15,17 @@ use glint_rtl::dsl::{Designer, Note, Signal, Topic, step};
 use super::common::{self, ColourProducts};
 use super::piecewise::{PolynomialDatapath, StepMultiplier, Tables};
 
-/// The distance 1 − c and the octave of the cosine c. `blinn` and `gauss` compute them in different ways.
+/// The distance 1 − c and the octave of the cosine c (the power of two by which c is scaled). `blinn` and `gauss` compute them in
+/// different ways.
 pub struct Distance<'d> {
-    /// 1 − c, less one unit in the last place, as an integer.
+    /// The distance 1 − c, less one unit in the last place, as an integer.
     pub u: Signal<'d>,
-    /// The number of octaves, an integer that is added to distance times ratio. `gauss` has none.
+    /// The number of octaves, an integer that is added to the product of distance and ratio. `gauss` has none.
     pub octave: Option<Signal<'d>>,
 }
 
-/// Describes the hardware from the distance on: the operands, the products, 2^−x, the outputs and the microprogram.
+/// Describes the part of the hardware that `blinn` and `gauss` share: it computes 2^(−n·decay) from the `distance` 1 − c. The
+/// function adds the operands, the products, the table of 2^−x, the outputs and the microprogram.
 ///
 /// # Panics
 /// Panics if the check of the schema has not accepted the configuration. The caller must check it first.
@@ -161,7 +163,8 @@ fn ends<'d>(d: &'d Designer, cos_gamma: Signal<'d>, rounded: Signal<'d>) -> Sign
     d.choose("reflectance_next", facing, [dark, lit])
 }
 
-/// Returns the notes for the pages of `blinn` and `gauss` ([`About::notes`](glint_rtl::dsl::About::notes)).
+/// Returns the paragraphs about interpretations, formats and limits for the pages of `blinn` and `gauss`
+/// ([`About::notes`](glint_rtl::dsl::About::notes)).
 pub fn notes(keys: &Keys) -> Vec<Note> {
     vec![
         Topic::Microprogram.note(

@@ -67,8 +67,8 @@ impl<'d> StepMultiplier<'d> {
         }
     }
 
-    /// Returns the setting with which a microinstruction selects a pair of factors; `None` if the multiplier has only one
-    /// product.
+    /// Returns the setting with which a microinstruction selects a pair of factors for the multiplier; `None` if the multiplier has
+    /// only one product.
     pub fn pick(&self, [first, _]: [Signal<'d>; 2]) -> Option<StepSetting> {
         let (factors, _) = self.shared.as_ref()?;
         Some(factors.pick(first))
@@ -89,8 +89,9 @@ pub struct Tables {
 const SMALLEST_BLOCK: u64 = 2048;
 
 impl Tables {
-    /// Returns how a table that is read at the rising edge stores its coefficients. In a pipeline each coefficient has its own
-    /// table: the address then waits in place of the coefficient, which is wider. A block memory has all coefficients.
+    /// Returns how a table that is read at the rising edge stores its coefficients. In a pipeline, each coefficient has its own
+    /// table, because the address then waits in registers instead of the wider coefficient. Otherwise, one block memory has all
+    /// coefficients.
     pub fn of(it: &Piecewise, is_pipelined: bool) -> Self {
         Self { split: is_pipelined && it.rom_bits() < SMALLEST_BLOCK, synchronous: true }
     }

@@ -2,12 +2,12 @@
 //!
 //! δ is the angle at a point of the line; n is the specular exponent; f is the reflectance, the factor by which the device
 //! multiplies an amplitude. Decoder 10 chooses k from n: 1 for n = 1, 2 for n = 2, 4 for n = 3 to 6, and 16 for all other n. The
-//! source is a patent that claims this device; Glint calls it seed 000. All numbers of blocks and outputs are the numbers in the
+//! source is a patent that claims this device; Glint calls it seed 000. The numbers of blocks and outputs are the numbers in the
 //! patent's figure.
 //!
 //! Block 14 is the control unit. In the patent it consists of triggers; here it is a microprogram with the same order of events.
-//! ROMs 9 and 12 are synchronous. `valid` follows output 37 (`write_angle`) by two clocks, one for register 8 and one for ROM 12.
-//! With `line.stages` = 7 it follows by seven clocks.
+//! ROMs 9 and 12 are synchronous. The output `valid` is a delayed copy of output 37 (`write_angle`): two clocks later, one for
+//! register 8 and one for ROM 12. With `line.stages` = 7 the delay is seven clocks.
 
 use glint_base::fixed::Format;
 use glint_config::Config;

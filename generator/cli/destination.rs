@@ -15,8 +15,8 @@ use glint_tools::transient::Directory;
 /// The file while it is written, in a directory of its own.
 const UNFINISHED: &str = "unfinished";
 
-/// The place of a file. The file is written beside it and moved there when it is whole. A pipe or a device is written
-/// directly.
+/// The destination of a file. The file is written under another name in the same directory, and moved to its place when it is
+/// complete. A pipe or a device is written directly.
 pub struct Destination {
     path: PathBuf,
     sink: Sink,
@@ -61,10 +61,10 @@ impl Destination {
         Ok(Self { path, sink, made })
     }
 
-    /// Opens a file that is not there yet, as [`Destination::open`] does, or one that may be replaced by `force`.
+    /// Opens a destination as [`Destination::open`] does, if no file is there yet. With `force`, an existing file may be replaced.
     ///
     /// # Errors
-    /// Without `force`, fails if the file is there. Fails if [`Destination::open`] fails.
+    /// Without `force`, fails if the file exists. Fails if [`Destination::open`] fails.
     pub fn fresh(path: &Path, force: bool) -> Result<Self> {
         if path.is_file() && !force {
             bail!(
@@ -75,7 +75,7 @@ impl Destination {
         Self::open(path)
     }
 
-    /// Returns the file to write.
+    /// Returns the open file to which the caller must write.
     ///
     /// # Errors
     /// Fails if the system has no more files.

@@ -5,8 +5,8 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result};
 
-/// Directories that were made for a file. If the file is not written, they are removed again, unless something else is
-/// in them. For example, for `made/for/it.txt` in an empty directory these are `made` and `made/for`.
+/// Directories that Glint created for a file. If the file is not written in the end, they are removed again, unless something else
+/// is in them. For example, for `made/for/it.txt` in an empty directory these are `made` and `made/for`.
 #[derive(Default)]
 pub struct MadeDirectories {
     /// The outermost first.
@@ -28,7 +28,7 @@ impl MadeDirectories {
         Ok(made)
     }
 
-    /// Keeps the directories. A caller must call it once the file is written.
+    /// Marks the directories as needed, so that they are not removed. A caller must call this function once the file is written.
     pub fn keep(&mut self) {
         self.paths.clear();
     }
@@ -52,10 +52,10 @@ pub fn create_directory(path: &Path) -> Result<()> {
         .with_context(|| format!("cannot create the directory `{}`", path.display()))
 }
 
-/// Makes the directory that a file is to be in, and the directories above it.
+/// Creates the directory that contains the file `path`, and the missing directories above it.
 ///
 /// # Errors
-/// Fails if a directory cannot be made.
+/// Fails if the directory cannot be made.
 pub fn create_parent(path: &Path) -> Result<()> {
     match path.parent() {
         Some(parent) => create_directory(parent),

@@ -9,7 +9,7 @@ use serde_json::{Value, json};
 use super::interrupt::Interrupted;
 use glint_config::Problems;
 
-/// A failure that has an exit code or a form of its own. All other errors are told as text with their causes.
+/// An error that has its own exit code or its own form. All other errors are printed as text with their causes.
 #[derive(Debug)]
 pub enum Failure {
     /// A mistake on the command line itself, which only a command can see: exit code 2.
@@ -67,12 +67,12 @@ pub fn print(error: &anyhow::Error, as_json: bool) {
     }
 }
 
-/// Prints the problems as a JSON object; each problem has the keys of [`Problems::to_json`].
+/// Prints the problems of a configuration as a JSON object. Each problem has the keys of [`Problems::to_json`].
 pub fn print_problems(problems: Vec<Value>) {
     super::tables::print_json(&json!({ "ok": false, "problems": problems }));
 }
 
-/// Returns a problem that has no place in the text of a configuration. It has the same JSON keys as a problem that has one.
+/// Returns the JSON of a problem that has no location in a configuration file. It has the same keys as a problem with a location.
 pub fn problem(message: &str) -> Value {
     json!({ "file": null, "line": null, "column": null, "key": null, "message": message, "remedy": null })
 }

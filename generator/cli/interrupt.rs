@@ -64,8 +64,8 @@ impl Drop for Deferred {
     }
 }
 
-/// Sees to it that from now on a signal ends this process with all that it has started, and deletes its temporary
-/// files. A signal that is ignored, as `nohup` has it, stays ignored.
+/// Installs the signal handler: from now on a signal ends this process with all its child processes, and deletes its temporary
+/// files. A signal that is ignored, as under `nohup`, stays ignored.
 ///
 /// # Errors
 /// Fails if the system refuses.
@@ -95,7 +95,7 @@ pub fn listen() -> std::io::Result<()> {
     Ok(())
 }
 
-/// Does nothing: elsewhere the system ends the process.
+/// Does nothing: on this system there are no such signals, and the system ends the process.
 ///
 /// # Errors
 /// Never fails.

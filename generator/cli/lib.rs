@@ -182,8 +182,8 @@ pub fn run_as(program: &str, registry: &Registry) -> ExitCode {
     run_with(program, registry, std::env::args_os())
 }
 
-/// Runs a command line, whose first entry is the program's name, under the name `program`. It is for a process whose own
-/// arguments are others, such as a Python interpreter.
+/// Runs a command line under the name `program`. `arguments` begins with the program's name. A caller uses it if the arguments of
+/// its process are not the command line; for example, the process may be a Python interpreter.
 pub fn run_with(
     program: &str,
     registry: &Registry,

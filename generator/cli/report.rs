@@ -69,7 +69,8 @@ impl ReportList {
         }
     }
 
-    /// Ends the list of reports on configurations, and returns whether everything `holds`. With `--json` it prints both.
+    /// Ends the list of reports and returns `holds`, which says whether everything that the command checked holds. With `--json` it
+    /// prints the reports and `holds`.
     ///
     /// # Errors
     /// Fails as [`ReportList::finish`] does.

@@ -118,7 +118,7 @@ pub fn may_write(path: &Path, seal: Seal, force: bool) -> Result<Option<Vec<u8>>
     }
 }
 
-/// Returns whether a file below `out` is not as it would be written, or missing.
+/// Returns whether a file below `out` is missing, or differs from `file`.
 ///
 /// # Errors
 /// Fails if the file cannot be read.

@@ -41,9 +41,9 @@ impl<'a> TerminalColumn<'a> {
     }
 }
 
-/// Prints rows under headings, such as `device | points: | clocks:2 | remark;1`, no wider than the terminal. If there
-/// is too little room, the table may leave out columns with a digit, beginning with the largest digit. If that is not
-/// enough, the cells of a row are printed below each other.
+/// Prints rows under headings, no wider than the terminal. `headings` has the form `device | points: | clocks:2 | remark;1`: a
+/// colon marks a column of numbers, and a digit a column that the table may leave out if there is too little room. The column with
+/// the largest digit goes first. If that is not enough, the cells of a row are printed below each other.
 pub fn print(headings: &str, rows: impl IntoIterator<Item = Vec<String>>) {
     let rows: Vec<Vec<String>> = rows.into_iter().collect();
     print_line(&text(&TerminalColumn::all(headings), &rows, width()));
@@ -200,10 +200,10 @@ pub fn print_json(value: &Value) {
     print_line(&format!("{value:#}"));
 }
 
-/// Prints rows as CSV, as RFC 4180 has it.
+/// Prints rows as CSV, by RFC 4180.
 ///
 /// # Errors
-/// Fails if a row has not as many fields as the first.
+/// Fails if a row has more or fewer fields than the first.
 pub fn print_csv(rows: impl IntoIterator<Item = Vec<String>>) -> Result<()> {
     let mut csv = csv::Writer::from_writer(Vec::new());
     for row in rows {
@@ -216,7 +216,7 @@ pub fn print_csv(rows: impl IntoIterator<Item = Vec<String>>) -> Result<()> {
 /// The first failure to write standard output.
 static FAILURE: OnceLock<io::Error> = OnceLock::new();
 
-/// Prints a line. A failure is kept for [`finish`]; a reader that went away is no failure.
+/// Prints a line. An error is kept for [`finish`]. It is no error if the reader, such as `head`, has closed the pipe.
 pub fn print_line(line: &str) {
     if let Err(error) = writeln!(io::stdout().lock(), "{line}")
         && error.kind() != ErrorKind::BrokenPipe

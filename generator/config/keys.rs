@@ -5,9 +5,9 @@ use super::schema::Key;
 use super::values::{Config, TableEntries};
 use glint_base::fixed::Rounding;
 
-/// A type that a field of a struct declared by [`keys!`](macro@crate::keys) can have.
+/// A type of configuration values: a field of a struct that [`keys!`](macro@crate::keys) declares has such a type.
 pub trait Setting: Sized {
-    /// Reads the value that a configuration has for the keys of the field.
+    /// Reads the value of the field from a configuration. `keys` are the configuration keys that belong to the field.
     fn read(config: &Config, keys: &[Key]) -> Self;
 }
 

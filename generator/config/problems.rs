@@ -34,9 +34,9 @@ const LIMIT: usize = 200;
 /// A mistake in a configuration key, with its location in the file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Problem {
-    /// The error.
+    /// The key, the message and the remedy.
     pub error: KeyError,
-    /// The range of bytes in the text of the key, if the mistake concerns a part of a text.
+    /// The range of bytes in the text of the key's value, if the mistake concerns a part of a text.
     pub place: Option<Range<usize>>,
     /// The range of bytes in the file, if the file contains what is wrong.
     span: Option<Range<usize>>,
@@ -97,7 +97,7 @@ impl Problems {
         self.locations.insert(key.to_owned(), span);
     }
 
-    /// Returns whether the file gives a key.
+    /// Returns whether the configuration file sets the key `key`.
     pub fn gives(&self, key: &str) -> bool {
         self.locations.contains_key(key)
     }
@@ -140,7 +140,7 @@ impl Problems {
         self.list.len() + self.further
     }
 
-    /// Returns the mistakes in the order of their locations; mistakes without a location come last.
+    /// Returns the mistakes in the order of their locations. Mistakes without a location come last.
     pub fn iter(&self) -> impl Iterator<Item = &Problem> {
         self.list.iter()
     }
@@ -155,7 +155,7 @@ impl Problems {
         self.line_and_column(problem.start()?)
     }
 
-    /// Returns the line and the column at which the file gives a key, counted as in [`Problems::position`].
+    /// Returns the line and the column at which the file sets `key`, counted as in [`Problems::position`].
     pub fn place(&self, key: &str) -> Option<(usize, usize)> {
         self.line_and_column(self.locations.get(key)?.start)
     }
@@ -232,9 +232,9 @@ impl std::error::Error for Problems {}
 
 /// A key error of a value, before its location is known.
 pub(super) struct Violation {
-    /// The entry of a list that it is about.
+    /// The index of the list entry that the error concerns.
     pub entry: Option<usize>,
-    /// The error.
+    /// The key, the message and the remedy.
     pub error: KeyError,
 }
 

@@ -29,21 +29,21 @@ impl Schema {
     }
 }
 
-/// One configuration key of a device.
+/// A configuration key of a device, with its type, range, default and description.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Key {
     /// The dotted name, as `cosine.fraction`: everything before the last dot is a TOML table.
     pub name: &'static str,
     /// The type and the range of the values.
     pub kind: KeyKind,
-    /// The value if a file does not give the key.
+    /// The value that the key has if a file does not set it.
     pub default: Value,
     /// The meaning of the key, in one or two sentences.
     pub doc: &'static str,
-    /// The condition under which the key applies. Otherwise a file may give the key only with its default.
+    /// The condition under which the key applies. If it does not hold, a file may set the key only to its default.
     pub condition: Option<Condition>,
-    /// Whether the key was added later: it is not written while it has its default, so that digests of older configurations stay
-    /// valid.
+    /// Whether the key was added after configurations of the device existed. Such a key is not written while it has its default, so
+    /// that digests of older configurations stay valid.
     pub joined_later: bool,
     /// The range from which random configurations draw an integer, if larger values would make a configuration too slow to test.
     pub drawn: Option<(i64, i64)>,
@@ -61,7 +61,8 @@ pub struct Condition {
 }
 
 impl Condition {
-    /// Returns whether the condition holds if the other key has the value `value`.
+    /// Returns whether the condition holds if the other key has the value `value`. For example, `architecture = "pipelined"` holds
+    /// for the value `pipelined`.
     pub fn holds(&self, value: &Value) -> bool {
         (value.bare() == self.value) == self.is_equal
     }
@@ -186,7 +187,8 @@ impl Key {
         Self::new(name, kind, Value::Integers(default.to_vec()), doc)
     }
 
-    /// Makes a key for a table whose entries have names that the user chooses.
+    /// Makes a key for a table with entries that the user names. For example, the table `operands` may have an entry `x`, whose
+    /// fields are the keys in `fields`.
     pub fn records(
         name: &'static str,
         default: &[TableEntry],
@@ -215,7 +217,8 @@ impl Key {
         self
     }
 
-    /// Marks a key that was added to a device after configurations of that device existed.
+    /// Marks a key that was added to a device after configurations of that device existed. Digests of these configurations then do
+    /// not change.
     pub fn joined_later(self) -> Self {
         Self { joined_later: true, ..self }
     }

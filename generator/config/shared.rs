@@ -132,7 +132,7 @@ keys! {
 }
 
 impl Schema {
-    /// Returns the key of this name, the device's own or one of [`shared_keys`].
+    /// Returns the key with this name, one of the device's own keys or of [`shared_keys`]. Returns `None` for an unknown name.
     pub fn key(&self, name: &str) -> Option<&Key> {
         self.all_keys().find(|key| key.name == name)
     }

@@ -214,11 +214,11 @@ impl Value {
 
 /// A configuration in the making.
 pub(super) struct Draft<'a> {
-    /// The values so far. A key has its default if no value was given, or only a value out of range.
+    /// The values so far. A key has its default if the user gave no value, or a value out of range.
     pub config: Config,
-    /// The keys that the user gave.
+    /// The names of the keys that the user gave.
     pub given: BTreeSet<&'a str>,
-    /// The given keys whose intended value is unknown, since the given value is wrong.
+    /// The names of the given keys whose intended value is unknown, because the given value is wrong.
     pub doubtful: BTreeSet<&'a str>,
 }
 

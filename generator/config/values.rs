@@ -59,7 +59,7 @@ impl Value {
 /// One entry of a table: the name that the user chose, and the fields that the user gave.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TableEntry {
-    /// The name of the entry.
+    /// The name that the user gave to the entry of the table.
     pub name: String,
     /// The fields that are given, by their names.
     pub fields: Vec<(&'static str, Value)>,
@@ -162,7 +162,7 @@ impl Serialize for TableEntry {
 pub struct Config {
     /// The name of the Verilog module and of its files, a legal Verilog identifier.
     pub name: String,
-    /// The name of the device.
+    /// The name of the device that the configuration is for.
     pub device: String,
     /// Whether Glint must refuse a configuration that violates the accuracy contract, instead of warning about it.
     pub strict: bool,

@@ -59,9 +59,9 @@ impl Core {
     /// Fails in these cases:
     /// - The description has mistakes.
     /// - The pipeline cannot be made.
-    /// - Results depend on earlier results, or the contract's model never shows them.
+    /// - A result depends on an earlier computation, or is never shown.
     /// - The constraints ask for a faster clock than the pipeline is made for.
-    /// - The configuration asks for a style of ROMs, and no ROM of the core can have it.
+    /// - The configuration sets `package.rom_style`, and no ROM of the core can have such an attribute.
     /// - The configuration asks for a program that recomputes results, and the contract has no formula of one operand.
     /// - The golden model cannot model the output registers or the operand buffers.
     pub fn new(device: Device, config: Config) -> Result<Self> {
@@ -185,8 +185,8 @@ impl Core {
         Lockstep::new(design, model, self.contract.as_ref(), seed)
     }
 
-    /// Returns the exhaustive check of this core: the check of the error bound and, if the operands have few bits, every
-    /// combination of operands clock by clock.
+    /// Returns the exhaustive check of this core. It checks the error bound and, if the operands have few bits, compares model and
+    /// hardware clock by clock for every combination of operands.
     ///
     /// # Errors
     /// Fails if model and design do not name the same signals.
@@ -194,7 +194,7 @@ impl Core {
         self.job_of(self.contract.sweep())
     }
 
-    /// Returns the exhaustive check of this core with other operand values than the contract's sweep has.
+    /// Returns the exhaustive check of this core for the operand values in `sweep`, instead of the contract's own sweep.
     ///
     /// # Errors
     /// Fails if model and design do not name the same signals.
@@ -228,7 +228,8 @@ impl Core {
         trial::example(&self.design, self.contract.as_ref())
     }
 
-    /// Returns the number of clocks of a line as a function of its length. Returns `None` if the device computes single points.
+    /// Returns the clock numbers of a line (the points that the device computes after one `start`) as functions of its length.
+    /// Returns `None` if the device computes single points.
     ///
     /// # Errors
     /// Fails if a simulated computation does not finish within 65 536 clocks.
@@ -254,8 +255,8 @@ impl Core {
         self.shipped_vectors_of(&directed::ComputationCache::default())
     }
 
-    /// Returns the same as [`Core::shipped_vectors`]. If the cache `known` has the chosen computations of this design, they are
-    /// not searched for again; otherwise they are added to the cache.
+    /// Returns the same as [`Core::shipped_vectors`], but avoids a repeated search. If the cache `known` has the computations that
+    /// were chosen for this design, the function takes them from the cache; otherwise it adds them to the cache.
     ///
     /// # Errors
     /// Fails as [`Core::vectors`] does.
@@ -332,8 +333,8 @@ impl Core {
         package::instances(&self.design, &inputs)
     }
 
-    /// Returns only the files that synthesis needs: the Verilog of the core, in the forms for all targets, and the contents of
-    /// its ROMs.
+    /// Returns only the files that synthesis needs: the Verilog of the core and the contents of its ROMs. A file that has a form of
+    /// its own for an FPGA family is returned in the portable form and in that form.
     ///
     /// # Errors
     /// Fails if the design cannot be written as Verilog.

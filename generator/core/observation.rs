@@ -14,11 +14,12 @@ pub struct WorkedExample {
     pub operands: Vec<Quantity>,
     /// The outputs, in the order of the result ports. If the computation has several results, these are the outputs of the first.
     pub outputs: Vec<Quantity>,
-    /// The outputs of every result.
+    /// The outputs of every result of the computation, the first result first.
     pub results: Vec<Vec<Quantity>>,
 }
 
-/// The clocks of the handshake of a device that computes a line of points, as functions of the line's length.
+/// The clock numbers of the handshake for a device that computes a line: several points after one `start`. They are functions of
+/// the line's length.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct LineClocks {
     /// The name of the operand that gives the length of the line.
@@ -34,9 +35,9 @@ pub struct LineClocks {
 /// A linear function of the length of a line: `constant + each · length`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Linear {
-    /// The value for the length 0.
+    /// The value of the function for the length 0, in clocks.
     pub constant: i64,
-    /// The increase for each unit of the length.
+    /// The increase of the value for each unit of the length, in clocks.
     pub each: i64,
 }
 
@@ -46,7 +47,7 @@ impl Linear {
         self.constant + self.each * length
     }
 
-    /// Returns the function as text, with the name of the operand `length`. For example, `4 + length`.
+    /// Returns the function as text, in which `length` is the name of the operand. For example, `4 + length`.
     pub fn text(self, length: &str) -> String {
         match self.each {
             0 => self.constant.to_string(),
@@ -62,7 +63,7 @@ impl Linear {
 pub struct ContractFacts {
     /// The operands, each with the smallest and the largest raw value for which the contract holds.
     pub domain: Vec<(String, (i64, i64))>,
-    /// The result outputs, each with the operand by which a highlight multiplies f.
+    /// The result outputs. Each has the name of the colour operand that a highlight multiplies by f, or `None` for another device.
     pub outputs: Vec<(String, Option<String>)>,
     /// The operand that gives the number of results beyond the first, if a computation has several results.
     pub length: Option<String>,
@@ -100,8 +101,8 @@ impl ContractFacts {
     }
 }
 
-/// A computation as its handshake shows it. The clock in which `start` is taken is number 0. For example, `rough` shows its
-/// result in clock 9, and `done` in clock 10.
+/// A computation with its results and their clocks, as a user of the ports sees it. The clock in which `start` is taken is number
+/// 0. For example, `rough` shows its result in clock 9, and `done` in clock 10.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Computation {
     /// The raw operands, in the order of [`ContractFacts::domain`].
@@ -136,7 +137,7 @@ pub struct Quantity {
     pub name: String,
     /// The integer that the bits of the port denote.
     pub raw: i128,
-    /// `raw · 2^-F`.
+    /// The number that the port represents: `raw · 2^-F` with F fraction bits.
     pub value: f64,
 }
 
@@ -153,7 +154,7 @@ pub struct Vectors {
     /// The first clock in which the bench compares results and status. It compares the handshake outputs from the first clock
     /// after a clock with reset.
     pub known_from: usize,
-    /// The share of ROM words in which the bench detects a fault: every word if this is 1, every second word if it is 2, and so
-    /// on. It is 0 if the bench has no computations for ROM words.
+    /// The spacing of the ROM words in which the bench detects a fault: every word if this is 1, every second word if it is 2, and
+    /// so on. It is 0 if the bench has no computations for ROM words.
     pub word_stride: usize,
 }

@@ -26,8 +26,8 @@ const OPERANDS_BUFFERED: &str = "operands.buffered";
 
 /// A device that Glint can generate, simulate and check.
 ///
-/// Callers must call the functions only with configurations that the schema accepts. The file `examples/fresnel` is a device of
-/// one's own, in full.
+/// Callers must call the functions only with configurations that the schema accepts. The file `examples/fresnel` is an example of a
+/// complete device outside Glint.
 #[derive(Clone, Copy)]
 pub struct Device {
     /// The name of the device, which the key `device` of a configuration gives. It must equal [`Schema::device`].
@@ -43,8 +43,8 @@ pub struct Device {
     pub model: fn(&Config) -> Box<dyn Model>,
     /// Returns the accuracy contract of a configuration.
     pub contract: fn(&Config) -> Box<dyn Contract>,
-    /// Whether the bound of the contract is proved, beside the golden model, for every configuration. Otherwise the bound is
-    /// the word of the author.
+    /// Whether the contract's bound is proved for every configuration, by a proof beside the golden model. Otherwise the bound is
+    /// only the statement of the author.
     ///
     /// A device with another contract must set this field anew: `Device { contract, proved: false, ..own }`.
     pub proved: bool,

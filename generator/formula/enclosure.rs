@@ -14,14 +14,14 @@ const HALF_TURN: f64 = std::f64::consts::PI;
 /// An interval that contains a real number. For example, π lies between two neighbouring `f64` numbers.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Enclosure {
-    /// The lower limit.
+    /// The lower limit of the interval.
     pub low: f64,
-    /// The upper limit.
+    /// The upper limit of the interval.
     pub high: f64,
 }
 
 impl Enclosure {
-    /// Returns the interval of a number that is known exactly.
+    /// Returns the interval that contains only `value`, for a number that is known exactly.
     pub const fn exactly(value: f64) -> Self {
         Self { low: value, high: value }
     }
@@ -36,17 +36,17 @@ impl Enclosure {
         self.low + (self.high - self.low) / 2.0
     }
 
-    /// Returns whether both limits are numbers.
+    /// Returns whether both limits are finite numbers.
     pub fn is_finite(self) -> bool {
         self.low.is_finite() && self.high.is_finite()
     }
 
-    /// Returns whether the interval contains a number.
+    /// Returns whether the interval contains the number `value`.
     pub fn holds(self, value: f64) -> bool {
         (self.low..=self.high).contains(&value)
     }
 
-    /// Returns the smallest interval that contains both. For example, the hull of 0 to 1 and 3 to 4 is 0 to 4.
+    /// Returns the smallest interval that contains both intervals. For example, the hull of 0 to 1 and 3 to 4 is 0 to 4.
     #[must_use]
     pub fn hull(self, other: Self) -> Self {
         Self { low: self.low.min(other.low), high: self.high.max(other.high) }

@@ -25,7 +25,7 @@ pub use parse::{FUNCTIONS, parse};
 /// A formula, or a part of one, as a tree. Two are equal if their kinds are equal, wherever they come from.
 #[derive(Clone, Debug)]
 pub struct Expression {
-    /// The operation, operand or number at the root of the tree.
+    /// The operation, the operand or the number at the root of the tree. For example, the root of `1 / x` is a division.
     pub kind: Kind,
     /// The range of bytes in the text from which this part was parsed.
     pub span: Range<usize>,
@@ -34,7 +34,7 @@ pub struct Expression {
     constant: Option<Enclosure>,
 }
 
-/// The kinds of parts of a formula.
+/// The kinds of parts of a formula, such as a number, an operand or an operation.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Kind {
     /// A number, exactly as the text states it.
@@ -83,7 +83,7 @@ pub enum Function {
     Erf,
 }
 
-/// The functions of two numbers.
+/// The functions of two numbers, such as a sum or a power.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[expect(missing_docs, reason = "the names are those of mathematics")]
 pub enum Operator {
@@ -103,9 +103,9 @@ pub enum Operator {
 /// A mistake in a formula, with its location in the text.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Fault {
-    /// The range of bytes in the text.
+    /// The range of bytes in the text that is wrong.
     pub span: Range<usize>,
-    /// The message.
+    /// The description of the mistake, for the user.
     pub message: String,
 }
 
@@ -139,7 +139,7 @@ impl PartialEq for Expression {
 }
 
 impl Expression {
-    /// Makes an operand with this name, which comes from no text.
+    /// Makes the formula that is only the operand `name`. It belongs to no text.
     pub fn operand(name: &str) -> Self {
         Self::new(Kind::Operand(name.to_owned()), 0..0)
     }
@@ -182,7 +182,7 @@ impl Expression {
         }
     }
 
-    /// Returns the number of parts, the formula itself included, that satisfy the predicate.
+    /// Returns the number of parts for which `is` returns true. The formula itself counts as a part.
     pub fn count(&self, is: &dyn Fn(&Self) -> bool) -> usize {
         let mut count = 0;
         self.walk(&mut |part| count += usize::from(is(part)));
@@ -220,7 +220,7 @@ impl Expression {
         names
     }
 
-    /// Returns whether a part satisfies the predicate.
+    /// Returns whether `is` returns true for some part of the formula.
     pub fn has(&self, is: &dyn Fn(&Kind) -> bool) -> bool {
         is(&self.kind) || self.parts().into_iter().any(|part| part.has(is))
     }

@@ -55,12 +55,12 @@ impl Literal {
         Some(Self { text, value, nearest, is_exact })
     }
 
-    /// Returns the literal 0.
+    /// Returns a literal whose value is 0.
     pub fn zero() -> Self {
         Self { text: "0".to_owned(), value: RBig::ZERO, nearest: 0.0, is_exact: true }
     }
 
-    /// Returns the exact number.
+    /// Returns the exact number that the text states, as a fraction.
     pub fn value(&self) -> &RBig {
         &self.value
     }

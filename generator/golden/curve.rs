@@ -1,20 +1,20 @@
-//! Builds a table that interpolates an increasing, concave function linearly between the ends of segments.
+//! Builds a table that interpolates an increasing, concave function linearly between the ends of segments, such as the square root.
 //!
 //! The golden model of a device uses it to check a table in the hardware, which other code computes. The operand u is an unsigned
 //! integer of C bits. The upper three quarters of the operands are the first range; the upper three quarters of the remaining
-//! quarter are the second range, and so on; the operands below all ranges are the tail. Every range, and the tail, is cut into
-//! segments of equal length. A value of the table is a raw number in the format u0.S.
+//! quarter are the second range, and so on. The operands below all ranges are called the tail. Every range, and the tail, is cut
+//! into segments of equal length. A value of the table is a raw number in the format u0.S.
 
 use glint_base::fixed::exp2;
 
-/// The parameters of a [`SegmentedCurve`].
+/// The parameters of a [`SegmentedCurve`]: the bit widths of its operand and values, and the number of its segments.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct CurveParams {
-    /// Bits of the operand, C.
+    /// The number C of bits of the operand.
     pub operand_bits: u32,
-    /// Fraction bits of a value, S.
+    /// The number S of fraction bits of a value.
     pub fraction: u32,
-    /// Fraction bits of a slope, D; a slope is the rise over a whole segment.
+    /// The number D of fraction bits of a slope. A slope is the rise over a whole segment.
     pub slope_fraction: u32,
     /// log₂ of the number of prefixes in each range. A prefix is the leading bits of u that select a segment; a quarter of the
     /// prefixes belongs to the operands below the range.

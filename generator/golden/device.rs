@@ -120,14 +120,15 @@ pub trait Formula: Send + Sync {
     /// frame.
     fn exact(&self, operands: &[f64]) -> Vec<f64>;
 
-    /// Returns whether the contract promises anything about the output with this number, for these values of the operands.
+    /// Returns whether the contract promises anything about output number `output`, for these values of the operands. For
+    /// example, a device may promise nothing for a divisor of 0.
     fn is_promised(&self, operands: &[f64], output: usize) -> bool {
         let _ = (operands, output);
         true
     }
 
-    /// Appends the raw outputs for raw operands, if they can be computed without the microprogram, which is faster. Returns
-    /// whether it did. They must equal the results of the golden model.
+    /// Appends the raw outputs for raw operands to `raw` and returns true, if the author can compute them faster than by running
+    /// the microprogram. Otherwise returns false. The outputs must equal the results of the golden model.
     fn results(&self, operands: &[i64], raw: &mut Vec<i64>) -> bool {
         let _ = (operands, raw);
         false
@@ -138,7 +139,7 @@ pub trait Formula: Send + Sync {
         Vec::new()
     }
 
-    /// Returns the bound of the output with this number if the outputs have different bounds, as [`Contract::output_bound`] does.
+    /// Returns the bound of output number `output`, if the outputs have different bounds, as [`Contract::output_bound`] does.
     fn output_bound(&self, output: usize) -> Option<f64> {
         let _ = output;
         None

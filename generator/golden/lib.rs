@@ -95,7 +95,7 @@ pub trait Model: CloneModel + Send + Sync {
     /// Returns the values after the latest edge, in the order of [`Model::signals`].
     fn values(&self) -> &[u64];
 
-    /// Returns the value of one signal.
+    /// Returns the value of the signal `name` after the latest edge, as a bit pattern, or `None` if the model has no such signal.
     fn value(&self, name: &str) -> Option<u64> {
         let at = self.signals().iter().position(|signal| signal == name)?;
         Some(self.values()[at])
@@ -104,7 +104,7 @@ pub trait Model: CloneModel + Send + Sync {
 
 /// Clones a boxed [`Model`]. Every model that implements [`Clone`] has it.
 pub trait CloneModel {
-    /// Returns a copy, with the state that it has now.
+    /// Returns a copy of the model, with its present state.
     fn boxed_clone(&self) -> Box<dyn Model>;
 }
 
@@ -125,7 +125,7 @@ impl Clone for Box<dyn Model> {
 pub struct Operand {
     /// The name of the input port.
     pub name: String,
-    /// The format of the port.
+    /// The fixed-point format of the operand's port.
     pub format: Format,
     /// The smallest and largest raw value for which the contract is stated.
     pub domain: (i64, i64),
@@ -278,7 +278,7 @@ pub struct Sweep {
     pub omits: String,
 }
 
-/// One axis of a [`Sweep`].
+/// One axis of a [`Sweep`]: an operand or an intermediate value, with the values that the check visits.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Axis {
     /// The name of the operand, or of the intermediate value that replaces operands.
@@ -287,7 +287,7 @@ pub struct Axis {
     pub values: Values,
 }
 
-/// The values of an [`Axis`].
+/// The values on an [`Axis`] that an exhaustive check visits.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Values {
     /// All integers from the first to the last. For example, `Range(1, 1000)` has 1000 values.
@@ -331,7 +331,7 @@ impl fmt::Display for Axis {
 }
 
 impl Values {
-    /// Returns the number of values.
+    /// Returns the number of values on the axis.
     pub fn count(&self) -> u64 {
         match self {
             Self::Range(low, high) => low.abs_diff(*high) + 1,

@@ -5,7 +5,8 @@ use glint_base::fixed::{Format, Rounding, exp2};
 use glint_config::{Key, Problems};
 
 glint_config::keys! {
-    /// The keys of the operand `cos_gamma`, the cosine of the angle γ between the surface normal and the half vector.
+    /// The keys of the operand `cos_gamma`, the cosine of the angle γ between the surface normal and the half vector. For example,
+    /// `cosine.fraction` states its fraction bits.
     pub struct Cosine {
         fraction: u32 = Key::integer("cosine.fraction", 20, 6..=24,
             "Fraction bits of the cosine operands; 1.0 is representable."),
@@ -61,7 +62,7 @@ impl ColourKeys {
         self.multipliers == 1
     }
 
-    /// Makes keys for words of four bits.
+    /// Makes keys for colours of four bits, for tests that can be followed by hand.
     #[doc(hidden)]
     pub fn small() -> Self {
         Self { bits: 4, multipliers: 3 }
@@ -83,7 +84,7 @@ impl Operands {
         Format::unsigned(self.exponent_bits as i32, 0)
     }
 
-    /// Makes keys for words of four bits, small enough to follow by hand.
+    /// Makes keys for operands of four bits, for tests that can be followed by hand.
     #[doc(hidden)]
     pub fn small() -> Self {
         Self {
@@ -111,7 +112,7 @@ impl Intensity {
         Format::unsigned(0, self.fraction as i32)
     }
 
-    /// Makes keys for words of four bits.
+    /// Makes keys for a reflectance of four bits, for tests that can be followed by hand.
     #[doc(hidden)]
     pub fn small() -> Self {
         let (rounding, output_rounding) = (Rounding::Truncate, Rounding::Nearest);
@@ -135,7 +136,7 @@ impl Domain {
         (self.least, self.most)
     }
 
-    /// Makes the domain of the exponents of four bits.
+    /// Makes the domain of all exponents with four bits, for tests that can be followed by hand.
     #[doc(hidden)]
     pub fn small() -> Self {
         Self { least: 1, most: 15 }
@@ -207,7 +208,7 @@ pub fn length_bits() -> Key {
     )
 }
 
-/// Makes the key `line.stages`, the number of clocks from the angle of a point to its output.
+/// Makes the key `line.stages`, the number of clocks from the angle of a point on a scan line to its output.
 pub fn line_stages(choices: &'static [&'static str]) -> Key {
     Key::choice(
         "line.stages",
@@ -253,10 +254,10 @@ pub fn check_rom_size(
     }
 }
 
-/// Checks the segments of a table over 1 − cos: range j of the table has `bits` − 2·j operand bits, because each range is a
-/// quarter of the range before, and the prefix that selects a segment may not have more. `key` gives the numbers of prefix bits.
-/// Returns the largest number of bits that a segment keeps, up to the first range that has too few. For example, 20 bits and
-/// prefixes of 6 and 5 bits give 14.
+/// Checks the segments of a table over 1 − cos. The operand has `bits` bits. The table has ranges, each a quarter as long as the
+/// range before, so range j has `bits` − 2·j operand bits. `segments` gives the number of leading bits that select a segment in
+/// each range; it may not exceed the operand bits of the range. Returns the largest number of bits that remain in a segment, up to
+/// the first range that has too few. For example, 20 bits and segments of 6 and 5 bits give 14.
 pub fn check_segments(segments: &[u32], key: &str, bits: u32, problems: &mut Problems) -> u32 {
     let mut most = 0;
     for (range, &prefix) in (0u32..).zip(segments) {

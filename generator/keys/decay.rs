@@ -76,14 +76,14 @@ impl Decay {
 }
 
 impl Keys {
-    /// Returns the number of bits of u, which is the distance 1 − c less one unit in the last place of the cosine. For example,
-    /// for a cosine with 20 fraction bits u has 19 bits in `blinn` and 20 in `gauss`.
+    /// Returns the number of bits of u, the operand of the table. u is the distance 1 − c less one unit in the last place of the
+    /// cosine c. For example, for a cosine with 20 fraction bits u has 19 bits in `blinn` and 20 in `gauss`.
     pub fn distance(&self, decay: Decay) -> u32 {
         self.operands.cosine.fraction - decay.known()
     }
 
-    /// Returns the format of the decay; in `blinn` of the decay without the octaves. Its values are below 2.0. For example, the
-    /// default `decay.fraction = 26` gives `u1.26`.
+    /// Returns the format of the decay, whose values are below 2.0. For example, the default `decay.fraction = 26` gives `u1.26`.
+    /// In `blinn`, this is the decay of the mantissa, without the octaves (powers of two) of the cosine.
     pub fn decay_format(&self) -> Format {
         Format::unsigned(1, self.decay_fraction as i32)
     }
@@ -94,8 +94,8 @@ impl Keys {
         1 + octave * decay.known()
     }
 
-    /// Returns the number of bits of the decay as a factor of n·decay. A decay below ¼ keeps all its bits; a larger one keeps its
-    /// integer bits and `decay.coarse_fraction` fraction bits.
+    /// Returns the number of bits with which the decay enters the multiplier for n·decay. A decay below ¼ keeps all its bits. A
+    /// larger decay keeps its integer bits and `decay.coarse_fraction` fraction bits.
     pub fn factor_bits(&self, decay: Decay) -> u32 {
         (self.decay_fraction - 2).max(self.whole_bits(decay) + self.coarse_fraction)
     }

@@ -33,17 +33,17 @@ pub(super) fn two_sided() -> Key {
 }
 
 impl Keys {
-    /// Returns the number of fraction bits of the product of two components.
+    /// Returns the number of fraction bits of the product of two vector components, such as x of N times x of H.
     pub fn products(&self) -> u32 {
         self.fraction + self.other
     }
 
-    /// Returns the format of N·H, after N is shifted so that its length lies between 1 and 2.
+    /// Returns the format of the scalar product N·H, after N was shifted so that its length lies between 1 and 2.
     pub fn distance(&self) -> Format {
         Format::unsigned(1, self.factor as i32 - 1)
     }
 
-    /// Returns the format of 1/|N|, after N is shifted so that its length lies between 1 and 2.
+    /// Returns the format of the inverse length 1/|N|, after N was shifted so that its length lies between 1 and 2.
     pub fn shortened(&self) -> Format {
         Format::unsigned(0, self.factor as i32)
     }

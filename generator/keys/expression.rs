@@ -98,7 +98,7 @@ fn check(config: &Config, problems: &mut Problems) {
 pub struct StatementError {
     /// The error. Its key names the entry and the field, for example `results.r.formula`.
     pub error: KeyError,
-    /// The range of bytes in the formula, if the error concerns a part of it.
+    /// The range of bytes in the text of the formula, if the error concerns a part of it.
     pub place: Option<Range<usize>>,
 }
 

@@ -7,7 +7,7 @@ use glint_base::fixed::Rounding;
 use glint_config::{Config, Key, Problems, Schema};
 
 glint_config::choices! {
-    /// How β is obtained.
+    /// The ways to obtain the factor β = n/(2·m) of the formula (1 − β·D²)^m.
     pub enum Scale {
         /// `2^shift/(2·m)`; the operand is `shift`.
         Shift = "shift",
@@ -39,12 +39,12 @@ glint_config::keys! {
 }
 
 impl Keys {
-    /// Returns s, the number of squarings. For example, the power 16 takes 4.
+    /// Returns s, the number of squarings that compute the power m = 2^s. For example, the power 16 takes 4.
     pub fn squarings(&self) -> u32 {
         self.power.ilog2()
     }
 
-    /// Returns whether one multiplier squares all components.
+    /// Returns whether one multiplier squares the three components of D one after the other.
     pub fn squares_in_turn(&self) -> bool {
         self.distance_multipliers == 1
     }

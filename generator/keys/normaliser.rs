@@ -7,7 +7,8 @@ use glint_base::fixed::Rounding;
 use glint_config::{Config, Key, Problems, Schema};
 
 glint_config::keys! {
-    /// The values of a configuration of the device `normaliser`, one field for each of its keys.
+    /// The values of a configuration of the device `normaliser`, one field for each of its keys. For example, `vector.fraction`
+    /// states the fraction bits of a component.
     pub struct Keys {
         fraction: u32 = Key::integer("vector.fraction", 14, 2..=14,
             "Fraction bits of a component, s1.F."),

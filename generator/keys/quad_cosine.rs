@@ -27,12 +27,12 @@ glint_config::keys! {
 }
 
 impl Keys {
-    /// Returns the format of an angle.
+    /// Returns the format of an angle along the scan line, in right angles.
     pub fn angle_format(&self) -> Format {
         Format::signed(1, self.angle_fraction as i32)
     }
 
-    /// Returns the format of f.
+    /// Returns the format of the reflectance f.
     pub fn f_format(&self) -> Format {
         Format::unsigned(0, self.fraction as i32)
     }

@@ -7,7 +7,7 @@ use glint_base::fixed::Rounding;
 use glint_config::{Config, Key, Problems, Schema};
 
 glint_config::choices! {
-    /// The contents of ROM(n).
+    /// The coefficients a(n) that the table ROM(n) contains.
     pub enum Scheme {
         /// n − 1.
         Taylor = "taylor",
@@ -34,7 +34,7 @@ glint_config::keys! {
 }
 
 impl Keys {
-    /// Returns the fraction bits of a(n).
+    /// Returns the number of fraction bits of the coefficient a(n).
     pub fn coefficient_fraction(&self) -> u32 {
         if self.scheme == Scheme::Minimax { self.fraction } else { 0 }
     }

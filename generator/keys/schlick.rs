@@ -21,7 +21,7 @@ glint_config::keys! {
 }
 
 impl Keys {
-    /// Returns the format of f.
+    /// Returns the format of the reflectance f.
     pub fn f_format(&self) -> Format {
         Format::unsigned(0, self.fraction as i32)
     }

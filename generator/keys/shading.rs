@@ -103,11 +103,11 @@ const SUFFIXES: [&str; 4] = ["", "2", "3", "4"];
 
 /// The configurations of the devices that are the parts of `shading`.
 pub struct PartConfigs {
-    /// The `dot-product` that computes the cosine between the normal and the light.
+    /// The configuration of the `dot-product` that computes the cosine between the normal and the direction of the light.
     pub facing: Config,
-    /// The `dot-product` that computes the cosine between the normal and the half vector.
+    /// The configuration of the `dot-product` that computes the cosine between the normal and the half vector.
     pub cosine: Config,
-    /// The device that computes the highlight.
+    /// The configuration of the device that computes the highlight, such as `blinn`.
     pub highlight: Config,
 }
 
@@ -132,8 +132,8 @@ impl Keys {
         Format::unsigned(self.exponent_bits as i32, 0)
     }
 
-    /// Returns the number of extra low bits that the highlight computes beyond the bits of a result, as far as its colour
-    /// operands have room.
+    /// Returns the number of guard bits: the highlight computes so many bits more than a result has, to make its rounding error
+    /// small. The width of its colour operands limits the number.
     pub fn guard(&self) -> u32 {
         (12 - self.colour_bits).min(4)
     }

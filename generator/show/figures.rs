@@ -29,11 +29,11 @@ pub enum Target {
     Osu018,
 }
 
-/// All targets.
+/// All targets for which Glint can measure a core.
 pub const TARGETS: [Target; 4] = [Target::Ice40, Target::Ecp5, Target::Xilinx7, Target::Osu018];
 
 impl Target {
-    /// Returns the name in options and JSON. For example, `ice40`.
+    /// Returns the name of the target in options and JSON. For example, `ice40`.
     pub fn name(self) -> &'static str {
         match self {
             Self::Ice40 => "ice40",
@@ -43,12 +43,12 @@ impl Target {
         }
     }
 
-    /// Returns the name in tables and messages. For example, `0.18 µm cells`.
+    /// Returns the name of the target in tables and messages. For example, `0.18 µm cells`.
     pub fn title(self) -> &'static str {
         self.family().map_or("0.18 µm cells", |family| family.title)
     }
 
-    /// Returns the FPGA family in the terms of Yosys, or `None` for standard cells.
+    /// Returns the data of the FPGA family, or `None` if the target is a standard-cell library.
     pub fn family(self) -> Option<&'static Family> {
         FAMILIES.iter().find(|family| family.name() == self.name())
     }
@@ -85,7 +85,7 @@ pub struct Figures {
     /// The longest path between registers in the run with the median frequency, with the names of the description.
     #[serde(skip_serializing_if = "Vec::is_empty", default)]
     pub critical_path: Vec<PathPoint>,
-    /// The reason why no frequency was measured, if there is one.
+    /// The reason why no frequency was measured; `None` if a frequency was measured.
     #[serde(skip_serializing_if = "Option::is_none", default)]
     pub untimed: Option<String>,
     /// The tools that measured, with their versions.
@@ -96,18 +96,18 @@ pub struct Figures {
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Area {
-    /// The number of look-up tables.
+    /// The number of look-up tables that the core takes; `None` for standard cells.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub luts: Option<u64>,
-    /// The number of DSP blocks.
+    /// The number of DSP blocks that the core takes; `None` for standard cells.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub dsps: Option<u64>,
-    /// The number of block RAMs.
+    /// The number of block RAMs that the core takes; `None` for standard cells.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub block_rams: Option<u64>,
-    /// The number of flip-flops.
+    /// The number of flip-flops that the core takes.
     pub flip_flops: u64,
-    /// The area in two-input NAND gates.
+    /// The area of the standard cells as a multiple of a two-input NAND gate's area.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub gates: Option<f64>,
     /// The area of the standard cells in µm².
@@ -124,7 +124,7 @@ pub struct Frequency {
     pub median: f64,
     /// The frequency of the fastest run.
     pub highest: f64,
-    /// The number of runs.
+    /// The number of runs of placement and routing.
     pub runs: u32,
 }
 
@@ -138,7 +138,7 @@ pub struct PathPoint {
 }
 
 impl Figures {
-    /// Makes the measurement of an area, without a frequency.
+    /// Makes a measurement with an area, and without a frequency. `device` is the name of the chip or of the cell library.
     pub fn new(target: Target, device: &str, area: Area) -> Self {
         Self {
             target,

@@ -25,9 +25,9 @@ pub enum VerilogSimulator {
 /// Whether the test bench writes a waveform. Verilator must know this when it builds the bench.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Waveform {
-    /// It writes none.
+    /// The test bench writes no waveform.
     None,
-    /// It calls `$dumpvars`.
+    /// The test bench writes a waveform: it calls `$dumpvars`.
     Written,
 }
 

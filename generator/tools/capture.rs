@@ -1,4 +1,5 @@
-//! Reads the output of a child process to its end, and keeps only the beginning and the end if the output is long.
+//! Reads the output of a child process to its end, so that the process never blocks on a full pipe. If the output is long, only its
+//! beginning and its end are kept in memory.
 
 use std::collections::VecDeque;
 use std::io::Read;

@@ -15,9 +15,9 @@ use crate::window::{WINDOW_FILE, window};
 pub struct BenchDifference {
     /// The number of the clock in the bench, from 0.
     pub clock: u64,
-    /// The microinstruction that is executed in it, ``microinstruction `result` ``; empty for a pipeline.
+    /// The microinstruction that the core executes in this clock, ``microinstruction `result` ``; empty for a pipeline.
     pub during: String,
-    /// The name of the output.
+    /// The name of the output that differs.
     pub signal: String,
     /// The simulated value in hexadecimal, which may contain x and z.
     pub simulated: String,

@@ -71,7 +71,8 @@ fn tell_terms(bound: &Bound) {
     }
 }
 
-/// Runs `glint certify`, and returns whether every bound is proved.
+/// Runs `glint certify`, which proves the error bound of a configuration's contract with the prover Gappa, from the netlist and the
+/// microprogram. Returns whether every bound is proved.
 pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) -> Result<bool> {
     let loaded = load_sequential(registry, &arguments.configs.paths, "certify")?;
     let limit = Duration::from_secs(arguments.time_limit);

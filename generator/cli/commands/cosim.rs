@@ -82,7 +82,7 @@ pub struct SweepValues {
 }
 
 impl SweepValues {
-    /// Returns the sweep of a configuration's core.
+    /// Returns the sweep of a configuration's contract, with the user's operand values in it.
     pub fn of(&self, one: &Loaded) -> Result<Sweep> {
         let sweep = axis::sweep(one.core.contract.as_ref(), &self.others);
         sweep.map_err(|error| {
@@ -101,7 +101,8 @@ pub enum SimulatorChoice {
     Verilator,
 }
 
-/// Runs `glint cosim`, and returns whether everything that it checks holds.
+/// Runs `glint cosim`, which compares the golden model of a configuration with the simulated hardware, every register at every
+/// clock. Returns whether golden model and hardware agree and every error is within its bound.
 pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) -> Result<bool> {
     if arguments.exhaustive {
         return exhaustive::run(registry, output, arguments);
@@ -232,7 +233,7 @@ pub(super) fn terms(bound: &Bound) -> Vec<Value> {
     bound.terms.iter().map(one).collect()
 }
 
-/// Returns an outcome for scripts. A difference leaves a waveform.
+/// Returns the outcome of a co-simulation as JSON for scripts. If model and hardware differ, it also writes a waveform.
 pub fn as_json(one: &Loaded, outcome: &Outcome, bound: &Bound, failed: &[String]) -> Result<Value> {
     let mismatch = outcome.mismatch.as_ref().map(|mismatch| {
         let reproducer = Reproducer::of_run(one, mismatch)?;

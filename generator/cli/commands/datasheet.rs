@@ -58,7 +58,8 @@ pub struct Arguments {
     time_limit: TimeLimit,
 }
 
-/// Runs `glint datasheet`.
+/// Runs `glint datasheet`, which writes the datasheet of a configuration, one HTML page that needs no other file and no network.
+/// Returns true, because the command checks nothing.
 pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) -> Result<bool> {
     let loaded = load(registry, &arguments.configs.paths)?;
     let single = arguments.out.extension().is_some_and(|it| it.eq_ignore_ascii_case("html"));

@@ -36,7 +36,8 @@ pub struct Arguments {
     force: bool,
 }
 
-/// Runs `glint describe`.
+/// Runs `glint describe`, which prints or writes the documentation page of a configuration, in Markdown. Returns true, because the
+/// command checks nothing.
 pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) -> Result<bool> {
     let loaded = load(registry, &arguments.configs.paths)?;
     let mut list = output.list();

@@ -36,7 +36,8 @@ struct EstimateRow {
     excess: String,
 }
 
-/// Runs `glint estimate`.
+/// Runs `glint estimate`, which estimates area and clock frequency of a core on each FPGA family, without outside tools. Returns
+/// true, because the command checks nothing.
 pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) -> Result<bool> {
     let loaded = load(registry, &arguments.configs.paths)?;
     let mut estimates = Vec::new();

@@ -50,7 +50,7 @@ pub struct Arguments {
 /// More clocks than any device takes.
 const LIMIT: u64 = 1 << 16;
 
-/// Runs `glint eval`: one point, or as many as a CSV file has.
+/// Runs `glint eval`: computes one point, or all points of a CSV file.
 pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) -> Result<bool> {
     let one = load_one(registry, &registry.schemas(), &arguments.config)?;
     let given = operands::given(one.core.contract.operands(), &arguments.operands)

@@ -21,7 +21,8 @@ pub struct Arguments {
     code: Option<String>,
 }
 
-/// Runs `glint explain`.
+/// Runs `glint explain`, which explains the code of an error in a device's description, or lists all codes. Returns true, because
+/// the command checks nothing.
 pub fn run(_: &Registry, output: OutputOptions, arguments: &Arguments) -> Result<bool> {
     let wanted =
         |code: &str| arguments.code.as_ref().is_none_or(|it| it.eq_ignore_ascii_case(code));

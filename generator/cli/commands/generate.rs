@@ -46,7 +46,8 @@ pub struct Arguments {
     force: bool,
 }
 
-/// Runs `glint generate`.
+/// Runs `glint generate`, which writes the files of each configuration: Verilog, ROM contents, manifest, FuseSoC core and test
+/// bench. With `--check` it writes nothing, and returns whether the files on disk are the generated ones.
 pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) -> Result<bool> {
     let loaded = load(registry, &arguments.configs.paths)?;
     for one in &loaded {
@@ -138,9 +139,9 @@ fn misfit(one: &Loaded) -> Option<String> {
     (!excess.is_empty()).then_some(excess)
 }
 
-/// The files of a configuration.
+/// The generated files of a configuration, with the configuration they belong to.
 pub struct Made {
-    /// The files.
+    /// The files that `generate` writes or checks.
     pub files: OutputFiles,
     /// The bench notices a fault in every word of the memories if this is 1. For example, 4 means that the bench checks
     /// one of four words.

@@ -19,7 +19,8 @@ Example:
   glint list --json")]
 pub struct Arguments;
 
-/// Runs `glint list`.
+/// Runs `glint list`, which lists the devices, and the configurations in `configs/`. Returns true, because the command checks
+/// nothing.
 pub fn run(registry: &Registry, output: OutputOptions, _: &Arguments) -> Result<bool> {
     let configs: Vec<String> = if Path::new(CONFIGS).is_dir() {
         paths(&[]).unwrap_or_default().iter().map(|path| path.display().to_string()).collect()

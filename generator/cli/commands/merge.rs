@@ -29,7 +29,8 @@ pub struct Arguments {
     sweep: SweepValues,
 }
 
-/// Runs `glint merge`, and returns whether the proof that the shards of one job give together holds.
+/// Runs `glint merge`, which joins the results of an exhaustive check that was divided among machines by `glint cosim --exhaustive
+/// --shard`. Returns whether the joined check holds.
 pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) -> Result<bool> {
     let Arguments { config, files, .. } = arguments;
     let loaded = load(registry, std::slice::from_ref(config))?;

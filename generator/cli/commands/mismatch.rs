@@ -20,7 +20,7 @@ use glint_rtl::sim::views;
 /// Clocks in the waveform that ends with a difference.
 const WINDOW: u64 = 64;
 
-/// The means to see a difference again.
+/// A waveform file and a command, with which the user can reproduce a difference.
 pub struct Reproducer {
     /// The waveform of the clocks before it.
     vcd: PathBuf,
@@ -65,7 +65,7 @@ impl Reproducer {
         Ok(Self { vcd, from, command: format!("{Program} cosim {} --exhaustive", one.path) })
     }
 
-    /// Tells people the place of a difference, and how to have it again.
+    /// Returns text that tells the user where the difference is, and how to reproduce it.
     pub fn text(&self, mismatch: &Mismatch) -> String {
         format!(
             "`{}` shows clocks {} to {}; all of them: {}",
@@ -76,7 +76,7 @@ impl Reproducer {
         )
     }
 
-    /// Tells scripts the place of a difference, and how to have it again.
+    /// Returns JSON that tells a script where the difference is, and how to reproduce it.
     pub fn json(&self, mismatch: &Mismatch) -> Value {
         let mut value = as_json(mismatch);
         value["vcd"] = json!(self.vcd.display().to_string());
@@ -85,8 +85,8 @@ impl Reproducer {
     }
 }
 
-/// Returns a difference for scripts. Values are bit patterns and may have 64 bits, which not every reader's numbers
-/// hold: they are text. For example, the key `golden` has the text `0x1f`.
+/// Returns a difference as JSON for scripts. Bit patterns are written as text, because they may have 64 bits, and many JSON readers
+/// lose digits of such numbers. For example, the key `golden` has the text `0x1f`.
 pub fn as_json(mismatch: &Mismatch) -> Value {
     json!({
         "seed": mismatch.seed,
@@ -108,13 +108,14 @@ pub fn waveform_of(one: &Loaded) -> PathBuf {
     PathBuf::from(format!("{}_mismatch.vcd", one.core.config.name))
 }
 
-/// Returns the clock at which the waveform of a difference begins that ends at `clock`. For example, a difference at
-/// clock 100 has a waveform from clock 36 on.
+/// Returns the clock at which a waveform begins whose last clock is `clock`. For example, the waveform of a difference at clock 100
+/// begins with clock 36.
 pub fn first_clock(clock: u64) -> u64 {
     clock.saturating_sub(WINDOW)
 }
 
-/// Returns a run with a waveform from clock `from` on: written beside its place and moved there when it is whole.
+/// Runs the co-simulation again and writes the waveform from clock `from` on. The file is written under another name, and moved to
+/// its place when it is complete.
 ///
 /// # Errors
 /// Fails if [`Lockstep::trace`] fails, or if the file cannot be written.

@@ -84,7 +84,8 @@ impl Scored {
     }
 }
 
-/// Runs `glint mutate`.
+/// Runs `glint mutate`, which plants faults in a configuration's hardware, one at a time, and shows which of them the tests notice.
+/// Returns whether few enough faults remain undecided.
 pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) -> Result<bool> {
     let loaded = load(registry, &arguments.configs.paths)?;
     if let Some(id) = &arguments.only {

@@ -58,7 +58,8 @@ pub struct Arguments {
 const SCHEMA: &str =
     "#:schema glint.schema.json\n# Editors check keys by it: glint schema > glint.schema.json\n\n";
 
-/// Runs `glint new`.
+/// Runs `glint new`, which prints a configuration file for a device, or for a function that is given by its name, such as `rsqrt`.
+/// Returns true, because the command checks nothing.
 pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) -> Result<bool> {
     let device = &arguments.device;
     let preset = presets::find(device);

@@ -44,7 +44,8 @@ const FILES: [(&str, &str); 6] = [
     ("tests/device.rs", include_str!("../new_device/test.rs")),
 ];
 
-/// Runs `glint new-device`.
+/// Runs `glint new-device`, which writes a Rust crate that defines a device of the user's own, as a starting point. Returns true,
+/// because the command checks nothing.
 pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) -> Result<bool> {
     let name = &arguments.name;
     check_name(registry, name)?;

@@ -133,7 +133,8 @@ enum Through {
     Verilator,
 }
 
-/// Runs `glint render`.
+/// Runs `glint render`, which draws a picture whose highlights are bit-exact results of a device. Returns true, because the command
+/// checks nothing.
 pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) -> Result<bool> {
     let (name, core) = core(registry, arguments.config.as_deref())?;
     let settings = settings(&core, arguments)?;

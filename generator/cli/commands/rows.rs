@@ -8,11 +8,11 @@ use csv::{ReaderBuilder, StringRecord, Trim};
 
 use glint_base::input;
 
-/// Applies `of_row` to the rows of a file, or of standard input for `-`; `columns` understands the headings.
+/// Reads the rows of a CSV file, or of standard input if the path is `-`. `columns` interprets the headings; `of_row` converts each
+/// row.
 ///
 /// # Errors
-/// Fails if the file cannot be read, or has no row below the headings. Fails with the place if `columns` or `of_row`
-/// fails.
+/// Fails if the file cannot be read, or has no row below the headings. Fails with the line number if `columns` or `of_row` fails.
 pub fn read<C, T>(
     path: &Path,
     columns: impl FnOnce(&StringRecord) -> Result<C>,

@@ -37,7 +37,8 @@ pub struct Arguments {
     force: bool,
 }
 
-/// Runs `glint schedule`.
+/// Runs `glint schedule`, which shows the stages of a pipeline, and the operations in each. Returns true, because the command
+/// checks nothing.
 pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) -> Result<bool> {
     let named = paths(&arguments.configs.paths)?;
     let mut list = output.list();

@@ -6,9 +6,9 @@ use crate::wrong_usage;
 
 /// A key with the value that a user gave it.
 pub struct KeyAssignment {
-    /// The dotted name, as `cosine.fraction`.
+    /// The dotted name of the key. For example, `cosine.fraction`.
     pub key: String,
-    /// The value as TOML.
+    /// The value of the key, as TOML.
     pub value: String,
 }
 
@@ -34,7 +34,7 @@ impl KeyAssignment {
         Ok(KeyAssignment { key: key.to_owned(), value })
     }
 
-    /// Makes the setting of a key to a word.
+    /// Makes the setting of a key to a text, which needs no quotes.
     pub fn word(key: &str, word: &str) -> KeyAssignment {
         KeyAssignment { key: key.to_owned(), value: quoted(word) }
     }

@@ -113,7 +113,7 @@ struct SetUp {
     real: Vec<f64>,
 }
 
-/// Runs `glint setup`: one line or point, or as many as a CSV file has.
+/// Runs `glint setup`: computes the operands of one line or point, or of all rows of a CSV file.
 pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) -> Result<bool> {
     let one = load_one(registry, &registry.schemas(), &arguments.config)?;
     let host = HostInputs::new(&one)?;

@@ -81,7 +81,8 @@ struct FigureRecord<'a> {
     estimated_mhz: f64,
 }
 
-/// Runs `glint synth`.
+/// Runs `glint synth`, which measures area and frequency of a core by synthesis, placement and routing. Returns true, because the
+/// command checks nothing.
 pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) -> Result<bool> {
     let loaded = load(registry, &arguments.configs.paths)?;
     let (flows, notes) = flows(arguments, &loaded)?;

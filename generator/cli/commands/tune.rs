@@ -82,7 +82,8 @@ pub struct Arguments {
     csv: bool,
 }
 
-/// Runs `glint tune`.
+/// Runs `glint tune`, which finds the smallest configuration of a device whose error stays below a given limit. Returns true,
+/// because the command checks nothing.
 pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) -> Result<bool> {
     if arguments.csv && !output.is_for_people() {
         wrong_usage!("--json and --csv are two forms of the same: give one");

@@ -86,7 +86,8 @@ impl Files {
     }
 }
 
-/// Runs `glint verify`.
+/// Runs `glint verify`, which runs every test and proof that Glint has on configurations, and writes a record and a page about
+/// each. Returns whether every configuration is verified, at least in part.
 pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) -> Result<bool> {
     let loaded = load(registry, &arguments.configs.paths)?;
     let mut files = Vec::new();

@@ -78,7 +78,8 @@ struct WorstReport<'a> {
     recorded: Option<LargestError>,
 }
 
-/// Runs `glint worst`, and returns whether every bound holds.
+/// Runs `glint worst`, which searches for the operands with the largest error of an output. Returns whether every error is within
+/// its bound.
 pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) -> Result<bool> {
     let loaded = load(registry, &arguments.configs.paths)?;
     let records = loaded.iter().map(|one| record(one, arguments)).collect::<Result<Vec<_>>>()?;

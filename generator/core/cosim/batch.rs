@@ -51,7 +51,7 @@ impl Points {
         self.results.extend(other.results[1..].iter().map(|count| before + count));
     }
 
-    /// Returns the number of computations.
+    /// Returns the number of computations in the list.
     pub fn len(&self) -> usize {
         self.results.len() - 1
     }
@@ -82,7 +82,8 @@ impl Points {
     }
 }
 
-/// Computes points: the golden model, the built-in simulator or the emitted Verilog.
+/// An engine that computes the results of many points (sets of operands). There are three: the golden model, the built-in simulator
+/// and the emitted Verilog.
 pub trait Engine {
     /// Returns the raw outputs, in the order of the [`Contract`], result after result.
     ///

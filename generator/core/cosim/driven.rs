@@ -69,7 +69,7 @@ impl Driven {
         self.model.values()
     }
 
-    /// Returns the names of all signals.
+    /// Returns the names of all signals of the model.
     pub fn names(&self) -> &[String] {
         self.model.signals()
     }

@@ -67,13 +67,13 @@ impl<'a> Lockstep<'a> {
         Ok(Self { binding: Binding::new(design, model, contract)?, seed })
     }
 
-    /// Holds some operands at raw values. The random inputs seldom have other values for them.
+    /// Fixes some operands at raw values. A few of the random inputs may still have other values for them.
     #[must_use]
     pub fn holding(self, held: &[(String, i64)]) -> Self {
         Self { binding: self.binding.holding(held), ..self }
     }
 
-    /// Limits the lines that are drawn to at most `results` results.
+    /// Limits the length of the randomly drawn lines to at most `results` results for one `start`.
     #[must_use]
     pub fn with_lines_of(mut self, results: i64) -> Self {
         self.binding.shorten(results);
@@ -133,7 +133,7 @@ impl<'a> Lockstep<'a> {
         group.into_seen()
     }
 
-    /// Runs the same as [`Lockstep::run`], but in one stream.
+    /// Runs the same comparison as [`Lockstep::run`], but in one stream, from a single power-up.
     ///
     /// # Errors
     /// Fails as [`Lockstep::run`] does.
@@ -143,9 +143,9 @@ impl<'a> Lockstep<'a> {
         Ok(self.outcome(alone.into_seen()?))
     }
 
-    /// Runs the streams of a run of `points` results one by one, for an observer. `begin` makes an observer from the stream's
-    /// seed. After each clock, `note` passes the number of results so far and the simulator to the observer. Returns the
-    /// observers in the order of the streams.
+    /// Runs the streams of a run of `points` results one by one, and lets the caller observe the simulator. `begin` makes an
+    /// observer from the seed of a stream. After each clock, `note` gets the observer, the number of results so far and the
+    /// simulator. Returns the observers in the order of the streams.
     ///
     /// # Errors
     /// Fails as [`Lockstep::run`] does.
@@ -217,9 +217,10 @@ impl<'a> Lockstep<'a> {
         Ok(())
     }
 
-    /// Runs golden model and simulation from power-up on under recorded inputs, for example the inputs of [`Lockstep::record`]:
-    /// by stream, then by clock, then by input. Each stream runs for `clocks` clocks, and begins again after its end. Results
-    /// are compared with the golden model, and not with the formula. Every stream must have at least one clock.
+    /// Runs golden model and simulation from power-up on under recorded inputs, for example the inputs of [`Lockstep::record`].
+    /// `streams` has the inputs by stream, then by clock, then by input port. Each stream runs for `clocks` clocks, and begins
+    /// again after its end. Results are compared with the golden model, and not with the formula. Every stream must have at least
+    /// one clock.
     ///
     /// # Errors
     /// Fails as [`Lockstep::run`] does. Fails also if a stream has no clock, or if a clock has more or fewer inputs than the

@@ -91,7 +91,7 @@ impl<'a> PointSource<'a> {
         held.for_each(|operand| operand.domain = (raw, raw));
     }
 
-    /// Limits the drawn lengths of lines to `most`.
+    /// Limits the randomly drawn length of a line to `most`. A line is a row of points that the device computes after one `start`.
     pub fn shorten(&mut self, most: i64) {
         if let Some(at) = self.length {
             let (low, high) = self.operands[at].domain;
@@ -138,7 +138,8 @@ impl<'a> PointSource<'a> {
         self.contract.hint(&mut || random.unit()).map(|hint| self.clamped(hint))
     }
 
-    /// Returns the index of the operand that gives the number of results of a computation.
+    /// Returns the index of the operand that gives the number of results of a computation, or `None` if a computation always has
+    /// one result.
     pub fn length(&self) -> Option<usize> {
         self.length
     }
@@ -251,7 +252,8 @@ impl<'a> PointSource<'a> {
         }))
     }
 
-    /// Moves the operands that determine `f` toward the largest `f`, until the formula has about the given value.
+    /// Moves the operands that determine `f` on a straight line toward the operands with the largest `f`, until the formula has
+    /// about the given `value`.
     pub fn to_value(&self, control: &mut [i64], value: f64) {
         if let Some((way, highlight)) = self.way(control).zip(self.highlight) {
             let [inner, _] = way.crossing(highlight, value, false, control);
@@ -259,8 +261,8 @@ impl<'a> PointSource<'a> {
         }
     }
 
-    /// Moves some operands to the ends of their domains at which the formula is nearest to the middle of its range, so that
-    /// errors show. It does not move the operands that lead to the largest `f`.
+    /// Moves some operands so that errors show: each goes to an end of its domain if the formula is then nearer to the middle of
+    /// its range. The operands that lead to the largest `f`, such as `cos_gamma`, stay.
     pub fn show(&self, control: &mut [i64]) {
         let Some(highlight) = self.highlight else { return };
         let rest =
@@ -438,7 +440,8 @@ pub(super) mod tests {
     use glint_golden::contract::{ErrorShare, control};
     use glint_golden::highlight::{Products, Reflectance};
 
-    /// A pulse that knows no angle and no exponent: `f` is 1 where `x` is `at`, and 0 from 4 away.
+    /// A highlight without an angle or an exponent, for tests: `f` is 1 if `x` equals `at`, and 0 if `x` is 4 or more away from
+    /// `at`.
     pub struct Pulse {
         /// Whether it says where it is largest.
         says: bool,
@@ -461,7 +464,8 @@ pub(super) mod tests {
             Self { says, length: None }.contract(&[("x", 20, 1 << 20), ("at", 20, 1000)])
         }
 
-        /// Makes a contract with one operand, `x` of 12 bits; it is a length if it is said to be.
+        /// Makes a contract with one operand `x` of 12 bits, for tests. If `length` is set, `x` gives the number of results of a
+        /// computation.
         pub fn single(length: bool) -> Highlight {
             Self { says: false, length: length.then_some("x") }.contract(&[("x", 12, 4095)])
         }

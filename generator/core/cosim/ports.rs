@@ -1,6 +1,5 @@
-//! Finds the ports of a design by name: the handshake, the operands and the results.
-//!
-//! Everything that drives or reads a simulated design uses the same list of ports.
+//! Finds the ports of a simulated design by name: the handshake, the operands and the results. All code that drives or reads the
+//! design uses this list of ports.
 
 use anyhow::{Context, Result, ensure};
 

@@ -37,7 +37,7 @@ fn magnitude([first, second]: [u64; 2], most: u64) -> u64 {
 }
 
 impl Random {
-    /// Makes a generator from a seed.
+    /// Makes a generator whose numbers depend only on `seed`.
     pub fn new(seed: u64) -> Self {
         Self(seed)
     }
@@ -78,11 +78,11 @@ impl Random {
         within(self.bits(), low, high)
     }
 
-    /// Returns a raw value from `low` to `high`: often one of its ends or close to one (or to 0, which is as good as an
-    /// end).
+    /// Returns a random raw value from `low` to `high`. It is often one of these ends, or close to an end or to 0, because errors
+    /// often show there.
     ///
-    /// A branch on the choice could not be predicted. The function therefore computes all values and takes one without a
-    /// branch. The generator advances only by the draws that this value needs.
+    /// The function computes all candidates and takes one without a branch, because the processor could not predict the branch. The
+    /// generator advances only by the draws that this value needs.
     #[inline]
     pub fn of_domain(&mut self, (low, high): (i64, i64)) -> i64 {
         let [choice, first, second] = [1, 2, 3].map(|draws| self.ahead(draws));
@@ -112,7 +112,8 @@ impl Random {
         raw as u64 & mask(operand.format.width())
     }
 
-    /// Returns a random integer from 0 to `most`, in which each number of digits is equally likely.
+    /// Returns a random integer from 0 to `most`. Small and large numbers are equally likely, since the number of its digits is
+    /// drawn first.
     pub fn magnitude(&mut self, most: u64) -> u64 {
         magnitude([self.bits(), self.bits()], most)
     }

@@ -1,4 +1,4 @@
-//! Replays recorded inputs of a design, clock by clock, and begins again with the first clock after the last.
+//! Replays recorded inputs of a design clock by clock. After the last recorded clock, it starts again with the first.
 
 use std::sync::Arc;
 

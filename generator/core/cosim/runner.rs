@@ -1,4 +1,5 @@
-//! Runs several streams of random inputs in the lanes of one simulator, and compares every predicted signal at every clock.
+//! Runs several streams in the lanes of one simulator, and compares every signal that the golden model predicts with the simulated
+//! one at every clock. A stream is a sequence of random inputs from power-up on.
 
 use std::io::Write;
 use std::mem;

@@ -39,7 +39,7 @@ pub struct Reached {
     pub operands: Vec<i64>,
     /// The index of the output in the contract.
     pub output: usize,
-    /// The output, in its units, and the formula's value.
+    /// The computed output, in its units, and the value of the formula.
     pub raw: i64,
     pub exact: f64,
 }
@@ -68,14 +68,15 @@ fn larger(a: Reached, b: Reached) -> Reached {
     if b.units > a.units { b } else { a }
 }
 
-/// Returns the number of times that [`worst`] calls `progress`.
+/// Returns the number of times that [`worst`] calls `progress` if it searches from `starts` points, so that a caller can show
+/// progress.
 pub fn steps(starts: u64) -> u64 {
     starts.saturating_add(starts.min(HIGHEST as u64))
 }
 
-/// Searches from `starts` random points and returns the largest error that it finds, or `None` if `starts` is 0. The result
-/// depends on the seed but not on the number of threads. It calls `progress` after each start, and after each place whose
-/// neighbourhood it has searched.
+/// Searches from `starts` random points and returns the largest error that it finds, or `None` if `starts` is 0. The result depends
+/// on the seed but not on the number of threads. It calls `progress` after each start. It then tries the neighbours of the operands
+/// with the largest errors, and calls `progress` after each of these searches.
 pub fn worst(
     contract: &dyn Contract,
     starts: u64,

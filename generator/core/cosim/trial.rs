@@ -56,9 +56,9 @@ impl ComputationTrial {
     }
 }
 
-/// Returns the clocks between the events of the handshake. A number is given only if the microprogram makes it the same for
-/// all operands that the ports take, inside the domain or not. The clocks from result to result are measured with operands
-/// from the corners of the ports.
+/// Measures the clocks between the events of the handshake, such as `start` and `done`. It states a number only if the microprogram
+/// makes it the same for all bit patterns of the operand ports. The clocks from result to result are measured with the smallest and
+/// largest operands.
 ///
 /// # Errors
 /// Fails if the device never ends, or never raises `valid`.
@@ -99,8 +99,8 @@ fn corners(contract: &dyn Contract, ends: fn(&Operand) -> (i128, i128)) -> [Vec<
     [corner(|low, _| low), corner(|_, high| high), corner(i128::midpoint)]
 }
 
-/// Returns computations with all that they show, over the domain: its corners, and points at random. The golden model
-/// computes the same results.
+/// Returns sample computations with their results and clocks: the corners of the domain, and random points. Users check the device
+/// with them, without a golden model. The golden model of Glint computes the same results.
 ///
 /// # Errors
 /// Fails as [`timing`] does, or if golden model and simulation do not agree.
@@ -147,7 +147,7 @@ fn listed<'a>(names: impl Iterator<Item = &'a str>, raw: &[i64]) -> String {
     each.join(" ")
 }
 
-/// Returns the clocks of one computation, from `start` to the next, and the results that it shows.
+/// Returns the number of clocks of one computation, from `start` to the earliest next `start`, and the number of its results.
 ///
 /// # Errors
 /// Fails as [`timing`] does.
@@ -161,8 +161,9 @@ pub fn throughput(
     Ok((clocks, trial.results.len() as u32))
 }
 
-/// Returns the clocks of a line in terms of its length, measured at the shortest lines and a long one; `None` for a device that
-/// walks none, or whose clocks are no constant and a multiple of the length.
+/// Returns the clock numbers of a line, the points that a device computes after one `start`, as functions of the line's length. The
+/// function measures the shortest lines and a long one. Returns `None` for a device that computes single points, or if the numbers
+/// of clocks are no linear functions of the length.
 ///
 /// # Errors
 /// Fails as [`timing`] does.
@@ -191,8 +192,8 @@ pub fn line(design: &Design, contract: &dyn Contract) -> Result<Option<LineClock
     Ok(Some(LineClocks { length: name, last_valid, done, next_start }))
 }
 
-/// Returns a computation with all its numbers: operands of the domain for which f, if there is one, is neither 0 nor 1. Of several
-/// results it shows the first.
+/// Returns a worked example: a computation with the values of all its ports. Its operands lie in the domain, and f is neither 0 nor
+/// 1 if the device is a highlight. If the computation has several results, the example shows the first.
 ///
 /// # Errors
 /// Fails as [`timing`] does.
@@ -221,8 +222,8 @@ pub fn example(design: &Design, contract: &dyn Contract) -> Result<WorkedExample
     })
 }
 
-/// Returns typical operands; operands in `given` keep their values. The first control operand with a fraction that can do so
-/// (a cosine, an angle) is lowered until f is well inside 0 … 1.
+/// Returns typical operands of a contract, for a worked example; operands in `given` keep their values. The function lowers the
+/// first control operand with fraction bits that can change f, such as a cosine or an angle, until f is well inside 0 … 1.
 pub fn typical(contract: &dyn Contract, given: &[Option<i64>]) -> Vec<i64> {
     let given = |at: usize| given.get(at).copied().flatten();
     let mut colour = 0;

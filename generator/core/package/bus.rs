@@ -14,17 +14,17 @@ pub struct Bus {
     pub title: &'static str,
     /// The suffix of the names of modules on this bus. For example, `axil` in `threshold_levels_axil`.
     pub suffix: &'static str,
-    /// The level at which the reset port of the bus resets.
+    /// The level, 0 or 1, of the reset port while the bus is in reset.
     pub reset_level: u8,
-    /// The ports, clock and reset first: direction, name, the width of a vector, and for a port that LiteX connects its
-    /// signal. `#` denotes the number of bits of an address.
+    /// The ports as text, clock and reset first. Each has a direction, a name, the width of a vector and, if LiteX connects the
+    /// port, the name of its LiteX signal. `#` denotes the number of bits of an address.
     pub ports: &'static str,
-    /// The interface that tools find by the names of its ports, if there is a definition of it.
+    /// The standard interface that tools recognise by the names of its ports; empty if no such standard exists.
     pub protocol: &'static [Protocol],
     /// The Python expression that makes this bus in LiteX.
     pub litex: &'static str,
-    /// Makes the module on the bus, and its proof. Its parameters are the name of the core, the configuration that makes it,
-    /// and the highest bit of an address.
+    /// Makes the Verilog of the bus module and of its proof. Its parameters are the name of the core, the configuration that makes
+    /// it, and the highest bit of an address.
     pub module: fn(&str, &str, u32) -> Result<[String; 2]>,
 }
 
@@ -41,7 +41,7 @@ pub struct Protocol {
     pub name: &'static str,
     /// The name of the interface in ARM's definitions for IP-XACT.
     pub amba: &'static str,
-    /// The version of ARM's definition.
+    /// The version of ARM's definition of the interface, for IP-XACT.
     pub version: &'static str,
     /// The type of the interface in Intel's Platform Designer.
     pub platform: &'static str,
@@ -57,7 +57,7 @@ const fn stream(name: &'static str, is_slave: bool) -> Protocol {
     Protocol { name, amba: "AXI4Stream", version: "r0p0_1", platform: "axi4stream", is_slave }
 }
 
-/// The buses that a core's registers can be on.
+/// The buses on which Glint can put the registers of a core.
 pub static BUSES: [Bus; 2] = [
     Bus {
         key: "axi-lite",

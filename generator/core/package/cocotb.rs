@@ -32,7 +32,7 @@ const PIPELINE: [&str; 4] = [
     "reset_drops_every_point",
 ];
 
-/// Adds the bench of a design.
+/// Adds the cocotb test bench of a core to `files`.
 ///
 /// # Errors
 /// Fails if a template fails.
@@ -78,7 +78,7 @@ fn lines(quantities: &[Quantity], code: fn(&str, i128) -> String) -> Vec<String>
     quantities.iter().map(line).collect()
 }
 
-/// Returns the driver, with a digest of its text in the last line.
+/// Returns the Python driver that the cocotb benches share. Its last line has a digest of its text.
 pub fn driver() -> OutputFile {
     let text = fill!("glint_cocotb.py" {}).expect("a template without fields");
     let kind = FileKind::CocotbDriver;

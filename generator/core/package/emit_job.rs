@@ -30,7 +30,7 @@ impl<'a> EmitJob<'a> {
         &self.inputs.regenerate
     }
 
-    /// Returns whether the core computes a line of points after one start.
+    /// Returns whether the core computes a line of several points after one `start`.
     pub fn is_line(&self) -> bool {
         self.inputs.accuracy.as_ref().is_some_and(|accuracy| accuracy.length.is_some())
     }

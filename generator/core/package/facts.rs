@@ -15,9 +15,9 @@ pub struct PortFacts<'a> {
     pub name: &'a str,
     /// Whether the port is an `input` or an `output`.
     pub direction: &'static str,
-    /// The role of the port.
+    /// The role of the port in the interface of the device. For example, `operand` or `strobe`.
     pub role: &'static str,
-    /// The number of bits.
+    /// The number of bits of the port.
     pub width: u32,
     /// The number format, if the port is an operand, a result or a status bit.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -26,13 +26,13 @@ pub struct PortFacts<'a> {
     signed: Option<bool>,
     #[serde(skip_serializing_if = "Option::is_none")]
     fraction_bits: Option<i32>,
-    /// For an operand, the port that writes it.
+    /// The name of the write strobe of the port, if the port is an operand.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub strobe: Option<&'a str>,
     /// The number of the port's block in the source's figure.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub block: Option<u16>,
-    /// A description of one line.
+    /// A description of the port in one line.
     #[serde(skip_serializing_if = "str::is_empty")]
     pub doc: &'a str,
 }
@@ -47,9 +47,9 @@ pub struct FieldFacts<'a> {
     pub kind: &'static str,
     /// The lowest bit of the field in the control word.
     pub low: u32,
-    /// The number of bits.
+    /// The number of bits of the field.
     pub width: u32,
-    /// The choices of a select's values, from 0.
+    /// The names of a select field's choices, from the value 0 on.
     #[serde(skip_serializing_if = "<[_]>::is_empty")]
     pub choices: &'a [String],
     /// The numbers of the field's control lines in the source's figure.
@@ -62,34 +62,34 @@ pub struct FieldFacts<'a> {
 pub struct MicroinstructionFacts<'a> {
     /// The address of the microinstruction in the control ROM.
     pub address: usize,
-    /// The name of the operation.
+    /// The name of the microinstruction in the device's description.
     pub name: &'a str,
     /// The value of each field, in the order of the fields.
     #[serde(serialize_with = "as_map")]
     pub fields: Vec<(&'a str, u64)>,
-    /// The microinstruction that follows.
+    /// The rule for the microinstruction that follows.
     pub sequence: SequenceFacts<'a>,
 }
 
-/// Which microinstruction follows another.
+/// The rule for the microinstruction that follows another one.
 #[derive(Serialize)]
 #[serde(untagged)]
 pub enum SequenceFacts<'a> {
-    /// `next`, `wait for start` or `end`.
+    /// The plain rules: `next`, `wait for start` or `end`.
     Plain(&'static str),
-    /// Around a loop.
+    /// A jump back, which makes a loop.
     Loop {
-        /// The address to go to.
+        /// The address of the microinstruction to which control jumps.
         loop_to: usize,
-        /// The net that must be 1 for that.
+        /// The net that must be 1 for the jump.
         #[serde(rename = "while")]
         condition: &'a str,
     },
-    /// Over some microinstructions.
+    /// A jump ahead, over some microinstructions.
     Jump {
-        /// The address to go to.
+        /// The address of the microinstruction to which control jumps.
         jump_to: usize,
-        /// The net that must be 1 for that.
+        /// The net that must be 1 for the jump.
         #[serde(rename = "if")]
         condition: &'a str,
     },
@@ -105,7 +105,7 @@ pub struct RomFacts<'a> {
     pub file: Option<&'a str>,
     #[serde(skip_serializing_if = "Option::is_none")]
     parameter: Option<&'a str>,
-    /// The number of words.
+    /// The number of words in the ROM.
     pub depth: usize,
     /// The number of bits of a word.
     pub width: u32,
@@ -120,7 +120,7 @@ pub struct RomFacts<'a> {
     /// Its words, where no file has them.
     #[serde(skip_serializing_if = "Option::is_none")]
     words: Option<&'a [u64]>,
-    /// The meaning of a word.
+    /// The meaning of a word of the ROM, in one or more lines.
     pub doc: &'a [String],
     /// The number of the ROM in the source's figure.
     #[serde(skip_serializing_if = "Option::is_none")]

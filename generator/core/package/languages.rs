@@ -14,7 +14,7 @@ use glint_rtl::netlist::{Port, Role};
 use glint_rtl::verilog::rows::separated;
 use glint_rtl::verilog::text::{Names, ascii, comment, constant_name, literal};
 
-/// Adds the VHDL and SystemVerilog files that the configuration asks for.
+/// Adds the VHDL file and the SystemVerilog file, if the configuration asks for them.
 ///
 /// # Errors
 /// Fails if a template fails.

@@ -27,7 +27,7 @@ pub const CONTROL: u32 = 5;
 /// The word address of the register that enables the interrupt.
 pub const INTERRUPT_ENABLE: u32 = 6;
 
-/// The word address of the register that shows a pending interrupt.
+/// The word address of the register that shows whether an interrupt is pending.
 pub const INTERRUPT_PENDING: u32 = 7;
 
 /// The place of the first operand, in words.
@@ -37,17 +37,17 @@ const FIRST_OPERAND: u32 = 8;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Access {
-    /// They can be read.
+    /// Software can read the bits.
     Read,
-    /// They can be written and read.
+    /// Software can write and read the bits.
     Write,
-    /// Writing 1 does something; they read as 0.
+    /// Writing 1 triggers an action, such as a start. The bits read as 0.
     Trigger,
-    /// Writing 1 clears them.
+    /// Writing 1 clears the bits.
     Clear,
 }
 
-/// A field of a bus register.
+/// A field of a bus register: some of its bits with a meaning of their own.
 #[derive(Clone, Debug, Deserialize)]
 pub struct RegisterBits {
     /// The name of the field, in plain lower-case words.
@@ -62,7 +62,7 @@ pub struct RegisterBits {
     /// The value of the field after a reset.
     #[serde(default)]
     pub reset: u64,
-    /// One sentence without its full stop.
+    /// A description of the field for software, as a sentence without its full stop.
     pub doc: String,
 }
 
@@ -71,17 +71,17 @@ pub struct RegisterBits {
 pub struct BusRegister {
     /// The name of the register, in plain lower-case words.
     pub name: String,
-    /// The word address of the register.
+    /// The address of the register in words of 32 bits.
     #[serde(default)]
     pub place: u32,
-    /// One sentence without its full stop.
+    /// A description of the register for software, as a sentence without its full stop.
     pub doc: String,
-    /// The fields, from the lowest bits to the highest.
+    /// The fields of the register, from the lowest bits to the highest.
     pub bits: Vec<RegisterBits>,
 }
 
 impl BusRegister {
-    /// Returns the address offset in bytes. For example, the first operand, at place 8, has the offset 32.
+    /// Returns the address of the register in bytes. For example, the first operand, at word address 8, has the offset 32.
     pub fn offset(&self) -> u32 {
         4 * self.place
     }
@@ -104,20 +104,20 @@ pub struct PortPlacement {
 /// Some bits of a port, and their position in a bus register.
 #[derive(Clone, Copy, Debug)]
 pub struct PortBits {
-    /// The word address of the register.
+    /// The address of the bus register that holds the bits, in words of 32 bits.
     pub place: u32,
-    /// The lowest of these bits in the register.
+    /// The position of the lowest of the bits in the bus register.
     pub at: u32,
-    /// The lowest of these bits in the port.
+    /// The position of the lowest of the bits in the port.
     pub low: u32,
-    /// The number of these bits.
+    /// The number of bits of the port in this register.
     pub width: u32,
 }
 
 /// The register map of a core.
 #[derive(Clone, Debug)]
 pub struct Map {
-    /// All registers in the order of their addresses, which have no gaps.
+    /// All bus registers, in the order of their addresses, which have no gaps.
     pub registers: Vec<BusRegister>,
     /// The registers of the operands, in the order of the ports.
     pub operands: Vec<PortPlacement>,

@@ -3,10 +3,10 @@
 use super::file_kind::FileKind;
 use sha2::{Digest, Sha256};
 
-/// A file that emission returns.
+/// A generated file that is not written yet: its kind, path and contents.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct OutputFile {
-    /// The kind of the file.
+    /// The kind of the file, such as Verilog of the core or ROM contents.
     pub kind: FileKind,
     /// The path relative to the output directory, with `/`: `rtl_out/<name>/<name>.v`.
     pub path: String,

@@ -130,12 +130,12 @@ impl OutputFiles {
         forms.into_iter().find(is_form)
     }
 
-    /// Returns all files in order.
+    /// Returns an iterator over all files, in the order of their kinds.
     pub fn iter(&self) -> Iter<'_, OutputFile> {
         self.files.iter()
     }
 
-    /// Returns all files in order.
+    /// Returns all files as a slice, in the order of their kinds.
     pub fn as_slice(&self) -> &[OutputFile] {
         &self.files
     }

@@ -12,23 +12,23 @@ use glint_rtl::netlist::{Design, NetId, Port, Role};
 use glint_rtl::verilog::rows::{connections, variables};
 use glint_rtl::verilog::text::Names;
 
-/// The file from which the bench reads, by default: a line for each computation, its operands in
-/// hexadecimal in the order of [`PointsBench::operands`], with spaces between.
+/// The default name of the file from which the bench reads operands. The file has a line for each computation: its operands in
+/// hexadecimal, in the order of [`PointsBench::operands`], with spaces between.
 pub const POINTS_FILE: &str = "points.hex";
 
-/// The file to which it writes, by default: a line for each result, its outputs likewise in the order of
-/// [`PointsBench::results`], and a line with a dot after the last of each computation.
+/// The default name of the file to which the bench writes results. The file has a line for each result: its outputs in hexadecimal,
+/// in the order of [`PointsBench::results`]. A line with a dot follows the last result of each computation.
 pub const RESULTS_FILE: &str = "results.hex";
 
 /// A test bench that reads operands from a file and writes results to another file.
 pub struct PointsBench {
     /// The name of the bench's module. Its file has the same name with `.v`.
     pub name: String,
-    /// The Verilog of the bench.
+    /// The Verilog text of the test bench.
     pub text: String,
-    /// The operand ports in the order in which a line has them.
+    /// The operand ports, in the order of the values on a line of the operand file.
     pub operands: Vec<String>,
-    /// The result ports in the order in which a line has them.
+    /// The result ports, in the order of the values on a line of the result file.
     pub results: Vec<String>,
 }
 
@@ -91,7 +91,8 @@ impl PointList {
 
 fresh_names!(Variables { points, results, read, clocks, total, tick, dut });
 
-/// Returns the test bench of a core with a microprogram. Each computation must take less than `limit` clocks.
+/// Returns the test bench that computes points with a core that has a microprogram. Each computation must take less than `limit`
+/// clocks.
 ///
 /// # Errors
 /// Fails if the design lacks the common handshake, operands or results.

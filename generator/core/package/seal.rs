@@ -8,7 +8,7 @@ use serde_json::Value;
 
 use super::output_file::digest;
 
-/// Where a file has the digest of its other contents.
+/// The position of the digest in a file: in the last line, or in a member of a JSON object.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Seal {
     /// Markdown and HTML: a last line `<!-- … -->`, which no reader of the page sees.
@@ -22,8 +22,8 @@ pub enum Seal {
 /// The member of sealed JSON with the digest of the other members.
 const MEMBER: &str = "sha256";
 
-/// Returns the text, which must end with a newline, with a last line that has the digest of the text. JSON has no such line,
-/// and stays as it is: see [`sealed_json`]. For example, the last line of a Python file is `# sha256` and 64 digits.
+/// Returns `text` with one line more, which has the digest of the text. `text` must end with a newline. A JSON file cannot have
+/// such a line and stays as it is: see [`sealed_json`]. For example, the last line of a Python file is `# sha256` and 64 digits.
 pub fn sealed(text: String, seal: Seal) -> String {
     let line = last_line(text.as_bytes(), seal);
     text + &line
@@ -37,7 +37,7 @@ fn last_line(above: &[u8], seal: Seal) -> String {
     }
 }
 
-/// Returns the text of a JSON object with a member that has the digest of the others. The text ends with a newline.
+/// Returns the text of a JSON object with one member more, which has the digest of the other members. The text ends with a newline.
 ///
 /// # Errors
 /// Fails if the value is no object.
@@ -48,7 +48,7 @@ pub fn sealed_json(mut value: Value) -> Result<String> {
     Ok(serde_json::to_string_pretty(&value)? + "\n")
 }
 
-/// Returns whether the digest in a file fits the file's other contents, so that nobody has edited the file since Glint wrote it.
+/// Returns whether the digest in a file matches the file's other contents, so that nobody has edited the file since Glint wrote it.
 pub fn is_sealed(contents: &[u8], seal: Seal) -> bool {
     match seal {
         Seal::Json => is_sealed_json(contents),

@@ -73,7 +73,7 @@ pub fn check_rom_style(config: &Config, design: &Design) -> Result<(), KeyError>
     ))
 }
 
-/// The wrappers and packages around a core that a configuration asks for.
+/// The wrappers and packages that a configuration asks for in addition to the core.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Surroundings {
     /// Whether to emit a wrapper that connects the core to two AXI4-Streams.
@@ -82,7 +82,7 @@ pub struct Surroundings {
     pub user_bits: u32,
     /// Whether the number of bytes of a transfer is padded to a power of two.
     pub power_of_two: bool,
-    /// Whether the streams have `tkeep`.
+    /// Whether the streams have the signal `tkeep`, which marks the valid bytes of a transfer.
     pub keep: bool,
     /// The bus on which the core has registers, if any.
     pub registers: Option<&'static Bus>,
@@ -106,9 +106,9 @@ pub struct Surroundings {
     pub vhdl: bool,
     /// Whether to emit a package in SystemVerilog.
     pub systemverilog: bool,
-    /// The vendor that the packages name.
+    /// The name of the vendor in the emitted packages.
     pub vendor: String,
-    /// The version of the core that the packages name: three numbers with dots between them.
+    /// The version of the core in the emitted packages: three numbers with dots between them.
     pub version: String,
     /// The licence of the core, as an SPDX expression.
     pub licence: String,

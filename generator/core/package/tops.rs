@@ -13,11 +13,11 @@ use glint_rtl::verilog::text::ascii;
 /// The kind of interface that a module has to the system.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Face {
-    /// The core itself.
+    /// The module is the core itself, with its own handshake.
     Core,
-    /// Two AXI4-Streams.
+    /// The module has an AXI4-Stream for operands and one for results.
     Stream,
-    /// Registers on a bus.
+    /// The module has registers on a bus.
     Registers(&'static Bus),
 }
 
@@ -28,13 +28,13 @@ pub struct TopPort {
     pub name: String,
     /// Whether the port is an input; otherwise it is an output.
     pub input: bool,
-    /// The width in bits.
+    /// The number of bits of the port.
     pub width: u32,
     /// Whether the port is declared with a range.
     pub vector: bool,
-    /// The signal of the LiteX bus to which the port is connected; empty if there is no such signal.
+    /// The signal of the LiteX bus that connects to the port; empty if there is no such signal.
     pub signal: String,
-    /// A comment of one line; may be empty.
+    /// The comment on the port, one line; may be empty.
     pub doc: String,
 }
 
@@ -44,7 +44,7 @@ pub struct TopPort {
 pub struct Top {
     /// The name of the module.
     pub module: String,
-    /// What its name has after the name of the core and `_`; empty for the core. For example, `axis`.
+    /// The end of the module's name, after the name of the core and `_`. For example, `axis`; it is empty for the core itself.
     pub suffix: &'static str,
     /// The kind of interface that the module has to the system.
     pub face: Face,
@@ -54,7 +54,7 @@ pub struct Top {
     pub clock: String,
     /// The name of the reset port. The reset is synchronous.
     pub reset: String,
-    /// The level at which the reset port resets.
+    /// The level, 0 or 1, of the reset port while the module is in reset.
     pub reset_level: u8,
     /// All ports, in the order of the Verilog.
     pub ports: Vec<TopPort>,

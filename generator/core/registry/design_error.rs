@@ -8,9 +8,9 @@ use glint_base::key_error::KeyError;
 /// The reason why no netlist can be built from a configuration.
 #[derive(Clone, Debug)]
 pub enum DesignError {
-    /// The description has mistakes, whatever its pipeline.
+    /// The hardware description has mistakes, which a pipeline and a sequential core share.
     Description(Diagnostics),
-    /// A key asks for a pipeline that cannot be made.
+    /// A configuration key asks for a pipeline that cannot be made.
     Key(KeyError),
 }
 

@@ -14,7 +14,7 @@ pub const CLOCK_MHZ: &str = "pipeline.clock_mhz";
 /// Makes a pipeline from a sequential netlist. Returns `None` if the configuration has a sequential architecture.
 ///
 /// # Errors
-/// Fails if the pipeline cannot be made. The error names the key that is best changed.
+/// Fails if the pipeline cannot be made. The error names the key that the user should change.
 pub fn pipelined(sequential: &Design, config: &Config) -> Result<Option<Design>, KeyError> {
     let keys = Shared::of(config);
     if keys.architecture != "pipelined" {

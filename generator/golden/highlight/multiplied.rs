@@ -30,8 +30,8 @@ enum ProductOrder {
 }
 
 impl Products {
-    /// Returns the products with the three operands of the building block `Colours`. The contract covers all values of these
-    /// operands.
+    /// Returns the products of the reflectance f with the three colour operands red, green and blue, each of `bits` bits. `f` is
+    /// the format of the reflectance, and `rounding` rounds the products. The contract covers all values of the colours.
     pub fn colours(f: Format, bits: u32, rounding: Rounding) -> Self {
         let colours = ["red", "green", "blue"];
         let doc =
@@ -40,14 +40,16 @@ impl Products {
         Self::new(f, bits, rounding, colours.map(|it| (it, doc(it))).into(), outputs.into())
     }
 
-    /// Returns the product with the operand of the building block `Colours::amplitude`. The contract covers all its values.
+    /// Returns the product of the reflectance f with the single operand `amplitude` of `bits` bits. `f` is the format of the
+    /// reflectance, and `rounding` rounds the product. The contract covers all values of the amplitude.
     pub fn amplitude(f: Format, bits: u32, rounding: Rounding) -> Self {
         let doc = "intensity of the light times the surface's specular coefficient, at the peak";
         let operand = vec![("amplitude", doc.to_owned())];
         Self::new(f, bits, rounding, operand, vec!["intensity_out".to_owned()])
     }
 
-    /// Returns no products: the accuracy contract covers f alone.
+    /// Returns an empty set of products, for a device that outputs the reflectance f itself. The accuracy contract then covers f
+    /// alone.
     pub fn none(f: Format) -> Self {
         Self::new(f, 1, Rounding::Nearest, Vec::new(), Vec::new())
     }
@@ -121,8 +123,8 @@ impl Products {
         program
     }
 
-    /// Returns the golden model that executes `program`, which leaves f in the slot `f`, then computes the products and shows
-    /// them in its last microinstruction.
+    /// Returns the golden model that executes `program` and then computes the products. `program` must leave f in the slot `f`; the
+    /// last microinstruction shows the products.
     pub fn behind(&self, mut frame: Frame, f: Slot, mut program: Vec<FrameStep>) -> ClockedModel {
         program.extend(self.slots(&mut frame, f));
         program.push(idle().valid().end());

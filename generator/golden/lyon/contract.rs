@@ -1,5 +1,8 @@
-//! The accuracy contract of the device `lyon`: its formula max(0, 1 − β·D²)^m, the terms of its error bound, and the exhaustive
-//! check.
+//! The accuracy contract of the device `lyon`, which computes f = max(0, 1 − β·D²)^m from the difference D of surface normal and
+//! half vector. β = n/(2·m) with the specular exponent n.
+//!
+//! The contract states the exact formula, the terms of the error bound with the keys that govern them, and the operands that an
+//! exhaustive check visits.
 
 use super::{Derived as _, Keys, LyonArithmetic, Scale};
 use crate::contract::{self as shared, ErrorShare};

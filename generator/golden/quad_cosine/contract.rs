@@ -1,5 +1,8 @@
-//! The accuracy contract of the device `quad-cosine`: its formula cosᵏ(√(n/k)·δ), the terms of its error bound, and the
-//! exhaustive check.
+//! The accuracy contract of the device `quad-cosine`, which computes f = cosᵏ(√(n/k)·δ) for the angle δ at each point of a scan
+//! line. n is the specular exponent, which decides k.
+//!
+//! The contract states the exact formula, the terms of the error bound with the keys that govern them, and the operands that an
+//! exhaustive check visits.
 
 use std::f64::consts::FRAC_PI_2;
 

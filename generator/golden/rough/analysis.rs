@@ -1,7 +1,8 @@
-//! Bounds the error of f of the device `rough` for every pair of bins of the angles γ and dγ.
+//! Bounds the error of f of the device `rough` for every pair of bins of the angles γ and dγ. The device computes f = (n/2·(cos(γ ±
+//! dγ) − 1) + 1)².
 //!
-//! The quarter circle is cut into 512 bins of equal size. [`super::bound`] takes the largest of these bounds, and explains the
-//! symbols.
+//! The quarter circle is cut into 512 bins of equal size; a bin is an interval of angles. [`super::bound`] takes the largest of
+//! these bounds, and explains the symbols.
 
 use std::f64::consts::FRAC_PI_2;
 
@@ -18,7 +19,7 @@ pub const BIN: f64 = FRAC_PI_2 / BINS as f64;
 /// A margin, in radians, that covers the rounding of angles in f64.
 pub const SLACK: f64 = 1e-9;
 
-/// The errors of the table of sines (ROM 18 of `rough`), by bins of the angle.
+/// The errors of the table of sines (ROM 18 of `rough`), for each bin of the angle.
 pub struct Errors {
     /// The largest error of the table in each bin, and the part of it that words of unlimited width would leave ([`ErrorRange`]).
     errors: Vec<(f64, f64)>,
@@ -58,9 +59,10 @@ impl Errors {
     }
 }
 
-/// The factor by which an error of cos(γ ± dγ) counts in f, if γ and dγ lie a certain number of bins apart.
+/// The weight n·b: the factor by which an error of cos(γ ± dγ) changes f. Here n is the exponent and b the base of the square in
+/// the formula. The weight belongs to bins of γ and dγ that are a certain number of bins apart.
 pub struct Weight {
-    /// The largest n·b, where b is the base of the square.
+    /// The largest weight n·b for these bins, where b is the base of the square.
     pub linear: f64,
     /// The largest n for which the square is not constant.
     exponent: f64,
@@ -99,7 +101,8 @@ fn bin(angle: f64) -> usize {
 /// Bounds on the error of f for all pairs of bins of γ and dγ.
 pub struct Analysis {
     pub errors: Errors,
-    /// The weights, indexed by the distance of the two bins (for γ − dγ), or by the sum of their numbers (for γ + dγ).
+    /// The weights of pairs of bins. For γ − dγ they are indexed by the distance of the two bins, for γ + dγ by the sum of their
+    /// numbers.
     pub weights: Vec<Weight>,
     /// The number of the last bin that dγ can reach.
     deviation: usize,
@@ -164,13 +167,14 @@ impl Analysis {
         self.bound_of(i, j, negative, self.errors.product(i, j))
     }
 
-    /// Returns the bound as [`Self::bound`] does, if the errors of the table change register 12 by at most `error`.
+    /// Returns a bound on the error of f as [`Self::bound`] does. In place of the bins' own table errors, `error` is the amount by
+    /// which the table errors change the product of the sines in register 12.
     pub fn bound_of(&self, i: usize, j: usize, negative: bool, error: f64) -> f64 {
         let apart = if negative { i.abs_diff(j) } else { i + j };
         self.rounded(self.weights[apart].linear * (error + self.products))
     }
 
-    /// Returns the bound on the error of f with all roundings. `linear` is n·b times the error of the sum in adder 15.
+    /// Returns the bound on the error of f with all roundings, for a given `linear`: the weight n·b times the error of cos(γ ± dγ).
     pub fn rounded(&self, linear: f64) -> f64 {
         let base = self.square + self.base;
         linear + 2.0 * self.base + self.ulp + base * base

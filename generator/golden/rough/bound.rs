@@ -1,25 +1,28 @@
-//! Computes the terms of the error bound of the device `rough`, which computes (n/2·(cos(γ ± dγ) − 1) + 1)². This is the proof:
+//! Computes the terms of the error bound of the device `rough`, which computes f = (n/2·(cos(γ ± dγ) − 1) + 1)². The rest of this
+//! head is the proof of the bound. Block numbers, such as register 11, are the numbers in the figure of the source, the patent UA
+//! 60139.
 //!
-//! **Notation.** b = n/2·(cos(γ ± dγ) − 1) + 1 is the formula's base, b′ the hardware's (adder 16 in
-//! word 6), and E ≥ |b′ − b|. Operands are exact, for the formula is taken at the quantised ones.
+//! **Notation.** b = n/2·(cos(γ ± dγ) − 1) + 1 is the base of the square in the formula, and b′ is the base that the hardware
+//! computes (adder 16, in word 6 of the microprogram). E is a bound of |b′ − b|. Operands are exact, because the formula is taken
+//! at the quantised operands.
 //!
-//! **The base.** Registers 11 and 12 hold cos γ·cos dγ and sin γ·sin dγ with rounding errors e₁₁, e₁₂ and
-//! the sine's errors δ: with s = sin γ, t = sin dγ, register 12 is off by s·δ(dγ) + (t + δ(dγ))·δ(γ) at
-//! most. Adder 15 is exact, the product by n/2 is exact, and register 13 rounds by e₁₃. Hence
-//! E = n/2·(e₁₁ + e₁₂ + s·δ(dγ) + (t + δ(dγ))·δ(γ)) + e₁₃. Saturation of register 13 moves b′ towards
-//! 0 … 1 only (clamped) or −1 … 1 (not clamped), within which alone it matters.
+//! **The base.** Registers 11 and 12 hold cos γ·cos dγ and sin γ·sin dγ. They have the rounding errors e₁₁ and e₁₂; the sines from
+//! the table have the errors δ(γ) and δ(dγ). With s = sin γ and t = sin dγ, register 12 is off by at most s·δ(dγ) + (t +
+//! δ(dγ))·δ(γ). Adder 15 is exact, the product by n/2 is exact, and register 13 adds the rounding error e₁₃. Hence E = n/2·(e₁₁ +
+//! e₁₂ + s·δ(dγ) + (t + δ(dγ))·δ(γ)) + e₁₃. Saturation of register 13 moves b′ only towards the interval 0 … 1 (clamped) or −1 … 1
+//! (not clamped). The value of b′ matters only within this interval.
 //!
-//! **The square.** Both bases clamped to 0 … 1, |b′² − b²| ≤ 2·b·E + E², which vanishes where b < −E. So a
-//! cosine's error e counts n·b·e. As b ≤ 1 − n·q/2 with q = 1 − cos(γ − dγ), which is the smaller for the
-//! nearer of the two signs, the weight n·b is the largest at n = 1/q, and small where γ and dγ
-//! are far apart: there the table may be coarse. Without the clamp |b| ≤ 1 and n·q/2 ≤ 2 + E count
-//! instead. Register 13 rounds the square by less than an ulp, or saturates 1.0 to 1.0 − ulp.
+//! **The square.** If both bases are clamped to 0 … 1, |b′² − b²| ≤ 2·b·E + E², which vanishes if b < −E. An error e of the cosine
+//! therefore changes f by n·b·e, so n·b is its weight. Let q = 1 − cos(γ − dγ), which is the smaller of the two distances for the
+//! signs + and −. As b ≤ 1 − n·q/2, the weight n·b is largest at n = 1/q. It is small if γ and dγ are far apart, so the table may
+//! be coarse there. Without the clamp, |b| ≤ 1 and n·q/2 ≤ 2 + E hold instead. Register 13 rounds the square by less than an ulp,
+//! or saturates 1.0 to 1.0 − ulp.
 //!
-//! **The maximum.** The quarter circle is cut into equal bins, and the largest error of the table's entries is known in each
-//! bin. The smallest γ − dγ of two bins depends only on their distance, and the smallest γ + dγ only on the sum of their
-//! numbers. All pairs of bins are tried. With the clamp, [`super::pairs`] examines the pairs with the largest bounds: there
-//! the largest errors of the table and of the roundings do not occur together at any operands. The terms are the terms of the
-//! worst pair of bins, in proportion.
+//! **The maximum.** The quarter circle is cut into equal bins, and the largest error of the table's entries is known in each bin.
+//! The smallest γ − dγ of two bins depends only on their distance, and the smallest γ + dγ only on the sum of their numbers. The
+//! code tries all pairs of bins. With the clamp, [`super::pairs`] examines the pairs with the largest bounds, because the largest
+//! errors of the table and of the roundings do not occur together at the same operands. The terms of the result are the terms of
+//! the worst pair of bins, in proportion.
 
 use super::analysis::Analysis;
 use super::{Keys, Kind, RomLayout, RoughArithmetic, pairs};

@@ -1,14 +1,16 @@
-//! Finds a bound on the error of f of the device `rough` by branch and bound over pairs of angles γ and dγ.
+//! Finds a bound on the error of f of the device `rough` by branch and bound over pairs of angles γ and dγ. The device computes f =
+//! (n/2·(cos(γ ± dγ) − 1) + 1)².
 //!
-//! **Bounds.** A pair of bins has the bound of the analysis in [`super::bound`]. A pair of operands in these bins has the
-//! same bound, but with the errors of the table at these very operands. If adder 15 is computed too, its distance D from
-//! cos(γ ± dγ) − 1 is known. The error of f is then at most n·b·D and the roundings of register 13; n·b is largest
-//! at n = 1/q, or at an end of the domain. For a pair of operands with an n the error itself is computed, with the
-//! hardware's roundings.
+//! **Bounds.** A bin is a small interval of angles. The analysis in [`super::bound`] gives a bound for each pair of bins, one for γ
+//! and one for dγ. For a pair of operands in these bins, the same formula gives a smaller bound, because the errors of the table of
+//! sines are known at these operands. If the output of the hardware's adder 15 is computed too, its distance D from cos(γ ± dγ) − 1
+//! is known, and the error of f is at most n·b·D plus the roundings of register 13. Here b is the base of the square, and n·b is
+//! largest at n = 1/(1 − cos(γ − dγ)) or at an end of the domain of n. For a pair of operands and one n, the error itself is
+//! computed, with the hardware's roundings.
 //!
-//! **The search.** The search skips every pair whose bound is no larger than an error that it has met, because no larger
-//! error is there. It looks into all other pairs. If that takes too many steps, the answer is the largest bound of the
-//! remaining pairs. The answer is never below half of the first bound: the search does not spend time on smaller errors.
+//! **The search.** The search keeps the largest error that it has computed. It skips every pair whose bound is no larger, because
+//! no larger error is there, and looks into all other pairs. If that takes too many steps, the answer is the largest bound of the
+//! remaining pairs. The answer is never below half of the first bound, so that the search spends no time on smaller errors.
 
 use std::collections::BTreeMap;
 
@@ -53,7 +55,7 @@ struct PairSearch<'a> {
     steps: u64,
 }
 
-/// Returns a proven bound on the error of f for all pairs of angles.
+/// Returns a proven bound on the error of the reflectance f, for all pairs of angles γ and dγ.
 pub fn largest_error(it: &RoughArithmetic, analysis: &Analysis) -> f64 {
     let mut bins: Vec<(f64, usize, usize, i64)> = Vec::new();
     let mut first = 0.0_f64;

@@ -7,12 +7,12 @@
 use crate::dsl::{Designer, Signal};
 use glint_base::fixed::{Format, Overflow, Rounding, exp2};
 
-/// The magnitude of a signed angle, as hardware.
+/// The magnitude of a signed angle, as signals of the hardware.
 #[derive(Clone, Copy)]
 pub struct Folded<'d> {
-    /// The leading bits of the magnitude, if the angle is within a right angle.
+    /// The magnitude of the angle, as a fraction of a right angle. It is meaningful only if `within` is 1.
     pub magnitude: Signal<'d>,
-    /// A bit that is 1 if −90° ≤ angle < 90°.
+    /// A bit that is 1 if the angle lies in −90° ≤ angle < 90°.
     pub within: Signal<'d>,
 }
 

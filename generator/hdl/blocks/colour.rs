@@ -10,13 +10,13 @@ use glint_base::fixed::{Format, Overflow, Rounding};
 /// The numbers that the figure of the device's source gives to the blocks of one colour.
 #[derive(Clone, Copy, Debug)]
 pub struct ChannelBlocks {
-    /// The data input and the write strobe of the operand.
+    /// The block numbers of the data input and of the write strobe of the colour operand.
     pub inputs: (u16, u16),
-    /// The operand register.
+    /// The block number of the operand register.
     pub register: u16,
-    /// The multiplier before the output.
+    /// The block number of the multiplier that computes the colour output.
     pub multiplier: u16,
-    /// The output.
+    /// The block number of the colour output.
     pub output: u16,
 }
 
@@ -102,7 +102,8 @@ impl<'d> Colours<'d> {
         self.outputs_of(f, rounding, false);
     }
 
-    /// Adds the outputs with a register behind each multiplier, which loads on every clock.
+    /// Adds the same outputs as `outputs`, with a register behind each multiplier. The register loads on every clock, so an output
+    /// shows the product of the clock before.
     #[track_caller]
     pub fn outputs_staged(&self, f: Signal<'d>, rounding: Rounding) {
         self.outputs_of(f, rounding, true);

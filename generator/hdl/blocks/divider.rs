@@ -118,12 +118,12 @@ impl<'d> Divider<'d> {
         }
     }
 
-    /// Returns the quotient, when all steps are done.
+    /// Returns the quotient register in the format `u0.Q`. It holds the quotient after all Q steps.
     pub fn quotient(&self) -> Signal<'d> {
         self.quotient.q()
     }
 
-    /// Returns the settings with which dividend and divisor are taken at the end of the microinstruction.
+    /// Returns the settings with which a microinstruction loads dividend and divisor at its end.
     #[track_caller]
     pub fn load(&self) -> [StepSetting; 4] {
         [
@@ -134,7 +134,7 @@ impl<'d> Divider<'d> {
         ]
     }
 
-    /// Returns the settings with which the next bit enters the quotient at the end of the microinstruction.
+    /// Returns the settings with which a microinstruction computes the next bit of the quotient at its end.
     #[track_caller]
     pub fn step(&self) -> [StepSetting; 4] {
         [
@@ -145,7 +145,8 @@ impl<'d> Divider<'d> {
         ]
     }
 
-    /// Returns the condition under which the microinstruction that steps is executed once more.
+    /// Returns the loop condition of the division: a bit that is 1 as long as the microinstruction with the step must be executed
+    /// again.
     pub fn more(&self) -> Signal<'d> {
         self.more
     }

@@ -5,10 +5,10 @@ use super::shift;
 use crate::dsl::{Designer, Signal};
 use glint_base::fixed::{Format, Overflow, Rounding};
 
-/// Returns `power · 2^−halvings` as `u0.F`, F = `frac`, with the given `rounding`. A result that rounds to 1.0
-/// becomes the largest fraction.
+/// Returns `power · 2^−halvings` in the format `u0.F` with F = `frac`, rounded by `rounding`. A result that rounds to 1.0 becomes
+/// the largest fraction, 1.0 − ulp.
 ///
-/// `power` must be at most 1.0, and `halvings` an unsigned integer.
+/// `power` must be at most 1.0, and `halvings` an unsigned integer. For example, `power` = 0.75 and `halvings` = 2 give 0.1875.
 #[track_caller]
 pub fn halved<'d>(
     d: &'d Designer,

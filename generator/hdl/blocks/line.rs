@@ -1,8 +1,9 @@
 //! Builds the accumulator that computes the angles of the points along a scan line: the register `angle` starts at the operand
 //! `zeta_start` and grows by the operand `delta_zeta` every clock.
 //!
-//! The devices `quad-cosine` and `cosine-squared` use it. [`Line`] holds the operands, the adder, the mux, the register and the
-//! counter of intervals, and writes the microprogram of such a device.
+//! A line is a row of neighbouring points that the device computes after one `start`. The devices `quad-cosine` and
+//! `cosine-squared` use the accumulator. [`Line`] makes the operands, the adder, the mux, the register and the counter of
+//! intervals, and writes the microprogram of such a device.
 
 use crate::dsl::{Counter, Designer, Mux, Register, Signal, end, jump_if, loop_while, step};
 use glint_base::fixed::Format;
@@ -10,9 +11,9 @@ use glint_base::fixed::Format;
 /// The numbers of an operand in the figure of the source: of its data input, its write strobe and its register.
 #[derive(Clone, Copy, Debug)]
 pub struct OperandBlocks {
-    /// The data input and the write strobe.
+    /// The block numbers of the operand's data input and of its write strobe.
     pub inputs: (u16, u16),
-    /// The register.
+    /// The block number of the operand's register.
     pub register: u16,
 }
 
@@ -25,27 +26,27 @@ pub struct LineBlocks {
     pub start: OperandBlocks,
     /// The data input and the write strobe of the operand `length`, the number of intervals.
     pub length_inputs: (u16, u16),
-    /// The counter of intervals.
+    /// The block number of the counter of intervals.
     pub counter: u16,
-    /// The adder.
+    /// The block number of the adder, which adds `delta_zeta` to the angle.
     pub adder: u16,
-    /// The mux before the register of the angle.
+    /// The block number of the mux in front of the register `angle`.
     pub mux: u16,
-    /// The register of the angle.
+    /// The block number of the register `angle`.
     pub register: u16,
-    /// The control line `count`, which makes the counter count.
+    /// The number of the control line `count`, which makes the counter of intervals count.
     pub count: u16,
-    /// The control line `accumulate`, which selects the input of the mux.
+    /// The number of the control line `accumulate`, which selects the adder instead of `zeta_start` as the next angle.
     pub select: u16,
-    /// The control line `write_angle`, which loads the register of the angle.
+    /// The number of the control line `write_angle`, which loads the register `angle`.
     pub write: u16,
 }
 
-/// The walk along a scan line: operands `delta_zeta`, `zeta_start` and `length`, the register `angle`, and the
-/// outputs `count`, `accumulate` and `write_angle`, which show its control.
+/// The accumulator of a scan line: the operands `delta_zeta`, `zeta_start` and `length`, the register `angle`, and the outputs
+/// `count`, `accumulate` and `write_angle`, which show the control lines.
 ///
-/// A line of `length` = l intervals has l + 1 points, one a clock. The angle is a signed word that wraps around. Its
-/// format must therefore hold every angle that a line may reach, or wrap where angles wrap.
+/// A line of `length` = l intervals has l + 1 points, one a clock. The angle is a signed word that wraps around. Its format must
+/// therefore represent every angle of a line, or wrap at a full turn.
 pub struct Line<'d> {
     designer: &'d Designer,
     start: Signal<'d>,

@@ -1,20 +1,24 @@
-//! Builds hardware that maps an angle in any quadrant to the first quadrant. It gives the distance from the nearer zero of the
-//! sine, and the sign of the sine; a table of one quadrant then gives every sine.
+//! Builds hardware that maps an angle in any quadrant to the first quadrant, so that a table of one quadrant gives every sine.
+//!
+//! The hardware computes the distance of the angle from the nearer zero of the sine, and the sign of the sine. For example, sin
+//! 200° = −sin 20°: the distance is 20°, and the sign is negative.
 
 use crate::dsl::{Designer, Signal};
 use glint_base::fixed::Format;
 
-/// An angle, mapped to the first quadrant.
+/// An angle, mapped to the first quadrant: |sin| of the angle is the sine of `way`, and `negative` gives the sign.
 #[derive(Clone, Copy)]
 pub struct Quadrant<'d> {
-    /// The distance from the nearer zero of the sine, in steps of the angle.
+    /// The distance of the angle from the nearer zero of the sine, in steps of `turn`. It is less than a quarter turn.
     pub way: Signal<'d>,
     /// A bit that is 1 if the sine is negative.
     pub negative: Signal<'d>,
 }
 
-/// Returns the quadrant of `turn`, which must be an integer without a sign and whose steps are a whole turn, after `ahead` more
-/// quadrants. For example, step 20 of 64 is in the second quadrant, 12 steps before the next zero of the sine.
+/// Maps the angle `turn` to the first quadrant. `turn` must be an unsigned integer whose range is one whole turn; for example, 64
+/// steps in `u6.0`. `ahead` quadrants are added to the angle first, so that `ahead` = 1 gives the cosine.
+///
+/// For example, step 20 of 64 is in the second quadrant, 12 steps before the next zero of the sine.
 #[track_caller]
 pub fn quadrant<'d>(d: &'d Designer, name: &str, turn: Signal<'d>, ahead: u32) -> Quadrant<'d> {
     let steps = turn.format().width() - 2;
@@ -32,7 +36,8 @@ pub fn quadrant<'d>(d: &'d Designer, name: &str, turn: Signal<'d>, ahead: u32) -
     Quadrant { way, negative: number.bit(1) }
 }
 
-/// Returns 2^bits − `way`, and the largest number in place of 2^bits itself. For example, 5 of 4 bits gives 11, and 0 gives 15.
+/// Returns 2^w − `way` for the w bits of `way`; if `way` is 0, it returns the largest number 2^w − 1. For example, with 4 bits 5
+/// gives 11, and 0 gives 15.
 #[track_caller]
 pub fn mirrored<'d>(d: &'d Designer, name: &str, way: Signal<'d>) -> Signal<'d> {
     let format = way.format();

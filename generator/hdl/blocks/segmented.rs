@@ -1,10 +1,10 @@
 //! Builds a table that approximates a function of one operand by linear interpolation, in segments that become shorter toward 0.
 //! For example, `rough` has such a table of sines.
 //!
-//! The operand u, an integer of C bits or exactly 2^C, is cut into ranges by factors of four: range j holds u in [2^(C−2j−2),
-//! 2^(C−2j)). The k_j top bits of the (C−2j)-bit number select a segment of the range, all of equal length. Below the last range,
-//! every value of u has its own entry. Segments are therefore short where a function such as √u is steep. The hardware needs a
-//! tree of muxes and no shifter.
+//! The operand u is an integer of C bits, or exactly 2^C. It is cut into ranges by factors of four: range 0 is the upper three
+//! quarters of the values, range 1 the upper three quarters of the rest, and so on. Range j holds u in [2^(C−2j−2), 2^(C−2j)). In
+//! range j, u has C−2j bits, and its upper k_j bits select a segment. Below the last range, every value of u has its own entry.
+//! Segments are therefore short where a function such as √u is steep. The hardware needs a tree of muxes and no shifter.
 
 use crate::dsl::{Designer, Signal};
 use glint_base::fixed::{Format, Overflow, Rounding, exp2};
@@ -73,9 +73,9 @@ pub fn chord(segment: Segment, shape: SegmentedFormats, function: impl Fn(f64) -
 /// A segment: neighbouring values of u that one entry of the table serves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Segment {
-    /// The first value of u.
+    /// The first value of u in the segment.
     pub from: u64,
-    /// The number of values of u.
+    /// The number of values of u in the segment.
     pub length: u64,
 }
 
@@ -86,7 +86,7 @@ pub struct SegmentedFormats {
     pub fraction: i32,
     /// The number D of fraction bits of a slope.
     pub slope_fraction: i32,
-    /// Whether the table is read at the rising edge.
+    /// Whether the ROM of the table is synchronous, that is read at the rising edge.
     pub synchronous: bool,
 }
 

@@ -7,7 +7,8 @@
 use crate::dsl::{Counter, Designer, Mux, Register, Signal, Step, StepSetting, loop_while, step};
 use glint_base::fixed::Format;
 
-/// Squarings of a base. If there is more than one squaring, the counter `remaining` counts the squarings to come.
+/// The squarings that raise a base to a power of two. If there is more than one squaring, the counter `remaining` counts the
+/// squarings that are still to be done.
 pub struct Squarings<'d> {
     designer: &'d Designer,
     counter: Option<Counter<'d>>,
@@ -25,8 +26,9 @@ impl<'d> Squarings<'d> {
         Self { designer, counter, start: None }
     }
 
-    /// Makes `count` squarings under a counter that counts something else too, before them. Returns the counter too, with the
-    /// settings that make it start from `other`.
+    /// Makes `count` squarings whose counter also counts something else before them, so that one counter serves both. `other` is
+    /// the start value of that earlier count. Returns the squarings, the counter, and the settings that load the counter from
+    /// `other`.
     #[track_caller]
     pub fn sharing(
         designer: &'d Designer,

@@ -24,7 +24,7 @@ use glint_base::fixed::Format;
 /// The depth to which parts may contain parts. An instance of itself would have no end.
 const DEEPEST: u32 = 8;
 
-/// The results of a part.
+/// A part: an instance of another hardware description. It gives access to the results of the part.
 pub struct Instance<'d> {
     designer: &'d Designer,
     name: String,

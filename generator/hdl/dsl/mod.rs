@@ -132,11 +132,11 @@ pub struct Designer {
 /// A net that carries the product of a shared multiplier under one selection of its operands.
 #[derive(Clone, Debug)]
 pub(crate) struct SelectedProduct {
-    /// The select field of the multiplier's operands.
+    /// The field of the control word that selects the operands of the shared multiplier.
     pub field: FieldId,
-    /// The values of the field under which the net has the meaning that its format says.
+    /// The values of that field for which the net has the product that its format describes.
     pub values: Vec<u64>,
-    /// How many clocks ago the field had that value: registers behind the multiplier.
+    /// The number of clocks between the selection and the product, because of registers behind the multiplier.
     pub delay: u32,
 }
 
@@ -250,7 +250,8 @@ impl Designer {
         self.signal(id)
     }
 
-    /// Returns a wire without a driver, for use before its driver exists. [`Designer::drive`] connects the driver later.
+    /// Returns a wire that is used before its driver exists. For example, a feedback path needs one. [`Designer::drive`] connects
+    /// the driver later.
     #[track_caller]
     pub fn wire(&self, name: &str, format: Format) -> Signal<'_> {
         self.signal(self.add_named(name, format, Driver::Undriven))
@@ -319,7 +320,7 @@ impl Designer {
         self.output_as(name, source, Role::Result)
     }
 
-    /// Adds an output port for a signal of the control unit.
+    /// Adds an output port that shows a signal of the control unit, and no result.
     #[track_caller]
     pub fn status<'d>(&'d self, name: &str, source: Signal<'d>) -> Signal<'d> {
         self.output_as(name, source, Role::Status)

@@ -158,7 +158,7 @@ struct Excess<'d> {
     low: u32,
 }
 
-/// The product of two muxes. A microinstruction selects the factors.
+/// The product of a multiplier whose two factors come from muxes. A microinstruction selects the factors.
 #[derive(Clone)]
 pub struct SharedProduct<'d> {
     out: Signal<'d>,

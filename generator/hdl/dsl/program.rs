@@ -155,7 +155,7 @@ pub fn end() -> StepSetting {
     StepSetting::sequence(SettingKind::End)
 }
 
-/// A microinstruction of the microprogram.
+/// A microinstruction of a microprogram: a name, and settings such as "load this register".
 #[derive(Clone)]
 pub struct Step {
     pub(super) name: String,
@@ -174,7 +174,7 @@ pub fn step(name: &str, settings: impl IntoIterator<Item = StepSetting>) -> Step
     }
 }
 
-/// A microprogram, as the description states it.
+/// A microprogram in the form in which a description states it, before it is translated to control words.
 pub struct MicroprogramSource {
     pub(crate) steps: Vec<Step>,
     /// Whether it executes the parts of the description.

@@ -199,7 +199,7 @@ impl Designer {
     }
 }
 
-/// An operand: its port, its write strobe and its register.
+/// An operand of a device: a value that the user writes before a computation. It has an input port, a write strobe and a register.
 #[derive(Clone, Copy)]
 pub struct InputOperand<'d> {
     port: Signal<'d>,
@@ -208,7 +208,7 @@ pub struct InputOperand<'d> {
 }
 
 impl<'d> InputOperand<'d> {
-    /// Returns the output of the register.
+    /// Returns the signal of the operand register, the value that the user has written.
     pub fn q(self) -> Signal<'d> {
         self.q
     }
@@ -237,7 +237,7 @@ impl<'d> InputOperand<'d> {
     }
 }
 
-/// A register that certain microinstructions load.
+/// A register that loads its data input in the microinstructions that say so, and otherwise keeps its value.
 #[derive(Clone, Copy)]
 pub struct Register<'d> {
     q: Signal<'d>,
@@ -247,12 +247,12 @@ pub struct Register<'d> {
 described!(Register, q, "load": field);
 
 impl<'d> Register<'d> {
-    /// Returns the output of the register.
+    /// Returns the signal of the register's output.
     pub fn q(self) -> Signal<'d> {
         self.q
     }
 
-    /// Returns the format.
+    /// Returns the fixed-point format of the register.
     pub fn format(self) -> Format {
         self.q.format()
     }
@@ -286,7 +286,7 @@ impl<'d> Register<'d> {
     }
 }
 
-/// Select lines, which several muxes share.
+/// Select lines that several muxes share. Each value of the lines has a name, and selects one input of every such mux.
 #[derive(Clone, Copy)]
 pub struct Select<'d> {
     designer: &'d Designer,
@@ -341,7 +341,7 @@ impl<'d> Select<'d> {
     }
 }
 
-/// An output of one bit that microinstructions raise.
+/// An output of one bit that is 1 in the microinstructions that raise it, and otherwise 0.
 #[derive(Clone, Copy)]
 pub struct Flag<'d> {
     designer: &'d Designer,
@@ -357,7 +357,7 @@ impl Flag<'_> {
     }
 }
 
-/// A counter that counts down.
+/// A counter that a microinstruction can load with a start value, and that subtracts one in each microinstruction that says so.
 #[derive(Clone, Copy)]
 pub struct Counter<'d> {
     q: Signal<'d>,
@@ -368,7 +368,7 @@ pub struct Counter<'d> {
 described!(Counter, q, "count": count);
 
 impl<'d> Counter<'d> {
-    /// Returns the count.
+    /// Returns the signal with the current count.
     pub fn q(self) -> Signal<'d> {
         self.q
     }
@@ -378,7 +378,7 @@ impl<'d> Counter<'d> {
         self.q.designer().field_net(self.count)
     }
 
-    /// Returns the setting with which a microinstruction loads the counter's start value at its end.
+    /// Returns the setting with which a microinstruction loads the start value into the counter at its end.
     #[track_caller]
     pub fn load(self) -> StepSetting {
         StepSetting::field(self.q.designer(), self.load, 1, format!("{}.load", self.q.name()))

@@ -3,7 +3,7 @@
 use super::{Designer, Signal};
 use crate::netlist::RomId;
 
-/// A read-only memory.
+/// A read-only memory in a hardware description. [`Designer::rom`](super::Designer::rom) makes one.
 #[derive(Clone, Copy)]
 pub struct Rom<'d> {
     pub(super) designer: &'d Designer,
@@ -11,7 +11,7 @@ pub struct Rom<'d> {
 }
 
 impl<'d> Rom<'d> {
-    /// Returns the word that the ROM reads.
+    /// Returns the signal with the word at the current address; for a synchronous ROM, at the address of the clock before.
     pub fn out(self) -> Signal<'d> {
         let data = self.designer.with(|inner| inner.design.rom(self.id).data);
         self.designer.signal(data)
@@ -31,7 +31,7 @@ impl<'d> Rom<'d> {
         self
     }
 
-    /// Sets a comment for each word.
+    /// Sets a comment for each word of the ROM, which the memory file shows.
     #[must_use]
     pub fn comments(self, comments: Vec<String>) -> Self {
         self.designer.with(|inner| inner.design.roms[self.id.index()].comments = comments);

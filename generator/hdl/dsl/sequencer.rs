@@ -21,20 +21,20 @@ pub struct SequenceFields {
     pub go_on: FieldId,
 }
 
-/// The inputs from which a sequencer is made.
+/// The description of a sequencer, from which `build` makes the hardware.
 pub struct Sequencer {
     /// The fields that the sequencer uses.
     pub fields: SequenceFields,
-    /// The conditions of loops and jumps, each once.
+    /// The one-bit conditions of loops and jumps. A condition that several microinstructions use is listed once.
     pub conditions: Vec<NetId>,
-    /// The microinstructions to which loops and jumps lead, each once.
+    /// The microinstructions to which loops and jumps lead, as addresses. Each is listed once.
     pub targets: Vec<usize>,
-    /// The number of bits of the address.
+    /// The number of bits of the microinstruction address.
     pub address_width: u32,
 }
 
 impl Sequencer {
-    /// Builds address counter, run flag, control ROM, and the outputs of the handshake.
+    /// Builds the hardware of the sequencer: address counter, run flag, control ROM, and the outputs of the handshake.
     pub fn build(
         &self,
         d: &Designer,

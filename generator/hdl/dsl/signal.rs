@@ -33,7 +33,7 @@ impl<'d> Signal<'d> {
         self.designer.net(self.id).name
     }
 
-    /// Returns the format.
+    /// Returns the fixed-point format of the signal.
     pub fn format(self) -> Format {
         self.designer.with(|inner| inner.design.net(self.id).format)
     }
@@ -87,7 +87,7 @@ impl<'d> Signal<'d> {
         self.relabelled(format)
     }
 
-    /// Multiplies by 2^places by moving the binary point, without logic.
+    /// Multiplies by 2^places by moving the binary point, without logic. For example, 2 places turn `u0.8` into `u2.6`.
     #[must_use]
     #[track_caller]
     pub fn shift_left(self, places: i32) -> Self {
@@ -140,15 +140,15 @@ impl<'d> Signal<'d> {
         self.wiring("bits", format, range, Op::Slice { of: self.id, low })
     }
 
-    /// Returns bit number `at`.
+    /// Returns bit number `at` of the signal as a signal of one bit. Bit 0 is the lowest.
     #[must_use]
     #[track_caller]
     pub fn bit(self, at: u32) -> Self {
         self.bits(at, Format::BIT)
     }
 
-    /// Returns the bits of this signal above the bits of `low`, read in `format`, which must be as wide as both
-    /// together. For example, a shift register takes this signal.
+    /// Appends the bits of `low` below the bits of this signal, and reads the result in `format`. `format` must be as wide as both
+    /// together. For example, a shift register takes itself above the bit that enters.
     #[must_use]
     #[track_caller]
     pub fn above(self, low: Signal<'d>, format: Format) -> Self {
@@ -220,7 +220,7 @@ impl Designer {
         self.sum(name, a, b, None)
     }
 
-    /// Returns `a + b`, plus one ulp of the finer signal if `carry` is 1.
+    /// Returns `a + b`, plus one ulp of the operand with more fraction bits if the bit `carry` is 1. The sum is exact.
     #[track_caller]
     pub fn add_carry<'d>(
         &'d self,
@@ -345,8 +345,8 @@ impl Designer {
         self.signal(self.add_net(name, format, range, Driver::Op(op), true))
     }
 
-    /// Returns the constant `high` with `low` in place of its low bits, which must be 0. For example, this forms an address from
-    /// a constant and a prefix, without logic.
+    /// Returns the constant `high` whose low bits are replaced by `low`. These low bits of `high` must be 0. For example, `high` =
+    /// 0b1000 and a `low` of three bits give the addresses 8 to 15, without logic.
     #[track_caller]
     pub fn beside<'d>(&'d self, high: Signal<'d>, low: Signal<'d>, format: Format) -> Signal<'d> {
         let low_bits = low.format().width();
@@ -358,8 +358,8 @@ impl Designer {
         low.wiring("beside", format, (from, to), Op::Concat(vec![top.id(), low.id()]))
     }
 
-    /// Returns the bits of the parts side by side, the first in the top bits, read in `format`, which must be as wide as all
-    /// together: wiring.
+    /// Concatenates the parts, the first in the top bits, and reads the result in `format`. `format` must be as wide as all parts
+    /// together. No logic is needed.
     #[track_caller]
     pub fn join<'d>(&'d self, name: &str, parts: &[Signal<'d>], format: Format) -> Signal<'d> {
         let parts = self.own_all(parts);
@@ -399,14 +399,14 @@ impl Designer {
         self.signal(self.add_named(name, Format::BIT, Driver::Op(Op::Or(a, b))))
     }
 
-    /// Returns a bit that is 1 if `a < b`.
+    /// Returns a bit that is 1 if `a < b` as values, so the binary points are aligned first.
     #[track_caller]
     pub fn less<'d>(&'d self, name: &str, a: Signal<'d>, b: Signal<'d>) -> Signal<'d> {
         let (a, b) = self.comparable(a, b);
         self.signal(self.add_named(name, Format::BIT, Driver::Op(Op::Less(a, b))))
     }
 
-    /// Returns a bit that is 1 if `a = b`.
+    /// Returns a bit that is 1 if `a = b` as values, so the binary points are aligned first.
     #[track_caller]
     pub fn equal<'d>(&'d self, name: &str, a: Signal<'d>, b: Signal<'d>) -> Signal<'d> {
         let (a, b) = self.comparable(a, b);
@@ -538,7 +538,7 @@ fn aligned<'d>(a: Signal<'d>, b: Signal<'d>) -> (Signal<'d>, Signal<'d>) {
     (a.with_fraction(frac), b.with_fraction(frac))
 }
 
-/// A mux whose select lines the microprogram drives.
+/// A mux that the microprogram controls through a field of the control word.
 #[derive(Clone, Copy)]
 pub struct Mux<'d> {
     out: Signal<'d>,
@@ -559,7 +559,7 @@ impl<'d> Mux<'d> {
         StepSetting::pick(self.out.designer(), self.field, &self.out.name(), input)
     }
 
-    /// Returns the select line or lines.
+    /// Returns the select line or lines of the mux, as a signal.
     pub fn select(self) -> Signal<'d> {
         self.out.designer().field_net(self.field)
     }

@@ -8,7 +8,7 @@ use glint_base::diagnostic::SourceLocation;
 use glint_base::fixed::Format;
 
 impl Design {
-    /// Returns an empty design with this name.
+    /// Returns a design without nets, registers, ROMs and ports. `name` becomes the name of its top module.
     pub fn empty(name: &str) -> Self {
         Self {
             name: name.to_owned(),

@@ -31,31 +31,32 @@ pub enum Op<N = NetId> {
     Xor(N, N),
     /// Sum modulo 2^width; operands and result of the same width, the carry one bit.
     Add {
-        /// First operand.
+        /// The first operand of the sum.
         a: N,
-        /// Second operand.
+        /// The second operand of the sum.
         b: N,
-        /// Carry in.
+        /// The carry into the adder, one bit.
         carry: Option<N>,
     },
     /// Difference `a − b` modulo 2^width; same width.
     Sub(N, N),
     /// The exact product; the operands are both signed or both unsigned, and the result is as wide as both together.
     Mul(N, N),
-    /// 1 when the operands, of one width, are equal; the result is one bit.
+    /// A bit that is 1 if the operands are equal. Both operands have the same width.
     Equal(N, N),
-    /// 1 when `a < b`; operands of one width, both signed or both unsigned; the result is one bit.
+    /// A bit that is 1 if the first operand is less than the second. The operands have the same width, and both are signed or both
+    /// unsigned.
     Less(N, N),
-    /// 1 when any bit of the operand is 1; the result is one bit.
+    /// A bit that is 1 if any bit of the operand is 1.
     Any(N),
-    /// 1 when every bit of the operand is 1; the result is one bit.
+    /// A bit that is 1 if every bit of the operand is 1.
     All(N),
     /// The input with the number `select`; all inputs and the result have the same width. A number beyond the last input selects
     /// the last input.
     Mux {
         /// The select signal, as wide as the number of inputs needs.
         select: N,
-        /// Two or more inputs.
+        /// The inputs of the mux, two or more.
         inputs: Vec<N>,
     },
 }

@@ -33,24 +33,25 @@ pub struct Field {
     pub net: NetId,
     /// The kind of thing that the field controls.
     pub kind: FieldKind,
-    /// The numbers of the field's lines in the figure of the source, the most significant first, or nothing.
+    /// The numbers of the field's lines in the figure of the device's source, the most significant first. It is empty if the figure
+    /// does not show them.
     pub lines: Vec<u16>,
 }
 
 /// The kind of thing that a field of the control word controls.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum FieldKind {
-    /// Select lines of muxes, with the name of each choice.
+    /// The field drives select lines of muxes. The texts are the names of the choices, from the value 0 on.
     Select(Vec<String>),
-    /// The load enable of registers.
+    /// The field is the load enable of registers.
     Enable,
-    /// An output of the device.
+    /// The field is an output of the device.
     Flag,
-    /// A control line of the sequencer itself.
+    /// The field is a control line of the sequencer itself. For example, `go_on` of `rough` lets the program continue.
     Sequence,
 }
 
-/// A microinstruction of the microprogram.
+/// A microinstruction: the values of all fields of the control word for one clock, and the rule for the next microinstruction.
 #[derive(Clone, Debug)]
 pub struct Microinstruction {
     /// The name that the description gives to the microinstruction.
@@ -72,7 +73,7 @@ pub enum Sequence {
     WaitStart,
     /// Microinstruction `to` follows if `condition` is 1, otherwise the next one. `to` may lie behind or ahead.
     LoopWhile {
-        /// A net of one bit in the datapath.
+        /// The condition of the jump, a net of one bit in the datapath.
         condition: NetId,
         /// The address of the microinstruction to which control jumps.
         to: usize,

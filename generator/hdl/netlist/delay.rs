@@ -5,12 +5,13 @@ use std::collections::BTreeMap;
 
 use super::{Design, Driver, NetId, Op, RegId};
 
-/// Values that travel from the same stage to the same later stage.
+/// A delay line: registers that carry values from one stage to a later one, with no reader in between. All its values travel
+/// between the same two stages.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct DelayLine {
-    /// The stage that computes the values.
+    /// The number of the stage that computes the values.
     pub from: usize,
-    /// The stage that reads the values.
+    /// The number of the stage that reads the values.
     pub to: usize,
     /// The net that says when the values move to the next stage; `None` if they always move.
     pub enable: Option<NetId>,
@@ -21,7 +22,7 @@ pub struct DelayLine {
 /// A value that travels through the registers of several stages.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Delayed {
-    /// The data input of the first register.
+    /// The net with the value that enters the delay line, the data input of its first register.
     pub data: NetId,
     /// The registers that the value passes, one for each stage. Only the last one has a reader besides the next register.
     pub registers: Vec<RegId>,
@@ -36,7 +37,7 @@ impl DelayLine {
 }
 
 impl Delayed {
-    /// Returns the registers that the memory replaces: all except the last one.
+    /// Returns the registers that a memory replaces: all except the last one, from which the value is read.
     pub fn passed(&self) -> &[RegId] {
         &self.registers[..self.registers.len() - 1]
     }

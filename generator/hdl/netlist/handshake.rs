@@ -7,15 +7,15 @@ use super::{Design, NetId, Role};
 /// The handshake ports of a design.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Handshake {
-    /// The input `rst_n`.
+    /// The net of the reset input `rst_n`.
     pub reset: NetId,
-    /// The input `start`.
+    /// The net of the input `start`, which begins a computation.
     pub start: NetId,
-    /// The output `valid`.
+    /// The net of the output `valid`, which is 1 while results are shown.
     pub valid: NetId,
-    /// The output `busy`.
+    /// The net of the output `busy`, which is 1 during a computation.
     pub busy: NetId,
-    /// The output `done`.
+    /// The net of the output `done`, which is 1 in the last clock of a computation.
     pub done: NetId,
 }
 

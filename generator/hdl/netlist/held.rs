@@ -10,8 +10,8 @@ use std::collections::{BTreeMap, BTreeSet, HashSet};
 use super::needed::needed;
 use super::{Design, Driver, NetId, Op, RegId, RegisterKind, Sequence};
 
-/// Inserts registers, named `<name>_held`, so that the longest path from an operand becomes as short as possible. Among equally
-/// good places it chooses those with the fewest bits.
+/// Inserts registers, named `<name>_held`, so that the longest path from an operand becomes as short as possible. Among positions
+/// with an equally short path, it chooses the nets with the fewest bits.
 ///
 /// A device that waits for `start` in the middle of its program stays as it is: its operands change there.
 pub fn register_held(design: &mut Design) {

@@ -53,7 +53,7 @@ macro_rules! id {
         pub struct $name(pub u32);
 
         impl $name {
-            /// Returns the index in the design's list.
+            /// Returns the position of the item in the design's list of nets, registers, ROMs or fields.
             pub fn index(self) -> usize {
                 self.0 as usize
             }
@@ -88,22 +88,22 @@ pub enum Partition {
     Datapath,
 }
 
-/// A wire of the design.
+/// A wire of the design, with its format, its interval and its one driver.
 #[derive(Clone, Debug)]
 pub struct Net {
     /// The name, which must be a legal Verilog identifier and distinct in the design.
     pub name: String,
     /// The format: the place of the binary point, and whether the top bit is a sign.
     pub format: Format,
-    /// The smallest and the largest raw value that the net can carry.
+    /// The interval of raw values that the net can carry: the smallest and the largest. For example, (0, 255) for `u8.0`.
     pub range: Interval,
-    /// The driver of the net.
+    /// The one thing that drives the net, such as an input port, a register or a cell.
     pub driver: Driver,
     /// The number of the block that drives this net, in the figure of the device's source.
     pub block: Option<u16>,
     /// A comment of one line for the Verilog, or an empty text.
     pub doc: String,
-    /// The topic of the comment.
+    /// The topic of the comment `doc`. A pipeline shows only comments on the device itself.
     pub doc_topic: Topic,
     /// Whether the author of the description named the net, so that waveforms and Verilog show it. All other nets are wiring that
     /// the description language adds (extensions, slices, rounding); they are named after the signal that they serve.
@@ -114,22 +114,22 @@ pub struct Net {
     pub location: SourceLocation,
 }
 
-/// The driver of a net.
+/// The driver of a net: the one thing that determines its value.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Driver {
     /// No driver yet, an error that [`Design::verify`] reports.
     Undriven,
-    /// An input port.
+    /// An input port drives the net.
     Input,
-    /// A bit pattern.
+    /// A constant drives the net; the number is its bit pattern.
     Constant(u64),
-    /// The output of a register.
+    /// The output of a register drives the net.
     Register(RegId),
-    /// The data output of a ROM.
+    /// The data output of a ROM drives the net.
     Rom(RomId),
-    /// A field of the control word.
+    /// A field of the control word drives the net.
     Field(FieldId),
-    /// A combinational cell.
+    /// A combinational cell drives the net.
     Op(Op),
 }
 
@@ -149,7 +149,7 @@ pub struct NetlistRegister {
     pub kind: RegisterKind,
 }
 
-/// The purpose of a register.
+/// The purpose of a register in a design. For example, checks compare the architectural registers with the golden model.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RegisterKind {
     /// An operand register. The write strobe loads it from an input port, or `start` loads it from its buffer. It does not change
@@ -165,7 +165,7 @@ pub enum RegisterKind {
     Internal,
 }
 
-/// A read-only memory.
+/// A read-only memory of a design, with its address, its data net and its words.
 #[derive(Clone, Debug)]
 pub struct NetlistRom {
     /// The name, which must be a legal Verilog identifier. The contents go to `<design>_<name>.mem`. For example, the ROM
@@ -181,9 +181,9 @@ pub struct NetlistRom {
     pub enable: Option<NetId>,
     /// A ROM with the same words, if this ROM is the second read port of its memory.
     pub shares: Option<RomId>,
-    /// The words, as bit patterns.
+    /// The contents of the ROM: its words as bit patterns, from address 0.
     pub words: Vec<u64>,
-    /// The meaning of a word, in one or more lines.
+    /// The meaning of a word of the ROM, in one or more lines.
     pub doc: Vec<String>,
     /// A comment for each word, or an empty list.
     pub comments: Vec<String>,
@@ -198,7 +198,7 @@ pub struct NetlistRom {
 pub struct Port {
     /// The net of the port, which has its name, format, block number and comment.
     pub net: NetId,
-    /// The role of the port.
+    /// The role of the port in the interface of the device. For example, an operand, its strobe or `start`.
     pub role: Role,
 }
 
@@ -234,9 +234,9 @@ pub enum Role {
     Busy,
     /// Output `done`, high in the last clock of a computation.
     Done,
-    /// Output, a result of the computation.
+    /// Output that carries a result of the computation.
     Result,
-    /// Output, any other signal of the control unit.
+    /// Output that shows any other signal of the control unit.
     Status,
 }
 
@@ -262,13 +262,13 @@ impl Role {
 pub struct About {
     /// The name of the device, such as `rough`.
     pub device: String,
-    /// The title, one line.
+    /// The title of the device, one line.
     pub title: String,
-    /// The formula.
+    /// The formula that the device computes, as text.
     pub formula: String,
     /// The document that describes the device, and the part of it.
     pub source: String,
-    /// Paragraphs about interpretations, formats and limits.
+    /// Paragraphs about the device: how the source was interpreted, its formats and its limits.
     pub notes: Vec<Note>,
 }
 
@@ -279,25 +279,25 @@ impl About {
     }
 }
 
-/// A paragraph about a device.
+/// A paragraph about a device, for pages and for the header of the Verilog.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Note {
-    /// The topic of the note.
+    /// The topic of the paragraph. A pipeline shows only the paragraphs on the device itself.
     pub topic: Topic,
-    /// The paragraph.
+    /// The text of the paragraph.
     pub text: String,
 }
 
 /// The topic of a note. The notes of a pipeline are about the device only.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Topic {
-    /// The device itself, whatever its architecture.
+    /// The paragraph is about the device itself, whatever its architecture.
     Device,
-    /// Hardware that a microprogram uses several times: multipliers, the control ROM, the clocks of a loop.
+    /// The paragraph is about hardware that a microprogram uses several times: multipliers, the control ROM, the clocks of a loop.
     Microprogram,
-    /// Writes to operands, and how long the outputs keep their values.
+    /// The paragraph is about writes to operands, and how long the outputs keep their values.
     Writes,
-    /// The number of clocks from `start` to `valid`.
+    /// The paragraph is about the number of clocks from `start` to `valid`.
     Latency,
 }
 
@@ -321,9 +321,9 @@ pub struct Design {
     pub name: String,
     /// Texts about the device, for people.
     pub about: About,
-    /// All nets.
+    /// All nets of the design. A [`NetId`] is an index into this list.
     pub nets: Vec<Net>,
-    /// All registers.
+    /// All registers of the design. A [`RegId`] is an index into this list.
     pub registers: Vec<NetlistRegister>,
     /// All ROMs, the control ROM among them.
     pub roms: Vec<NetlistRom>,
@@ -338,7 +338,7 @@ pub struct Design {
 }
 
 impl Design {
-    /// Returns the net `id`.
+    /// Returns the net with the identifier `id`.
     pub fn net(&self, id: NetId) -> &Net {
         &self.nets[id.index()]
     }
@@ -348,7 +348,7 @@ impl Design {
         self.net(id).format.width()
     }
 
-    /// Returns the register `id`.
+    /// Returns the register with the identifier `id`.
     pub fn register(&self, id: RegId) -> &NetlistRegister {
         &self.registers[id.index()]
     }
@@ -359,18 +359,18 @@ impl Design {
         self.roms.get(self.control.rom.index()).is_some_and(|it| it.address == rom.address)
     }
 
-    /// Returns the ROM `id`.
+    /// Returns the ROM with the identifier `id`.
     pub fn rom(&self, id: RomId) -> &NetlistRom {
         &self.roms[id.index()]
     }
 
-    /// Returns the net of the given name.
+    /// Returns the net with this name, or `None` if the design has no such net.
     pub fn find(&self, name: &str) -> Option<NetId> {
         let at = self.nets.iter().position(|net| net.name == name)?;
         Some(NetId(at as u32))
     }
 
-    /// Returns the net whose bits this net shows under another name, or the net itself.
+    /// Follows nets that only rename another net. Returns the net with the original name, which may be `id` itself.
     pub fn renamed(&self, id: NetId) -> NetId {
         match self.net(id).driver {
             Driver::Op(Op::Relabel(of)) => self.renamed(of),

@@ -19,15 +19,16 @@ pub struct Pipeline {
     /// pipeline accepts a point in slot 0, and a point is in stage s while the slot is s modulo the interval. For example, with
     /// an interval of 4 a point is in stage 6 while the slot is 2.
     pub interval: usize,
-    /// The counter of slots, which moves when the points move; `None` if the interval is 1.
+    /// The counter of slots. It counts one further whenever the points move to the next stage; `None` if the interval is 1.
     pub slot: Option<NetId>,
-    /// For each slot, the enable of the registers that load a value in it and keep it until the slot comes again.
+    /// For each slot in which registers load a value that they must keep for a whole interval, the net that enables these
+    /// registers.
     pub loads: BTreeMap<usize, NetId>,
-    /// The multipliers that serve several products, each in its slot.
+    /// The multipliers that serve several products. Each product uses the multiplier in a slot of its own.
     pub units: Vec<Unit>,
-    /// Whether the environment can stop the pipeline by `out_ready`.
+    /// Whether the environment can stall the pipeline by setting `out_ready` to 0.
     pub stall: bool,
-    /// The number of bits of the side channel, which travels with a point.
+    /// The number of bits of the side channel, which carries data of the user along with each point.
     pub side: u32,
     /// The kind of memory with which the Verilog replaces delay lines; `None` if their registers stay.
     pub delay_memory: Option<DelayMemory>,
@@ -42,15 +43,17 @@ pub struct Pipeline {
     pub handshake: Vec<NetId>,
     /// For each stage from 1 on, including the results, the net that says whether it has a point.
     pub valid: Vec<NetId>,
-    /// For each stage from 1 on, the net of the side channel; empty if there is no side channel.
+    /// For each stage from 1 on, the net that carries the side channel's data. It is empty if there is no side channel.
     pub side_values: Vec<NetId>,
-    /// The registers that become output registers of multipliers.
+    /// The registers that become output registers of multipliers, inside a DSP block.
     pub registered: Vec<RegId>,
-    /// The nets with values that a register of the sequential design holds at some time.
+    /// The checkpoints: values of the pipeline that a register of the sequential design also holds at some time. Checks compare
+    /// both designs there.
     pub checkpoints: Vec<Checkpoint>,
 }
 
-/// A multiplier that several products share, each in its slot.
+/// A multiplier that several products share. A slot is the number of a clock modulo the interval, and the multiplier computes one
+/// product in each slot.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Unit {
     /// The name of the multiplier and of the register behind it.
@@ -77,16 +80,17 @@ pub struct Stage {
     pub delayed_bits: u32,
 }
 
-/// A value of a pipeline that a register of the sequential design holds in some microinstruction. Checks compare both.
+/// A checkpoint: a value of a pipeline that a register of the sequential design also holds in some microinstruction. Checks compare
+/// both values.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Checkpoint {
     /// The name of the register in the sequential design.
     pub register: String,
     /// The number of the microinstruction in which the register holds the value.
     pub address: usize,
-    /// How often the computation has executed this microinstruction before.
+    /// The number of earlier executions of this microinstruction in the same computation.
     pub visit: usize,
-    /// The net of the pipeline with the value.
+    /// The net of the pipeline that carries the value.
     pub net: NetId,
 }
 
@@ -128,7 +132,7 @@ impl Pipeline {
 pub struct Multiplier {
     /// The product that the register loads.
     pub product: NetId,
-    /// The two factors.
+    /// The nets of the two factors.
     pub factors: [NetId; 2],
 }
 

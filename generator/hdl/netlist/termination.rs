@@ -6,19 +6,21 @@
 use crate::netlist::{Design, Driver, NetId, RegId, Sequence};
 use glint_base::cone;
 
-/// An upper limit of the clocks from a microinstruction to the clock with `done`.
+/// An upper limit of the number of clocks from a microinstruction to the clock in which `done` is high. For example, 3 clocks plus
+/// the value of the counter `remaining`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Left {
     /// The number of clocks that do not depend on a counter.
     pub clocks: u64,
-    /// A counter whose current value adds as many clocks, if there is one.
+    /// The counter that decides how often the microinstruction repeats itself. Its current value must be added to `clocks`. `None`
+    /// if the microinstruction does not repeat itself.
     pub counter: Option<RegId>,
 }
 
-/// Returns for each microinstruction an upper limit of the remaining clocks when it is executed.
+/// Returns for each microinstruction an upper limit of the clocks from its execution to `done`.
 ///
-/// Returns `None` if a microinstruction waits for `start`, if a loop has several microinstructions, or if anything
-/// but a counter decides about a loop.
+/// Returns `None` if a microinstruction waits for `start`, if a loop has several microinstructions, or if anything but a counter
+/// decides about a loop.
 pub fn remaining(design: &Design) -> Option<Vec<Left>> {
     let microprogram = &design.control.microprogram;
     let mut left: Vec<Left> = Vec::with_capacity(microprogram.len());
@@ -46,7 +48,8 @@ pub fn remaining(design: &Design) -> Option<Vec<Left>> {
     Some(left)
 }
 
-/// Returns the number of the latest clock in which `done` can be high.
+/// Returns the number of the latest clock in which `done` can be high, counted from the clock that accepts `start`. Returns `None`
+/// if the microprogram has no such limit.
 pub fn latest_done(design: &Design) -> Option<u32> {
     // Microinstruction 0 is executed in clock 1.
     let first = *remaining(design)?.first()?;

@@ -4,7 +4,8 @@ use super::graph::{Cell, Graph, NodeId};
 use crate::netlist::Op;
 use glint_base::target::Timing;
 
-/// Returns the delay from the operands of a cell to its value, in nanoseconds, when operands have these widths.
+/// Returns the delay from the operands of the cell `op` to its value, in nanoseconds. `width` gives the width of each operand in
+/// bits.
 pub fn delay_of<N: Copy>(timing: &Timing, op: &Op<N>, width: &impl Fn(N) -> u32) -> f64 {
     // Look-up tables have four inputs.
     let levels = |inputs: u32| {
@@ -60,7 +61,8 @@ pub fn setup(timing: &Timing, graph: &Graph, id: NodeId) -> f64 {
     }
 }
 
-/// Returns the select of a mux of a value and a constant, which takes no look-up tables before a register.
+/// Returns the select of a mux of a value and a constant, if synthesis implements the mux by the reset of the register behind it.
+/// Such a mux takes no look-up tables.
 pub fn reset_by(graph: &Graph, id: NodeId) -> Option<NodeId> {
     let Cell::Op(Op::Mux { select, inputs }) = &graph.node(id).cell else { return None };
     let constants = inputs.iter().filter(|input| graph.constant_of(**input).is_some()).count();

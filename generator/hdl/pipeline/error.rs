@@ -9,7 +9,6 @@ use glint_base::diagnostic::{Diagnostic, SourceLocation};
 /// The reason why a design has no pipeline with the given [`Options`](super::Options).
 ///
 /// A variant states the nearest possible value. For example, a request for 900 MHz may fail with `Clock { nearest: 130.0, .. }`.
-/// `Clock { nearest: 130.0, .. }`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum PipelineErrorKind {
     /// The microprogram cannot be unrolled into a computation without loops.
@@ -55,7 +54,7 @@ pub enum PipelineErrorKind {
 /// The error for a pipeline that cannot be made as requested.
 #[derive(Clone, Debug)]
 pub struct PipelineError {
-    /// The reason.
+    /// The reason why the pipeline cannot be made, with the nearest possible value.
     pub kind: PipelineErrorKind,
     /// The reason as a message, with the line of the Rust source.
     pub diagnostic: Diagnostic,

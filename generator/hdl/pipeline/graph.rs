@@ -30,9 +30,9 @@ pub enum Cell {
     Constant(u64),
     /// The word at an address of a ROM.
     Read {
-        /// The ROM in the sequential design.
+        /// The ROM of the sequential design that is read.
         rom: RomId,
-        /// The node that is the address.
+        /// The node whose value is the address.
         address: NodeId,
     },
     /// A combinational cell; its operands are nodes.
@@ -42,17 +42,17 @@ pub enum Cell {
 /// The name, block number and comment of a value.
 #[derive(Clone, Debug)]
 pub struct Label {
-    /// The name of the net or register in the sequential design that has the value.
+    /// The name of the net or register in the sequential design that has the value. For example, `product`.
     pub name: String,
     /// A comment of one line, taken from the sequential design.
     pub doc: String,
-    /// The number of the block in the figure of the device's source.
+    /// The number of the block that computes the value, in the figure of the device's source.
     pub block: Option<u16>,
     /// Whether the author of the description gave the name.
     pub named: bool,
     /// The name of the whole value, if the node is a part of it.
     pub part_of: Option<String>,
-    /// The place in the Rust source of the description.
+    /// The line of the Rust source that describes the value.
     pub location: &'static Location<'static>,
 }
 
@@ -71,16 +71,16 @@ impl Label {
     }
 }
 
-/// A value of the computation.
+/// A value of the computation: the operation that computes it, and its format and interval.
 #[derive(Clone, Debug)]
 pub struct Node {
-    /// The operation that computes the value.
+    /// The operation that computes the value, such as a sum of two other nodes.
     pub cell: Cell,
-    /// The format of the value.
+    /// The fixed-point format of the value.
     pub format: Format,
     /// The interval of raw values that the node can have.
     pub range: Interval,
-    /// The name and the place in the source.
+    /// The name, the comment and the source line of the value.
     pub label: Label,
     /// The first microinstruction that needs the value, as a position in [`super::unroll::Unrolled::steps`].
     pub step: usize,
@@ -88,18 +88,19 @@ pub struct Node {
     pub held: bool,
 }
 
-/// All values of a computation. Every node comes after its operands.
+/// All values of a computation. Every node has a higher number than its operands.
 #[derive(Clone, Debug, Default)]
 pub struct Graph {
-    /// The nodes, by number.
+    /// The nodes of the graph. The number of a node is its index in this list.
     pub nodes: Vec<Node>,
     known: HashMap<(Cell, u32, bool), NodeId>,
-    /// The microinstruction to which new nodes belong.
+    /// The microinstruction that is being unrolled, as a position in [`super::unroll::Unrolled::steps`]. New nodes get this number
+    /// as their `step`.
     pub step: usize,
 }
 
 impl Graph {
-    /// Returns the node of this number.
+    /// Returns the node with the number `id`.
     pub fn node(&self, id: NodeId) -> &Node {
         &self.nodes[id.index()]
     }
@@ -124,7 +125,7 @@ impl Graph {
         (0..live.len()).filter(|&at| live[at]).map(|at| NodeId(at as u32)).collect()
     }
 
-    /// Limits the interval of a node to `range` too.
+    /// Narrows the interval of a node to its intersection with `range`.
     pub fn refine(&mut self, id: NodeId, range: Interval) -> NodeId {
         let node = &mut self.nodes[id.index()];
         // On a path that is never taken, the intersection can be empty.
@@ -132,7 +133,7 @@ impl Graph {
         id
     }
 
-    /// Names a value after the register that loads it.
+    /// Gives a value the name of the register that loads it.
     pub fn name_after(&mut self, id: NodeId, register: &Label) {
         let node = &mut self.nodes[id.index()];
         if !matches!(node.cell, Cell::Constant(_)) && !node.held {
@@ -141,7 +142,7 @@ impl Graph {
         }
     }
 
-    /// Returns the node of a constant.
+    /// Returns the node of a constant with the bit pattern `bits`. An equal constant is the same node.
     pub fn constant(&mut self, bits: u64, format: Format, label: &Label) -> NodeId {
         let bits = bits & mask(format.width());
         let raw = format.raw(bits);
@@ -186,7 +187,7 @@ impl Graph {
         id
     }
 
-    /// Returns the low bits of `id` as a number with this width and sign.
+    /// Returns a node with the low `width` bits of `id`, read as a signed number if `signed`.
     pub fn resize(&mut self, id: NodeId, width: u32, signed: bool) -> NodeId {
         let node = self.node(id);
         let (format, label) = (node.format, Label { named: false, ..node.label.clone() });
@@ -456,7 +457,7 @@ impl Cell {
         }
     }
 
-    /// Returns whether the node is mere wiring: bits under another name.
+    /// Returns whether the node is mere wiring, which needs no hardware: the bits of another node under another name.
     pub fn is_wiring(&self) -> bool {
         matches!(
             self,

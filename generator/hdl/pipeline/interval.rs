@@ -1,5 +1,7 @@
-//! Finds the interval of a pipeline, the number of clocks from one point to the next: as given, or for a wanted rate or number of
-//! multipliers.
+//! Chooses the interval of a pipeline: the number of clocks from one point (a set of operands) to the next.
+//!
+//! A user requests the interval itself, a rate in points per second, or a largest number of multipliers. For example, 25 million
+//! points a second at 100 MHz allow an interval of 4.
 
 use super::error::{PipelineError, PipelineErrorKind};
 use super::schedule::ScheduleProblem;
@@ -18,7 +20,8 @@ pub enum IntervalGoal {
     Multipliers(usize),
 }
 
-/// Returns the interval. `most` is the number of clocks in which the sequential core computes a point.
+/// Returns the interval that reaches the user's goal, in clocks. `most` is the number of clocks in which the sequential core
+/// computes a point.
 ///
 /// # Errors
 /// Fails if the interval is longer than the sequential core's, or if no interval reaches the rate. Fails if a rate is wanted

@@ -43,18 +43,18 @@ pub use unroll::{
 /// The goal of the schedule: a clock frequency or a number of stages.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Goal {
-    /// The fewest register bits for this clock frequency.
+    /// The schedule must reach this clock frequency in MHz, with the fewest register bits.
     ClockMhz(f64),
-    /// The highest clock frequency with this number of stages.
+    /// The schedule must have this number of stages, with the highest clock frequency.
     Stages(usize),
 }
 
 /// How values are stored that nothing reads for several stages.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Delays {
-    /// In a small memory, if the target has one.
+    /// A waiting value is stored in a small memory, if the target has one.
     Memory,
-    /// In a register in each stage.
+    /// A waiting value is stored in a register in each stage.
     Registers,
 }
 
@@ -63,17 +63,18 @@ pub enum Delays {
 pub struct Options {
     /// The FPGA target whose delays and multipliers the schedule assumes.
     pub target: &'static Timing,
-    /// The goal of the schedule.
+    /// Whether the schedule aims at a clock frequency or at a number of stages.
     pub goal: Goal,
-    /// How the interval, the number of clocks from one point to the next, is chosen.
+    /// How Glint chooses the interval, the number of clocks from one point to the next.
     pub interval: IntervalGoal,
     /// Whether products use the output registers of multipliers, if the target states a delay for them.
     pub registered: bool,
-    /// Whether the environment can stop the pipeline by `out_ready`.
+    /// Whether the environment can stall the pipeline by setting `out_ready` to 0.
     pub stall: bool,
-    /// The number of bits of the side channel, which travels with a point.
+    /// The number of bits of the side channel. The side channel carries data of the user, such as a pixel's position, along with a
+    /// point.
     pub side: u32,
-    /// How values are stored that nothing reads for several stages.
+    /// How the pipeline stores values that no stage reads for several stages: in registers or in small memories.
     pub delays: Delays,
 }
 

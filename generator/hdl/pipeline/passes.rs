@@ -10,13 +10,13 @@ use super::split::split;
 use super::unroll::Unrolled;
 use glint_base::target::Timing;
 
-/// A pass, which rewrites an unrolled computation.
+/// A pass: a rewriting of an unrolled computation that keeps all values, such as the split of wide products.
 pub struct Pass {
     /// The name of the pass, and of the directory of its tests.
     pub name: &'static str,
     /// Returns whether a pipeline with these options uses the pass.
     pub applies: fn(&Options) -> bool,
-    /// Returns the rewritten computation.
+    /// Runs the pass on a computation, and returns the rewritten computation.
     pub run: fn(&Unrolled, &Timing) -> Unrolled,
 }
 

@@ -24,8 +24,11 @@ pub fn ever(graph: &Graph, condition: NodeId, free: &[NodeId]) -> Option<bool> {
     Some(cases.any(|values| values[&condition] == [1]))
 }
 
-/// Returns the one node of a few bits among `free` and the leaves that all `conditions` depend on, and how many of them hold for
-/// each of its bit patterns; none for one that it never has.
+/// Counts the `conditions` that are 1, for each value of the one node on which all of them depend. This node is a leaf or one of
+/// `free`. Returns the node, and for each of its bit patterns the number of conditions that are 1. The number is `None` for a bit
+/// pattern that the node never has. Returns `None` if the conditions depend on several nodes, or on a node with too many bits.
+///
+/// For example, the conditions `count > 0` and `count > 1` give 0, 1, 2 and 2 for a `count` of two bits.
 pub fn count(
     graph: &Graph,
     conditions: &[NodeId],

@@ -25,14 +25,15 @@ impl<'a> Request<'a> {
         Self { sequential, unrolled, options, results }
     }
 
-    /// Returns the scheduling problem. `registered` says whether products use the output registers of multipliers.
+    /// Returns the scheduling problem of the computation for a given `interval` in clocks. `registered` says whether products use
+    /// the output registers of multipliers.
     pub fn problems(&self, registered: bool, interval: usize) -> ScheduleProblem<'_> {
         let target = self.options.target;
         let registered = target.registered.filter(|_| registered);
         ScheduleProblem::new(&self.unrolled.graph, target, registered, interval, &self.results)
     }
 
-    /// Returns the interval, the number of clocks from one point to the next.
+    /// Returns the interval that the user requests, the number of clocks from one point to the next.
     ///
     /// # Errors
     /// Fails if [`interval::clocks`] fails.
@@ -47,7 +48,7 @@ impl<'a> Request<'a> {
         interval::clocks(self.sequential, self.options, clocks, problems)
     }
 
-    /// Returns the schedule that reaches the goal.
+    /// Returns the schedule that reaches the requested clock frequency or number of stages.
     ///
     /// # Errors
     /// Fails if a clock or a number of stages cannot be reached. The error has the nearest value that can.

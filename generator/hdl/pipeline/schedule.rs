@@ -24,9 +24,9 @@ use glint_base::target::{Registered, Timing};
 pub struct Schedule {
     /// The stage of each node. It is meaningless for constants and for nodes that nothing needs.
     pub stage: Vec<usize>,
-    /// The number of boundaries with registers, from the operands to the results.
+    /// The number of register rows from the operands to the results, which is the latency in clocks.
     pub latency: usize,
-    /// The clock period, in nanoseconds.
+    /// The clock period that the stages reach, in nanoseconds.
     pub period: f64,
     /// The delay of the logic in each stage, in nanoseconds, without the registers around it.
     pub logic: Vec<f64>,
@@ -44,7 +44,7 @@ pub enum ScheduleRefusal {
 /// The reason why a clock period cannot be reached.
 #[derive(Clone, Debug)]
 pub struct Unreachable {
-    /// The slowest node.
+    /// The slowest node, which limits the clock period.
     pub limiting: NodeId,
     /// The shortest period that this node allows, in nanoseconds.
     pub period: f64,
@@ -124,8 +124,8 @@ fn inverted_factors(graph: &Graph, live: &[NodeId]) -> Vec<NodeId> {
     inverters
 }
 
-/// Returns whether a node only extends or renames another one. Such a node is made anew wherever it is used, so that
-/// registers hold its operand.
+/// Returns whether a node only extends or renames another node. Each stage that uses such a node makes it again, so that the
+/// registers between stages hold the narrower operand.
 pub fn is_extension(graph: &Graph, id: NodeId) -> bool {
     matches!(graph.node(id).cell, Cell::Op(NodeOp::Extend(_) | NodeOp::Relabel(_)))
 }
@@ -335,7 +335,8 @@ impl<'a> ScheduleProblem<'a> {
         self.latency(&differences, &self.taken(&differences))
     }
 
-    /// Returns the number of boundaries between the operands of `user` and `user`.
+    /// Returns the number of register rows that must lie between the operands of `user` and `user` itself. For example, a block
+    /// memory needs one row.
     pub fn apart(&self, user: NodeId) -> usize {
         match self.clocked[user.index()] {
             Some(clocked) => clocked.apart,
@@ -644,17 +645,17 @@ impl<'a> ScheduleProblem<'a> {
         longest
     }
 
-    /// Returns the part of the clock period that registers take, in nanoseconds.
+    /// Returns the part of the clock period that registers take, in nanoseconds: from the rising edge to the output, and the setup.
     pub fn register_ns(&self) -> f64 {
         self.target.register
     }
 
-    /// Returns the nodes to schedule.
+    /// Returns the nodes that need a stage: the nodes on which a result depends.
     pub fn live(&self) -> &[NodeId] {
         &self.live
     }
 
-    /// Returns for each node the last boundary at which a register holds it, which is the number of the last stage that reads it.
+    /// Returns for each node the number of the last stage that reads it. Registers must hold the node up to that stage.
     pub fn last_use(&self, schedule: &Schedule) -> Vec<usize> {
         let mut last = schedule.stage.clone();
         for &id in &self.live {
@@ -669,7 +670,8 @@ impl<'a> ScheduleProblem<'a> {
         last
     }
 
-    /// Returns the multipliers that products share, with the product of each slot.
+    /// Returns the multipliers that serve several products, with the product of each slot. A slot is the clock's number modulo the
+    /// interval.
     pub fn units(&self, schedule: &Schedule) -> Vec<MultiplierUnit> {
         let mut units = Vec::new();
         for kind in &self.kinds {

@@ -13,9 +13,10 @@ use glint_base::target::{FAMILIES, Timing};
 /// A group of products that can share multipliers.
 #[derive(Clone, Debug)]
 pub struct ProductGroup {
-    /// The products, in order.
+    /// The products of the group, in the order of the computation.
     pub products: Vec<NodeId>,
-    /// The number of multipliers that serve the products in all slots; it is less than the number of products.
+    /// The number of multipliers that the group needs. It is less than the number of products, because one multiplier serves a
+    /// product in each slot.
     pub units: usize,
     /// Whether the multipliers take signed factors.
     signed: bool,
@@ -24,9 +25,9 @@ pub struct ProductGroup {
 /// A multiplier, with the products that it serves.
 #[derive(Clone, Debug)]
 pub struct MultiplierUnit {
-    /// The widths of its two factors.
+    /// The widths of the multiplier's two factors, in bits.
     pub widths: [u32; 2],
-    /// Whether the factors have signs.
+    /// Whether the multiplier takes signed factors.
     pub signed: bool,
     /// For each slot, the product that the multiplier computes in it, and the factors of this product in the order of
     /// the multiplier's operands.

@@ -13,7 +13,7 @@ use crate::netlist::{
 };
 use glint_base::fixed::Format;
 
-/// Builds the design of a schedule: the logic of every stage, with the registers between stages.
+/// Builds the pipelined design from a schedule: the logic of every stage, the registers between stages, and the handshake.
 pub fn assemble(
     sequential: &Design,
     unrolled: &Unrolled,

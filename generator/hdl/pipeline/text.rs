@@ -137,8 +137,8 @@ pub fn parsed(text: &str) -> Result<Unrolled, String> {
     Ok(unrolled)
 }
 
-/// Returns the results for the combination of operands with this number, as bit patterns, and the number of all combinations.
-/// Every operand lies within its interval.
+/// Returns the results for one combination of operands as bit patterns, and the number of all combinations. `combination` numbers
+/// the combinations of operand values, each within its interval.
 pub fn computed(unrolled: &Unrolled, combination: u64) -> (Vec<u64>, u64) {
     let graph = &unrolled.graph;
     let mut values: HashMap<NodeId, [u64; 1]> = HashMap::new();

@@ -27,27 +27,28 @@ use glint_base::fixed::Format;
 /// The number of clocks that a microprogram may take. A longer one is not worth a pipeline.
 const MOST_CLOCKS: usize = 4096;
 
-/// The values of one computation of a design.
+/// The values of one computation of a design, without loops: from the operands to the results.
 #[derive(Debug)]
 pub struct Unrolled {
-    /// All values.
+    /// The graph with all values of the computation.
     pub graph: Graph,
     /// The operands, as input ports of the design.
     pub operands: Vec<NetId>,
-    /// The results: the output port and the value of each.
+    /// The results: each output port, with the node of its value.
     pub results: Vec<(NetId, NodeId)>,
-    /// The executed microinstructions, in order.
+    /// The microinstructions in the order in which the computation executes them.
     pub steps: Vec<UnrolledStep>,
 }
 
 /// One executed microinstruction of the computation.
 #[derive(Clone, Debug)]
 pub struct UnrolledStep {
-    /// Its address in the microprogram.
+    /// The address of the microinstruction in the microprogram.
     pub address: usize,
-    /// How often the computation executed the same microinstruction before.
+    /// The number of earlier executions of the same microinstruction in this computation.
     pub visit: usize,
-    /// The values that the architectural registers hold while it is executed, as far as they are determined.
+    /// The values that the architectural registers (the registers that the golden model predicts) hold while the microinstruction
+    /// is executed. A register without a known value is left out.
     pub registers: Vec<(RegId, NodeId)>,
 }
 

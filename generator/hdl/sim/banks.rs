@@ -1,5 +1,6 @@
-//! Distributes the values of a compiled design over two banks, one of 32-bit and one of 64-bit slots, and inserts conversions
-//! between the banks.
+//! Distributes the values of a compiled design over two banks of memory, one with slots of 32 bits and one with slots of 64 bits,
+//! and inserts conversions between the banks. Most values fit into 32 bits, and a vector of the processor holds twice as many of
+//! them.
 
 use crate::sim::compiler::{Compiler, Ordered};
 use crate::sim::program::{

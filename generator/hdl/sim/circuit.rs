@@ -1,4 +1,5 @@
-//! Wraps a compiled design as one block of the simulation kernel rust_hdl, which clocks, checks and traces it.
+//! Wraps a compiled design as one block of the simulation kernel rust_hdl. rust_hdl drives the clock, checks the ports and writes
+//! waveforms; Glint computes the nets.
 
 use std::sync::Arc;
 
@@ -19,7 +20,7 @@ use crate::sim::wire::{Direction, ProbeView, Wire};
 /// rising edge are seen only after it.
 #[derive(Debug)]
 pub struct Circuit<const LANES: usize = 1> {
-    /// The clock. Registers change on its rising edge.
+    /// The clock of the circuit. Registers change on its rising edge.
     pub clock: Signal<In, Clock>,
     pub(super) machine: Machine<LANES>,
     /// The latest values of the input ports, one for each lane.

@@ -82,7 +82,7 @@ impl<const LANES: usize> Simulator<LANES> {
         })
     }
 
-    /// Returns the position of an input port among [`Design::inputs`], by its name.
+    /// Returns the position of the input port `name` among [`Design::inputs`], or `None` if the design has no such input.
     pub fn input(&self, name: &str) -> Option<usize> {
         self.inputs.iter().position(|input| input == name)
     }
@@ -100,8 +100,8 @@ impl<const LANES: usize> Simulator<LANES> {
         self.circuit.inputs_mut()[input] = lanes;
     }
 
-    /// Returns the input ports in order of position, each with its lanes, for [`Simulator::set_lanes`] of many
-    /// at once.
+    /// Returns the values of all input ports in order of position, one for each lane. A caller that sets many inputs uses this
+    /// instead of [`Simulator::set_lanes`].
     pub fn inputs_mut(&mut self) -> &mut [[u64; LANES]] {
         self.circuit.inputs_mut()
     }

@@ -160,7 +160,7 @@ pub(super) struct StepGroup {
 /// An input port.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct InputPort {
-    /// Its position among the input ports.
+    /// The position of the source among the input ports.
     pub at: u32,
     pub slot: Slot,
     pub source: Sources,
@@ -173,7 +173,7 @@ pub(super) struct ReadEdge {
     pub to: Slot,
     pub source: Sources,
     pub address: Slot,
-    /// None when every edge reads.
+    /// The slot of the read enable; `None` if the ROM reads at every edge.
     pub enable: Option<Slot>,
     pub words: Span,
 }
@@ -184,9 +184,9 @@ pub(super) struct RegisterEdge {
     pub q: Slot,
     pub source: Sources,
     pub data: Slot,
-    /// None when every edge loads.
+    /// The slot of the load enable; `None` if the register loads at every edge.
     pub enable: Option<Slot>,
-    /// None when the register has no reset.
+    /// The slot of the reset and the value that the register takes on a reset; `None` if the register has no reset.
     pub reset: Option<(Slot, u64)>,
 }
 
@@ -194,7 +194,8 @@ pub(super) struct RegisterEdge {
 #[derive(Clone, Debug, Default)]
 pub(super) struct Bank {
     pub inputs: Vec<InputPort>,
-    /// To be performed before `registers`; no operand of either is written by an earlier one of either.
+    /// The reads of synchronous ROMs, which an edge performs before it loads `registers`. An earlier read or load never overwrites
+    /// an operand of a later one.
     pub reads: Vec<ReadEdge>,
     pub registers: Vec<RegisterEdge>,
     /// The contents of the slots at power-up, before settling.

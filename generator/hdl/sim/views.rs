@@ -25,8 +25,8 @@ fn shown(design: &Design) -> Vec<(String, Vec<&Net>)> {
     std::iter::once((design.name.clone(), ports)).chain(inner).collect()
 }
 
-/// Returns the save file of GTKWave for a waveform of the design: `gtkwave FILE.vcd FILE.gtkw`. For example, it shows
-/// `[fpshift_count] 20` for a net of `u1.20`.
+/// Returns the save file with which GTKWave shows a waveform of the design: `gtkwave FILE.vcd FILE.gtkw`. For example, it lists a
+/// net of the format `u1.20` with 20 fraction bits, as `[fpshift_count] 20`.
 pub fn gtkwave(design: &Design) -> String {
     // Twenty pixels a clock or so.
     let mut text = format!("*-17.000000 0\n@{BINARY:x}\n{}.clk\n", design.name);
@@ -59,7 +59,7 @@ pub fn gtkwave(design: &Design) -> String {
     text
 }
 
-/// Returns the commands of Surfer for a waveform of the design: `surfer --command-file FILE.sucl FILE.vcd`.
+/// Returns the commands with which Surfer shows a waveform of the design: `surfer --command-file FILE.sucl FILE.vcd`.
 pub fn surfer(design: &Design) -> String {
     let mut text = format!("variable_add {}.clk\n", design.name);
     for (scope, nets) in shown(design) {

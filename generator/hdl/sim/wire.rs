@@ -30,7 +30,7 @@ pub(super) enum ProbeView<'a> {
 /// An atom.
 #[derive(Debug)]
 pub(super) struct Wire<'a> {
-    /// The id, from rust_hdl's counter, so that it differs from the ids of rust_hdl's own signals.
+    /// The id of the net, from rust_hdl's counter, so that it differs from the ids of rust_hdl's own signals.
     pub id: usize,
     pub connected: bool,
     pub changed: bool,

@@ -12,25 +12,25 @@ use glint_base::fixed::mask;
 pub enum BitRun {
     /// `width` adjacent bits of a net, from bit `low` up.
     Net {
-        /// The net.
+        /// The net from which the bits come.
         net: NetId,
-        /// The lowest bit.
+        /// The position of the lowest bit in the net.
         low: u32,
         /// The number of bits.
         width: u32,
     },
     /// Constant bits.
     Constant {
-        /// The bit pattern.
+        /// The bit pattern of the constant.
         value: u64,
         /// The number of bits.
         width: u32,
     },
     /// `count` copies of one bit of a net; there are at least two.
     Copies {
-        /// The net.
+        /// The net from which the bit comes.
         net: NetId,
-        /// The position of the bit.
+        /// The position of the copied bit in the net.
         bit: u32,
         /// The number of copies.
         count: u32,
@@ -38,7 +38,7 @@ pub enum BitRun {
 }
 
 impl BitRun {
-    /// Returns the width in bits.
+    /// Returns the number of bits of the piece.
     pub fn width(self) -> u32 {
         match self {
             Self::Net { width, .. } | Self::Constant { width, .. } => width,
@@ -76,7 +76,7 @@ impl BitRun {
     }
 }
 
-/// A word as a list of pieces, the most significant first.
+/// A word as a list of pieces, the most significant first. For example, `{a[5:2], 1'b0}` has two pieces.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Bits(Vec<BitRun>);
 
@@ -104,7 +104,7 @@ impl Bits {
         }
     }
 
-    /// Returns the width in bits.
+    /// Returns the number of bits of the word.
     pub fn width(&self) -> u32 {
         self.0.iter().map(|piece| piece.width()).sum()
     }

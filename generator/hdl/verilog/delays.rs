@@ -16,8 +16,8 @@ const TITLE: &str =
 /// How many words go round, and when they do.
 type Pace = (usize, Option<NetId>);
 
-/// Returns the section of the delay lines, with one instance for all lines of the same length and enable. It is empty if there
-/// are no delay lines.
+/// Returns the Verilog section that instantiates the delay lines, with one instance for all lines of the same length and enable. It
+/// is empty if the pipeline has no delay lines.
 pub fn section(builder: &mut Builder<'_>, naming: &Naming) -> Vec<String> {
     let plan = builder.plan;
     let mut paces: BTreeMap<Pace, Vec<&DelayLine>> = BTreeMap::new();

@@ -15,19 +15,19 @@ use glint_base::fixed::mask;
 /// u1.20`.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Constant {
-    /// The name of the localparam.
+    /// The name of the localparam in the Verilog.
     pub name: String,
     /// The name in the description, without a number at its end.
     base: String,
-    /// The bit pattern.
+    /// The value of the constant as a bit pattern.
     pub bits: u64,
-    /// The number of bits.
+    /// The number of bits of the constant.
     pub width: u32,
     /// The value as text, or an empty text if the bit pattern itself is the value.
     pub note: String,
 }
 
-/// Writes the expressions of one module.
+/// Writes the Verilog expressions of one module, and collects the constants that they use.
 pub struct Expressions<'a> {
     plan: &'a Plan<'a>,
     names: Names,
@@ -36,12 +36,13 @@ pub struct Expressions<'a> {
 }
 
 impl<'a> Expressions<'a> {
-    /// Makes a writer that has written nothing yet.
+    /// Makes a writer of expressions for one module. `names` are the identifiers that the module uses already.
     pub fn new(plan: &'a Plan<'a>, names: Names) -> Self {
         Self { plan, names, constants: Vec::new() }
     }
 
-    /// Returns `wish` if no other identifier of the module has this name, otherwise a similar name.
+    /// Returns a new identifier for the module: `wish` itself if no other identifier has this name, otherwise a similar name such
+    /// as `wish_2`.
     pub fn fresh(&mut self, wish: &str) -> String {
         self.names.fresh(wish)
     }
@@ -59,7 +60,7 @@ impl<'a> Expressions<'a> {
         }
     }
 
-    /// Returns the text of a net as a complete right-hand side.
+    /// Returns the text of a net as a complete right-hand side, without parentheses around it.
     pub fn whole(&mut self, id: NetId) -> String {
         match self.inline(id) {
             Some(cell) => self.driver(cell),
@@ -154,7 +155,7 @@ impl<'a> Expressions<'a> {
         }
     }
 
-    /// Returns the text of wiring: one piece, or a concatenation of several.
+    /// Returns the Verilog text of wiring: a selection such as `a[5:2]`, or a concatenation of several.
     pub fn bits(&self, bits: &Bits) -> String {
         together(bits.pieces().iter().map(|piece| self.piece(*piece)).collect())
     }

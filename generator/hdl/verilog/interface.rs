@@ -12,7 +12,7 @@ pub struct Interface {
     pub inputs: Vec<NetId>,
     /// The outputs: ports of the top module in their order, followed by nets for the other module.
     pub outputs: Vec<NetId>,
-    /// The ROMs in the module.
+    /// The ROMs that are written in the module.
     pub roms: Vec<RomId>,
 }
 
@@ -73,7 +73,8 @@ fn crossing(plan: &Plan, from: Partition, to: Partition) -> Vec<NetId> {
     crossing
 }
 
-/// Returns the bits that exist in a module but that nothing in it reads, as ranges `(net, low, width)`.
+/// Returns the bits of nets in a module that nothing in the module reads, as ranges `(net, low, width)`. The Verilog connects them
+/// to a net that linters accept as unread.
 pub fn unread(plan: &Plan, partition: Partition, interface: &Interface) -> Vec<(NetId, u32, u32)> {
     let design = plan.design;
     let mut nets = interface.inputs.clone();

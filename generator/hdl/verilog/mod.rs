@@ -47,7 +47,7 @@ pub fn files(design: &Design) -> Result<Vec<(String, String)>> {
 pub struct ModuleFile {
     /// The names of the modules, the main one first.
     pub modules: Vec<String>,
-    /// The whole text.
+    /// The whole text of the Verilog file.
     pub text: String,
 }
 

@@ -28,7 +28,7 @@ pub struct Naming {
     pub unused: String,
     /// The name of the shift register that says which stages of a pipeline hold points.
     pub valid: String,
-    /// All names so far. A module may add its own.
+    /// The identifiers of the design so far. A module may add identifiers of its own.
     pub names: Names,
     design: String,
 }

@@ -17,13 +17,13 @@ use glint_base::fixed::mask;
 /// How a net appears in the Verilog.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum NetForm {
-    /// As wiring: its [`Bits`] are written wherever it is used.
+    /// The net is wiring: its [`Bits`] are written wherever it is used.
     Wiring,
-    /// As a declared `wire`, `reg` or port.
+    /// The net is declared as a `wire`, `reg` or port.
     Declared,
-    /// Within the one expression that uses it.
+    /// The net's expression is written within the one expression that uses it.
     Inline,
-    /// Not at all: it is a product inside a multiplier with an output register.
+    /// The net is not written at all, because it is a product inside a multiplier with an output register.
     Inside,
 }
 
@@ -40,9 +40,9 @@ pub enum Reader {
 
 /// The decisions on how a design appears in the Verilog.
 pub struct Plan<'a> {
-    /// The design that is written.
+    /// The design that is written as Verilog.
     pub design: &'a Design,
-    /// How each net appears.
+    /// For each net, how it appears in the Verilog.
     pub forms: Vec<NetForm>,
     /// The bits of each net, as it is written where it is used.
     pub bits: Vec<Bits>,
@@ -119,7 +119,7 @@ impl<'a> Plan<'a> {
         Some(value.last() == register)
     }
 
-    /// Returns the module in which a reader is written.
+    /// Returns the module, control unit or datapath, in which a reader of nets is written.
     pub fn home(&self, reader: Reader) -> Partition {
         match reader {
             Reader::Cell(net) => self.partition(net),
@@ -189,7 +189,7 @@ impl<'a> Plan<'a> {
         }
     }
 
-    /// Returns all readers that are written.
+    /// Returns all readers of nets that appear in the Verilog, such as cells, registers and output ports.
     pub fn readers(&self) -> Vec<Reader> {
         let mut readers = Vec::new();
         for &net in &self.live {
@@ -391,7 +391,7 @@ impl<'a> Plan<'a> {
         self.repeats = repeats;
     }
 
-    /// Returns the comment of a net at its declaration.
+    /// Returns the comment that the Verilog shows at the declaration of a net.
     pub fn remark(&self, id: NetId) -> String {
         if self.repeats.contains(&id) { String::new() } else { remark(self.design, id) }
     }

@@ -30,7 +30,7 @@ pub fn variables(design: &Design, with_signs: bool) -> Vec<String> {
     Row::declarations(&design.ports.iter().map(row).collect::<Vec<_>>())
 }
 
-/// One declaration, whose parts are aligned with the declarations around it.
+/// One declaration of a net or port. Its parts are aligned in columns with the declarations around it.
 pub struct Row {
     head: String,
     range: String,
@@ -69,7 +69,7 @@ impl Row {
         }
     }
 
-    /// Returns the declaration without its comment.
+    /// Returns the declaration without the comment behind it.
     #[must_use]
     pub fn without_note(mut self) -> Self {
         self.note.clear();
@@ -98,12 +98,12 @@ impl Row {
         all
     }
 
-    /// Returns the rows as a port list, with commas.
+    /// Returns the rows as the lines of a port list, with commas between ports.
     pub fn ports(rows: &[Self]) -> Vec<String> {
         Self::set(rows, |at| if at + 1 < rows.len() { "," } else { "" })
     }
 
-    /// Returns the rows as declarations, with semicolons.
+    /// Returns the rows as the lines of declarations, each with a semicolon.
     pub fn declarations(rows: &[Self]) -> Vec<String> {
         Self::set(rows, |_| ";")
     }

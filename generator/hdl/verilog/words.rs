@@ -5,7 +5,7 @@ use super::text::ascii;
 use crate::netlist::{Design, RomId};
 use glint_base::fixed::mask;
 
-/// Returns the comment on a word of a ROM, if it has one.
+/// Returns the comment on the word at `address` of a ROM, or `None` if the word has no comment.
 pub fn word_note(design: &Design, id: RomId, address: usize) -> Option<String> {
     let given = design.rom(id).comments.get(address);
     let name = || {

@@ -18,7 +18,8 @@ const MOST: usize = 4096;
 /// Intervals of raw values of some nodes, which narrow the intervals that follow from the operands.
 pub type NodeIntervals = BTreeMap<NodeId, Interval>;
 
-/// A case of a computation: one combination of outcomes of its conditions.
+/// A case of a computation: one combination of outcomes of its conditions. For example, one case of a saturation is that the value
+/// exceeds the upper limit.
 #[derive(Clone, Debug)]
 pub struct Case {
     /// The hypotheses of the case: intervals of nodes that follow from the outcomes of the conditions.
@@ -35,9 +36,9 @@ pub type WordLookup<'a> = &'a dyn Fn(RomId, u64) -> i128;
 /// A computation as a graph of values, with the words of its ROMs and with its dividers.
 #[derive(Clone, Copy)]
 pub struct UnrolledComputation<'a> {
-    /// The graph of values.
+    /// The graph of all values of the computation.
     pub graph: &'a Graph,
-    /// The words of the ROMs.
+    /// A function that returns the word of a ROM at an address, as a raw value.
     pub words: WordLookup<'a>,
     /// The dividers, each by the node that concatenates the bits of its quotient.
     pub quotients: &'a BTreeMap<NodeId, Quotient>,
@@ -60,11 +61,11 @@ impl UnrolledComputation<'_> {
     }
 }
 
-/// Returns all cases of the computation of `results`, with the intervals `known` of the operands. Together they cover every
+/// Returns all cases of the computation of `results`, with the intervals `known` of the operands. Together the cases cover every
 /// combination of operands. For example, a saturation that may or may not happen makes two cases.
 ///
 /// # Errors
-/// Fails if there are too many ways.
+/// Fails if the computation has too many cases.
 pub fn cases(
     view: UnrolledComputation,
     results: &[NodeId],
@@ -285,9 +286,9 @@ fn decider(graph: &Graph, id: NodeId, ranges: &[Interval]) -> NodeId {
     id
 }
 
-/// Limits a node to the values of `range`, and limits the nodes that it comes from accordingly. Returns false if that
-/// is impossible. `ranges` are the values that nodes have without this limit. For example, if the inverse of 8 bits `a`
-/// is limited to 0, then `a` is limited to 255.
+/// Narrows the interval of node `id` to a given interval, and narrows the intervals of the nodes from which it is computed
+/// accordingly. Returns false if no value is left. `ranges` are the intervals without this restriction. For example, if the inverse
+/// of an 8-bit node `a` is restricted to 0, then `a` is restricted to 255.
 pub fn learn(
     graph: &Graph,
     known: &mut NodeIntervals,

@@ -15,11 +15,11 @@ use glint_golden::Operand;
 /// negative, and the terms `at_most` must not be positive.
 #[derive(Clone, Debug, Default)]
 pub struct Branch {
-    /// Terms that are at least 0 in this branch.
+    /// Conditions of the branch: terms that must be at least 0 for the branch to apply.
     pub at_least: Vec<RealTermId>,
-    /// Terms that are at most 0 in this branch.
+    /// Conditions of the branch: terms that must be at most 0 for the branch to apply.
     pub at_most: Vec<RealTermId>,
-    /// The value of the formula in this branch.
+    /// The term that is the value of the formula if the branch applies.
     pub term: RealTermId,
     /// The side of every choice, by the number that is compared with 0 and the comparison.
     chosen: BTreeMap<(RealTermId, Choice), bool>,
@@ -87,13 +87,13 @@ impl Branch {
 
 /// The variables, ranges and ROM words with which formulas are translated.
 pub struct FormulaContext<'a> {
-    /// Variable, and the power of two by which an operand is divided in it.
+    /// For each operand, the name of its variable in the script, and the power of two by which the variable is divided.
     pub variables: &'a HashMap<String, (String, i32)>,
     /// The smallest and the largest value of each operand in this case.
     pub ranges: &'a HashMap<String, (f64, f64)>,
     /// The values of the words of each ROM, by the name of the ROM.
     pub words: &'a HashMap<String, Vec<f64>>,
-    /// The operands.
+    /// The operands of the contract.
     pub operands: &'a [Operand],
 }
 
@@ -385,8 +385,8 @@ fn power(terms: &mut RealTerms, base: RealTermId, exponent: u32) -> RealTermId {
     result.unwrap_or_else(|| terms.number(1.0))
 }
 
-/// Returns the id of a term, simplified by the rules of 0 and 1. If the term is a number and f64 holds it exactly, it
-/// is the id of that number. For example, `x + 0` is `x`, and 0.5 + 0.25 is the number 0.75.
+/// Returns the number of a term after simplification: `x + 0` becomes `x`, and a sum or product of constants becomes its value if
+/// an f64 can represent it exactly. For example, 0.5 + 0.25 becomes 0.75.
 pub fn folded(terms: &mut RealTerms, term: RealTerm) -> RealTermId {
     match term {
         RealTerm::Add(a, b) | RealTerm::Sub(a, b) if is_number(terms, b, 0.0) => return a,

@@ -14,18 +14,18 @@ use glint_rtl::pipeline::{Cell, Graph, Node, NodeId, NodeOp};
 /// The raw value of a node, as a term or a constant.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum NodeValue {
-    /// The node is this number, on this way.
+    /// The node has only this raw value in the case.
     Constant(i128),
-    /// The term times two to the power of `scale`.
+    /// The raw value of the node is the term `id` times 2^`scale`.
     Term {
-        /// The value with its point.
+        /// The term for the value of the node, with its binary point.
         id: RealTermId,
-        /// Fraction bits.
+        /// The number of fraction bits of the node.
         scale: i32,
     },
 }
 
-/// The operands as terms: by their number in the graph, the variable and its fraction bits.
+/// The operands as variables of the script: for each, its name and its number of fraction bits.
 pub type Variables = Vec<(String, i32)>;
 
 /// Translates the nodes of one case to real terms.
@@ -148,7 +148,7 @@ impl<'a> Hardware<'a> {
         Some((id, range))
     }
 
-    /// Returns the dividend and the divisor of a divider as terms with the same binary point.
+    /// Returns the dividend and the divisor of the divider `of` as terms with the same binary point.
     pub fn fraction(
         &mut self,
         terms: &mut RealTerms,
@@ -164,10 +164,10 @@ impl<'a> Hardware<'a> {
         Ok((pointed(terms, dividend, scale, "dividend"), pointed(terms, divisor, scale, "divisor")))
     }
 
-    /// Returns a node as a constant or a term.
+    /// Returns the value of a node in this case, as a constant or as a term.
     ///
     /// # Errors
-    /// Fails if an operation has no translation. The error has the name of the operation's result.
+    /// Fails if an operation has no translation. The error names the result of the operation.
     pub fn value(&mut self, terms: &mut RealTerms, id: NodeId) -> Result<NodeValue, String> {
         if let Some(&value) = self.known.get(&id) {
             return Ok(value);
@@ -179,8 +179,8 @@ impl<'a> Hardware<'a> {
         Ok(value)
     }
 
-    /// Returns the node as a term even if it is one number in this case: this fact says something about its operands.
-    /// Returns `None` if the node is made of constants, or is bits that are cut out.
+    /// Returns the value of a node as a term, even if the node has only one value in this case: the term then states a fact about
+    /// the node's operands. Returns `None` if the node depends on constants alone, or if it is a slice of bits.
     pub fn expression(&mut self, terms: &mut RealTerms, id: NodeId) -> Option<NodeValue> {
         let is_cut =
             matches!(self.graph.node(id).cell, Cell::Op(NodeOp::Slice { .. }) | Cell::Operand(_));
@@ -439,7 +439,7 @@ fn pointed(terms: &mut RealTerms, value: NodeValue, scale: i32, name: &str) -> R
     }
 }
 
-/// Returns the term multiplied by 2 to the power of `power`.
+/// Returns the term `id` multiplied by 2^`power`. `name` names its definition in the script.
 pub fn scaled(terms: &mut RealTerms, id: RealTermId, power: i32, name: &str) -> RealTermId {
     if power == 0 {
         return id;

@@ -18,7 +18,7 @@ pub struct RawPolynomial {
 const MOST: i128 = 1 << 80;
 
 impl RawPolynomial {
-    /// Makes a constant polynomial.
+    /// Makes the polynomial that has the constant value `value`.
     pub fn constant(value: i128) -> Self {
         Self { of: None, factors: [value, 0, 0] }
     }
@@ -44,7 +44,8 @@ impl RawPolynomial {
         self.with(other, [sum(0), sum(1), sum(2)])
     }
 
-    /// Returns the product. It returns `None` if the product may have a degree above two, for example x² times x.
+    /// Returns the product of two polynomials in the same operand. Returns `None` if the product may have a degree above two, for
+    /// example x² times x.
     pub fn times(self, other: Self) -> Option<Self> {
         let ([a, b, c], [d, e, f]) = (self.factors, other.factors);
         let small = |factors: [i128; 3]| factors.iter().all(|factor| factor.abs() <= 1 << 60);

@@ -17,7 +17,7 @@ use glint_rtl::pipeline::NodeId;
 pub struct Premise {
     /// The name of the intermediate value.
     pub about: String,
-    /// The Gappa script.
+    /// The Gappa script that states the premise.
     pub script: String,
 }
 

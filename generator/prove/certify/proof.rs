@@ -13,26 +13,27 @@ use glint_tools::{LimitReached, Tool};
 /// The subject of a proved statement.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum ProofSubject {
-    /// A point at which its hypotheses hold, for example `x = -0.5, y = 3`.
+    /// The statement says something: there is a point at which all its hypotheses hold, for example `x = -0.5, y = 3`.
     Point(String),
-    /// Nothing, as Gappa proves: its hypotheses contradict each other.
+    /// The statement says nothing, because its hypotheses contradict each other, as Gappa proves.
     Nothing,
-    /// Neither was found.
+    /// Neither a point nor a contradiction was found.
     Unknown,
 }
 
 /// The outcome of a statement's proof.
 pub enum ProofOutcome {
-    /// The script that was accepted, and its subject.
+    /// A tool accepted the proof. The fields are the index of the accepted script and the subject of the statement.
     Proved(usize, ProofSubject),
-    /// No proof: Gappa's answer to the last script.
+    /// The statement is not proved. The text is Gappa's answer to the last script.
     Open(String),
 }
 
-/// Has one of the statement's scripts accepted by Gappa, and with `coq` its proof by Coq's kernel.
+/// Proves a statement: runs Gappa on its scripts until Gappa accepts one. With `coq`, Coq's kernel also checks the proof.
 ///
 /// # Errors
-/// Fails if a tool does not do its work. A statement that is not proved, or not within the limit, is no error.
+/// Fails if a tool does not do its work. If the statement is not proved within the time limit, the outcome says so, and there is no
+/// error.
 pub fn prove(
     gappa: &Tool,
     coq: Option<&Tool>,

@@ -19,19 +19,19 @@ const TRIES: usize = 2_000;
 pub struct GappaScript<'a> {
     /// The terms of hardware and formula.
     pub terms: &'a RealTerms,
-    /// The number of terms that belong to the hardware. They come first.
+    /// The number of terms that belong to the hardware. They come before the terms of the formula.
     pub hardware_terms: usize,
-    /// The variables, with the number of their fraction bits.
+    /// The variables of the script, with their numbers of fraction bits.
     pub placed: &'a Variables,
     /// The intervals of terms that the script takes as hypotheses.
     pub presupposed: &'a BTreeMap<RealTermId, (f64, f64)>,
-    /// For each expression of the formula, the branch that applies in this case.
+    /// The branches of the formula that apply in this case, one for each expression of the formula.
     pub ways: &'a [Branch],
 }
 
 impl GappaScript<'_> {
-    /// Returns the script of an output: it states that the output is within the bound of the formula `f` times a factor, or asks
-    /// for the bound.
+    /// Returns the script for one output, with the output `out` and the formula `f` times `factor`. The script states that the two
+    /// differ by at most the bound, or asks for the bound.
     pub fn text(
         &self,
         out: RealTermId,

@@ -1,20 +1,21 @@
-//! Writes the Gappa statements of devices that compute a line of points by reading a ROM with powers of a cosine. The word is
-//! multiplied by a colour at each point.
+//! Writes the Gappa statements for devices that compute a line of points (many points after one `start`) from a ROM with powers of
+//! a cosine. At each point, the device reads a ROM word for the angle and multiplies it by a colour.
 //!
 //! A ROM word serves all angles of a segment. The contract follows from two kinds of statements:
 //!
 //! - For each word w, whose segment goes from angle a to angle b (in right angles, 0 ≤ a ≤ b ≤ 1): f(a) ≤ w + E and f(b) ≥ w − E,
 //!   with the bound E of f. As cos falls from 0 to π, f is between f(b) and f(a) at every angle of the segment.
-//! - For each output: if a word w and a real f differ by at most that bound, then the output differs from f times the colour by
-//!   at most the contract's bound.
+//! - For each output: if a word w and a real f differ by at most that bound, then the output differs from f times the colour by at
+//!   most the contract's bound.
 //!
-//! Gappa has no cosine. By Taylor cos y = 1 − y²/2! + y⁴/4! − … ± y²ᵐ/(2m)! + ρ·y²ᵐ⁺²/(2m+2)! with |ρ| ≤ 1, for every real y.
-//! Gappa proves the statement for every ρ from −1 to 1, and for every number within 10⁻²⁰ of π/2 in place of π/2.
+//! Gappa has no cosine, so the script uses Taylor's formula cos y = 1 − y²/2! + y⁴/4! − … ± y²ᵐ/(2m)! + ρ·y²ᵐ⁺²/(2m+2)! with |ρ| ≤
+//! 1, which holds for every real y. Gappa proves the statement for every ρ from −1 to 1, and for every number within 10⁻²⁰ of π/2
+//! in place of π/2.
 //!
-//! The module finds the angles of each word by halving an interval of angles until the word in the netlist is the same for the
-//! whole interval, as in [`super::cases`]. All points of a line are computed as the first one, but at another angle:
-//! [`glint_rtl::pipeline::unroll_line`] has the induction. The formula's angle at a point is the value of the register that adds
-//! up the angle along the line ([`AngleWalk::angle`]).
+//! The module finds the angles of each word by bisection: it halves an interval of angles until the netlist reads the same word for
+//! the whole interval, as in [`super::cases`]. The device computes each point of a line as it computes the first, but at another
+//! angle; [`glint_rtl::pipeline::unroll_line`] proves this by induction. The formula's angle at a point is the value of the
+//! register that adds up the angle along the line ([`AngleWalk::angle`]).
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
@@ -54,10 +55,12 @@ struct WordSegment {
     to: f64,
 }
 
-/// Returns the statements of a line.
+/// Returns the statements for a device that computes a line of points. `walk` are the registers that change from point to point,
+/// such as the angle.
 ///
 /// # Errors
-/// Fails if the formula or the netlist is no table of a power of a cosine, at an angle that is walked along.
+/// Fails if the formula or the netlist does not have the expected form: a table with a power of a cosine, whose address is an angle
+/// that grows from point to point.
 pub fn statements(task: &Task, walk: &[WalkRegister]) -> Result<Vec<Statement>, String> {
     let bound = task.bound.ok_or("a table is stated by segment with a stated bound alone")?;
     if task.contract.highlight().is_none() {

@@ -11,18 +11,19 @@ pub(super) const ASKED: &str = "| in ? }";
 /// A statement for Gappa to prove.
 #[derive(Clone, Debug)]
 pub struct Statement {
-    /// The output that the statement is about, or an intermediate value.
+    /// The name of the output, or of the intermediate value, that the statement is about.
     pub output: String,
     /// The number of the statement among the statements of the output, from 1.
     pub number: usize,
-    /// Other outputs whose statement is the same except for names.
+    /// The names of other outputs whose statements are the same except for names.
     pub also: Vec<String>,
-    /// Alternative scripts: Gappa must accept one of them. At a jump of the formula, two values are right.
+    /// Alternative scripts: Gappa must accept one of them. There are two if the formula jumps, because on each side of the jump
+    /// another value is right.
     pub scripts: Vec<String>,
 }
 
 impl Statement {
-    /// Returns the statement with a bound in place of the question for one. For example, `|difference_7| in ? }` becomes
+    /// Returns the statement with a stated bound instead of a question for the bound. For example, `|difference_7| in ? }` becomes
     /// `|difference_7| <= 0.5 }`.
     #[must_use]
     pub fn within(&self, bound: f64) -> Self {

@@ -11,9 +11,9 @@ pub type RealTermId = usize;
 /// The direction in which a value is rounded to a multiple of a power of two.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum RoundingDirection {
-    /// Down: bits are dropped.
+    /// Rounds down, as hardware does that drops bits.
     Down,
-    /// To the nearest, halves away from 0.
+    /// Rounds to the nearest, halves away from 0.
     Nearest,
 }
 
@@ -32,18 +32,18 @@ pub enum RealTerm {
     Mul(RealTermId, RealTermId),
     /// The quotient.
     Div(RealTermId, RealTermId),
-    /// The multiple of 2^-`fraction` next to the operand in a direction.
+    /// The operand, rounded to a multiple of 2^-`fraction`.
     Round {
         /// The term that is rounded.
         of: RealTermId,
         /// The number of fraction bits that are kept; negative if integer bits are dropped.
         fraction: i32,
-        /// The direction.
+        /// The direction in which the operand is rounded.
         direction: RoundingDirection,
     },
 }
 
-/// A collection of terms, each stored once, with the names of their definitions.
+/// A collection of terms, each stored once, with the names of their definitions in a script.
 #[derive(Clone, Debug, Default)]
 pub struct RealTerms {
     terms: Vec<(RealTerm, String)>,
@@ -53,11 +53,11 @@ pub struct RealTerms {
 }
 
 impl RealTerms {
-    /// Returns the term; `name` becomes the name of its definition, if it gets one. The number of the term follows the
-    /// name: for example, term 2 with the name `sum` is `sum_2`.
+    /// Adds a term, if it is new, and returns its number. `name` becomes the name of its definition in a script, followed by the
+    /// number: for example, term 2 with the name `sum` is `sum_2`.
     ///
-    /// Operands of a sum and a product are put in one order, so that hardware and formula have the same: Gappa
-    /// compares a product with another factor by factor.
+    /// The operands of sums and products are sorted, so that hardware and formula have them in the same order. Gappa compares two
+    /// products factor by factor.
     pub fn insert(&mut self, term: RealTerm, name: &str) -> RealTermId {
         let term = match term {
             RealTerm::Add(a, b) if self.is_after(a, b) => RealTerm::Add(b, a),
@@ -110,12 +110,12 @@ impl RealTerms {
         (variables, degree)
     }
 
-    /// Returns the constant.
+    /// Returns the number of the term that is the constant `value`.
     pub fn number(&mut self, value: f64) -> RealTermId {
         self.insert(RealTerm::Number(value), "number")
     }
 
-    /// Returns the term with a number.
+    /// Returns the term number `id`.
     pub fn get(&self, id: RealTermId) -> &RealTerm {
         &self.terms[id].0
     }
@@ -129,7 +129,7 @@ impl RealTerms {
         }
     }
 
-    /// Returns the number of terms.
+    /// Returns the number of terms in the collection.
     pub fn count(&self) -> usize {
         self.terms.len()
     }
@@ -148,7 +148,8 @@ impl RealTerms {
         }
     }
 
-    /// Returns the values of all terms for these values of the variables. A variable without a value is NaN.
+    /// Returns the values of all terms if the variables have these values. A variable without a value, and every term that depends
+    /// on it, is NaN.
     pub fn evaluate(&self, variables: &HashMap<String, f64>) -> Vec<f64> {
         let mut values: Vec<f64> = Vec::with_capacity(self.terms.len());
         for (term, _) in &self.terms {
@@ -173,12 +174,12 @@ impl RealTerms {
         values
     }
 
-    /// Marks the terms on which `roots` depend, including the roots.
+    /// Returns for each term whether one of `roots` depends on it, including the roots.
     pub fn needed(&self, roots: &[RealTermId]) -> Vec<bool> {
         cone::needed(self.terms.len(), roots.iter().copied(), |id| self.operands(id))
     }
 
-    /// Returns the term without its roundings. `known` caches the results of earlier calls.
+    /// Returns the number of the same expression without its roundings. `known` caches the results of earlier calls.
     pub fn unrounded(
         &mut self,
         id: RealTermId,

@@ -26,7 +26,7 @@ impl WireValues {
         Self(vec![None; wires])
     }
 
-    /// Sets the values of some wires to the bits of terms, the lowest first.
+    /// Sets the values of some wires to the bits of the terms `columns`, the lowest bits first.
     pub fn set(&mut self, bits: &Connection, columns: &[VectorTermId]) {
         for (at, bit) in bits.iter().enumerate() {
             if let Bit::Wire(wire) = *bit {
@@ -101,7 +101,7 @@ impl WireValues {
         }
     }
 
-    /// Returns the term of a read from a memory that the module never writes.
+    /// Returns the term of a read from a memory that the module never writes. `at` is the address, and `words` are the contents.
     pub fn rom(
         &self,
         terms: &mut VectorTerms,

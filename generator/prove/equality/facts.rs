@@ -17,8 +17,9 @@ const ROWS: u32 = 8;
 /// A memory of so few words is written out.
 const WORDS: usize = 16;
 
-/// Returns facts about the terms that some terms depend on. Each fact is a one-bit term that is always 1. With `parts`, the facts
-/// also say that a product is the sum of the products of a factor's parts, which adds products.
+/// Returns arithmetic facts about the products and memory words on which the terms `roots` depend. Each fact is a term of one bit
+/// that is always 1. If `parts` is set, the facts also say that a product is the sum of the products of a factor's parts. This adds
+/// new products.
 pub fn about(
     terms: &mut VectorTerms,
     roots: &[VectorTermId],
@@ -80,7 +81,8 @@ fn by_one_or_none(
     })
 }
 
-/// Finds the products that a cone has in parts, each with the sum that it is.
+/// Finds products that a design computes as a sum of partial products, among the terms on which `roots` depend. Returns each
+/// product with the term of its sum.
 pub fn divided(
     terms: &mut VectorTerms,
     roots: impl IntoIterator<Item = VectorTermId>,
@@ -102,7 +104,7 @@ pub fn divided(
     divided
 }
 
-/// Returns the bits that an extended term extends, and whether the extension copies the sign bit.
+/// Returns the term that `factor` extends, and whether the extension copies the sign bit; `None` if `factor` is no extension.
 pub fn extended(terms: &VectorTerms, factor: VectorTermId) -> Option<(VectorTermId, bool)> {
     match *terms.term(factor) {
         VectorTerm::SignExtend(bits) => Some((bits, true)),

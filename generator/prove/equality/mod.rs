@@ -50,18 +50,19 @@ const MOST_CLOCKS: usize = 8192;
 pub enum Verdict {
     /// Every output is the same for every point.
     Equal(EqualityProof),
-    /// An output differs.
+    /// An output differs for some point, which is stated.
     Different(OutputDifference),
-    /// The solver does not decide it, and no point was found that differs.
+    /// The solver does not decide the question, and no point with a different output was found.
     Open(Open),
 }
 
 /// The reason why the solver does not decide a question.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Open {
-    /// The solver does not know, or it answers with values of products and words that no point has.
+    /// The solver answers that it does not know. Or its counterexample assumes values of products and memory words that no point
+    /// has.
     Unknown,
-    /// It was stopped at its time limit.
+    /// The solver reached its time limit.
     Limit,
 }
 
@@ -72,7 +73,8 @@ pub struct EqualityProof {
     pub outputs: usize,
     /// The number of checkpoints that are proved equal, over all paths through the microprogram.
     pub registers: usize,
-    /// The number of paths through the microprogram that operands can select.
+    /// The number of paths through the microprogram that the operands can select. For example, a jump that depends on an operand
+    /// makes two paths.
     pub ways: usize,
     /// The number of products that are uninterpreted functions for the solver.
     pub products: usize,

@@ -43,7 +43,7 @@ struct ModuleRegister {
 
 /// A memory that the module writes.
 pub struct Memory {
-    /// Read ports.
+    /// The read ports of the memory.
     pub reads: Vec<Read>,
     width: usize,
     addresses: Vec<Connection>,
@@ -299,12 +299,13 @@ impl Module {
         Ok(())
     }
 
-    /// Returns the contents of registers at power-up, which are unknown.
+    /// Returns the contents of the registers at power-up. All of them are unknown, so the proof holds for every initial state.
     pub fn power_up(&self, terms: &mut VectorTerms) -> RegisterContents {
         self.registers.iter().map(|it| unknown(terms, it.output.len())).collect()
     }
 
-    /// Returns the value of every wire, for given inputs, registers and words at the read ports of memories.
+    /// Returns the value of every wire of the module in one clock, given the inputs, the registers and the words at the read ports
+    /// of memories.
     ///
     /// # Errors
     /// Fails if a cell is not known here, or wider than terms are.
@@ -374,7 +375,7 @@ fn unplaced_driver(cell: &ModuleCell, driver: &[Option<usize>], place: &[usize])
 }
 
 impl Memory {
-    /// Returns an unknown word for the memory, with new unknowns.
+    /// Returns a new unknown word of the memory's width, for a read whose result is not known.
     pub fn any(&self, terms: &mut VectorTerms) -> Vec<VectorTermId> {
         unknown(terms, self.width)
     }

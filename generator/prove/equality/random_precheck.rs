@@ -13,7 +13,7 @@ const MOST_CLOCKS: usize = 8192;
 pub struct DesignPair<'a> {
     pub sequential: &'a Design,
     pub pipeline: &'a Design,
-    /// The names of the operands.
+    /// The names of the operands that both designs have.
     pub operands: Vec<String>,
     /// The name of each output, with its net in the pipeline and in the core.
     pub outputs: Vec<(String, NetId, NetId)>,

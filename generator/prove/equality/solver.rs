@@ -17,9 +17,10 @@ use glint_tools::{LimitReached, Tool};
 pub enum SolverAnswer {
     /// The terms are never all 1.
     Unsatisfiable,
-    /// The terms are all 1 for these values of unknowns, as far as products and memories are not known.
+    /// The terms are all 1 for these values of the unknowns. Products and memory words may have values that no hardware gives,
+    /// because the solver treats them as uninterpreted functions.
     Satisfiable(Vec<(VectorTermId, u64)>),
-    /// Neither.
+    /// The solver does not decide the question, for this reason.
     Undecided(Open),
 }
 

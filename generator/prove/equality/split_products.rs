@@ -14,7 +14,7 @@ use glint_base::fixed::MAX_WIDTH;
 /// Numbers at random by which terms that may be equal are found.
 const SAMPLES: usize = 4;
 
-/// The values of terms at random numbers in place of the unknowns. Terms with the same values may be equal.
+/// The values of all terms when the unknowns are random numbers. Terms with the same values may be equal, and the solver decides.
 pub struct Candidates {
     values: Vec<HashMap<VectorTermId, u64>>,
     /// The first net of these values, extended by zeros or by its sign bit.
@@ -42,8 +42,8 @@ impl Candidates {
         Self { values, nets: known }
     }
 
-    /// Returns a net that has the same values as a term of 64 bits, when the net is extended to 64 bits. For example, a net of 20
-    /// bits may have them with its sign extended.
+    /// Returns a net that has the same values as a term of 64 bits, after the net is extended to 64 bits. For example, a net of 20
+    /// bits may match after its sign is extended.
     pub fn of(&self, id: VectorTermId) -> Option<VectorTermId> {
         let key: Vec<u64> = self.values.iter().map(|values| values[&id]).collect();
         self.nets.get(&key).copied()

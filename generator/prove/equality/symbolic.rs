@@ -32,7 +32,7 @@ impl SymbolicState {
     }
 }
 
-/// A design that is executed with terms in place of numbers.
+/// A design that is executed symbolically: every net carries an expression of the unknown operands in place of a number.
 pub struct Execution<'a> {
     pub design: &'a Design,
     order: Vec<NetId>,
@@ -51,7 +51,7 @@ impl<'a> Execution<'a> {
         }
     }
 
-    /// Returns the state at power-up: every register may have any value.
+    /// Returns the state at power-up, in which every register may have any value.
     pub fn power_up(&self, terms: &mut VectorTerms) -> SymbolicState {
         let mut state = SymbolicState { registers: Vec::new(), words: Vec::new() };
         for register in &self.design.registers {

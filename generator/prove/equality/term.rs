@@ -13,7 +13,7 @@ use glint_base::fixed::{MAX_WIDTH, mask};
 pub struct VectorTermId(u32);
 
 impl VectorTermId {
-    /// Returns the number of the term.
+    /// Returns the number of the term in its collection.
     pub fn number(self) -> u32 {
         self.0
     }
@@ -22,7 +22,7 @@ impl VectorTermId {
 /// A bit-vector expression. Its operands have the width of the result unless the variant says otherwise.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub enum VectorTerm {
-    /// Any value, the same wherever the number is.
+    /// An unknown value. Terms with the same number have the same value.
     Unknown(u32),
     Constant(u64),
     Not(VectorTermId),
@@ -35,24 +35,24 @@ pub enum VectorTerm {
     Sub(VectorTermId, VectorTermId),
     /// Product modulo 2^64 of 64 bits.
     Product(VectorTermId, VectorTermId),
-    /// One bit: two terms of one width are equal.
+    /// A bit that is 1 if two terms of the same width are equal.
     Equal(VectorTermId, VectorTermId),
-    /// One bit: the first of two terms of one width is less, unsigned.
+    /// A bit that is 1 if the first of two terms of the same width is less than the second, as unsigned numbers.
     Less(VectorTermId, VectorTermId),
-    /// One bit: the same, two's complement.
+    /// A bit that is 1 if the first of two terms of the same width is less than the second, as two's complement numbers.
     SignedLess(VectorTermId, VectorTermId),
-    /// The second if the first, one bit, is 1; else the third.
+    /// The second term if the first, which has one bit, is 1; otherwise the third.
     Choice(VectorTermId, VectorTermId, VectorTermId),
     /// Bits of a term from `low` up, as many as the result has.
     Slice {
         of: VectorTermId,
         low: u32,
     },
-    /// The first above the second.
+    /// The concatenation of two terms, the first in the top bits.
     Join(VectorTermId, VectorTermId),
     /// A narrower term with copies of its top bit above it.
     SignExtend(VectorTermId),
-    /// A word of a memory; 0 beyond its contents. The address has [`ADDRESS`] bits.
+    /// A word of a memory, which is 0 for an address beyond its contents. The address has [`ADDRESS`] bits.
     Word {
         memory: usize,
         address: VectorTermId,
@@ -95,7 +95,7 @@ impl VectorTerm {
         }
     }
 
-    /// Returns its operands, in order of writing.
+    /// Returns the operands of the term, in the order in which the variant lists them.
     pub fn operands(&self) -> Vec<VectorTermId> {
         self.clone().operands_mut().into_iter().map(|id| *id).collect()
     }
@@ -116,7 +116,7 @@ impl VectorTerms {
         self.nodes[id.0 as usize].1
     }
 
-    /// Returns the term with a number, if there is one.
+    /// Returns the id of term number `number`, or `None` if there are fewer terms.
     pub fn numbered(&self, number: u32) -> Option<VectorTermId> {
         ((number as usize) < self.nodes.len()).then_some(VectorTermId(number))
     }
@@ -136,7 +136,7 @@ impl VectorTerms {
         (0..live.len()).filter(|&at| live[at]).map(|at| VectorTermId(at as u32)).collect()
     }
 
-    /// Returns the value of each term of a cone, for values of the unknowns by their numbers.
+    /// Returns the value of each term in `cone`. `unknown` gives the value of each unknown, by its number.
     pub fn values(
         &self,
         cone: &[VectorTermId],
@@ -173,7 +173,8 @@ impl VectorTerms {
         self.memories.len() - 1
     }
 
-    /// Returns the term of a read beyond the contents of a memory: an unknown, which is the same for the same address.
+    /// Returns the term for a read at an address beyond the contents of a memory. It is an unknown that is the same for every read
+    /// at the same address.
     pub fn beyond(&mut self, memory: usize, address: VectorTermId, width: u32) -> VectorTermId {
         if let Some(&word) = self.beyond.get(&(memory, address)) {
             return word;
@@ -194,7 +195,7 @@ impl VectorTerms {
         self.make(VectorTerm::Join(zeros, id), width)
     }
 
-    /// Extends a term with copies of its sign bit above it.
+    /// Extends a term to the width `width` with copies of its sign bit. For example, 0b101 becomes 0b1101 at a width of 4.
     pub fn sign_extended(&mut self, id: VectorTermId, width: u32) -> VectorTermId {
         if self.width(id) == width { id } else { self.make(VectorTerm::SignExtend(id), width) }
     }
@@ -230,12 +231,13 @@ impl VectorTerms {
         self.make(VectorTerm::Choice(condition, then, otherwise), self.width(then))
     }
 
-    /// Returns whether the collection contains a term.
+    /// Returns whether the collection already contains this term with the width `width`.
     pub fn has(&self, term: &VectorTerm, width: u32) -> bool {
         self.known.contains_key(&(ordered(term.clone()), width))
     }
 
-    /// Replaces a condition, a one-bit term, by a constant in all of `terms`.
+    /// Replaces a condition, a one-bit term, by the constant `value` in all of `terms`. The execution does so where a path assumes
+    /// the condition.
     pub fn assuming(&mut self, condition: VectorTermId, value: bool, terms: &mut [VectorTermId]) {
         let constant = self.constant(value.into(), 1);
         self.replace(&HashMap::from([(condition, constant)]), terms);

@@ -29,11 +29,12 @@ use glint_tools::Tool;
 pub enum TextVerdict {
     /// Every output is the same for every point.
     Equal(TextProof),
-    /// An output differs; for which values.
+    /// An output of the Verilog differs from the netlist. The text states for which values.
     Different(String),
-    /// The solver does not decide it.
+    /// The solver does not decide the question.
     Open(Open),
-    /// The text contains something that is not known here, or one of its memories is no delay.
+    /// The Verilog contains something that this module cannot interpret, or one of its memories is no delay line. The field says
+    /// which.
     Unread(String),
 }
 

@@ -1,4 +1,5 @@
-//! Records at which clocks of a test each ROM word is read.
+//! Records at which clocks of a test each ROM word is read. Mutation testing plants faults in ROM words and uses the record to save
+//! time.
 //!
 //! A fault in a word can only show after a read of the word, so a check of the fault need not run the whole test.
 

@@ -24,16 +24,16 @@ const NEIGHBOURS: usize = 256;
 /// A change of a bit: stuck at 0, stuck at 1, or inverted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum BitChange {
-    /// It is always 0.
+    /// The bit is always 0.
     Stuck0,
-    /// It is always 1.
+    /// The bit is always 1.
     Stuck1,
-    /// It is inverted.
+    /// The bit is inverted.
     Inverted,
 }
 
 impl BitChange {
-    /// All changes of a bit.
+    /// All changes of a bit: stuck at 0, stuck at 1, and inverted.
     pub const ALL: [Self; 3] = [Self::Stuck0, Self::Stuck1, Self::Inverted];
 
     /// Returns `bits` with this change at bit number `bit`. For example, bit 0 of 0b1010 inverted gives 0b1011.
@@ -51,25 +51,25 @@ impl BitChange {
 pub enum Site {
     /// A bit of a net.
     Bit(NetId, u32, BitChange),
-    /// Another driver of a net that is no state.
+    /// Another driver for a net. The net is not the output of a register or memory.
     Driver(NetId, Driver),
-    /// A register that takes its data always (`true`) or never.
+    /// A register with another enable: it loads its data always (`true`) or never (`false`).
     Enable(RegId, bool),
-    /// A register without its reset.
+    /// A register that the reset does not affect.
     Reset(RegId),
-    /// Other words of a ROM, by address.
+    /// A ROM with other words at some addresses.
     Words(RomId, Vec<(usize, u64)>),
 }
 
-/// A fault in a netlist.
+/// A fault in a netlist: one change at one place, with a name. For example, bit 3 of the net `adder15` stuck at 0.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NetlistFault {
-    /// Made of the names in the design: `adder15[3]:stuck-at-0`. No two faults of a design have the same. A fault of a
-    /// ROM names the word: `coefficient@1005[2]` is a bit of word 1005, and `coefficient@1004,1005` swaps two words.
+    /// The name of the fault, which no other fault of the design has. It is made of names in the design: `adder15[3]:stuck-at-0`. A
+    /// fault of a ROM names the word: `coefficient@1005[2]` is a bit of word 1005, and `coefficient@1004,1005` swaps two words.
     pub id: String,
-    /// The kind of the fault.
+    /// The kind of the fault, such as a stuck bit.
     pub kind: FaultKind,
-    /// The place of the fault.
+    /// The place of the fault in the netlist, and the change there.
     pub site: Site,
 }
 
@@ -120,7 +120,7 @@ impl Faults {
         self.0.iter()
     }
 
-    /// Returns how many there are.
+    /// Returns the number of faults.
     pub fn len(&self) -> usize {
         self.0.len()
     }
@@ -130,7 +130,7 @@ impl Faults {
         self.0.is_empty()
     }
 
-    /// Returns the fault with an id.
+    /// Returns the fault with this id, or `None` if there is no such fault.
     pub fn find(&self, id: &str) -> Option<&NetlistFault> {
         self.0.iter().find(|fault| fault.id == id)
     }

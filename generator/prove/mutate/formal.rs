@@ -1,4 +1,5 @@
-//! Proves with Yosys that a Verilog module and the same module with a fault behave alike.
+//! Proves with Yosys that a Verilog module and the same module with a fault behave alike. Such a fault is equivalent, and no test
+//! has to notice it.
 
 use std::collections::BTreeSet;
 use std::fs;

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 /// The kinds in their order, each with its name in tables.
 macro_rules! kinds {
     ($($(#[$doc:meta])* $kind:ident = $name:literal,)*) => {
-        /// The kind of a fault.
+        /// The kind of a fault, by which tables count the faults.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
         #[serde(rename_all = "kebab-case")]
         pub enum FaultKind {
@@ -15,7 +15,7 @@ macro_rules! kinds {
         }
 
         impl FaultKind {
-            /// Every kind, in the order of tables.
+            /// Every kind of fault, in the order of the tables.
             pub const ALL: &[Self] = &[$(Self::$kind,)*];
         }
 

@@ -1,8 +1,8 @@
-//! Tests a mutant whose faulty ROM word is read only for a few operand values.
+//! Tests a mutant (a design with one fault) whose faulty ROM word is read only for a few operand values.
 //!
-//! Random operands would rarely read the word. The test therefore holds the operands that lead to the word at fixed values, and
-//! draws the others at random. If an operand is the address of the ROM, the test tries all values of the other operands that
-//! determine the reflectance `f`.
+//! Random operands would rarely read the word. The test therefore fixes the operands that lead to the word, and draws the others at
+//! random. If an operand is the address of the ROM, the test tries all values of the other operands that determine the reflectance
+//! `f`.
 
 use anyhow::Result;
 

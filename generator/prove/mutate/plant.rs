@@ -1,4 +1,4 @@
-//! Makes a mutant: a copy of a netlist with one fault.
+//! Makes a mutant, which is a copy of a netlist with one fault.
 
 use std::borrow::Cow;
 

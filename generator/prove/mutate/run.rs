@@ -26,8 +26,8 @@ const FIRST_POINTS: u64 = 256;
 const BEYOND_POINTS: u64 = 1_000_000;
 const BEYOND_SEED: u64 = 2;
 
-/// Plants each of the faults in turn, runs the checks on the mutant, and returns the verdicts. It calls `progress` after each
-/// fault.
+/// Plants each of the faults in turn, runs the checks on the mutant (the design with the fault), and returns the verdicts. It calls
+/// `progress` after each fault.
 ///
 /// # Errors
 /// Fails if a mutant cannot be simulated.

@@ -19,7 +19,7 @@ pub const GOAL_TEXT: f64 = 0.98;
 /// the bits whose inversion some check notices. Words that are never read are not counted.
 pub const GOAL_MEMORY: f64 = 0.95;
 
-/// A share of some faults.
+/// A share of some faults, such as "98 of 100 noticed".
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Share {
     /// The number of faults that are noticed.
@@ -35,16 +35,16 @@ impl Share {
     }
 }
 
-/// The numbers of faults with each verdict.
+/// The numbers of planted faults with each verdict.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Tally {
-    /// How many were planted.
+    /// The number of faults that were planted.
     pub planted: usize,
     /// For each check, the number of faults that it noticed first.
     pub caught: BTreeMap<Detector, usize>,
     /// For each kind of proof, the number of faults that it proved equivalent.
     pub equivalent: BTreeMap<How, usize>,
-    /// The number of undecided faults.
+    /// The number of faults that no check noticed and no proof showed to be equivalent.
     pub undecided: usize,
     /// The number of faults that the shipped bench notices. `missed` is the number that it does not notice although another check
     /// does.
@@ -98,7 +98,7 @@ pub struct Score {
 }
 
 impl Score {
-    /// Counts the verdicts on some faults.
+    /// Counts the verdicts on the faults `found`.
     pub fn of(found: &[FaultResult]) -> Self {
         let mut score = Self::default();
         for one in found {

@@ -1,4 +1,5 @@
-//! Runs the test bench that is shipped with a core on a mutant: applies its vectors and compares only the outputs.
+//! Runs the test bench that Glint ships with a core on a mutant, a design with one fault. The bench applies its vectors and
+//! compares only the outputs, as it does for a user of the core.
 
 use anyhow::Result;
 

@@ -11,9 +11,9 @@ use glint_core::cosim::Mismatch;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Detector {
-    /// The default test: golden model against built-in simulator.
+    /// The default test noticed the fault: it compares golden model and simulated hardware for random operands.
     Cosim,
-    /// Operands held at values that read the words at fault.
+    /// A directed test noticed the fault: it fixes some operands at values with which the hardware reads the faulty ROM words.
     Directed,
 }
 
@@ -21,11 +21,11 @@ pub enum Detector {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum How {
-    /// By induction over the microprogram.
+    /// The fault was proved equivalent by induction over the microprogram.
     Induction,
-    /// By every combination of the values around it.
+    /// The fault was proved equivalent by trying every combination of values on the nets around it.
     Exhaustion,
-    /// By every combination of the operands that are used with the word at fault.
+    /// The fault was proved equivalent by trying every combination of the operands with which the hardware uses the faulty word.
     Operands,
 }
 
@@ -51,30 +51,30 @@ impl fmt::Display for How {
 /// The difference between mutant and golden model that a check found.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SignalDifference {
-    /// Operands that the stimulus held, by name, at raw values ([`glint_core::cosim::Lockstep::holding`]). For example,
-    /// `exponent` at 5.
+    /// The operands that the stimulus fixed, each by name with its raw value ([`glint_core::cosim::Lockstep::holding`]). For
+    /// example, `exponent` at 5.
     pub held: Vec<(String, i64)>,
-    /// The signal that differs, and the clock.
+    /// The signal that differs, and the clock in which it differs.
     pub mismatch: Mismatch,
 }
 
-/// The verdict on a mutant.
+/// The verdict on a mutant: caught by a check, proved equivalent, or undecided.
 #[derive(Clone, Debug, PartialEq)]
 pub enum MutantVerdict {
-    /// A check differs, at this place.
+    /// A check noticed the fault, by this difference.
     Caught(Detector, SignalDifference),
-    /// Proved to change nothing that is compared.
+    /// The fault is proved to change nothing that the checks compare.
     Equivalent(How),
-    /// Neither caught nor proved equivalent.
+    /// No check noticed the fault, and no proof shows it to be equivalent.
     Undecided,
 }
 
-/// A fault and its verdict.
+/// A planted fault, with the verdict of the checks on it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FaultResult {
-    /// The fault.
+    /// The fault that was planted.
     pub fault: NetlistFault,
-    /// The verdict.
+    /// The verdict of the checks and proofs on the fault.
     pub verdict: MutantVerdict,
     /// Whether the shipped bench notices the fault at the outputs.
     pub shipped: bool,

@@ -28,13 +28,13 @@ const POINTS: u64 = 10_000;
 /// is busy with other things does not make them fail.
 const PROOF_LIMIT: Duration = Duration::from_secs(120);
 
-/// A fault in the text of the emitted Verilog.
+/// A fault in the text of the emitted Verilog. For example, `4'd9` becomes `4'd8`.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct TextFault {
-    /// The file, the number of the line, the kind, and a number among the faults of this kind in the line. For example,
-    /// `blinn_datapath.v:127:operator:1` is the first wrong operator in line 127.
+    /// The name of the fault: the file, the line number, the kind of fault, and a number among the faults of this kind in the line.
+    /// For example, `blinn_datapath.v:127:operator:1` is the first wrong operator in line 127.
     pub id: String,
-    /// The name of the fault's kind.
+    /// The name of the kind of fault, such as `operator`.
     pub kind: &'static str,
     file: usize,
     /// The line, from 0, and its new text.
@@ -48,24 +48,24 @@ pub struct TextFault {
 pub enum TextMutantVerdict {
     /// Icarus Verilog or Verilator refuses the text or warns of it.
     Lint,
-    /// A bench fails.
+    /// A test bench fails.
     Bench,
     /// Yosys proves that the module behaves as before.
     Equivalent,
-    /// Nothing notices it, and nothing proves it equivalent.
+    /// No check notices the fault, and no proof shows it to be equivalent.
     Undecided,
 }
 
 /// Whether the shipped bench alone notices a fault in the Verilog.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum ShippedBench {
-    /// Icarus Verilog does not build it.
+    /// Icarus Verilog cannot build the shipped bench with the fault.
     Refused,
-    /// It fails.
+    /// The shipped bench fails, so it notices the fault.
     Noticed,
-    /// It passes, and a longer one fails.
+    /// The shipped bench passes, but a longer bench fails.
     Missed,
-    /// Both pass: if the fault changes an output, then seldom.
+    /// The shipped bench and a longer bench pass. If the fault changes an output, it does so seldom.
     Silent,
 }
 
@@ -219,12 +219,12 @@ impl VerilogText {
         text
     }
 
-    /// Returns all files, without a fault.
+    /// Returns all files of the configuration, without any fault.
     pub fn files(&self) -> &[OutputFile] {
         &self.files
     }
 
-    /// Returns all files, with one fault.
+    /// Returns all files of the configuration, one of them with the fault.
     pub fn planted(&self, fault: &TextFault) -> Vec<OutputFile> {
         let mut text = String::new();
         for (number, line) in self.files[fault.file].contents.lines().enumerate() {
@@ -263,7 +263,7 @@ impl VerilogText {
         faults
     }
 
-    /// Returns the result for each of the faults.
+    /// Plants each of the faults and returns the verdicts of lint and test benches on it.
     ///
     /// # Errors
     /// Fails if a linter is missing, or does not end within `limit`.

@@ -1,9 +1,9 @@
-//! Searches for an operand combination at which a mutant of a pipeline gives a wrong result.
+//! Searches for an operand combination at which a mutant of a pipeline (the pipeline with one fault) gives a wrong result.
 //!
-//! Some hardware exists in a pipeline but not in its sequential core, such as the parts of a split product. A fault there may
-//! show only if a carry runs through all bits that are later dropped, which random points rarely cause. The search simulates
-//! pipeline and mutant together. It keeps points that make some register differ, preferably in a late stage, and changes one
-//! operand at a time. If it finds nothing, that proves nothing.
+//! Some hardware exists in a pipeline but not in its sequential core, such as the parts of a split product. A fault there may show
+//! only if a carry runs through all bits that are later dropped, which random points rarely cause. The search simulates pipeline
+//! and mutant together. It keeps points that make some register differ, preferably in a late stage, and changes one operand at a
+//! time. If it finds nothing, that proves nothing.
 
 use std::sync::Arc;
 

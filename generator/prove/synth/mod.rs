@@ -46,7 +46,8 @@ pub struct SynthesisSubject<'a> {
     pub design: &'a Design,
     /// The Verilog and ROM contents of the core, as pairs of a file name and contents.
     pub files: &'a [(String, String)],
-    /// The number of runs of placement and routing, with the seeds 1, 2, …. For example, 3 means the seeds 1, 2 and 3.
+    /// The number of runs of placement and routing, each with another seed of the tool's random numbers: 1, 2, …. For example, 3
+    /// means the seeds 1, 2 and 3.
     pub seeds: u32,
     /// The time limit of each run of a tool.
     pub limit: Duration,
@@ -80,7 +81,7 @@ impl Flow {
         Ok(Self { target, yosys, others, liberty: liberty.to_owned(), versions })
     }
 
-    /// Returns the target.
+    /// Returns the target for which these tools measure.
     pub fn target(&self) -> Target {
         self.target
     }
@@ -99,8 +100,8 @@ impl Flow {
         package::digest(text.as_bytes())
     }
 
-    /// Returns the number of times that [`Flow::measure`] calls `done`. For example, iCE40 with 3 seeds has 4 steps: one
-    /// synthesis and three routes.
+    /// Returns the number of times that [`Flow::measure`] calls `done`, so that a caller can show progress. For example, iCE40 with
+    /// 3 seeds has 4 steps: one synthesis and three routes.
     pub fn steps(target: Target, seeds: u32) -> u64 {
         match target {
             Target::Ice40 | Target::Ecp5 => 1 + u64::from(seeds),
@@ -109,7 +110,7 @@ impl Flow {
         }
     }
 
-    /// Measures a core. It calls `done` after each step.
+    /// Measures the area and the frequency of a core. It calls `done` after each step.
     ///
     /// # Errors
     /// Fails if a tool fails, takes longer than its limit, or does not report a figure.
@@ -157,7 +158,7 @@ fn area(
     Ok(figures)
 }
 
-/// Yosys, with the time limit of each run.
+/// Yosys as a tool, with the time limit of each run.
 pub struct Yosys<'a>(pub &'a Tool, pub Duration);
 
 impl Synthesis for Yosys<'_> {

@@ -5,8 +5,8 @@ use rayon::prelude::*;
 
 use super::{Figures, PathPoint, SynthesisSubject};
 
-/// Runs `route` with each seed, and adds the results to `figures`: frequencies in MHz, and longest paths. Does nothing if
-/// `figures` already has a reason why the core cannot be timed.
+/// Runs `route` (placement, routing and timing analysis) once for each seed, and adds the results to `figures`: frequencies in MHz,
+/// and longest paths. Does nothing if `figures` already has a reason why the core cannot be timed.
 ///
 /// # Errors
 /// Fails if a run fails; the message has its seed, for example `seed 2`.

@@ -15,9 +15,10 @@ pub struct Workspace<'a> {
     subject: &'a SynthesisSubject<'a>,
 }
 
-/// The name of the harness's file. Yosys does not read it when it synthesises the core alone.
+/// The name of the Verilog file with the harness, the registers around the core. Yosys does not read it when it synthesises the
+/// core alone.
 pub const HARNESS: &str = "glint_harness.v";
-/// The name of the file with the netlist after synthesis.
+/// The name of the file with the netlist after synthesis, as JSON.
 pub const NETLIST: &str = "harness.json";
 
 impl<'a> Workspace<'a> {

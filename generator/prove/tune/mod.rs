@@ -54,7 +54,7 @@ impl fmt::Display for ErrorUnit {
     }
 }
 
-/// The cost that is minimised.
+/// The cost that the search minimises.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Objective {
     /// Look-up tables; a DSP block or a block RAM counts for as many as the chip has of them.
@@ -72,11 +72,11 @@ pub enum Objective {
 pub struct TuningGoal {
     /// The largest error bound that a configuration may have.
     pub error: f64,
-    /// The unit of `error`.
+    /// The unit in which `error` is stated.
     pub unit: ErrorUnit,
     /// The FPGA family for which costs are estimated.
     pub target: Target,
-    /// The cost to be minimised.
+    /// The cost that the search minimises, such as the number of look-up tables.
     pub objective: Objective,
     /// The lowest acceptable clock frequency in MHz, by the estimate.
     pub clock: Option<f64>,
@@ -92,15 +92,14 @@ const LONGEST: i64 = 64;
 /// The keys by which a pipeline has a rate.
 const ARCHITECTURE: [&str; 2] = ["architecture", "pipeline.interval"];
 
-/// Searches for the smallest configuration.
+/// Searches for the smallest configuration that meets `goal`.
 ///
-/// `base` has the keys that are part of the goal. The search changes the free keys, except those in `fixed`. It also
-/// looks at pipelines if a rate is wanted or DSP blocks are limited, and `fixed` has no architecture; such a pipeline
-/// has the longest interval that meets the goal. `progress` is called with the number of configurations that were
-/// looked at.
+/// `base` has the keys that are part of the user's question. The search changes the other keys, except those in `fixed`. It also
+/// tries pipelines if a rate is wanted or DSP blocks are limited, and `fixed` does not contain the architecture. Such a pipeline
+/// takes a point as seldom as the goal allows. `progress` is called with the number of configurations that were evaluated.
 ///
 /// # Errors
-/// Fails if no configuration keeps the goal. The message says which term of the bound, or the clock, is in the way.
+/// Fails if no configuration meets the goal. The message says which term of the bound, or the clock, is in the way.
 pub fn tune(
     device: &Device,
     base: &Config,

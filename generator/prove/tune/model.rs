@@ -25,22 +25,22 @@ pub struct Features {
     pub logic: f64,
     /// The number of bits of the ROMs that are made of look-up tables, divided by 16.
     pub rom: f64,
-    /// The number of bits of the sums of partial products.
+    /// The number of bits that must be added up in products made of look-up tables.
     pub product: f64,
 }
 
 /// The estimated cost of a configuration on a target.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Cost {
-    /// The number of look-up tables.
+    /// The estimated number of look-up tables.
     pub luts: f64,
-    /// The number of DSP blocks.
+    /// The estimated number of DSP blocks.
     pub dsps: u64,
-    /// The number of block RAMs.
+    /// The estimated number of block RAMs.
     pub block_rams: u64,
     /// The number of bits of all ROMs.
     pub rom_bits: u64,
-    /// The clock frequency in MHz.
+    /// The estimated clock frequency in MHz.
     pub mhz: f64,
 }
 
@@ -51,7 +51,7 @@ fn family(target: Target) -> &'static Family {
 }
 
 impl Cost {
-    /// Estimates the cost of a design.
+    /// Estimates the cost of a design on a target.
     pub fn new(design: &Design, target: Target) -> Self {
         let family = family(target);
         let features = Features::new(design, target);

@@ -21,24 +21,24 @@ const EXPONENT: f64 = 35.0;
 /// A configuration that the search has evaluated, with its bound, cost and rate.
 #[derive(Clone, Debug)]
 pub struct Candidate {
-    /// The configuration.
+    /// The configuration that was evaluated.
     pub config: Config,
-    /// The proved error bound.
+    /// The proved error bound of the configuration.
     pub bound: Bound,
-    /// The estimated cost.
+    /// The estimated cost of the configuration.
     pub cost: Cost,
-    /// Clocks from a point to the next, as `glint synth` counts them; `None` if the device shows none.
+    /// The number of clocks from one point to the next, as `glint synth` counts them; `None` if the device never shows a result.
     pub clocks: Option<f64>,
 }
 
 impl Candidate {
-    /// Returns the rate in million points a second, at the estimated clock.
+    /// Returns the number of points per second in millions, at the estimated clock frequency.
     pub fn rate(&self) -> Option<f64> {
         self.clocks.map(|clocks| self.cost.mhz / clocks)
     }
 }
 
-/// The result of a search.
+/// The result of a search: the best configuration, and the alternatives.
 #[derive(Clone, Debug)]
 pub struct Answer {
     /// The smallest configuration that was found.

@@ -21,7 +21,7 @@ const STATEMENT: [&str; 2] = ["domain", "function"];
 /// the formula is neither 0 nor flat.
 const POINTS: u32 = 600;
 
-/// The keys that a search may change.
+/// The keys of a device that a search may change.
 pub struct SearchSpace {
     schema: Schema,
     free: Vec<&'static str>,
@@ -92,7 +92,7 @@ impl SearchSpace {
         &self.schema
     }
 
-    /// Returns the possible changes of a configuration in one key.
+    /// Returns the possible steps from a configuration: each changes one key to a neighbouring value.
     pub fn moves(&self, config: &Config) -> Vec<(&'static str, Value)> {
         let mut moves = Vec::new();
         for key in &self.schema.keys {

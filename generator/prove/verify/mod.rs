@@ -24,15 +24,15 @@ use glint_core::core::Core;
 use glint_core::package::{self, FileKind, OutputFiles};
 use glint_tools::{LimitReached, Tool};
 
-/// A configuration to be verified.
+/// A configuration to be verified, with the settings of the verification.
 pub struct CheckSubject<'a> {
     /// The path of the configuration file on the command line.
     pub path: &'a str,
-    /// The core of the configuration.
+    /// The core that is built from the configuration.
     pub core: &'a Core,
     /// How much work the verification may do.
     pub effort: Effort,
-    /// The directory of the records that `cosim --exhaustive --json` writes.
+    /// The directory with the records that `glint cosim --exhaustive --json` writes.
     pub proofs: &'a Path,
     files: OnceLock<OutputFiles>,
 }
@@ -63,14 +63,14 @@ impl<'a> CheckSubject<'a> {
 pub struct FileDigest {
     /// The path as `generate` names it, for example `rtl_out/rsqrt/rsqrt.v`.
     pub path: String,
-    /// SHA-256 in hexadecimal.
+    /// The digest of the file, SHA-256 in hexadecimal.
     pub sha256: String,
 }
 
 /// How much work a verification may do.
 #[derive(Clone, Copy, Debug)]
 pub struct Effort {
-    /// Everything, however long it takes.
+    /// Whether to do all the work, however long it takes.
     pub full: bool,
     /// Whether to run only the checks that need no tool outside Glint.
     pub without_tools: bool,
@@ -78,33 +78,33 @@ pub struct Effort {
     pub time_limit: Duration,
 }
 
-/// The verdict of a check.
+/// The verdict of a check, from "proved" to "not applicable".
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum CheckVerdict {
-    /// It holds for everything in the domain.
+    /// The checked property holds for everything in the domain.
     Proved,
-    /// It held wherever it was tried.
+    /// The checked property held wherever the check tried it.
     Passed,
-    /// It does not hold.
+    /// The checked property does not hold.
     Failed,
-    /// It was run to its end and does not say whether it holds: the test is too weak, or the solver answers unknown.
+    /// The check ran to its end but cannot decide: the test is too weak, or the solver answers that it does not know.
     Undecided,
-    /// It reached a limit of time or memory.
+    /// The check reached a limit of time or memory.
     LimitReached,
     /// The check could not be run: a tool is missing, or it takes more than this effort allows.
     #[default]
     NotRun,
-    /// It is a second proof of a fact that another check shows, and did not succeed; the finding says why.
+    /// The check is a second proof of a fact that another check shows, and it did not succeed. The finding says why.
     Unconfirmed,
-    /// It was left out on purpose.
+    /// The user left the check out on purpose.
     LeftOut,
-    /// It asks nothing of this configuration.
+    /// The check does not apply to this configuration. For example, a sequential core has no pipeline to compare.
     NotApplicable,
 }
 
 impl CheckVerdict {
-    /// Returns the verdict for people.
+    /// Returns the verdict as a short text. For example, `proved` or `not run`.
     pub fn words(self) -> &'static str {
         match self {
             Self::Proved => "proved",
@@ -136,7 +136,7 @@ impl CheckVerdict {
 /// The answer of a check: the verdict, and its reasons.
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct Finding {
-    /// The verdict.
+    /// The verdict of the check.
     pub verdict: CheckVerdict,
     /// The domain for which the finding holds, for example operands, clocks or faults.
     pub domain: String,
@@ -184,9 +184,10 @@ type CheckFunction = fn(&CheckSubject<'_>, &[Tool], &(dyn Fn(u64) + Sync)) -> Re
 pub struct Check {
     /// The name for scripts, for example `lockstep`.
     pub id: &'static str,
-    /// The name for people, for example "Golden model against simulation".
+    /// The name of the check for people, for example "Golden model against simulation".
     pub title: &'static str,
-    /// The two sides that it compares.
+    /// The question that the check answers, for example "Is no output further from the formula in f64 than the stated bound, for
+    /// any operands?".
     pub question: &'static str,
     /// The files or structures that it reads.
     pub reads: &'static str,
@@ -223,7 +224,7 @@ impl Check {
         !self.tools.is_empty()
     }
 
-    /// Returns the steps that its progress will have.
+    /// Returns the number of steps that the progress of the check will have.
     pub fn steps(&self, subject: &CheckSubject<'_>) -> u64 {
         (self.steps)(subject)
     }
@@ -288,17 +289,17 @@ impl Check {
 /// A check, with its finding and the time that it took.
 #[derive(Clone, Debug, Serialize)]
 pub struct CheckAnswer {
-    /// [`Check::id`].
+    /// The name of the check for scripts: [`Check::id`].
     pub check: &'static str,
-    /// [`Check::title`].
+    /// The name of the check for people: [`Check::title`].
     pub title: &'static str,
-    /// [`Check::question`].
+    /// The question of the check: [`Check::question`].
     pub question: &'static str,
-    /// [`Check::reads`].
+    /// The files or structures that the check read: [`Check::reads`].
     pub reads: &'static str,
     /// The versions of the outside tools that the check used.
     pub tools: Vec<String>,
-    /// The finding.
+    /// The finding of the check: its verdict and reasons.
     #[serde(flatten)]
     pub finding: Finding,
     /// How long the check took. It is not serialised, because it differs from run to run.
@@ -306,12 +307,12 @@ pub struct CheckAnswer {
     pub timing: CheckTime,
 }
 
-/// How long a check took.
+/// The time that a check took, which is kept apart from the findings because it differs from run to run.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct CheckTime {
-    /// [`Check::id`].
+    /// The name of the check for scripts: [`Check::id`].
     pub check: &'static str,
-    /// The time in seconds.
+    /// The time that the check took, in seconds.
     pub seconds: f64,
 }
 
@@ -319,13 +320,13 @@ pub struct CheckTime {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Conclusion {
-    /// Every check that asks something of the configuration was run, and all of them hold.
+    /// Every check that applies to the configuration ran, and every checked property holds.
     Verified,
-    /// Every check that was not left out on purpose was run, and all of them hold.
+    /// The user left checks out on purpose. Every other check ran, and every checked property holds.
     InPart,
-    /// Nothing failed, but a check could not be run to its end, or decides nothing.
+    /// Nothing failed, but a check could not be run to its end, or could not decide.
     Incomplete,
-    /// Something does not hold.
+    /// A checked property does not hold.
     Failed,
 }
 
@@ -337,7 +338,7 @@ impl Conclusion {
         verdicts.max().unwrap_or(Self::Incomplete)
     }
 
-    /// Returns the conclusion for people.
+    /// Returns the conclusion as a short text. For example, `verified in part`.
     pub fn words(self) -> &'static str {
         match self {
             Self::Verified => "verified",
@@ -351,26 +352,26 @@ impl Conclusion {
 /// The record of one configuration, written to `<name>.json`.
 #[derive(Clone, Debug, Serialize)]
 pub struct VerificationRecord {
-    /// The version of Glint.
+    /// The version of Glint that wrote the record.
     pub glint: &'static str,
     /// The path of the configuration on the command line.
     pub config: String,
-    /// The top module.
+    /// The name of the top module.
     pub name: String,
-    /// The device.
+    /// The name of the device.
     pub device: &'static str,
-    /// SHA-256 of the configuration with all its keys.
+    /// A digest of the configuration with all its keys, SHA-256 in hexadecimal.
     pub configuration: String,
-    /// Each Verilog and memory file that `generate` writes. It is empty if golden model and simulation do not agree
-    /// on the bench.
+    /// Each Verilog file and memory file that `generate` writes, with its digest. It is empty if golden model and simulation do not
+    /// agree on the test bench.
     pub files: Vec<FileDigest>,
-    /// Whether everything was done, however long it takes.
+    /// Whether all the work was done, however long it took.
     pub full: bool,
-    /// The conclusion of all checks.
+    /// The conclusion from all checks together.
     pub conclusion: Conclusion,
     /// The number of checks with each verdict.
     pub counts: BTreeMap<CheckVerdict, usize>,
-    /// In the order in which they were run.
+    /// The answers of the checks, in the order in which they ran.
     pub checks: Vec<CheckAnswer>,
 }
 

@@ -364,7 +364,7 @@ fn bench(subject: &CheckSubject<'_>, simulator: VerilogSimulator) -> Result<Find
     .open("Operands that were not drawn."))
 }
 
-/// Synthesises the core for FPGAs.
+/// Synthesises the core for the FPGA families with Yosys, and checks that this succeeds.
 pub const SYNTHESIS: Check = Check {
     id: "synthesis",
     title: "Synthesis",

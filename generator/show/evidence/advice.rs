@@ -25,7 +25,7 @@ const MOST: usize = 40;
 /// would bring the bound to 0.812 units".
 #[derive(Clone, Debug, PartialEq)]
 pub struct Advice {
-    /// The keys to change: for each its name, its present value and the value that helps, as TOML.
+    /// The keys to change. Each entry has the name of the key, its present value and the value that helps, both as TOML.
     pub changes: Vec<(&'static str, String, String)>,
     /// The error bound with all of these changes, in output units.
     pub units: f64,

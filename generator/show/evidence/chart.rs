@@ -6,30 +6,31 @@ use serde::Serialize;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum AxisScale {
-    /// Evenly.
+    /// Values are spaced evenly.
     Linear,
-    /// By powers of ten; values that are not positive have no place on it.
+    /// Powers of ten are spaced evenly. Values that are not positive have no place on such an axis.
     Logarithmic,
 }
 
-/// An axis of a chart.
+/// An axis of a chart: its label, its scale and its range.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ChartAxis {
-    /// The quantity, with the unit.
+    /// The quantity that the axis shows, with its unit. For example, `γ (degrees)`.
     pub label: String,
-    /// The scale of the axis.
+    /// Whether the axis is linear or logarithmic.
     pub scale: AxisScale,
-    /// The range that is plotted. The plot cuts values outside off; the table of values shows them.
+    /// The smallest and the largest value of the plotted range. The plot clips values outside the range; the table of values shows
+    /// them.
     pub range: (f64, f64),
 }
 
 impl ChartAxis {
-    /// Makes a linear axis.
+    /// Makes a linear axis that shows the values from `low` to `high`.
     pub fn linear(label: &str, low: f64, high: f64) -> Self {
         Self { label: label.to_owned(), scale: AxisScale::Linear, range: (low, high) }
     }
 
-    /// Makes a logarithmic axis.
+    /// Makes a logarithmic axis that shows the values from `low` to `high`.
     pub fn logarithmic(label: &str, low: f64, high: f64) -> Self {
         Self { scale: AxisScale::Logarithmic, ..Self::linear(label, low, high) }
     }
@@ -46,42 +47,43 @@ impl ChartAxis {
     }
 }
 
-/// A curve of a chart.
+/// A curve of a chart: its name and its values.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Series {
-    /// The name, for the legend and the table's head.
+    /// The name of the curve, for the legend and the head of the table.
     pub name: String,
-    /// One value for each place on the chart's axis; NaN (`null` in JSON) if there is no value.
+    /// The values of the curve, one for each position in [`Chart::places`]. A position without a value has NaN, which is `null` in
+    /// JSON.
     pub values: Vec<f64>,
 }
 
 /// A horizontal reference line across a chart, for example the proved bound.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Mark {
-    /// The label.
+    /// The label of the reference line.
     pub label: String,
-    /// The value on the vertical axis.
+    /// The value on the vertical axis at which the line is drawn.
     pub at: f64,
 }
 
-/// A chart: several series over one axis.
+/// A chart: several curves over the same horizontal axis.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Chart {
-    /// The identifier in HTML, unique on the page.
+    /// The identifier of the chart in HTML, which must be unique on the page.
     pub id: String,
-    /// The heading.
+    /// The heading of the chart.
     pub title: String,
     /// The caption of a sentence or two, which a screen reader also reads.
     pub caption: String,
-    /// The horizontal axis.
+    /// The horizontal axis of the chart.
     pub x: ChartAxis,
-    /// The vertical axis.
+    /// The vertical axis of the chart.
     pub y: ChartAxis,
-    /// Places on the horizontal axis, ascending.
+    /// The positions on the horizontal axis at which the curves have values, in ascending order.
     pub places: Vec<f64>,
-    /// The curves, at most [`crate::pages::plots::STYLES`].
+    /// The curves of the chart. There may be at most [`crate::pages::plots::STYLES`], so that a reader can tell them apart.
     pub series: Vec<Series>,
-    /// Reference lines.
+    /// The horizontal reference lines, such as the proved bound.
     pub marks: Vec<Mark>,
 }
 

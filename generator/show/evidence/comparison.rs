@@ -13,7 +13,7 @@ use glint_golden::formulas;
 use glint_golden::{Contract, Highlight};
 use glint_rtl::netlist::{Design, Driver, Op};
 
-/// The number of angles in each degree at which [`accuracy`] compares a device with `cosⁿγ`.
+/// The number of angles in each degree at which [`accuracy`] compares the reflectance f of a device with `cosⁿγ`.
 pub const ANGLES_PER_DEGREE: u32 = 100;
 
 /// The number of angles at which [`accuracy`] compares: 9001, from 0 to 90° in steps of 0.01°, both ends included.
@@ -25,9 +25,9 @@ const TYPICAL: f64 = 10.0;
 /// The largest and the mean absolute error over all [`ANGLES`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Spread {
-    /// The largest error.
+    /// The largest absolute error over all angles.
     pub largest: f64,
-    /// The mean over all angles.
+    /// The mean absolute error over all angles.
     pub mean: f64,
 }
 
@@ -40,20 +40,21 @@ impl Spread {
     }
 }
 
-/// The error of a device's `f` against `cosⁿγ`, in total and by cause. At every angle the total error is the sum of the signed
-/// errors by cause. Their largest values may be at different angles.
+/// The error of a device's reflectance `f` against `cosⁿγ`, in total and by cause. At every angle the total error is the sum of the
+/// signed errors by cause. The largest values of two causes may be at different angles.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Accuracy {
-    /// The total error: the computed word f against `cosⁿγ`.
+    /// The total error: the reflectance f that the hardware computes, against `cosⁿγ`.
     #[serde(rename = "error")]
     pub whole: Spread,
     /// The error of the device's formula in f64, at the quantised operands, against `cosⁿ` of the angle that these operands
     /// denote.
     pub formula: Spread,
-    /// `cosⁿ` of the angle that the quantised operands denote against `cosⁿγ`. It is 0 if a contract does not tell
-    /// that angle ([`Highlight::cosine`]); the formula's error then includes it.
+    /// The error of quantising the operands: `cosⁿ` of the angle that the quantised operands denote, against `cosⁿγ`. It is 0 if a
+    /// contract does not tell that angle ([`Highlight::cosine`]); the formula's error then includes it.
     pub operands: Spread,
-    /// The error of the fixed-point arithmetic: the computed word f against the formula at the quantised operands.
+    /// The error of the fixed-point arithmetic: the reflectance f that the hardware computes, against the formula at the quantised
+    /// operands.
     pub fixed_point: Spread,
 }
 
@@ -122,7 +123,7 @@ impl fmt::Display for MultiplierSize {
     }
 }
 
-/// Returns the multipliers of a design, the largest first.
+/// Returns the sizes of the multipliers of a design, the largest first.
 pub fn multipliers(design: &Design) -> Vec<MultiplierSize> {
     let mut found: Vec<MultiplierSize> = design
         .nets

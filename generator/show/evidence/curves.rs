@@ -30,12 +30,13 @@ const ANGLES: u32 = 12;
 /// Smaller errors are shown at the bottom of a logarithmic axis.
 const FLOOR: f64 = 1e-6;
 
-/// The error curves of a device.
+/// The error curves of a device: its errors over the exponent n and over the angle γ, with the facts that a page shows next to
+/// them.
 #[derive(Clone, Debug, Serialize)]
 pub struct DeviceCurves {
     /// The name of the device in the registry.
     pub device: String,
-    /// The summary of the device in the registry.
+    /// A summary of the device in a line, from the registry.
     pub summary: String,
     /// The proven bound on the error of an output, in output units.
     pub bound_units: f64,
@@ -50,17 +51,19 @@ pub struct DeviceCurves {
 /// The largest errors of `f` at one exponent, over all angles from 0 to 90°.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct AtExponent {
-    /// The exponent n.
+    /// The exponent n of the highlight.
     pub n: u32,
-    /// The error of the device's formula against `cosⁿγ`.
+    /// The largest error of the device's formula against `cosⁿγ`, at this exponent.
     pub formula: f64,
-    /// The error of the computed word f against the formula at the quantised operands.
+    /// The largest error of the fixed-point arithmetic at this exponent: the computed reflectance f against the formula at the
+    /// quantised operands.
     pub fixed_point: f64,
-    /// The error of the computed word f against `cosⁿγ`, before the angle is quantised.
+    /// The largest total error at this exponent: the computed reflectance f against `cosⁿγ`, before the angle is quantised.
     pub whole: f64,
 }
 
-/// The number of times that [`device`] calls `done`.
+/// The number of steps into which the measurement of the curves is divided. [`device`] calls `done` after each step, so that a
+/// caller can show progress.
 pub const STEPS: usize = EXPONENTS.len() + SHOWN.len();
 
 /// Errors at one angle.
@@ -70,14 +73,14 @@ struct AtAngle {
     fixed_point: f64,
 }
 
-/// Measures the error curves of a device in its default configuration.
+/// Measures the error curves of a device in its default configuration. It calls `done` after each of [`STEPS`] steps.
 pub fn device(device: &Device, done: &(dyn Fn() + Sync)) -> DeviceCurves {
     let config = device.defaults();
     let contract = (device.contract)(&config);
     configuration(device, contract.as_ref(), done)
 }
 
-/// Measures the error curves of a configuration of a device, given its contract.
+/// Measures the error curves of a configuration of a device, given its contract. It calls `done` after each of [`STEPS`] steps.
 pub fn configuration(
     device: &Device,
     contract: &dyn Contract,

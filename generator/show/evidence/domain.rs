@@ -10,8 +10,9 @@ const PLACES: i64 = 160;
 /// The largest number of operands about each place. The worst of them counts.
 const OPERANDS: i64 = 256;
 
-/// Returns the charts of a device with one operand and one output. Returns no charts for a highlight or another device. If the
-/// domain has fewer than 160 values, the charts show each of them.
+/// Returns the charts of a device with one operand and one output: the function and its error over the domain. If the domain has
+/// fewer than 160 values, the charts show each value. Returns no charts for a highlight, or for a device with more operands or
+/// outputs.
 pub fn charts(contract: &dyn Contract) -> Vec<Chart> {
     let ([operand], [output]) = (contract.operands(), contract.outputs()) else {
         return Vec::new();

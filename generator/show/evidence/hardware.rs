@@ -27,11 +27,11 @@ pub trait Synthesis: Sync {
 pub struct FamilyUsage {
     /// The name of the FPGA family.
     pub family: &'static str,
-    /// The number of look-up tables.
+    /// The number of look-up tables that the core takes.
     pub luts: u64,
-    /// The number of DSP blocks.
+    /// The number of DSP blocks that the core takes.
     pub dsps: u64,
-    /// The number of block RAMs.
+    /// The number of block RAMs that the core takes.
     pub block_rams: u64,
 }
 

@@ -23,7 +23,7 @@ pub struct SynthesisRecord<F = Figures> {
     pub config: String,
     /// The name of the module.
     pub name: String,
-    /// The device.
+    /// The name of the device, such as `rough`.
     pub device: String,
     /// A digest that identifies the core: [`glint_core::core::Core::core_digest`].
     pub core: String,
@@ -45,7 +45,7 @@ impl SynthesisRecord {
         Ok(records.find(|record| record.core == core))
     }
 
-    /// Returns the measurement for a target.
+    /// Returns the measurement for a target, or `None` if the record has none.
     pub fn of(&self, target: Target) -> Option<&Figures> {
         self.targets.iter().find(|figures| figures.target == target)
     }
@@ -64,13 +64,13 @@ pub fn tools<'a>(figures: impl IntoIterator<Item = &'a Figures>) -> BTreeSet<&'a
 /// The number of points that a core computes per second. For example, 50 MHz and 5 clocks a point are 10 million points a second.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Rate {
-    /// Million points a second, at the median frequency.
+    /// The number of points per second in millions, at the median frequency.
     #[serde(rename = "million_points_per_second")]
     pub points: f64,
-    /// Million points a second for each look-up table.
+    /// The number of points per second for each look-up table, in millions; `None` if there is no look-up table.
     #[serde(rename = "million_points_per_second_per_lut")]
     pub per_lut: Option<f64>,
-    /// Million points a second for each DSP block.
+    /// The number of points per second for each DSP block, in millions; `None` if there is no DSP block.
     #[serde(rename = "million_points_per_second_per_dsp")]
     pub per_dsp: Option<f64>,
 }

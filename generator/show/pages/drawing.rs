@@ -8,17 +8,17 @@ use glint_base::template::Template;
 #[derive(Clone, Debug)]
 #[glint_base::template::template("drawing.svg")]
 pub struct Drawing {
-    /// Unique on the page.
+    /// The identifier of the drawing in HTML, which must be unique on the page.
     pub id: String,
-    /// The title.
+    /// The title of the drawing, which a screen reader reads.
     pub title: String,
     /// A description for screen readers.
     pub description: String,
-    /// The width.
+    /// The width of the drawing, in units of the page.
     pub width: i32,
-    /// The height.
+    /// The height of the drawing, in units of the page.
     pub height: i32,
-    /// The parts, in the order of drawing.
+    /// The parts of the drawing, in the order in which they are drawn.
     pub items: Vec<Item>,
 }
 
@@ -27,27 +27,27 @@ pub struct Drawing {
 pub enum Item {
     /// Lines, by SVG's path syntax.
     Path {
-        /// Class.
+        /// The class of the lines in the style sheet.
         class: &'static str,
-        /// The attribute `d`.
+        /// The path, as the attribute `d` of SVG. For example, `M0 0H10V5` goes 10 to the right and 5 down.
         d: String,
     },
     /// A line of text.
     Text {
-        /// Class.
+        /// The class of the text in the style sheet. It also decides the alignment.
         class: &'static str,
-        /// The place at which it starts, is centred or ends, as the class says.
+        /// The horizontal position at which the text starts, is centred or ends, as its class says.
         x: i32,
-        /// The base line.
+        /// The vertical position of the base line.
         y: i32,
-        /// The text.
+        /// The text of the line.
         text: String,
     },
-    /// The items up to [`Item::Close`] belong together, and this is their tooltip.
+    /// Begins a group of items, which [`Item::Close`] ends.
     Open {
-        /// Class.
+        /// The class of the group in the style sheet.
         class: &'static str,
-        /// In a sentence.
+        /// The tooltip of the group, a sentence.
         title: String,
     },
     /// Ends the group that [`Item::Open`] began.
@@ -55,7 +55,7 @@ pub enum Item {
 }
 
 impl Item {
-    /// Makes a line of text.
+    /// Makes a line of text at the position (`x`, `y`), with the class `class` of the style sheet.
     pub fn text(class: &'static str, x: i32, y: i32, text: impl Into<String>) -> Self {
         Self::Text { class, x, y, text: text.into() }
     }
@@ -88,7 +88,7 @@ impl Drawing {
     }
 }
 
-/// The font size of drawings.
+/// The font size of text in drawings, in units of the page.
 pub const SIZE: f64 = 11.0;
 
 /// Estimates the width of a text in a drawing. For example, 10 characters are 66 units wide.

@@ -11,11 +11,11 @@ const ROWS: usize = 11;
 
 /// A chart as a page shows it: plot, legend and table.
 pub struct Figure<'a> {
-    /// The chart.
+    /// The chart that the figure shows.
     pub chart: &'a Chart,
     /// The place of the reproduced figure in the source document; empty for a figure of Glint's own.
     pub source: &'a str,
-    /// The plot as SVG.
+    /// The plot of the chart as SVG text.
     pub svg: String,
     /// The class and the name of each curve.
     pub legend: Vec<(String, &'a str)>,

@@ -13,7 +13,7 @@ pub const STYLES: usize = 10;
 /// The library places points on whole units: this many of them make one of the page's at full size.
 const FINE: u32 = 4;
 
-/// The sizes of a plot.
+/// The width of a plot, in the plotting library's units.
 pub const WIDTH: u32 = 480 * FINE;
 pub const HEIGHT: u32 = 300 * FINE;
 

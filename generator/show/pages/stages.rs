@@ -4,8 +4,8 @@
 use super::account::{TextTable, code};
 use glint_rtl::netlist::{Design, Pipeline};
 
-/// Returns the table of the product that each shared multiplier computes in each time slot of a pipeline. Returns `None` if no
-/// multiplier is shared. The cell of an idle slot is `–`.
+/// Returns a table of the shared multipliers of a pipeline: for each time slot (the clock's number modulo the interval), the
+/// product that each multiplier computes. The cell of an idle slot is `–`. Returns `None` if no multiplier is shared.
 pub fn reservations(pipeline: &Pipeline) -> Option<TextTable> {
     let slots = (0..pipeline.interval).map(|slot| format!("slot {slot}"));
     let headings: Vec<String> = ["multiplier".to_owned()].into_iter().chain(slots).collect();

@@ -18,7 +18,7 @@ pub struct Camera {
 /// The user's settings of the camera. Settings that are left out follow from the size of the scene.
 #[derive(Clone, Copy, Debug)]
 pub struct View {
-    /// The position of the camera.
+    /// The position of the camera in the scene.
     pub eye: Option<Vector>,
     /// The point at which the camera looks. The default is the middle of the scene.
     pub target: Option<Vector>,
@@ -33,11 +33,11 @@ const DIRECTION: Vector = Vector::new(0.0, 0.28, 1.0);
 const FILLED: f64 = 0.92;
 
 impl Camera {
-    /// Sets up a camera for a picture of the given aspect, width through height, that shows all of `things`, balls with
-    /// their middle and radius, unless `view` says otherwise; `middle` is the middle of them all.
+    /// Sets up a camera for a picture whose width divided by its height is `aspect`. The camera shows all of `things`, unless
+    /// `view` says otherwise. `things` are balls, each with its middle and radius; `middle` is the middle of them all.
     ///
     /// # Errors
-    /// Fails if the eye is at its target.
+    /// Fails if the camera's position is the point at which it looks.
     pub fn new(
         view: &View,
         aspect: f64,
@@ -106,7 +106,7 @@ impl Camera {
         self.right * x + self.up * y + self.back * z
     }
 
-    /// Returns half the width and half the height of the visible area at distance 1.
+    /// Returns half the width and half the height of the visible area at distance 1 from the camera.
     pub fn half(&self) -> (f64, f64) {
         self.half
     }

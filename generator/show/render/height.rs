@@ -9,7 +9,7 @@ const LARGEST_SIDE: u32 = 8192;
 /// The largest memory for a map and its decoding, in bytes.
 const MEMORY: usize = 512 << 20;
 
-/// The slopes of a height map, which is repeated in all directions.
+/// The slopes of a height map. The map is repeated in all directions, like tiles.
 #[derive(Clone, Debug)]
 pub struct Relief {
     width: usize,
@@ -23,7 +23,8 @@ pub struct Relief {
 }
 
 impl Relief {
-    /// Reads a height map from the contents of a PNG file.
+    /// Reads a height map from the contents of a PNG file. `depth` is the height of white above black, in the unit of the scene;
+    /// `repeat` is the number of copies of the map for each unit of the texture coordinates.
     ///
     /// # Errors
     /// Fails if the file is no PNG, has colours or transparency, or is too large.

@@ -12,7 +12,7 @@ pub const MOST_TRIANGLES: usize = 20_000_000;
 /// The default angle, in degrees, beyond which an edge of a mesh without normals is drawn as sharp.
 pub const CREASE: f64 = 40.0;
 
-/// The angle with which no edge is sharp.
+/// The crease angle in degrees at which no edge is drawn as sharp.
 pub const SMOOTH: f64 = 180.0;
 
 /// The largest coordinate: areas and their squares are still numbers.
@@ -21,11 +21,11 @@ const FARTHEST: f64 = 1e30;
 /// Triangles with a normal and perhaps texture coordinates at each corner.
 #[derive(Clone, Debug, Default)]
 pub struct Mesh {
-    /// The positions of the corners.
+    /// The positions of the corners, in coordinates of the scene.
     pub positions: Vec<Vector>,
-    /// The normals, of length 1.
+    /// The normals at the corners, vectors of length 1.
     pub normals: Vec<Vector>,
-    /// The texture coordinates.
+    /// The texture coordinates (u, v) of the corners.
     pub textures: Vec<[f64; 2]>,
     /// The triangles. Their corners are indices into the other lists.
     pub triangles: Vec<[Corner; 3]>,
@@ -36,22 +36,22 @@ pub struct Mesh {
 /// A corner of a triangle: indices into the lists of a [`Mesh`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Corner {
-    /// The index of a position.
+    /// The index of the corner's position.
     pub position: u32,
-    /// The index of a normal.
+    /// The index of the corner's normal.
     pub normal: u32,
-    /// The index of texture coordinates.
+    /// The index of the corner's texture coordinates, if it has any.
     pub texture: Option<u32>,
 }
 
 /// A corner as a file gives it. If it has no normal, one is computed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct RawCorner {
-    /// The index of a position.
+    /// The index of the corner's position.
     pub position: u32,
-    /// The index of a normal.
+    /// The index of the corner's normal; `None` if the file gives none.
     pub normal: Option<u32>,
-    /// The index of texture coordinates.
+    /// The index of the corner's texture coordinates, if it has any.
     pub texture: Option<u32>,
 }
 

@@ -43,10 +43,10 @@ pub const LARGEST_SIDE: u32 = 8192;
 /// The largest number of samples along each side of a pixel.
 pub const MOST_SAMPLES: u32 = 8;
 
-/// The most samples of a picture.
+/// The largest number of samples of a picture: pixels times samples per pixel.
 pub const LARGEST: u64 = 1 << 28;
 
-/// The largest number of lights.
+/// The largest number of lights in a scene.
 pub const MOST_LIGHTS: usize = 16;
 
 /// The default vertical field of view of a picture in degrees.
@@ -65,9 +65,9 @@ pub struct Settings {
     pub size: (u32, u32),
     /// The number of samples along each side of a pixel. The colour of the pixel is their mean.
     pub samples: u32,
-    /// The settings of the camera.
+    /// The settings of the camera: its position, the point at which it looks, and its field of view.
     pub view: View,
-    /// The material of all objects.
+    /// The material of all objects, such as the share of light that they reflect.
     pub material: Material,
     /// The colour where no object is visible, from 0 to 1.
     pub background: Vector,
@@ -84,7 +84,8 @@ pub struct Rendered {
     pub picture: Picture,
     /// The number of computations of the device.
     pub points: u64,
-    /// The number of points whose roughness angle dγ was beyond the device's domain and was limited to it.
+    /// The number of points whose roughness angle dγ (the deviation of the normal) was outside the device's domain, so that the
+    /// renderer limited it to the domain.
     pub beyond: u64,
     /// The comparison with Blinn's function, if the settings ask for it.
     pub comparison: Option<PictureComparison>,
@@ -124,7 +125,7 @@ pub fn usual_exponent(contract: &dyn Contract) -> u32 {
     EXPONENT.clamp(least, most).max(0) as u32
 }
 
-/// Returns whether a picture can supply all operands of a device.
+/// Returns whether Glint can render a picture with a device, because it can compute all operands of the device from a scene.
 pub fn draws(core: &Core) -> bool {
     let contract = core.contract.as_ref();
     Feed::new(core.device.name, contract).is_ok()

@@ -20,26 +20,28 @@ pub struct Point {
     pub cos_gamma: f64,
     /// The cosine of dγ, the difference between the angle of H with the perturbed normal and γ.
     pub cos_dgamma: f64,
-    /// Whether dγ is negative: the perturbed normal is nearer to H than the smooth normal is.
+    /// Whether dγ is negative, which means that the perturbed normal is nearer to the half vector H than the smooth normal is. dγ
+    /// is the difference between the angles that the two normals form with H.
     pub dgamma_negative: bool,
-    /// The vector N − H, with the normal N that is shaded.
+    /// The vector N − H from the half vector to the normal N. N is the perturbed normal if the surface has a height map.
     pub difference: Vector,
-    /// The cosine N·H with the normal N that is shaded.
+    /// The cosine N·H of the angle between the half vector and the normal N. N is the perturbed normal if the surface has a height
+    /// map.
     pub cos_shaded: f64,
     /// The colour of the light times the specular coefficient, from 0 to 1.
     pub colour: Vector,
-    /// The surface at the point, for a device that computes ambient and diffuse light too.
+    /// The surface at the point. A device that computes ambient and diffuse light too needs it.
     pub surface: Surface,
 }
 
-/// A surface under one light.
+/// A point of a surface under one light: its normal, its vectors and its light.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Surface {
     /// The normal as it was interpolated, of any length.
     pub normal: Vector,
     /// The unit vector to the light.
     pub light: Vector,
-    /// The unit half vector.
+    /// The half vector H between the directions to the light and to the viewer, of length 1.
     pub half: Vector,
     /// The ambient light that the surface reflects, from 0 to 1.
     pub ambient: Vector,
@@ -124,7 +126,8 @@ const OF_LINES: [(&str, OperandMeaning); 5] = [
     ("amplitude", OperandMeaning::Amplitude),
 ];
 
-/// The operands of a device, each with the quantity of a picture that it gets.
+/// The operands of a device, each with the quantity of a scene that supplies its value. For example, `cos_gamma` gets the cosine
+/// between normal and half vector.
 #[derive(Clone, Debug)]
 pub struct Feed {
     operands: Vec<(OperandMeaning, Format, (i64, i64))>,
@@ -145,22 +148,23 @@ pub fn exponents(contract: &dyn Contract) -> Option<(i64, i64)> {
     Some(exponent.domain)
 }
 
-/// Returns whether a device computes a line of points after one start.
+/// Returns whether a device computes several points along a scan line after one `start`.
 pub fn walks_lines(contract: &dyn Contract) -> bool {
     contract.length().is_some()
 }
 
 impl Feed {
-    /// Finds the meanings of the operands of a device with the name `device`.
+    /// Finds for each operand of a device the quantity of a scene that supplies its value. `device` is the name of the device, for
+    /// messages.
     ///
     /// # Errors
-    /// Fails if the device has operands that are not understood, or not the colours.
+    /// Fails if the device has operands with unknown names, or lacks the colour operands.
     pub fn new(device: &str, contract: &dyn Contract) -> Result<Self> {
         Self::with(device, contract, &[])
     }
 
-    /// Finds the meanings of the operands of a device with the name `device`. Some operands are `given` and the same
-    /// at every point.
+    /// Finds the quantities of the operands as [`Feed::new`] does. The operands in `given` have the same stated value at every
+    /// point.
     ///
     /// # Errors
     /// Fails as [`Feed::new`] does, if the device does not have a given operand, or if a value is beyond its domain.
@@ -243,7 +247,7 @@ impl Feed {
         Ok(feed)
     }
 
-    /// Returns the number of operands.
+    /// Returns the number of operands of the device.
     pub fn operand_count(&self) -> usize {
         self.operands.len()
     }
@@ -265,8 +269,8 @@ impl Feed {
         self.takes(OperandMeaning::Exponent) || self.takes(OperandMeaning::Shift)
     }
 
-    /// Returns the first operand whose value is beyond its domain. `values` are not quantised yet. A negative cosine counts as
-    /// the smallest possible, and angles of lines are taken modulo a full turn.
+    /// Returns the index of the first operand whose value is outside its domain, or `None` if all are inside. `values` are not
+    /// quantised yet. A negative cosine counts as the smallest possible one, and angles of lines are taken modulo a full turn.
     pub fn outside(&self, values: &[f64]) -> Option<usize> {
         let mut operands = self.operands.iter().zip(values);
         operands.position(|(&(quantity, format, domain), &value)| match quantity {
@@ -280,7 +284,7 @@ impl Feed {
         })
     }
 
-    /// Returns the largest length of a line, if the device computes lines of points.
+    /// Returns the largest number of intervals of a line, or `None` if the device computes single points.
     pub fn longest(&self) -> Option<usize> {
         self.longest
     }
@@ -294,7 +298,8 @@ impl Feed {
         operands.find(|operand| operand.0 == wanted).copied()
     }
 
-    /// Returns the operands of a point before they are quantised, each in its own unit.
+    /// Returns the operand values for a point with the exponent `exponent`, before they are quantised. Each value is in the unit of
+    /// its operand.
     pub fn values<'a>(&'a self, point: &'a Point, exponent: u32) -> impl Iterator<Item = f64> + 'a {
         let split = self.takes_deviation();
         self.operands.iter().map(move |&(quantity, format, (_, high))| match quantity {
@@ -342,7 +347,7 @@ impl Feed {
         (raw, beyond)
     }
 
-    /// Returns the amplitude operand that gives full light.
+    /// Returns the value of the amplitude operand at which a white light has full strength.
     pub fn full(&self) -> f64 {
         let full = self.find(OperandMeaning::Amplitude);
         full.map_or(0.0, |(_, format, (_, most))| format.to_f64(i128::from(most)))
@@ -354,7 +359,7 @@ impl Feed {
         if self.takes(OperandMeaning::Exponent) { 1.0 } else { line.stretch() }
     }
 
-    /// Returns the operands of a line before they are quantised, each in its own unit.
+    /// Returns the operand values for a line of points, before they are quantised. Each value is in the unit of its operand.
     pub fn line_values<'a>(&'a self, line: &'a LineParameters) -> impl Iterator<Item = f64> + 'a {
         let stretch = self.stretch(line);
         self.operands.iter().map(move |(quantity, ..)| match quantity {
@@ -369,10 +374,11 @@ impl Feed {
         })
     }
 
-    /// Returns the raw operands of a line. Angles are taken modulo a turn.
+    /// Returns the raw operands for a line of points. Angles are taken modulo a full turn.
     ///
     /// # Errors
-    /// Fails if a device without an exponent has no room for an angle times √(n/2).
+    /// Fails if a device without an exponent cannot represent an angle times √(n/2), by which the host multiplies angles for such a
+    /// device.
     pub fn line(&self, line: &LineParameters) -> Result<Vec<i64>> {
         if let Some((_, format, _)) = self.find(OperandMeaning::ZetaStart)
             && !self.takes(OperandMeaning::Exponent)

@@ -21,19 +21,19 @@ const LETTER: [u8; 3] = [232, 233, 235];
 /// A picture: rows of pixels, from the top.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Picture {
-    /// The number of pixels in a row.
+    /// The number of pixels in a row of the picture.
     pub width: u32,
     /// Red, green and blue of each pixel.
     pub pixels: Vec<[u8; 3]>,
 }
 
 impl Picture {
-    /// Makes a picture without rows.
+    /// Makes a picture of `width` columns that has no rows yet.
     pub fn new(width: u32) -> Self {
         Self { width, pixels: Vec::new() }
     }
 
-    /// Returns the number of rows.
+    /// Returns the number of pixel rows in the picture.
     pub fn height(&self) -> u32 {
         (self.pixels.len() / self.width as usize) as u32
     }
@@ -96,7 +96,7 @@ pub fn pixel(colour: Vector) -> [u8; 3] {
     colour.0.map(|value| (value + 0.5).clamp(0.0, 255.0) as u8)
 }
 
-/// The difference between two pictures.
+/// The difference between two pictures, as numbers and as a picture.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PictureDifference {
     /// The largest difference of a colour channel, from 0 to 255.

@@ -8,10 +8,10 @@ use super::mesh::Mesh;
 use super::shapes;
 use super::vector::Vector;
 
-/// The scene of a picture.
+/// The scene of a picture: its objects, lights and height map.
 #[derive(Clone, Debug, Default)]
 pub struct Scene {
-    /// The objects, at least one.
+    /// The objects of the scene, at least one.
     pub objects: Vec<Object>,
     /// The lights, which are so far away that their directions are the same everywhere.
     pub lights: Vec<Light>,
@@ -19,23 +19,23 @@ pub struct Scene {
     pub relief: Option<Relief>,
 }
 
-/// An object of a scene.
+/// An object of a scene: its shape and its colour.
 #[derive(Clone, Debug)]
 pub struct Object {
-    /// The shape of the object.
+    /// The shape of the object: a ball or triangles.
     pub shape: Shape,
-    /// The colour of its ambient and diffuse light, 0 … 1.
+    /// The colour with which the object reflects ambient and diffuse light, 0 … 1 in each channel.
     pub colour: Vector,
 }
 
-/// The shape of an object.
+/// The shape of an object: a ball or a mesh of triangles.
 #[derive(Clone, Debug)]
 pub enum Shape {
-    /// A ball, exactly.
+    /// A ball, which is drawn exactly and not as triangles.
     Ball {
-        /// Its middle.
+        /// The middle of the ball.
         middle: Vector,
-        /// Its radius.
+        /// The radius of the ball.
         radius: f64,
     },
     /// Triangles with interpolated normals.
@@ -47,7 +47,7 @@ pub enum Shape {
 pub struct Light {
     /// The direction toward the light, of length 1.
     pub direction: Vector,
-    /// Its colour, 0 … 1.
+    /// The colour of the light, 0 … 1 in each channel.
     pub colour: Vector,
 }
 
@@ -64,10 +64,10 @@ pub enum BuiltIn {
     Group,
 }
 
-/// The default colour of objects.
+/// The default colour of an object, as red, green and blue from 0 to 1.
 pub const COLOUR: Vector = Vector::new(0.08, 0.35, 0.54);
 
-/// The default colour of the background.
+/// The default colour of the background, as red, green and blue from 0 to 1.
 pub const BACKGROUND: Vector = Vector::new(0.05, 0.06, 0.08);
 
 impl Light {
@@ -130,8 +130,7 @@ impl Scene {
         ((low * 0.5 + high * 0.5), (high * 0.5 - low * 0.5).length())
     }
 
-    /// Returns balls, each with middle and radius, that contain everything visible. The corners of meshes are balls without a
-    /// radius.
+    /// Returns balls that together contain all objects, each as its middle and radius. A corner of a mesh is a ball of radius 0.
     pub fn balls(&self) -> impl Iterator<Item = (Vector, f64)> {
         self.objects.iter().flat_map(|object| {
             let (ball, mesh) = match &object.shape {

@@ -22,32 +22,33 @@ pub struct Material {
     pub ambient: f64,
     /// The share of each light that is reflected diffusely. It is multiplied by the cosine of the light's angle.
     pub diffuse: f64,
-    /// k_s: the share of each light, times the reflectance f that the device computes.
+    /// The specular coefficient k_s: the share of each light that the highlight reflects. The reflectance f from the device
+    /// multiplies it.
     pub specular: f64,
     /// The exponent n of the highlight.
     pub exponent: u32,
 }
 
 impl Material {
-    /// Returns the default material.
+    /// Returns the default material with the highlight exponent `exponent`.
     pub const fn usual(exponent: u32) -> Self {
         Self { ambient: 0.12, diffuse: 0.75, specular: 0.7, exponent }
     }
 }
 
-/// The inputs of shading.
+/// The inputs for shading a picture: scene, camera, material and background.
 pub struct Shader<'a> {
-    /// The objects and lights.
+    /// The scene with its objects and lights.
     pub scene: &'a Scene,
     /// The camera from which the scene is seen.
     pub camera: &'a Camera,
-    /// The material of all objects.
+    /// The material of all objects in the scene.
     pub material: Material,
     /// The colour where no object is visible, from 0 to 255.
     pub background: Vector,
-    /// The operands of the device, with their quantities.
+    /// The operands of the device, each with the quantity of the scene that supplies it.
     pub feed: &'a Feed,
-    /// Whether to compute Blinn's function too.
+    /// Whether to compute also Blinn's function cosⁿγ, for a comparison.
     pub compare: bool,
 }
 
@@ -56,7 +57,7 @@ pub struct Shaded {
     /// Ambient and diffuse light or the background, 0 … 255, of each sample, and the number of lights for
     /// which the device computes a result.
     pub samples: Vec<(Vector, u32)>,
-    /// The points that the device must compute.
+    /// The points for which the device must compute the highlight.
     pub points: Points,
     /// For each sample and each of its lights, the numbers of the results with its red, green and blue. `None` if
     /// every computation has one result, with all three colours, and the results come in this order.
@@ -64,7 +65,7 @@ pub struct Shaded {
     /// For each sample and each of its lights Blinn's cosⁿγ times the light's colour, 0 … 255; empty unless
     /// it is wanted.
     pub exact: Vec<Vector>,
-    /// The number of points whose dγ is beyond the device's domain.
+    /// The number of points whose roughness angle dγ (the deviation of the normal) is outside the device's domain.
     pub beyond: usize,
 }
 
@@ -92,7 +93,8 @@ impl SurfacePoint {
 }
 
 impl Shader<'_> {
-    /// Returns the points that a device computes for a row of samples; `ray` gives the ray of each.
+    /// Shades a row of samples. Returns its ambient and diffuse light, and the points for which the device must compute the
+    /// highlight. `ray` gives the ray through each sample.
     ///
     /// # Errors
     /// Fails if the device cannot take a line.

@@ -29,7 +29,7 @@ impl Vector {
         Self::new(ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx)
     }
 
-    /// Returns the Euclidean length.
+    /// Returns the Euclidean length √(x² + y² + z²) of the vector.
     #[inline]
     pub fn length(self) -> f64 {
         self.dot(self).sqrt()
@@ -47,14 +47,14 @@ impl Vector {
         (self.finite() && length.is_finite() && length > 0.0).then(|| scaled * (1.0 / length))
     }
 
-    /// Multiplies component by component.
+    /// Multiplies two vectors component by component. For example, (1, 2, 3) and (4, 5, 6) give (4, 10, 18).
     #[inline]
     pub fn times(self, other: Self) -> Self {
         let ([ax, ay, az], [bx, by, bz]) = (self.0, other.0);
         Self::new(ax * bx, ay * by, az * bz)
     }
 
-    /// Returns whether no component is infinite or no number.
+    /// Returns whether all components are finite numbers.
     #[inline]
     pub fn finite(self) -> bool {
         self.0.iter().all(|component| component.is_finite())

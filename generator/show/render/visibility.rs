@@ -17,7 +17,8 @@ const BAND: usize = 16;
 /// The first surface that the ray through a sample meets.
 #[derive(Clone, Copy, Debug)]
 pub struct Hit {
-    /// The distance from the plane of the camera: the factor of the ray, whose third component is −1.
+    /// The distance from the plane of the camera. The ray has the third component −1, so the distance is also the factor by which
+    /// the ray reaches the surface.
     pub depth: f64,
     /// The index of the object in the scene.
     pub object: u32,
@@ -41,7 +42,7 @@ impl Hit {
 pub struct Raster {
     /// The number of samples in a row.
     pub columns: usize,
-    /// The number of rows.
+    /// The number of rows of samples.
     pub rows: usize,
     /// Half the width and half the height of the view at distance 1.
     half: (f64, f64),

@@ -22,11 +22,11 @@ pub const LOAD: &str = "set_load 0.1 [all_outputs]\n";
 /// The values of the registers before the first clock, in a gate-level simulation. No output may depend on them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Start {
-    /// An unknown value.
+    /// Registers begin with unknown values (x).
     Unknown,
-    /// 0.
+    /// Registers begin with 0.
     Zeros,
-    /// 1.
+    /// Registers begin with 1.
     Ones,
 }
 

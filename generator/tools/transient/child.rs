@@ -29,12 +29,12 @@ impl Child {
         Ok(Self { child, ended: false })
     }
 
-    /// Returns the process number.
+    /// Returns the process number (PID) of the child.
     pub fn id(&self) -> u32 {
         self.child.id()
     }
 
-    /// Returns the exit status of the process if it has ended.
+    /// Returns the exit status of the process, or `None` if it still runs.
     ///
     /// # Errors
     /// Fails if there is no such child.
@@ -70,8 +70,8 @@ impl Drop for Child {
     }
 }
 
-/// Kills a child that is not collected yet, its process group, and its descendants in other groups
-/// (yosys-smtbmc runs its solver in a session apart).
+/// Kills a child whose exit status has not been read yet, its process group, and its descendants in other groups. For example,
+/// yosys-smtbmc runs its solver in a session of its own.
 #[cfg(unix)]
 pub fn kill_tree(child: u32) {
     use rustix::process::{Pid, Signal, kill_process_group};
@@ -81,7 +81,7 @@ pub fn kill_tree(child: u32) {
     }
 }
 
-/// Does nothing: without process groups there is only the child, which [`Child::kill`] kills.
+/// Does nothing. Without process groups there is only the child, which [`Child::kill`] kills.
 #[cfg(not(unix))]
 pub fn kill_tree(_child: u32) {}
 
@@ -99,7 +99,7 @@ pub fn kill_own_descendants(deadline: Instant) {
     }
 }
 
-/// Does nothing, as [`kill_tree`].
+/// Does nothing: on this system, Glint cannot find descendants.
 #[cfg(not(unix))]
 pub fn kill_own_descendants(_deadline: Instant) {}
 

@@ -41,7 +41,7 @@ kill -KILL $all
 for child in $children; do kill -KILL "-$child"; done
 "#;
 
-/// The pipe to the shell; none before the first child, and none on a system without a shell.
+/// The pipe to the shell that guards the children. It is empty before the first child, and on a system without a shell.
 pub struct Guard(Option<ChildStdin>);
 
 impl Guard {
@@ -50,7 +50,7 @@ impl Guard {
         Self(None)
     }
 
-    /// Tells which children are to be killed from now on.
+    /// Tells the guard the children that it must kill if Glint ends without a clean-up.
     pub fn tell(&mut self, children: &BTreeSet<u32>) {
         let pipe = self.0.take().or_else(|| shell(SCRIPT).spawn().ok()?.stdin);
         let line: Vec<String> = children.iter().map(u32::to_string).collect();

@@ -64,13 +64,14 @@ fn list() -> MutexGuard<'static, List> {
     LIST.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Does `work` as a whole: an interruption waits for its end. A caller must use it for renames that belong together.
+/// Runs `work` without interruption: a signal that arrives meanwhile waits for its end. A caller must use it for renames that
+/// belong together.
 pub fn undivided<T>(work: impl FnOnce() -> T) -> T {
     let _guard = UNDIVIDED.lock().unwrap_or_else(PoisonError::into_inner);
     work()
 }
 
-/// Both locks; while they are held no child starts and no temporary path is made.
+/// The locks of this module. While they are held, no child process can start, and no temporary directory can be made.
 pub struct Cleared {
     _undivided: MutexGuard<'static, ()>,
     _list: MutexGuard<'static, List>,

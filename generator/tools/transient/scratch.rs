@@ -20,7 +20,7 @@ const LOCK: &str = "glint.lock";
 
 static SWEEP: Once = Once::new();
 
-/// A temporary directory; it goes with everything in it when it is dropped, or when the process is interrupted.
+/// A temporary directory. It is deleted with its contents when the value is dropped, or when the process is interrupted.
 #[derive(Debug)]
 pub struct Directory {
     made: Option<TempDir>,

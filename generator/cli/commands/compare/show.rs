@@ -15,12 +15,12 @@ use glint_prove::synth::{Frequency, Rate, TARGETS, Target, tools};
 use glint_show::evidence::comparison::{ANGLES, ANGLES_PER_DEGREE, Accuracy, MultiplierSize};
 use glint_tools::synthesis::Usage;
 
-/// A comparison of devices.
+/// The result of a comparison of devices, which can be printed in several forms.
 pub struct ComparisonReport<'a> {
     pub arguments: &'a Arguments,
     pub entries: &'a [ComparisonEntry],
     pub notes: &'a [String],
-    /// The runs of synthesis that failed, each with the reason.
+    /// The synthesis runs that failed, each with the reason.
     pub failures: &'a [String],
 }
 

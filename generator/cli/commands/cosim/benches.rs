@@ -38,7 +38,7 @@ struct BenchMismatch {
     command: String,
 }
 
-/// Runs the benches of configurations.
+/// Runs the test benches of configurations in the simulator `which`, and reports the results.
 ///
 /// # Errors
 /// Fails for wrong usage, or if the simulator is missing, refuses a bench, or does not end in time.

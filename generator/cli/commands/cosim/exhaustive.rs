@@ -28,8 +28,8 @@ const WORTH_SHARING: Duration = Duration::from_secs(60);
 /// Numbers of cores for which the duration of a proof is estimated. For example, `about 1 hour on 1 core`.
 const CORES: [u32; 3] = [1, 16, 1000];
 
-/// Runs `glint cosim --exhaustive`: the factored proof of the accuracy contract. It also runs every combination of
-/// operands clock by clock, if they are not too many.
+/// Runs `glint cosim --exhaustive`: measures the error at all operands, and compares it with the bound of the accuracy contract. It
+/// also compares model and hardware clock by clock for every combination of operands, if there are not too many.
 pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) -> Result<bool> {
     let loaded = load(registry, &arguments.configs.paths)?;
     if arguments.resume.is_some() && loaded.len() != 1 {
@@ -64,7 +64,7 @@ pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) ->
     list.conclude(holds)
 }
 
-/// Returns the state that a file holds, if there is one.
+/// Returns the progress that a file stores, or `None` if there is no file.
 pub fn read(path: &Path) -> Result<Option<ShardState>> {
     let Some(text) = input::text(path)? else { return Ok(None) };
     let state = kept::from_text(&text).with_context(|| {

@@ -5,7 +5,7 @@ use serde_json::{Value, json};
 use crate::say;
 use glint_core::cosim::{CLASSES, Histogram};
 
-/// Prints the share of the points in each class.
+/// Prints the share of results in each class of the reflectance `f`.
 pub fn print(histogram: &Histogram) {
     let counts = histogram.counts();
     let all = counts.iter().sum::<u64>().max(1) as f64;
@@ -16,7 +16,7 @@ pub fn print(histogram: &Histogram) {
     say!("  points{}", shares.concat());
 }
 
-/// Returns the counts of the histogram.
+/// Returns the number of results in each class of `f`, as JSON.
 pub fn as_json(histogram: &Histogram) -> Value {
     let classes = CLASSES.iter().zip(histogram.counts());
     let classes: Vec<Value> =

@@ -26,8 +26,8 @@ struct PointResult {
     inside: bool,
 }
 
-/// Computes every row of a CSV file with the golden model's arithmetic and in f64. For a line, it computes every
-/// point. `given` holds for all rows.
+/// Computes every row of a CSV file, with the golden model's arithmetic and with the formula in f64. If the device computes a line
+/// of points, it computes all of them. The operands in `given` apply to all rows.
 pub fn batch(
     output: OutputOptions,
     one: &Loaded,

@@ -13,8 +13,8 @@ use glint_prove::synth::{Figures, Target};
 /// The folder beside configurations, which may be deleted at any time.
 const FOLDER: &str = ".glint";
 
-/// A folder with one file for each configuration and target. A file that is not readable is measured again, and a
-/// measurement that cannot be kept is not kept. For example, `.glint/rough.ecp5.json`.
+/// A folder with the measurements, one file for each configuration and target. For example, `.glint/rough.ecp5.json`. If a file
+/// cannot be read, the core is measured again; if a file cannot be written, the measurement is not stored.
 pub struct Cache(PathBuf);
 
 #[derive(Serialize, Deserialize)]
@@ -25,7 +25,7 @@ struct CacheEntry {
 }
 
 impl Cache {
-    /// Returns the cache beside the configuration `path`; none beside standard input.
+    /// Returns the cache next to the configuration file `path`. Returns `None` for standard input.
     pub fn beside(path: &str) -> Option<Self> {
         (path != input::STDIN)
             .then(|| Self(Path::new(path).parent().unwrap_or(Path::new("")).join(FOLDER)))
@@ -35,14 +35,14 @@ impl Cache {
         self.0.join(format!("{}.{target}.json", core.config.name))
     }
 
-    /// Returns the figures of a measurement with this digest.
+    /// Returns the stored measurement of a core on a target, if it has this digest.
     pub fn find(&self, core: &Core, target: Target, digest: &str) -> Option<Figures> {
         let text = fs::read_to_string(self.file(core, target)).ok()?;
         let entry: CacheEntry = serde_json::from_str(&text).ok()?;
         (entry.digest == digest).then_some(entry.figures)
     }
 
-    /// Keeps figures, if the folder can be written: a cache that cannot be kept is no error.
+    /// Stores a measurement. If the folder cannot be written, the function does nothing.
     pub fn keep(&self, core: &Core, digest: &str, figures: &Figures) {
         let entry = CacheEntry {
             glint: env!("CARGO_PKG_VERSION").to_owned(),

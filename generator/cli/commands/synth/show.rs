@@ -13,12 +13,12 @@ use glint_prove::synth::{Figures, Frequency, Rate, tools};
 /// The cell without a figure.
 const NONE: &str = "–";
 
-/// The measurements of all configurations.
+/// The measurements of all configurations, for printing.
 pub struct SynthesisReport<'a> {
     pub measured: Vec<Measurement<'a>>,
-    /// The targets that are left out, each with the reason.
+    /// The targets that were not measured, each with the reason.
     pub notes: Vec<String>,
-    /// The records that are written.
+    /// The paths of the records that were written.
     pub written: Vec<String>,
 }
 

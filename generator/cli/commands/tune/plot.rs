@@ -16,10 +16,10 @@ const STYLE: &str = "<style>svg{background:#fcfcfb}text{fill:#1c1d1f;font-family
 /// Room for the heading above the plot.
 const HEADING: u32 = 110;
 
-/// Returns an SVG that needs no other file.
+/// Returns the plot as an SVG file that needs no other file.
 ///
 /// # Errors
-/// Fails if the front is empty, or a single configuration, which is no line.
+/// Fails if the search found fewer than two configurations on the Pareto front, since they give no line.
 pub fn plot(answer: &Answer, arguments: &Arguments) -> Result<String> {
     let is_best = |candidate: &&Candidate| candidate.config == answer.best.config;
     let (Some(first), Some(last)) = (answer.front.first(), answer.front.last()) else {

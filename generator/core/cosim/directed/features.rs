@@ -9,8 +9,8 @@ use glint_base::fixed::mask;
 use glint_rtl::netlist::{Design, Driver, NetId, Op};
 use glint_rtl::sim::Machine;
 
-/// The number of classes of brightness. A feature that a computation exercises counts separately for each class of its largest
-/// result: a fault in a computation with the result 0 seldom shows.
+/// The number of classes of brightness, by the largest result of a computation: 0, small or large. A feature is counted separately
+/// in each class, because a fault in a computation with the result 0 seldom shows.
 pub const CLASSES: usize = 3;
 
 /// A net, or some nets, whose features are watched.
@@ -27,7 +27,8 @@ enum Watched {
     Pair(NetId, NetId),
 }
 
-/// Watches the nets of a simulated design, and records for each lane which features its computation has exercised.
+/// Watches the nets of a simulated design. For each lane it records the features that the lane's computation has exercised, such as
+/// an input of a mux or an outcome of a comparison.
 pub struct Watch {
     watched: Vec<Watched>,
     done: Vec<[u64; LANES]>,
@@ -37,7 +38,7 @@ pub struct Watch {
 }
 
 impl Watch {
-    /// Prepares to watch all features of a design.
+    /// Prepares to watch all features of a design, which are events at its nets.
     pub fn new(design: &Design) -> Self {
         let mut watched = Vec::new();
         for (id, net) in design.iter() {
@@ -80,12 +81,12 @@ impl Watch {
         }
     }
 
-    /// Returns the number of features, without the words of ROMs.
+    /// Returns the number of features that are recorded, such as "input 2 of a mux is taken". Reads of ROM words are not counted.
     pub fn count(&self) -> usize {
         64 * CLASSES * self.watched.len()
     }
 
-    /// Records the features that appear in this clock, in the lanes that are `busy`.
+    /// Records the features that the nets show in this clock, in the lanes that are `busy`.
     pub fn note(&mut self, machine: &Machine<LANES>, busy: Lanes) {
         for (watched, done) in self.watched.iter().zip(&mut self.done) {
             let mut add = |of: &dyn Fn(usize) -> u64| {

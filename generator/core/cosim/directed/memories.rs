@@ -7,7 +7,7 @@ use glint_base::fixed::Format;
 use glint_rtl::netlist::{Design, Driver, Net, NetId, Op, Port, Role};
 use glint_rtl::sim::Machine;
 
-/// The addresses of the ROM words of a design in the copies of each lane.
+/// The ROMs of a design after each lane got its own copy of them. It knows the address of each ROM word in the copy of each lane.
 pub struct Memories {
     /// The input port that selects the copy that a lane reads.
     pub lane: NetId,
@@ -49,7 +49,8 @@ impl Memories {
         Self { lane, roms }
     }
 
-    /// Inverts bits of a word, numbered through all ROMs of the design, in one lane; the same call takes it back.
+    /// Inverts bits of one ROM word in one lane; a second call with the same arguments restores the word. Words are numbered
+    /// through all ROMs of the design.
     pub fn invert<const LANES: usize>(
         &self,
         machine: &mut Machine<LANES>,

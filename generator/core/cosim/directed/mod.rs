@@ -57,16 +57,16 @@ pub struct ComputationCache(Mutex<HashMap<String, Arc<Mutex<Option<Computations>
 /// The computations that were chosen for a test bench.
 #[derive(Clone, Default)]
 pub struct Computations {
-    /// Their raw operands, in the order of the contract.
+    /// The raw operands of each computation, in the order of the contract.
     pub operands: Vec<Vec<i64>>,
-    /// The share of ROM words with a computation that detects an inverted bit: every word if this is 1, every second word if it
-    /// is 2, and so on.
+    /// The spacing of the ROM words that have a computation which detects an inverted bit: every word if this is 1, every second
+    /// word if it is 2, and so on.
     pub word_stride: usize,
 }
 
 impl ComputationCache {
-    /// Returns [`computations`], which are looked for once for each design, whatever its name. `contract_digest` tells the
-    /// contract from others.
+    /// Returns [`computations`] of a design from the cache, or chooses and caches them. The name of the design does not matter;
+    /// `contract_digest` tells one contract from another.
     ///
     /// # Errors
     /// Fails as [`computations`] does.

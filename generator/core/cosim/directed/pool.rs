@@ -39,11 +39,12 @@ const CORNER_LENGTH: i64 = 2;
 pub struct Pool {
     /// Computations in which every operand that determines `f` is at an end of its domain or of its format.
     pub corners: Vec<Vec<i64>>,
-    /// Random computations, whose features are all watched.
+    /// Random computations. The search records all features that they exercise.
     pub drawn: Vec<Vec<i64>>,
-    /// Random computations that are watched only for the ROM words that they read.
+    /// Further random computations. The search records only the ROM words that they read.
     pub readers: Vec<Vec<i64>>,
-    /// Lines of points that read a ROM from its beginning to its end.
+    /// Computations that read a ROM from its beginning to its end. Devices that compute a line of points after one `start` have
+    /// them.
     pub sweeps: Vec<Vec<i64>>,
 }
 

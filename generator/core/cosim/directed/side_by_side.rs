@@ -18,7 +18,7 @@ pub const LANES: usize = 32;
 /// The number of clocks that a computation may take.
 const LIMIT: u32 = 1 << 16;
 
-/// A set of lanes, one bit for each.
+/// A set of lanes as a bit mask: bit i is 1 if lane i is in the set.
 pub type Lanes = u32;
 
 /// The outputs of one computation, with the clocks in which they appeared.
@@ -31,7 +31,8 @@ pub struct OutputTrace {
 }
 
 impl OutputTrace {
-    /// Returns how much it differs, in the bits of results as numbers; most where the clocks differ.
+    /// Returns how much the results of two traces differ: the sum of the absolute differences of their bit patterns. Returns the
+    /// largest `u64` if the traces differ in their clocks or in the number of results.
     pub fn differs(&self, from: &Self) -> u64 {
         if self.results.len() != from.results.len() || self.clocks != from.clocks {
             return u64::MAX;
@@ -44,8 +45,8 @@ impl OutputTrace {
     }
 }
 
-/// A simulated design whose lanes run one computation each. All operands are written in the clock of `start`; while a lane is
-/// busy, its operand ports show the complement, so that a late read is noticed.
+/// A simulated design whose lanes run one computation each. The simulator writes all operands in the clock of `start`. While a lane
+/// is busy, its operand ports carry the complemented bits, so that a core that reads an operand too late computes a wrong result.
 pub struct SideBySide {
     pub machine: Machine<LANES>,
     ports: Ports,

@@ -18,7 +18,8 @@ use glint_golden::Contract;
 use glint_rtl::netlist::Design;
 use glint_rtl::sim::{CompiledDesign, Machine};
 
-/// The largest number of clocks of a computation that the search considers for a word. Lines that read a whole ROM take longer.
+/// The largest number of clocks of a computation that the search considers for a ROM word. A longer computation, which reads a
+/// whole ROM, is treated separately.
 pub const LONGEST: u32 = 64;
 
 /// The most clocks that one computation for each word may take. If all words would take more, only every second word has
@@ -34,19 +35,19 @@ const ROUNDS_BEYOND: usize = 6;
 /// The number of tried computations that remain, those which show a larger fault in the word most: others near them are tried next.
 const KEPT: usize = 8;
 
-/// The computations that detect faults in ROM words.
+/// The computations that were chosen because they detect faults in ROM words.
 #[derive(Default)]
 pub struct Chosen {
     /// The numbers of the chosen candidates.
     pub chosen: BTreeSet<usize>,
     /// The raw operands of further computations that the search has found.
     pub found: Vec<Vec<i64>>,
-    /// The share of words with a computation: every word if this is 1, every second word if it is 2, and so on.
+    /// The spacing of the ROM words that have a computation: every word if this is 1, every second word if it is 2, and so on.
     pub word_stride: usize,
 }
 
-/// Finds computations that detect inverted bits in the upper halves of ROM words. A bit counts if a candidate detects it, or a
-/// computation near the candidates that the search finds. It leaves out the words in `known`.
+/// Chooses computations that detect inverted bits in the upper halves of ROM words. It chooses among the `candidates`, and among
+/// further computations near them. It leaves out the words in `known`.
 ///
 /// # Errors
 /// Fails if the design cannot be simulated.

@@ -62,7 +62,8 @@ fn range(item: &str) -> Option<(i64, i64, usize)> {
     Some((first.parse().ok()?, last.parse().ok()?, step))
 }
 
-/// Returns the sweep of a contract, in which `others` replace the values of some operands. Each operand may be named once.
+/// Returns the contract's sweep, which lists the operand values of an exhaustive check, with the values in `others` instead of its
+/// own for some operands. Each operand may be named once.
 ///
 /// # Errors
 /// Fails if an operand is no axis of the sweep, or if a value is outside the operand's domain.

@@ -24,33 +24,33 @@ const SAME: f64 = 1e-9;
 /// The evidence for the error bound that a contract states.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Backing {
-    /// The proof beside the golden model of a device of the catalogue.
+    /// The bound is proved beside the golden model of a device of the catalogue.
     Catalogue,
-    /// The record of a check of every combination of operands.
+    /// The record of an exhaustive check of every combination of operands shows the bound.
     Exhaustive(String),
-    /// The record of statements that Gappa accepted.
+    /// The record of statements that the prover Gappa accepted shows the bound.
     Certificate(String),
-    /// Its author's word.
+    /// Only the author of the contract states the bound; no proof is known.
     Author,
 }
 
 /// The record of `glint certify`: the result of a proof of a configuration.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Certificate {
-    /// The version of Glint; a record begins with it.
+    /// The version of Glint that wrote the record.
     pub glint: String,
     /// The path of the configuration file, as the user gave it.
     pub config: String,
-    /// Identifies the proved contract: [`crate::core::Core::contract_digest`].
+    /// A digest that identifies the proved contract: [`crate::core::Core::contract_digest`].
     pub contract: String,
-    /// The proved bound, in units of the outputs' last place.
+    /// The proved error bound, in units of the last bit of an output.
     pub bound: f64,
-    /// Whether Gappa accepted all statements.
+    /// Whether the prover Gappa accepted all statements.
     pub certified: bool,
-    /// The number of statements.
+    /// The number of statements that were given to Gappa.
     #[serde(default)]
     pub statements: usize,
-    /// SHA-256 of the statements' scripts, which `glint certify --out` writes.
+    /// A digest of the Gappa scripts with these statements, SHA-256 in hexadecimal. `glint certify --out` writes the scripts.
     #[serde(default)]
     pub scripts: String,
 }

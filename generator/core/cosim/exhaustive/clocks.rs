@@ -31,25 +31,27 @@ const RUN: u64 = 512;
 /// Combinations of a block.
 const BLOCK: u64 = RUN * LANES as u64;
 
-/// The progress of a shard of the check of all combinations.
+/// The progress of a shard, which is one machine's part of the check of all combinations.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Steps {
-    /// The number of blocks of the shard that are done. They are the first blocks of the shard.
+    /// The number of finished blocks. They are the first blocks of the shard.
     pub done: u64,
-    /// The place of the first combination for which model and hardware differ. Later places are then not checked.
+    /// The number of the first combination for which model and hardware differ; `None` if they agree so far. Later combinations are
+    /// then not checked.
     pub differs: Option<u64>,
 }
 
 /// The first combination for which model and hardware differ.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Difference {
-    /// The number of the combination.
+    /// The number of the combination, which is its position in the order of the check.
     pub place: u64,
     /// The number of clocks since `start`, which is 0 in the clock that takes `start`.
     pub clock: u64,
-    /// The operands, as bit patterns.
+    /// The operands of the combination: each name with its bit pattern.
     pub operands: Vec<(String, u64)>,
-    /// The mismatch; its clocks count from the power-up of the lane.
+    /// The signal that differs, with its value in the model and in the hardware. Its clock is counted from the power-up of the
+    /// simulated instance.
     pub mismatch: Mismatch,
 }
 
@@ -88,13 +90,13 @@ impl<'a> Clocks<'a> {
         Ok(Self { binding: Binding::new(design, model, contract)? })
     }
 
-    /// Holds some operands at raw values, so that the combinations cover only the other operands.
+    /// Fixes some operands at raw values, so that the combinations cover only the other operands.
     #[must_use]
     pub fn holding(self, held: &[(String, i64)]) -> Self {
         Self { binding: self.binding.holding(held) }
     }
 
-    /// Returns the total number of bits of the operands that are combined.
+    /// Returns the total number of bits of the operands that the combinations cover.
     pub fn bits(&self) -> u32 {
         self.binding.space.bits()
     }
@@ -140,7 +142,7 @@ impl<'a> Clocks<'a> {
         blocks.map(|block| self.of_block(block)).map(|places| places.end - places.start).sum()
     }
 
-    /// Checks some blocks, in ascending order, on all threads of rayon's pool. Returns the place of the first combination for
+    /// Checks some blocks, in ascending order, on all threads of rayon's pool. Returns the number of the first combination for
     /// which model and hardware differ. It calls `progress` with the number of combinations of each finished block.
     ///
     /// # Errors
@@ -173,10 +175,10 @@ impl<'a> Clocks<'a> {
         Ok(mismatch.map(|mismatch| mismatch.seed))
     }
 
-    /// Runs the combination at `place` again, at which [`Clocks::check`] found a difference, and returns the details.
+    /// Runs combination number `place` again, for which [`Clocks::check`] found a difference, and returns the details.
     ///
     /// # Errors
-    /// Fails if nothing differs at the place, or as [`Clocks::check`] fails.
+    /// Fails if nothing differs for this combination, or as [`Clocks::check`] fails.
     pub fn difference(&self, place: u64) -> Result<Difference> {
         let mut alone = self.alone(place)?;
         alone.go_on(u64::MAX)?;
@@ -191,8 +193,8 @@ impl<'a> Clocks<'a> {
         })
     }
 
-    /// Writes the waveform that ends with the difference at `place`. It begins with clock `from`, counted from the power-up of
-    /// the lane.
+    /// Writes the waveform that ends with the difference in combination number `place`. It begins with clock `from`, counted from
+    /// the power-up of the simulated instance.
     ///
     /// # Errors
     /// Fails as [`Clocks::difference`] does, or if the file cannot be written.

@@ -28,8 +28,8 @@ const NAMED: usize = 10;
 /// Blocks for each thread between two looks at the state: some tenths of a second.
 const CHUNK: u64 = 4;
 
-/// One part of a job that is divided among machines. For example, `2/4` is the second of four parts, and has the blocks 1, 5, 9
-/// and so on.
+/// A shard: one part of a job that is divided among machines. For example, `2/4` is the second of four shards, and has the blocks
+/// 1, 5, 9 and so on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Shard {
     /// The number of this shard, from 1.
@@ -86,33 +86,35 @@ impl FromStr for Shard {
     }
 }
 
-/// The progress of a shard in one part of the check: the errors of `f`, or the products with colours.
+/// The progress of a shard in one of the two error measurements: the errors of `f`, or the rounding errors of the products with
+/// colours.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Progress {
-    /// The number of blocks of the shard that are done. They are the first blocks of the shard.
+    /// The number of finished blocks. They are the first blocks of the shard.
     pub done: u64,
-    /// The largest error in these blocks.
+    /// The largest error in the finished blocks.
     pub peak: Peak,
 }
 
-/// The progress of a shard in all parts of the check.
+/// The progress of a shard, which is one machine's part of a job, in all parts of the check.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ShardState {
-    /// A digest of the configuration and of the sources that compute; see [`crate::core::Core::fingerprint`].
+    /// A digest of the configuration and of the sources of the checking code; see [`crate::core::Core::fingerprint`].
     pub digest: String,
-    /// The shard that this state belongs to.
+    /// The shard whose progress this is.
     pub shard: Shard,
-    /// The progress in the sweep that measures the errors of `f`.
+    /// The progress in the measurement of the errors of `f`.
     pub f: Progress,
-    /// The progress in the products of words `f` with colours.
+    /// The progress in the measurement of the products of every word `f` with every colour.
     pub colours: Progress,
-    /// The progress in the combinations of operands that are compared clock by clock.
+    /// The progress in the comparison of model and hardware clock by clock.
     pub clocks: Steps,
 }
 
 impl ShardState {
-    /// Makes the state of a shard that has not begun.
+    /// Makes the state of a shard that has done no work yet. A shard is one machine's part of an exhaustive check. `digest`
+    /// identifies the check.
     pub fn new(digest: &str, shard: Shard) -> Self {
         let nothing = Progress { done: 0, peak: Peak::NONE };
         Self {
@@ -125,29 +127,29 @@ impl ShardState {
     }
 }
 
-/// An exhaustive check of a configuration.
+/// An exhaustive check of a configuration, divided into blocks.
 pub struct Job<'a> {
     /// The operand combinations at which the errors of `f` are measured.
     pub f: Places<'a>,
-    /// The combinations of a word `f` with a colour.
+    /// The combinations of a word `f` with a colour, at which the rounding errors of products are measured.
     pub colours: Places<'a>,
     /// The combinations of operands that are compared clock by clock, if their number is small enough.
     pub clocks: Option<Clocks<'a>>,
 }
 
 impl<'a> Job<'a> {
-    /// Makes the check of the error bound of a contract.
+    /// Makes the check of a contract's error bound, for the operand values in the contract's own sweep.
     pub fn new(contract: &'a dyn Contract) -> Self {
         Self::of_sweep(contract, contract.sweep())
     }
 
-    /// Makes the check of the error bound of a contract with other operand values than the contract's sweep has.
+    /// Makes the check of a contract's error bound, for the operand values in `sweep`.
     pub fn of_sweep(contract: &'a dyn Contract, sweep: Sweep) -> Self {
         let (f, colours) = (Places::of_sweep(contract, sweep), Places::of_colours(contract));
         Self { f, colours, clocks: None }
     }
 
-    /// Returns a phrase that says how many evaluations the check makes.
+    /// Returns a phrase that says how many evaluations of `f` and of products the check makes.
     pub fn words(&self) -> String {
         let places = grouped(self.f.count());
         match self.colours.count() {
@@ -192,8 +194,8 @@ impl<'a> Job<'a> {
         ]
     }
 
-    /// Checks that a state that was read from a file can be a state of this job. Its numbers must be in range, and its largest
-    /// errors are computed again at their places.
+    /// Checks that a state from a file can be a state of this job. Its numbers must be in range. The function computes the recorded
+    /// largest errors again, at the recorded operands, and compares them.
     ///
     /// # Errors
     /// Fails if the state cannot belong to this job.
@@ -260,8 +262,8 @@ impl<'a> Job<'a> {
         Ok(Duration::from_secs_f64(sum / threads.max(1) as f64))
     }
 
-    /// Continues from `state` to the end of its shard. It calls `look` with the state now and then, and stops if `look` breaks.
-    /// It calls `progress` with the number of combinations of each finished block.
+    /// Continues a shard from `state` to its end. It calls `look` with the state now and then, and stops if `look` returns
+    /// `ControlFlow::Break`. It calls `progress` with the number of combinations of each finished block.
     ///
     /// # Errors
     /// Fails if the design cannot be simulated, or does not settle.
@@ -302,11 +304,10 @@ impl<'a> Job<'a> {
         Ok(ControlFlow::Continue(()))
     }
 
-    /// Merges the shards of one job.
+    /// Merges the results of all shards of one job. `names` gives the name of each of the `states`, in their order, for the error.
     ///
     /// # Errors
-    /// Fails if the shards belong to different jobs, or if a shard is missing, duplicated or not done. `names` gives the
-    /// names of `states`, in their order, for the error.
+    /// Fails if the shards belong to different jobs, or if a shard is missing, duplicated or not done.
     pub fn merge(&self, states: &[ShardState], names: &[String]) -> Result<ShardState> {
         let Some(first) = states.first() else {
             anyhow::bail!("nothing to merge");

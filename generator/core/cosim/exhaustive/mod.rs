@@ -41,14 +41,14 @@ pub struct Proof {
     pub f: Peak,
     /// The error of f in output units, for the largest colour.
     pub f_units: f64,
-    /// The largest error of a colour multiplier, in output units.
+    /// The largest rounding error of a product of `f` with a colour, in output units.
     pub colours: Peak,
     /// Sentences about the errors that exceed the contract's bound; empty if the bound holds.
     pub failures: Vec<String>,
 }
 
 impl Proof {
-    /// Compares the largest errors `f` and `colours` with the contract's bound.
+    /// Compares the largest error of `f` and the largest rounding error of the products with colours with the contract's bound.
     pub fn new(contract: &dyn Contract, f: Peak, colours: Peak) -> Self {
         let colour = contract.operands().iter().find(|operand| operand.colour);
         let largest = colour.map_or(1.0, |operand| operand.domain.1 as f64);
@@ -79,8 +79,8 @@ impl Proof {
         proof
     }
 
-    /// Returns the verdict. It is "proved" only if the sweep left out no operand that determines `f`, and if the bound keeps the
-    /// contract.
+    /// Returns the verdict of the check in a word. It is "proved" only if the sweep left out no operand that determines `f`, and if
+    /// the bound keeps the contract.
     pub fn verdict(&self, contract: &dyn Contract, sweep: &Sweep) -> &'static str {
         if !self.failures.is_empty() {
             "FAILS"
@@ -95,7 +95,7 @@ impl Proof {
         }
     }
 
-    /// Returns a phrase with the largest errors. The text `at` is inserted after the first error, for example its place.
+    /// Returns a phrase with the largest errors. The text `at`, such as the operands of the first error, is inserted after it.
     pub fn words(&self, at: &str) -> String {
         if !self.of_f {
             return format!("an output is off by {:.3} units at most{at}", self.together());
@@ -109,8 +109,8 @@ impl Proof {
         )
     }
 
-    /// Returns an upper bound of the error of an output in units: the largest error of `f`, plus the largest error of a colour
-    /// multiplier.
+    /// Returns an upper bound of the error of an output in units: the largest error of `f`, plus the largest rounding error of a
+    /// product with a colour.
     pub fn together(&self) -> f64 {
         self.f_units + self.colours.error
     }

@@ -11,19 +11,19 @@ use serde::{Deserialize, Deserializer, Serialize};
 
 use glint_golden::{Axis, Contract, Sweep, Values};
 
-/// The number of places in a block, which takes some milliseconds.
+/// The number of operand combinations in a block. A block takes some milliseconds.
 pub const BLOCK: u64 = 1 << 17;
 
 /// The number of places that are timed, and about the number of places of a glimpse.
 const SAMPLE: u64 = 4096;
 
-/// The largest error in some places, and the first place at which it occurs.
+/// The largest error among some operand combinations, and the first combination with this error.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Peak {
-    /// The absolute error. It is infinite if the formula has no value at the place.
+    /// The absolute error. It is infinite if the formula has no value for the operands.
     #[serde(deserialize_with = "or_infinite")]
     pub error: f64,
-    /// The number of the place.
+    /// The number of the operand combination.
     pub place: u64,
 }
 
@@ -33,10 +33,10 @@ fn or_infinite<'de, D: Deserializer<'de>>(number: D) -> Result<f64, D::Error> {
 }
 
 impl Peak {
-    /// The peak before any place was visited.
+    /// The initial value of a search for the largest error, before any combination was visited. Any error replaces it.
     pub const NONE: Self = Self { error: 0.0, place: u64::MAX };
 
-    /// Returns the peak of both sets of places together.
+    /// Returns the larger of two peaks; if their errors are equal, the one with the smaller number.
     #[must_use]
     pub fn join(self, other: Self) -> Self {
         let later = self.place > other.place;
@@ -61,18 +61,18 @@ pub struct Places<'a> {
 }
 
 impl<'a> Places<'a> {
-    /// Makes the places of the contract's own sweep, at which the error of `f` is measured.
+    /// Numbers the operand combinations of the contract's own sweep, at which the error of `f` is measured.
     pub fn of_f(contract: &'a dyn Contract) -> Self {
         Self::of_sweep(contract, contract.sweep())
     }
 
-    /// Makes the places of another sweep, at which the error of `f` is measured.
+    /// Numbers the operand combinations of `sweep`, at which the error of `f` is measured.
     pub fn of_sweep(contract: &'a dyn Contract, sweep: Sweep) -> Self {
         Self { contract, measure: PlaceMeasure::F, sweep }
     }
 
-    /// Makes the places that combine every word `f` with every value of a colour operand. All colour operands are alike, so one
-    /// is enough.
+    /// Numbers the combinations of every word `f` with every value of a colour operand. All colour operands are alike, so one is
+    /// enough.
     pub fn of_colours(contract: &'a dyn Contract) -> Self {
         let axis = |name: &str, values| Axis { name: name.to_owned(), values };
         let colour = contract.operands().iter().find(|operand| operand.colour);
@@ -99,18 +99,18 @@ impl<'a> Places<'a> {
         &self.sweep
     }
 
-    /// Returns the number of places.
+    /// Returns the number of operand combinations that the check visits.
     pub fn count(&self) -> u64 {
         self.sweep.axes.iter().map(|axis| axis.values.count()).product()
     }
 
-    /// Returns the number of blocks into which the places are cut.
+    /// Returns the number of blocks into which the combinations are cut.
     pub fn blocks(&self) -> u64 {
         self.count().div_ceil(BLOCK)
     }
 
-    /// Returns the value on each axis of place `number`. For example, on axes of 2 and of 3 values, place 4 has the second
-    /// value of each.
+    /// Returns the operand values of combination `number`. For example, with operands of 2 and of 3 values, combination 4 has the
+    /// second value of each.
     pub fn place(&self, mut number: u64) -> Vec<i64> {
         let mut values: Vec<i64> = self
             .sweep
@@ -128,7 +128,8 @@ impl<'a> Places<'a> {
         values
     }
 
-    /// Returns the names and values of place `number`, in words. For example, `cos_gamma = 1044480, exponent = 20`.
+    /// Returns the names and values of the operands in combination `number`, as text. For example, `cos_gamma = 1044480, exponent =
+    /// 20`.
     pub fn words(&self, number: u64) -> String {
         let pairs = self.sweep.axes.iter().zip(self.place(number));
         let words: Vec<String> =
@@ -136,12 +137,12 @@ impl<'a> Places<'a> {
         words.join(", ")
     }
 
-    /// Returns the error at place `number`.
+    /// Returns the error for combination `number`.
     pub fn error(&self, number: u64) -> f64 {
         self.error_at(&self.place(number))
     }
 
-    /// Returns the errors at some places that are spread evenly over all.
+    /// Returns the errors for some combinations that are spread evenly over all. They serve as a fingerprint of the golden model.
     pub fn glimpse(&self) -> Vec<f64> {
         let step = (self.count() / SAMPLE).max(1);
         (0..self.count()).step_by(step as usize).map(|place| self.error(place)).collect()
@@ -209,8 +210,8 @@ impl<'a> Places<'a> {
         peak
     }
 
-    /// Measures the errors at all places of some blocks on all processors, and returns the largest. It calls `progress` with the
-    /// number of places of each finished block.
+    /// Measures the errors for all combinations in some blocks on all processors, and returns the largest. It calls `progress` with
+    /// the number of combinations in each finished block.
     pub fn check(
         &self,
         blocks: impl IntoParallelIterator<Item = u64>,

@@ -20,7 +20,7 @@ const SAME: f64 = 1e-9;
 #[derive(Clone, Debug, Deserialize)]
 pub struct Record {
     axes: Vec<RecordedAxis>,
-    /// The number of evaluations of `f`.
+    /// The number of evaluations of `f` in the check.
     pub evaluations: u64,
     /// The number of products of a word `f` with a colour. It is 0 for a device that is no highlight.
     pub colour_products: u64,
@@ -28,9 +28,10 @@ pub struct Record {
     pub f: RecordedPeak,
     /// The largest error of a colour multiplier, in output units.
     colour_units: f64,
-    /// The largest error of an output that the check allows for, in output units.
+    /// The upper bound that the check gives for the error of an output, in output units: the error of `f` for the largest colour,
+    /// plus the rounding of the product.
     pub together: f64,
-    /// Whether the bound held everywhere.
+    /// Whether the contract's bound held for all operands.
     pub holds: bool,
     /// The file that contains the record.
     #[serde(skip)]
@@ -40,9 +41,9 @@ pub struct Record {
 /// The largest error of `f` in a record.
 #[derive(Clone, Copy, Debug, Deserialize)]
 pub struct RecordedPeak {
-    /// The absolute error.
+    /// The absolute error of `f`.
     pub error: f64,
-    /// The error in output units, for the largest colour.
+    /// The error of `f` in output units, for the largest colour.
     pub units: f64,
     /// The number of the operand combination with this error.
     place: u64,
@@ -147,15 +148,16 @@ impl Record {
         self.proof(contract).words("")
     }
 
-    /// Returns the number of evaluations that [`Record::recheck`] makes if it visits about `places` places of `f`.
+    /// Returns the number of evaluations that [`Record::recheck`] makes if it visits about `places` operand combinations of `f`.
     pub fn steps(&self, contract: &dyn Contract, places: u64) -> u64 {
         let f = Places::of_sweep(contract, self.sweep(contract));
         let colours = Places::of_colours(contract);
         f.visits(part(&f, places).into_iter()) + colours.count()
     }
 
-    /// Computes a part of the recorded check again: about `places` evenly spread places, the place of the largest error, and all
-    /// products with colours. Returns the number of evaluations of `f`, and the differences from the record.
+    /// Computes a part of the recorded check again and compares it with the record. The part is about `places` evenly spread
+    /// operand combinations, the combination with the largest error, and all products with colours. Returns the number of
+    /// evaluations of `f`, and the differences from the record.
     pub fn recheck(
         &self,
         contract: &dyn Contract,

@@ -11,7 +11,8 @@ use glint_rtl::verilog::text::{Names, literal};
 
 fresh_names!(Variables { points, results, read, clocks, offered, total, tick, dut });
 
-/// Returns the test bench of a pipeline. After the last point, the last results must come in less than `limit` clocks.
+/// Returns the test bench that sends points through a pipeline. After the last point, the last results must come in less than
+/// `limit` clocks.
 ///
 /// # Errors
 /// Fails if the design lacks the handshake of a pipeline.

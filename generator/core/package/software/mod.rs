@@ -18,10 +18,10 @@ use super::output_files::OutputFiles;
 use super::tops::Top;
 pub use recompute::check as check_recomputation;
 
-/// Adds the software files that the configuration asks for.
+/// Adds the software files that the configuration asks for: the C model, register headers, stream functions and the LiteX module.
 ///
 /// # Errors
-/// Fails if the core does not fit.
+/// Fails if the core cannot be written in one of these forms. For example, no C function can wait for a second `start`.
 pub fn files(job: &EmitJob, tops: &[Top], files: &mut OutputFiles) -> Result<()> {
     if job.inputs.around.software {
         let read = model::files(job, files)?;

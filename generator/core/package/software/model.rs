@@ -21,13 +21,13 @@ use glint_rtl::verilog::text::{Names, ascii, constant_name, statement};
 /// An operand or a result as a member of a C structure.
 #[derive(Clone)]
 pub struct CField {
-    /// The name of the member.
+    /// The name of the member in the C structure.
     pub name: String,
     /// The upper-case name with the module's before it. For example, `ROUGH_COS_GAMMA`.
     constant: String,
-    /// The C type of the raw integer.
+    /// The C type of the member, which holds the raw integer.
     pub kind: &'static str,
-    /// The format of the port.
+    /// The fixed-point format of the port.
     pub format: Format,
     /// A comment with the format and the meaning.
     pub doc: String,
@@ -346,7 +346,7 @@ fn roms(graph: &Graph, wanted: &[NodeId]) -> Vec<RomId> {
     needed.filter_map(rom).collect()
 }
 
-/// Returns the name of the C array of each ROM.
+/// Returns for each ROM the name of the C array with its words.
 pub fn table_names(design: &Design) -> Vec<String> {
     let mut names = Names::new(design.nets.iter().map(|net| net.name.as_str()));
     design.roms.iter().map(|rom| names.fresh(&format!("{}_table", rom.name))).collect()

@@ -68,11 +68,11 @@ pub struct Printer<'a> {
     states: BTreeMap<NodeId, String>,
 }
 
-/// A statement, and the microinstruction that it belongs to.
+/// A C statement, with the microinstruction whose value it computes.
 pub struct CStatement {
-    /// The number of the microinstruction's step in the computation.
+    /// The number of the executed microinstruction in the computation, counted from 0.
     pub step: usize,
-    /// The text, without indentation.
+    /// The text of the statement, without indentation.
     pub text: String,
 }
 
@@ -121,7 +121,8 @@ impl<'a> Printer<'a> {
         lines
     }
 
-    /// Returns whether a value no longer changes when the statements assign to registers and memories.
+    /// Returns whether a value no longer changes when the C statements assign to registers and memories, so that it may be read
+    /// afterwards.
     pub fn is_settled(&self, id: NodeId) -> bool {
         self.locals.contains_key(&id) || self.graph.constant_of(id).is_some()
     }

@@ -56,7 +56,7 @@ pub fn check(name: &str, facts: &ContractFacts) -> Result<(), KeyError> {
     RecomputedFormula::new(name, facts).map(drop)
 }
 
-/// Adds the program to `files`. `read` are the ROMs that the C model reads.
+/// Adds the C program that recomputes all results to `files`. `read` are the ROMs that the C model reads.
 ///
 /// # Errors
 /// Fails as [`check`] does.

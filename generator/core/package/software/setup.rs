@@ -43,8 +43,8 @@ impl LineSetup<'_> {
     }
 }
 
-/// Adds the C and Python files. Adds nothing if the device computes no line of points, or if it has other operands than the
-/// formulas give.
+/// Adds the C and Python functions that compute the operands of a line. Adds nothing if the device computes no line of points, or
+/// if it has other operands than the formulas give.
 ///
 /// # Errors
 /// Fails if a template fails.

@@ -11,7 +11,7 @@ use crate::package::file_kind::FileKind;
 use crate::package::output_files::OutputFiles;
 use crate::package::tops::Top;
 
-/// Adds both files of each module.
+/// Adds the two constraint files of each module, `<top>.sdc` and `<top>.xdc`, for a clock of `clock_mhz` MHz.
 ///
 /// # Errors
 /// Fails if a template fails.

@@ -80,7 +80,7 @@ impl RegisterBits {
     }
 }
 
-/// Adds a component of each module.
+/// Adds the IP-XACT description `<top>.xml` of each module.
 ///
 /// # Errors
 /// Fails if a template fails.

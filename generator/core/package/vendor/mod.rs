@@ -10,7 +10,7 @@ use super::emit_job::EmitJob;
 use super::output_files::OutputFiles;
 use super::tops::Top;
 
-/// Adds the files that the configuration asks for.
+/// Adds the vendor files that the configuration asks for: constraints, Tcl scripts and IP-XACT descriptions.
 ///
 /// # Errors
 /// Fails if a template fails.

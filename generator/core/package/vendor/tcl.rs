@@ -31,7 +31,7 @@ impl TopPort {
     }
 }
 
-/// Adds `<name>_vivado.tcl` and `<name>_vivado_ip.tcl`.
+/// Adds the scripts for Vivado: `<name>_vivado.tcl` builds the module alone, and `<name>_vivado_ip.tcl` packages it as IP.
 ///
 /// # Errors
 /// Fails if a template fails.
@@ -62,7 +62,7 @@ pub fn vivado(job: &EmitJob, tops: &[Top], files: &mut OutputFiles) -> Result<()
     Ok(())
 }
 
-/// Adds `<name>_quartus.tcl`, and `<top>_hw.tcl` of each module.
+/// Adds the scripts for Quartus: `<name>_quartus.tcl` builds the module alone, and `<top>_hw.tcl` describes each module as IP.
 ///
 /// # Errors
 /// Fails if a template fails.

@@ -24,7 +24,8 @@ struct BenchRegister {
     mask: String,
 }
 
-/// Adds the benches of a core's wrappers and their files; none without a computation in the vectors.
+/// Adds the test benches of the core's wrappers and the files that they read. Adds nothing if the vectors contain no finished
+/// computation.
 ///
 /// # Errors
 /// Fails if the core lacks its handshake.

@@ -8,21 +8,21 @@ use crate::package::emit_job::EmitJob;
 use glint_rtl::netlist::{Design, Port, Role};
 use glint_rtl::verilog::text::{ascii, literal, statement};
 
-/// An operand or a result in a transfer of an AXI4-Stream.
+/// An operand or a result as a field in a transfer of an AXI4-Stream.
 pub struct StreamField {
     pub name: String,
-    /// Name and format, for comments.
+    /// The name and the format of the value, for comments.
     pub label: String,
     pub signed: bool,
     pub width: u32,
     /// The lowest bit of the value in the transfer.
     pub low: u32,
-    /// The port that writes it, if it is an operand of a core with a microprogram.
+    /// The port that writes the operand, if the core has a microprogram; otherwise empty.
     pub strobe: String,
 }
 
 impl StreamField {
-    /// Returns the number of its bits, including the padding of its last byte. For example, a cosine of 21 bits has 24.
+    /// Returns the number of bits of the field, including the padding of its last byte. For example, a cosine of 21 bits has 24.
     pub fn padded(&self) -> u32 {
         self.width.next_multiple_of(8)
     }
@@ -49,7 +49,7 @@ impl StreamField {
     }
 }
 
-/// Returns the operands, in the order of the ports.
+/// Returns the fields of the operands, in the order of the ports.
 pub fn operands(design: &Design) -> Vec<StreamField> {
     let ports = design.inputs().filter_map(|port| match port.role {
         Role::Operand { strobe } => Some((port, design.net(strobe).name.clone())),
@@ -59,7 +59,7 @@ pub fn operands(design: &Design) -> Vec<StreamField> {
     side_by_side(design, ports)
 }
 
-/// Returns the results, in the order of the ports. For example, three colours of 8 bits begin at bits 0, 8 and 16.
+/// Returns the fields of the results, in the order of the ports. For example, three colours of 8 bits begin at bits 0, 8 and 16.
 pub fn results(design: &Design) -> Vec<StreamField> {
     let ports = design.outputs().filter(|port| port.role == Role::Result);
     side_by_side(design, ports.map(|port| (port, String::new())))
@@ -93,7 +93,7 @@ pub struct Transfer {
 }
 
 impl Transfer {
-    /// Returns the transfer to the core: the operands.
+    /// Returns the layout of a transfer to the core, which carries the operands.
     ///
     /// # Errors
     /// Fails if the core has no operands.
@@ -101,7 +101,7 @@ impl Transfer {
         Self::new(job, operands(job.design))
     }
 
-    /// Returns the transfer from the core: the results.
+    /// Returns the layout of a transfer from the core, which carries the results.
     ///
     /// # Errors
     /// Fails if the core has no results.
@@ -116,7 +116,7 @@ impl Transfer {
         Ok(Self { fields, bits })
     }
 
-    /// Returns the highest bit.
+    /// Returns the number of the highest bit of the transfer.
     pub fn high(&self) -> u32 {
         self.bits - 1
     }
@@ -126,7 +126,7 @@ impl Transfer {
         self.fields.last().map_or(0, |last| last.low + last.padded())
     }
 
-    /// Returns the field of a port.
+    /// Returns the field of the port `name`, or `None` if the transfer has no such field.
     pub fn field(&self, name: &str) -> Option<&StreamField> {
         self.fields.iter().find(|field| field.name == name)
     }
@@ -136,7 +136,8 @@ impl Transfer {
         self.fields.iter().any(|field| field.signed && field.padded() > field.width)
     }
 
-    /// Returns the parts of a concatenation of all of it; the last field is above the others.
+    /// Returns the parts of a Verilog concatenation that forms the whole transfer, from the top bits down. The last field is in the
+    /// top bits; `prefix` is put before the name of each port.
     pub fn packed(&self, prefix: &str) -> Vec<String> {
         let above = self.bits - self.filled();
         let of_field = |field: &StreamField| field.packed(&format!("{prefix}{}", field.name));
@@ -159,7 +160,8 @@ impl Transfer {
     }
 }
 
-/// Returns a wire that reads all nets that nothing else reads, for linters. Returns nothing if there are no such nets.
+/// Returns Verilog that declares a wire which reads all nets in `unused`, so that linters do not warn of unread nets. Returns
+/// nothing if there are no such nets.
 pub fn sink(unused: &[String]) -> Vec<String> {
     match unused {
         [] => Vec::new(),

@@ -26,10 +26,10 @@ struct ResultBits<'a> {
     width: u32,
 }
 
-/// Adds the wrapper and its proof.
+/// Adds the stream wrapper of a pipeline and its proof.
 ///
 /// # Errors
-/// Fails if the pipeline cannot be held back, or has no operands or results.
+/// Fails if the environment cannot stall the pipeline, or if the pipeline has no operands or results.
 pub fn modules(job: &EmitJob, pipeline: &Pipeline, files: &mut OutputFiles) -> Result<()> {
     let (name, design) = (job.name(), job.design);
     ensure!(

@@ -15,14 +15,15 @@ use glint_rtl::netlist::{Design, Port, Role};
 /// Results in a list, at most: a line more would be beyond it.
 const RESULTS: usize = 4096;
 
-/// A computation: bit patterns in the order of the ports.
+/// A finished computation from the vectors of a test bench: the bit patterns of its operands and results, in the order of the
+/// ports.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct BenchPoint {
     pub operands: Vec<u64>,
     pub results: Vec<Vec<u64>>,
 }
 
-/// Returns the computations that run to their end, in the order in which they do.
+/// Returns the computations in `vectors` that run to their end, in the order in which they end.
 ///
 /// # Errors
 /// Fails if the design lacks its handshake.
@@ -144,7 +145,8 @@ fn streamed<'a>(rows: impl Iterator<Item = PortValues<'a>>) -> Option<Vec<BenchP
     Some(done)
 }
 
-/// Returns the stream's input: the operands side by side in whole bytes, the bits above them of every other point set.
+/// Returns the input file of the wrapper's bench: for each computation a word with all operands, each padded to whole bytes. Every
+/// other word has ones in the padding bits, because the wrapper must ignore them.
 pub fn sent(points: &[BenchPoint], operands: &Transfer) -> String {
     let word = |(number, point): (usize, &BenchPoint)| {
         let above = |field: &StreamField| if number % 2 == 1 { !mask(field.width) } else { 0 };
@@ -153,7 +155,9 @@ pub fn sent(points: &[BenchPoint], operands: &Transfer) -> String {
     points.iter().enumerate().map(word).collect()
 }
 
-/// Returns the stream's output, a line a result: likewise, with copies of the sign, and above them whether it is the last of a line.
+/// Returns the output file of the wrapper's bench: a line for each result, with all outputs padded to whole bytes. A signed output
+/// is padded with copies of its sign bit, any other with zeros. If `is_line` is set, a further digit in front says whether the
+/// result is the last one of its computation.
 pub fn received(points: &[BenchPoint], results: &Transfer, is_line: bool) -> String {
     let mut text = String::new();
     for point in points {

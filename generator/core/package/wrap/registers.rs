@@ -37,7 +37,7 @@ struct ByteLane {
     data: String,
 }
 
-/// Adds the registers and their bus, and the proofs of both.
+/// Adds the module of the registers, the module of their bus, and the proofs of both.
 ///
 /// # Errors
 /// Fails if a template fails.

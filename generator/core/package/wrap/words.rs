@@ -5,20 +5,20 @@ use crate::package::map::{self, BusRegister, Map, PortBits, PortPlacement};
 use glint_rtl::netlist::Design;
 use glint_rtl::verilog::text::{literal, statement};
 
-/// A register as it is read.
+/// A bus register, with the Verilog expression that a read of it returns.
 pub struct Word {
-    /// Its place, in words.
+    /// The address of the register in words of 32 bits.
     pub number: u64,
-    /// The index, as a literal.
+    /// The address of the register as a Verilog literal.
     pub index: String,
-    /// An expression of 32 bits.
+    /// A Verilog expression of 32 bits, the word that a read returns.
     pub read: String,
-    /// It is there after a computation; until then 0 is read.
+    /// Whether the register holds a result. Such a register reads as 0 until a computation has finished.
     pub is_result: bool,
 }
 
-/// Returns whether an address is one of these places: comparisons of its upper bits, which take no adder as
-/// comparisons of size do.
+/// Returns the Verilog of a wire that is 1 if the address `at` lies from word `first` to word `last`. It compares upper address
+/// bits with constants, which needs no adder, in contrast to a comparison of sizes.
 pub fn within(wire: &str, at: &str, (first, last): (u32, u32), word_bits: u32) -> Vec<String> {
     let mut terms = Vec::new();
     let mut place = first;
@@ -40,8 +40,8 @@ pub fn within(wire: &str, at: &str, (first, last): (u32, u32), word_bits: u32) -
     statement(4, &format!("wire {wire} = {};", terms.join(" | ")))
 }
 
-/// Returns the part-select of bits `low` to `high` of a net of that width; nothing where that is all of it. For example, bits 4
-/// to 7 of 32 give `[7:4]`.
+/// Returns the part-select of bits `low` to `high` of a net with `width` bits, or an empty text if it selects the whole net. For
+/// example, bits 4 to 7 of 32 give `[7:4]`.
 pub fn select(width: u32, low: u32, high: u32) -> String {
     match (low, high) {
         (0, high) if high + 1 == width => String::new(),
@@ -50,7 +50,7 @@ pub fn select(width: u32, low: u32, high: u32) -> String {
     }
 }
 
-/// Returns the words of the registers that never change.
+/// Returns the values of the registers that never change, as Verilog literals.
 pub fn constants(map: &Map) -> Vec<String> {
     let value = |register: &BusRegister| {
         let value = register.bits.iter().map(|bits| bits.reset << bits.low).sum::<u64>();
@@ -59,7 +59,7 @@ pub fn constants(map: &Map) -> Vec<String> {
     map.registers[..map::CONSTANTS as usize].iter().map(value).collect()
 }
 
-/// Returns the word of each other register.
+/// Returns the bus registers whose values can change, with the expressions that a read returns.
 pub fn words(design: &Design, map: &Map) -> Vec<Word> {
     let word_bits = map.address_bits() - 2;
     let start_pad = literal(0, 24 - word_bits);

@@ -7,12 +7,12 @@ use crate::netlist::{Design, NetId};
 use crate::pipeline::graph::NodeId;
 use glint_base::fixed::Format;
 
-/// One clock of a running design, as values.
+/// One clock of a running design, as a graph of values.
 #[derive(Debug)]
 pub struct Cycle {
-    /// The values of the clock, and of the clock that accepts `start`. The results are all outputs.
+    /// The values of an arbitrary clock, and of the clock that accepts `start`. The results are all outputs.
     pub unrolled: Unrolled,
-    /// The registers and the synchronous ROMs.
+    /// The contents of the registers and of the synchronous ROMs.
     pub held: Vec<StateValues>,
 }
 

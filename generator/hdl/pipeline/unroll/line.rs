@@ -1,15 +1,17 @@
-//! Unrolls a computation of several results: finds how each point of a line follows from operands and the point
-//! before.
+//! Unrolls a computation of several results, such as the points of a scan line. The module finds how each point follows from the
+//! operands and the point before.
 //!
-//! A microinstruction that writes a point sets `valid` a fixed number of clocks later, D. Nothing is assumed about
-//! the registers before it, except that the operand registers hold operands. The search follows every path through
-//! the microprogram for D clocks, from any microinstruction. By induction on the number of points, its findings hold
-//! for all points of lines of any length:
+//! The registers that carry state from one point to the next are called the *walk*. For example, the walk of `quad-cosine` is the
+//! register with the current angle. The module proves by induction that all points are computed alike:
 //!
-//! - The results are the same function of the operands and of a few registers, the *walk*, whatever was executed
-//!   between. Each point shows that function of the walk as it was after the point was written.
-//! - The first point writes values of operands alone into the walk. Every other point writes one function of walk and
+//! - The results are the same function of the operands and the walk for each point, whatever microinstructions are executed between
+//!   points.
+//! - The first point loads functions of the operands alone into the walk. Every other point loads one function of the walk and the
 //!   operands. Nothing else writes the walk between points.
+//!
+//! A microinstruction that writes a point sets `valid` a fixed number D of clocks later. The search therefore follows every path
+//! through the microprogram for D clocks, from any microinstruction. It assumes nothing about the registers before the path, except
+//! that the operand registers hold operands.
 
 use super::{Clock, Executor, Iterations, State, Unrolled};
 use crate::netlist::{Design, NetId, RegisterKind, Role, Sequence};
@@ -24,13 +26,13 @@ const MOST_DELAY: usize = 12;
 /// The values of a computation with several results, such as the points of a scan line.
 #[derive(Debug)]
 pub struct UnrolledLine {
-    /// The values of the first point. Later points differ only in the registers of the walk.
+    /// The values of the first point. Later points differ only in the registers of the walk, which carry state from point to point.
     pub unrolled: Unrolled,
-    /// The registers of the walk.
+    /// The registers of the walk, which carry state from point to point.
     pub walk: Vec<WalkRegister>,
 }
 
-/// A register of the walk, as values. The walk are the registers that change from point to point.
+/// A register of the walk, as values. The walk consists of the registers that carry state from point to point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct WalkRegister {
     /// The value that the first point loads.
@@ -41,10 +43,11 @@ pub struct WalkRegister {
     pub next: NodeId,
 }
 
-/// Executes the points of a line.
+/// Unrolls the points of a line, a computation with several results. Returns the values of the first point, and the function by
+/// which each later point follows from the point before.
 ///
 /// # Errors
-/// Fails if the points are not alike in the way that the head of this module describes.
+/// Fails if the points are not computed alike, as the head of this module describes.
 pub fn unroll_line(design: &Design) -> Result<UnrolledLine, Diagnostics> {
     let executor = Executor::new(design, Iterations::OneByOne);
     LineUnroller { executor }.line().map_err(|diagnostic| Diagnostics(vec![diagnostic]))

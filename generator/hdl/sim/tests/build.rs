@@ -46,7 +46,7 @@ impl Build {
         self.net(name, format, Driver::Op(op))
     }
 
-    /// Returns a register that takes nothing yet.
+    /// Adds a register without a data input, and returns the net that it drives.
     pub fn register(&mut self, name: &str, format: Format) -> NetId {
         let q = self.net(name, format, Driver::Undriven);
         self.design.add_register(q, RegisterKind::Architectural).q
@@ -97,7 +97,7 @@ impl Build {
     }
 }
 
-/// Splitmix64.
+/// A generator of pseudo-random numbers, by the algorithm Splitmix64.
 pub struct Random(pub u64);
 
 impl Random {
@@ -116,7 +116,7 @@ impl Random {
         low + self.below((high - low + 1) as usize) as u32
     }
 
-    /// Returns a pattern of a width, often at a corner of the range.
+    /// Returns a random bit pattern of `width` bits. It is often a corner of the range, such as 0 or all ones.
     pub fn pattern(&mut self, width: u32) -> u64 {
         let top = 1 << (width - 1);
         let pattern = match self.below(8) {

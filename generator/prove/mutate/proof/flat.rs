@@ -1,6 +1,7 @@
-//! Makes a copy of a pipeline in which every register passes on its input, except the registers of the handshake.
+//! Makes a copy of a pipeline in which every register passes on its input at once, except the registers of the handshake.
 //!
-//! The copy computes the same results for a single point, and a proof can look across the stages.
+//! The copy computes the same results for a single point (one set of operands), and a proof about a fault can look across the
+//! stages.
 
 use std::collections::BTreeMap;
 

@@ -1,5 +1,5 @@
-//! Tracks the pairs of values that each bit of a net can have, one in the fault-free design and one in the mutant, through each
-//! kind of cell.
+//! Tracks the pairs of values that each bit of a net can have, one in the fault-free design and one in the design with a fault,
+//! through each kind of cell. If an output bit can only have equal pairs, the fault does not reach it.
 //!
 //! For example, an AND with a bit that is 0 in both designs gives 0 in both.
 

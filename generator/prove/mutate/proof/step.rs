@@ -1,4 +1,5 @@
-//! Evaluates one microinstruction, for the fault-free design or for a mutant together with it.
+//! Evaluates one microinstruction on bits that may be unknown, for the fault-free design alone or for a mutant and the fault-free
+//! design together. The proofs of `mutate` use it.
 //!
 //! A pipeline has no microinstructions; each of its time slots counts as one.
 

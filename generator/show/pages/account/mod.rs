@@ -26,21 +26,21 @@ const NUMBER: &str = "no.";
 pub struct PageInputs<'a> {
     /// The path of the configuration file, as the user gave it: `configs/<name>.toml`.
     pub path: &'a str,
-    /// The values of the configuration's keys.
+    /// The configuration: the values of the device's keys.
     pub config: &'a Config,
-    /// The keys of the device.
+    /// The schema of the device: its keys with their ranges and defaults.
     pub schema: &'a Schema,
-    /// The accuracy contract.
+    /// The accuracy contract of the core, which states its formula and its error bound.
     pub contract: &'a dyn Contract,
-    /// The evidence for the contract's error bound.
+    /// The evidence for the contract's error bound, such as a record of an exhaustive check.
     pub backing: &'a Backing,
     /// The key that would reduce the error bound most.
     pub advice: Option<Advice>,
     /// The number of clocks between the events of the handshake.
     pub timing: &'a HandshakeTiming,
-    /// A computation with the values of all operands and outputs.
+    /// A worked example: one computation with the values of all operands and outputs.
     pub example: &'a WorkedExample,
-    /// The clocks of a line, if the device computes lines of points.
+    /// The clock numbers of a line, if the device computes several points after one `start`.
     pub line: Option<&'a LineClocks>,
 }
 
@@ -57,7 +57,7 @@ pub fn numbering(design: &Design) -> &'static str {
     }
 }
 
-/// Returns how a format is written: a single bit is no number. For example, `u0.8`, or `1 bit`.
+/// Returns the text for a format. For example, `u0.8`; a single bit without a binary point gives `1 bit`.
 pub fn format_text(format: Format) -> String {
     match format.width() {
         1 => "1 bit".to_owned(),
@@ -65,7 +65,7 @@ pub fn format_text(format: Format) -> String {
     }
 }
 
-/// Returns a sentence with the key that would reduce the error bound most. It is empty if there is no such key.
+/// Returns a sentence with the configuration key that would reduce the error bound most. It is empty if no key would.
 pub fn limit(inputs: &PageInputs) -> String {
     match &inputs.advice {
         Some(advice) => format!("The key that helps most: {advice}."),
@@ -135,8 +135,8 @@ fn number(number: Option<u16>) -> String {
     }
 }
 
-/// Returns the ports; a strobe is in the row of its operand. For example, the row of `exponent` has `exponent_write` in
-/// the column "written by".
+/// Returns a table of the ports. A write strobe is in the row of its operand: for example, the row of `exponent` has
+/// `exponent_write` in the column "written by".
 pub fn ports(design: &Design) -> TextTable {
     let mut table =
         TextTable::of("port | no.: | direction | role | format | written by | what it is");
@@ -174,7 +174,7 @@ pub fn ports(design: &Design) -> TextTable {
     table.without_empty(NUMBER).without_empty("written by")
 }
 
-/// Returns the ROMs, including the ROM of the microprogram.
+/// Returns a table of the ROMs, including the control ROM with the microprogram.
 pub fn roms(design: &Design, config: &Config) -> TextTable {
     let naming = Naming::new(design).styled(Surroundings::new(config, None).style);
     let mut table = TextTable::of("ROM | no.: | words × bits: | bits: | reads | file | an entry");
@@ -203,7 +203,8 @@ fn lines(lines: &[u16]) -> String {
     numbers.join(" ")
 }
 
-/// Returns the fields of the control word. For example, the bits of a field of three bits from bit 2 on are `4:2`.
+/// Returns a table of the fields of the control word. For example, the column "bits" has `4:2` for a field of three bits from bit 2
+/// on.
 pub fn fields(design: &Design) -> TextTable {
     let mut table = TextTable::of("field | lines | bits | controls");
     for field in facts::fields(design) {
@@ -229,7 +230,8 @@ pub fn fields(design: &Design) -> TextTable {
     table.without_empty("lines")
 }
 
-/// Returns the microprogram as the patents print theirs: a row for each microinstruction, a column for each line.
+/// Returns a table of the microprogram as the source patents print theirs: a row for each microinstruction, a column for each
+/// control line.
 pub fn microprogram(design: &Design) -> TextTable {
     let fields = facts::fields(design);
     let mut headings = String::new();

@@ -3,18 +3,18 @@
 /// The alignment of the cells of a column.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Align {
-    /// Words.
+    /// The column has words, which are aligned to the left.
     Left,
-    /// Numbers.
+    /// The column has numbers, which are aligned to the right.
     Right,
 }
 
-/// A column of a table.
+/// A column of a table: its heading and its alignment.
 #[derive(Clone, Debug)]
 pub struct Column {
-    /// The text of the column's head.
+    /// The heading of the column.
     pub heading: String,
-    /// The alignment of the column.
+    /// Whether the cells are aligned to the left or to the right.
     pub align: Align,
 }
 

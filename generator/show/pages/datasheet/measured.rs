@@ -11,15 +11,15 @@ const NONE: &str = "–";
 /// The measurements of a core as the datasheet prints them.
 pub struct RecordView {
     pub table: TableView,
-    /// For each target, its name and its longest path.
+    /// The longest path on each target: the name of the target, and the path as text.
     pub paths: Vec<(String, String)>,
-    /// For each target without a frequency, its name and the reason.
+    /// The targets on which no frequency was measured: the name of each, and the reason.
     pub untimed: Vec<(String, String)>,
     pub tools: String,
 }
 
 impl RecordView {
-    /// Makes the tables of a record. The row of `target` comes first, if it was measured.
+    /// Makes the tables from a record. The row of the target named `target` comes first, if the record has it.
     pub fn new(record: &SynthesisRecord, target: Option<&str>) -> Self {
         let mut measured: Vec<&Figures> = record.targets.iter().collect();
         measured.sort_by_key(|figures| Some(figures.target.name()) != target);
@@ -42,9 +42,9 @@ impl RecordView {
     }
 }
 
-/// Returns the frequency and the rate on one FPGA, for a reader in a hurry. It is `target` if that was measured, and
-/// else the FPGA with the most points a second. For example, a pipeline for ECP5 has the figures of ECP5, even if
-/// another FPGA is faster.
+/// Returns the measurement on one FPGA, with its frequency and its rate, for the summary at the head of the datasheet. The FPGA is
+/// `target` if the record has it, otherwise the FPGA with the most points per second. For example, a pipeline for ECP5 shows its
+/// numbers on ECP5, even if another FPGA is faster.
 pub fn leading<'r>(
     record: &'r SynthesisRecord,
     target: Option<&str>,

@@ -11,13 +11,13 @@ pub struct Microprogram {
     pub numbered: bool,
     /// The fields of the control word, from the highest bits to the lowest.
     pub fields: Vec<FieldView>,
-    /// The microinstructions, from address 0.
+    /// The rows of the table: the microinstructions, from address 0.
     pub rows: Vec<MicroinstructionRow>,
 }
 
 /// A field of the control word.
 pub struct FieldView {
-    /// Its name.
+    /// The name of the field.
     pub name: String,
     /// For each control line of the field, its number in the source's figure, or else its bit in the control word.
     pub lines: Vec<String>,
@@ -27,12 +27,12 @@ pub struct FieldView {
 pub struct MicroinstructionRow {
     /// The address of the microinstruction.
     pub address: usize,
-    /// The name of the operation.
+    /// The name of the microinstruction.
     pub name: String,
     /// For each line: whether a field begins here, whether it is 1, and the meaning of the field's value. For example,
     /// the value 2 of a field of two bits has a line with `(true, true, …)` and a line with `(false, false, …)`.
     pub bits: Vec<(bool, bool, String)>,
-    /// The following microinstruction, as HTML.
+    /// The microinstruction that follows, as HTML.
     pub then: String,
 }
 

@@ -33,11 +33,11 @@ const SAMPLES: u32 = 2;
 
 /// The core that a datasheet describes, with the evidence and measurements that it shows.
 pub struct Subject<'a> {
-    /// The core.
+    /// The core that the datasheet describes.
     pub core: &'a Core,
     /// The path of the configuration file, as the user gave it. The page shows its label.
     pub path: &'a str,
-    /// The evidence for the error bound of the contract.
+    /// The evidence for the error bound of the contract, such as a proof record.
     pub backing: Backing,
     /// The record of the core's exhaustive check, if there is one.
     pub proof: Option<Record>,
@@ -48,7 +48,7 @@ pub struct Subject<'a> {
     pub synthesis: Option<&'a dyn Synthesis>,
 }
 
-/// A finished datasheet.
+/// A finished datasheet: its HTML page and its timing diagram.
 pub struct Datasheet {
     /// The HTML page. Its last line has a digest of the lines above; see [`glint_core::package::is_sealed`].
     pub page: String,
@@ -84,16 +84,16 @@ struct HighlightPicture {
     gain: u8,
 }
 
-/// Returns the number of times that [`datasheet`] calls `done`. For example, without synthesis it is 26: 25 times for the curves
-/// and once for the picture.
+/// Returns the number of times that [`datasheet`] calls `done`, so that a caller can show progress. For example, without synthesis
+/// it is 26: 25 times for the curves and once for the picture.
 pub fn steps(synthesis: bool) -> usize {
     curves::STEPS + 1 + if synthesis { FAMILIES.len() } else { 0 }
 }
 
-/// Makes the datasheet of a core. It calls `done` after each step of work.
+/// Makes the datasheet of a core. It calls `done` after each step of work, so that a caller can show progress.
 ///
 /// # Errors
-/// Fails if the device never ends, or if synthesis fails.
+/// Fails if a simulated computation of the device never ends, or if synthesis fails.
 pub fn datasheet(subject: &Subject, done: &(dyn Fn() + Sync)) -> Result<Datasheet> {
     let core = subject.core;
     let contract = core.contract.as_ref();
@@ -127,7 +127,7 @@ pub fn datasheet(subject: &Subject, done: &(dyn Fn() + Sync)) -> Result<Datashee
 /// Returns the timing diagram of a core as an SVG file, and a description of the diagram in words.
 ///
 /// # Errors
-/// Fails if the device never ends.
+/// Fails if a simulated computation of the device never ends.
 pub fn timing_diagram(core: &Core) -> Result<(String, String)> {
     let waves = Waves::record(core)?;
     Ok((timing::drawing(&waves).file()?, waves.described()))

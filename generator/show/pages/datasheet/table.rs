@@ -14,11 +14,11 @@ pub struct TableView {
     pub stacks: bool,
     /// Class and heading of each column.
     pub columns: Vec<(&'static str, String)>,
-    /// The cells of each row.
+    /// The cells of the table, row by row.
     pub rows: Vec<Vec<CellView>>,
 }
 
-/// A cell of a table.
+/// A cell of a table, as the template prints it.
 pub struct CellView {
     /// The class of the cell in the style sheet.
     pub class: &'static str,

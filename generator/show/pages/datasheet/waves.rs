@@ -24,13 +24,13 @@ const TAIL: usize = 8;
 /// The name of the lane that shows which microinstruction is executed.
 pub const MICROINSTRUCTION: &str = "microinstruction";
 
-/// A recorded waveform.
+/// A recorded waveform: the values of some signals in each clock.
 pub struct Waves {
     /// The name of the module.
     pub name: String,
     /// Whether the waveform shows several points in a pipeline; otherwise it shows one computation.
     pub pipelined: bool,
-    /// A short caption.
+    /// A short caption for the diagram.
     pub what: &'static str,
     /// The numbers of the clocks that are shown, from 0. If a number is not one more than the number before it, clocks between
     /// them are left out.
@@ -39,9 +39,9 @@ pub struct Waves {
     pub lanes: Vec<Lane>,
 }
 
-/// The waveform of one signal.
+/// The recorded waveform of one signal.
 pub struct Lane {
-    /// The signal.
+    /// The name of the signal.
     pub name: String,
     /// The number in the source's figure of the block that drives the signal.
     pub number: Option<u16>,
@@ -52,14 +52,14 @@ pub struct Lane {
     pub values: Vec<Option<String>>,
 }
 
-/// How a lane is drawn.
+/// The style in which the waveform of a signal is drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LaneStyle {
-    /// A rising edge begins each clock.
+    /// The clock: a rising edge begins each clock period.
     Clock,
-    /// High or low.
+    /// A signal of one bit, drawn high or low.
     Bit,
-    /// A value in a frame.
+    /// A signal of several bits, drawn as a value in a frame.
     Bus,
 }
 
@@ -71,20 +71,20 @@ struct Probe {
 
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Meaning {
-    /// Known from the start.
+    /// A signal that has a known value from the start.
     Control,
-    /// Not known before it first changes.
+    /// A signal that has no known value before it first changes.
     Register,
-    /// Not known before the first `valid`.
+    /// A result, which has no known value before the first `valid`.
     Result,
 }
 
 impl Waves {
-    /// Simulates the worked example. In a pipeline, it simulates points behind one another, and the first point is
-    /// the example.
+    /// Simulates the worked example and records its waveform. A pipeline gets several points one after another, and the first point
+    /// is the example.
     ///
     /// # Errors
-    /// Fails if the device never ends.
+    /// Fails if a simulated computation of the device never ends.
     pub fn record(core: &Core) -> Result<Self> {
         match core.design.pipeline {
             None => Self::computation(core),

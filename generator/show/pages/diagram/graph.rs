@@ -17,18 +17,18 @@ pub struct DiagramGraph {
     pub stages: usize,
 }
 
-/// A box of the diagram.
+/// A box of the block diagram: a port, a block of the datapath, or the control unit.
 #[derive(Default)]
 pub struct DiagramBox {
-    /// The shape of the box.
+    /// The shape of the box, which shows what kind of thing it is.
     pub form: BoxForm,
     /// The number of the block in the source's figure.
     pub number: Option<u16>,
-    /// Its name.
+    /// The name of the block, the port or the control unit that the box shows.
     pub name: String,
     /// The kind of the block and its number format.
     pub caption: String,
-    /// Further names of the box's output.
+    /// Further names of the value at the output of the box. Only a pipeline has such names.
     pub aliases: Vec<String>,
     /// The control lines of the block, by number or name; may be empty.
     pub control: String,
@@ -38,18 +38,18 @@ pub struct DiagramBox {
     pub stage: Option<usize>,
 }
 
-/// How a box is drawn.
+/// The shapes of boxes in a block diagram.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum BoxForm {
-    /// A port at the top.
+    /// An input port, at the top of the diagram.
     Input,
-    /// A port at the bottom.
+    /// An output port, at the bottom of the diagram.
     Output,
     /// The control unit.
     Control,
     /// A block of the datapath.
     Block(BlockKind),
-    /// Nothing: a stage in which values only pass.
+    /// Nothing is drawn: values only pass through the stage.
     #[default]
     Empty,
 }

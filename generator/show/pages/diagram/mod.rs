@@ -48,7 +48,7 @@ const ASIDE: i32 = 140;
 /// From the boxes of a stage to the registers at its end.
 const REGISTERS: f64 = 7.0;
 
-/// Draws the block diagram of a design.
+/// Draws the block diagram of a design: boxes for ports, blocks and control unit, and the wires between them.
 pub fn drawing(design: &Design) -> Drawing {
     let graph = DiagramGraph::new(design);
     let back = place::back(&graph);

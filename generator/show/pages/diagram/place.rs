@@ -24,13 +24,13 @@ const END: &str = "outputs";
 
 /// The positions of the boxes of a block diagram. Columns are numbered from the left.
 pub struct Placement {
-    /// The column of each box.
+    /// For each box, the number of its column.
     pub column: Vec<usize>,
-    /// The vertical position of the middle of each box.
+    /// For each box, the vertical position of its middle.
     pub middle: Vec<f64>,
-    /// The number of columns.
+    /// The number of columns of boxes in the diagram.
     pub columns: usize,
-    /// Whether each wire leads back to the left.
+    /// For each wire, whether it leads back to a column further left.
     pub back: Vec<bool>,
     /// For each wire, the columns that it passes between its ends, with its vertical position in each, in the direction of the
     /// wire.

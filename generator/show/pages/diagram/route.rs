@@ -18,7 +18,8 @@ const MARGIN: f64 = 14.0;
 /// From the border of a box to its first pin.
 const EDGE: f64 = 8.0;
 
-/// The width that each wire which leads back takes on its way around a box.
+/// The width that a wire takes on its way around a box, in units of the drawing. A wire that leads back to an earlier column needs
+/// such a way.
 pub const LANE: f64 = 10.0;
 
 /// The size and position of a box.
@@ -28,14 +29,14 @@ pub struct Body {
     pub top: f64,
     /// The upper edge of the box.
     pub upper: f64,
-    /// The lower edge.
+    /// The lower edge of the box.
     pub lower: f64,
     /// The width of the box.
     pub width: f64,
 }
 
 impl Body {
-    /// Moves the box down by a distance.
+    /// Moves the box down by the distance `by`.
     pub fn lower(&mut self, by: f64) {
         for edge in [&mut self.top, &mut self.upper, &mut self.lower] {
             *edge += by;
@@ -46,20 +47,20 @@ impl Body {
 /// A straight piece of a wire, horizontal or vertical.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WireSegment {
-    /// One end.
+    /// One end of the piece: its horizontal and its vertical position.
     pub from: (f64, f64),
-    /// The other.
+    /// The other end of the piece.
     pub to: (f64, f64),
 }
 
 /// The pieces of all wires that one box drives.
 #[derive(Clone, Debug, Default)]
 pub struct WireRoute {
-    /// In no order.
+    /// The straight pieces of the wires, in no order.
     pub pieces: Vec<WireSegment>,
-    /// The places at which three or more pieces meet.
+    /// The positions at which three or more pieces meet. The drawing marks them with a dot.
     pub junctions: Vec<(f64, f64)>,
-    /// The places at which arrows point into boxes.
+    /// The positions at which the wires end in arrows at boxes.
     pub pins: Vec<(f64, f64)>,
 }
 
@@ -76,7 +77,7 @@ pub struct Routes {
 }
 
 impl Routes {
-    /// Returns the topmost place of a wire.
+    /// Returns the vertical position of the topmost wire.
     pub fn top(&self) -> f64 {
         let mut top = f64::MAX;
         for piece in self.nets.iter().flat_map(|net| &net.pieces) {
@@ -85,7 +86,7 @@ impl Routes {
         top
     }
 
-    /// Returns the lowest place of a wire.
+    /// Returns the vertical position of the lowest wire.
     pub fn bottom(&self) -> f64 {
         let mut bottom: f64 = 0.0;
         for piece in self.nets.iter().flat_map(|net| &net.pieces) {
@@ -94,7 +95,7 @@ impl Routes {
         bottom
     }
 
-    /// Moves all wires down.
+    /// Moves all wires down by the distance `by`.
     pub fn lower(&mut self, by: f64) {
         for net in &mut self.nets {
             for piece in &mut net.pieces {

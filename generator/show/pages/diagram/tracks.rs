@@ -11,9 +11,9 @@ const OVERLAP: usize = 1000;
 /// The side of the gap between two columns at which a wire enters or leaves the gap.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Side {
-    /// Toward lower columns.
+    /// The left side of the gap, toward columns with lower numbers.
     Left,
-    /// Toward higher columns.
+    /// The right side of the gap, toward columns with higher numbers.
     Right,
 }
 
@@ -31,7 +31,7 @@ pub struct Trunk {
 }
 
 impl Trunk {
-    /// Returns all taps.
+    /// Returns the horizontal taps of the trunk: the vertical position of each, and the side of the gap to which it leads.
     pub fn taps(&self) -> impl Iterator<Item = (f64, Side)> + '_ {
         std::iter::once(self.entry).chain(self.exits.iter().copied())
     }

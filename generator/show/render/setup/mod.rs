@@ -38,11 +38,11 @@ const ROUNDING: f64 = 1e-6;
 /// The reason why the operands of a line cannot be computed.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Error {
-    /// A vector has no direction: its length is 0 or not finite. Which one.
+    /// A vector has no direction, because its length is 0 or not finite. The text is the name of the vector.
     NoDirection(&'static str),
-    /// H₁ and H₂′ are opposite: no great circle through them is distinguished.
+    /// H₁ and H₂′ are opposite, so infinitely many great circles go through both.
     OppositeHalves,
-    /// No three directions have these angles.
+    /// No three directions form these three angles.
     NoSuchAngles,
 }
 
@@ -66,24 +66,27 @@ impl fmt::Display for Error {
 
 impl std::error::Error for Error {}
 
-/// The half vector's way from H₁ to H₂′ as seen from N₁. Angles are in radians.
+/// The way of the half vector from H₁ to H₂′, seen from the fixed normal N₁; the head of this module explains the vectors. Angles
+/// are in radians.
 ///
-/// Everything is defined even if the seed divides by zero. For γ = 0, the angle stays at λ = 0. For cos θ₁ ≤ 0,
-/// `arctan P` would be in the wrong half plane; λ is the angle of the point (cos θ₁, P·cos θ₁), from −180° to 180°,
-/// and A is never negative. For N₁ = −N₂, the turn is half of one in the plane of N₂ and H₂, so that H₂′ = −H₂.
+/// Every field has a value even where a formula of the source document divides by zero. For γ = 0, the angle stays at λ = 0. For
+/// cos θ₁ ≤ 0, `arctan P` would be in the wrong half plane; λ is the angle of the point (cos θ₁, P·cos θ₁), from −180° to 180°, and
+/// A is never negative. For N₁ = −N₂, the normal turns by half a turn in the plane of N₂ and H₂, so that H₂′ = −H₂.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Arc {
-    /// θ₁ = ∠(N₁, H₁).
+    /// θ₁, the angle between the normal N₁ and the half vector H₁ at the start of the line.
     pub theta_1: f64,
-    /// θ₂ = ∠(N₁, H₂′) = ∠(N₂, H₂).
+    /// θ₂, the angle between the normal N₂ and the half vector H₂ at the end of the line. It is also the angle between N₁ and H₂′.
     pub theta_2: f64,
-    /// γ = ∠(H₁, H₂′), less than π.
+    /// γ, the angle by which the half vector turns from the start H₁ to the end H₂′ of the line; less than π.
     pub gamma: f64,
-    /// P·cos θ₁ = (cos θ₂ − cos θ₁·cos γ)/sin γ; 0 for γ = 0.
+    /// P·cos θ₁ = (cos θ₂ − cos θ₁·cos γ)/sin γ, from which λ follows; 0 for γ = 0. θ₁ and θ₂ are the angles between normal and
+    /// half vector at the two ends of the line.
     pub rise: f64,
-    /// λ: how far from H₁ on the circle the point nearest to N₁ lies; `arctan P` for cos θ₁ > 0.
+    /// λ, the angle by which the half vector must turn from its start H₁ to the point of its circle that is nearest to the normal
+    /// N₁. It is `arctan P` for cos θ₁ > 0.
     pub lambda: f64,
-    /// A = cos θ₁/cos λ: the cosine of the angle from that point to N₁.
+    /// A = cos θ₁/cos λ, the largest cosine between the normal N₁ and any half vector on the circle.
     pub peak: f64,
 }
 
@@ -114,7 +117,8 @@ impl Arc {
         )
     }
 
-    /// Makes an arc from θ₁, θ₂ and γ, each from 0 to π.
+    /// Makes an arc from three angles, each from 0 to π: θ₁ and θ₂ between normal and half vector at the two ends of the line, and
+    /// γ, by which the half vector turns.
     ///
     /// # Errors
     /// Fails with [`Error::OppositeHalves`] or [`Error::NoSuchAngles`].
@@ -144,19 +148,19 @@ impl Arc {
         Ok(Self { theta_1, theta_2, gamma, rise, lambda, peak })
     }
 
-    /// Returns cos δ at the part `t` of the way, 0 … 1: A·cos ζ. It is negative if the surface faces away, except
-    /// that it is 0 for γ = 0.
+    /// Returns cos δ, the cosine between normal and half vector, at the part `t` of the line, 0 … 1. It is A·cos ζ. It is negative
+    /// if the surface faces away, except that it is 0 for γ = 0.
     pub fn cosine(&self, t: f64) -> f64 {
         self.peak * libm::cos(t * self.gamma - self.lambda)
     }
 
-    /// Returns P = (cos θ₂ − cos θ₁·cos γ)/(cos θ₁·sin γ), infinite or not a number for cos θ₁ = 0.
+    /// Returns P = (cos θ₂ − cos θ₁·cos γ)/(cos θ₁·sin γ), whose arctangent is λ. It is infinite or not a number for cos θ₁ = 0.
     pub fn p(&self) -> f64 {
         self.rise / libm::cos(self.theta_1)
     }
 
-    /// Returns ζ at H₁: −λ, or a turn less if that brings the lit part of the way near ζ = 0. The whole way then lies
-    /// within three right angles of 0.
+    /// Returns the angle ζ at the start of the line: −λ, or a full turn less if that brings the lit part of the line near ζ = 0.
+    /// All angles of the line then lie within three right angles of 0.
     pub fn zeta_start(&self) -> f64 {
         if self.gamma - self.lambda > 1.5 * PI { -self.lambda - TAU } else { -self.lambda }
     }
@@ -177,7 +181,7 @@ impl Arc {
     }
 }
 
-/// Returns the direction of the vector `name`.
+/// Returns the vector scaled to length 1. `name` is its name in an error.
 ///
 /// # Errors
 /// Fails with [`Error::NoDirection`].
@@ -213,25 +217,27 @@ fn angle(a: Vector, b: Vector) -> f64 {
 /// The parameters of a line before they are quantised. Angles are in radians.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LineParameters {
-    /// C = I·k_s·Aⁿ, in output units.
+    /// C = I·k_s·Aⁿ, the amplitude operand in output units: the light times the specular coefficient times the peak.
     pub amplitude: f64,
-    /// n.
+    /// n, the exponent of the highlight.
     pub exponent: u32,
-    /// l = X_end − X_start.
+    /// l = X_end − X_start, the number of intervals between the points of the line.
     pub length: u32,
-    /// Δζ = γ/l; 0 for l = 0.
+    /// Δζ = γ/l, the angle from a point to the next; 0 for l = 0.
     pub delta_zeta: f64,
-    /// ζ(X_start).
+    /// ζ(X_start), the angle of the first point.
     pub zeta_start: f64,
 }
 
 impl LineParameters {
-    /// Returns the angle ζ of point number `index`.
+    /// Returns the angle ζ of point number `index` of the line, counted from 0. The cosine between normal and half vector is A·cos
+    /// ζ.
     pub fn zeta(&self, index: u32) -> f64 {
         self.zeta_start + f64::from(index) * self.delta_zeta
     }
 
-    /// Returns a = √(n/2), by which a device without an exponent takes the angles. For example, n = 8 gives 2.
+    /// Returns a = √(n/2). The host multiplies angles by it for a device that has no exponent as an operand. For example, n = 8
+    /// gives 2.
     pub fn stretch(&self) -> f64 {
         (f64::from(self.exponent) / 2.0).sqrt()
     }

@@ -14,7 +14,7 @@ use glint_base::text;
 use glint_core::cosim::exhaustive::{Difference, Job, Proof, Shard, ShardState};
 use glint_golden::Values;
 
-/// Announces the work ahead, and the part that it leaves out.
+/// Tells the user how much work is ahead, and which part of the check it leaves out.
 pub fn announce(one: &Loaded, job: &Job<'_>, state: &ShardState) {
     say!("{}: {} ({})", one.path, job.words(), job.f.sweep().words(),);
     if !job.f.sweep().omits.is_empty() {
@@ -38,7 +38,7 @@ pub fn announce(one: &Loaded, job: &Job<'_>, state: &ShardState) {
     }
 }
 
-/// Reports a state, and returns whether it is within the bound and nothing differs.
+/// Reports the result of a shard. Returns whether the errors are within the bound, and model and hardware do not differ.
 ///
 /// # Errors
 /// Fails if the design cannot be simulated, or if the waveform of a difference cannot be written.

@@ -11,15 +11,15 @@ use glint_rtl::netlist::{Design, Driver, Net, NetId, Op, Partition, Role, RomId}
 
 /// The nets of a design, grouped into blocks, and the sources of each net.
 pub struct Groups<'a> {
-    /// The design.
+    /// The design whose nets are grouped.
     pub design: &'a Design,
     /// For each net, the number of its group: the lowest number of a net in the group.
     pub group: Vec<usize>,
     /// For each net, whether it makes its group a block: it is a register, a ROM or an operator, or the description documents or
     /// numbers it.
     pub cell: Vec<bool>,
-    /// For each net, the blocks, ports and tables that it is made from within a clock. In a pipeline the clocks between
-    /// do not matter.
+    /// For each net, its sources: the blocks, ports and ROMs whose values reach it within a clock. In a pipeline, a source may lie
+    /// several clocks back.
     pub sources: Vec<Vec<NetId>>,
     /// For each group that is a block, its output net.
     pub head: Vec<Option<NetId>>,
@@ -179,8 +179,8 @@ impl<'a> Groups<'a> {
         self.operands(adder).iter().any(|operand| self.design.net(*operand).range == (0, 1))
     }
 
-    /// Returns the operators, registers and tables that a net takes, through wires and gates. In a pipeline, it also
-    /// goes through registers.
+    /// Returns the operators, registers and tables whose values form the value of a net, through wires and gates. In a pipeline,
+    /// the search also passes through registers.
     pub fn operators(&self, id: NetId) -> Vec<NetId> {
         self.through(self.operands(id))
     }
@@ -319,8 +319,9 @@ impl<'a> Groups<'a> {
         operands
     }
 
-    /// Returns whether the sources of an operand meet inside a block: they are bits beside its result, or gates of
-    /// its statement.
+    /// Returns whether the sources of `operand` meet inside the block whose output is `head`, so that no joint is drawn. This is so
+    /// if the block itself is one of the sources, or if the gates at which the sources meet belong to the same statement of the
+    /// description as the block.
     pub fn is_part(&self, operand: NetId, head: NetId) -> bool {
         if self.sources[operand.index()].contains(&head) {
             return true;
@@ -336,7 +337,8 @@ impl<'a> Groups<'a> {
         }
     }
 
-    /// Returns the net at which the signals meet that a net is made from, if several do.
+    /// Returns the joint behind a net: the net at which several signals meet by wiring or gates to form it. Returns `None` if only
+    /// one signal forms it.
     pub fn joint(&self, mut id: NetId) -> Option<NetId> {
         if self.sources[id.index()].len() < 2 {
             return None;
@@ -363,7 +365,7 @@ impl<'a> Groups<'a> {
         inside
     }
 
-    /// Returns the block or port whose value a net carries.
+    /// Returns the output net of the block, or the port, whose value a net carries.
     pub fn driver(&self, net: NetId) -> Option<NetId> {
         match self.sources[net.index()][..] {
             [] => None,
@@ -372,7 +374,7 @@ impl<'a> Groups<'a> {
         }
     }
 
-    /// Returns the registers of a pipeline that only delay the value of a block or port.
+    /// Returns the registers of a pipeline that only delay the value of the block or port `source`.
     pub fn held(&self, source: NetId) -> Vec<NetId> {
         let mut held = Vec::new();
         for (id, net) in self.design.iter() {

@@ -7,23 +7,23 @@ use glint_rtl::netlist::{Driver, Op};
 /// The kind of a block. For example, as text: `3:1 mux`, `21 × 10 multiplier` or `2 adders, mux`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum BlockKind {
-    /// A register that a port writes.
+    /// An operand register, which a port writes.
     Operand,
-    /// A register.
+    /// Any other register.
     Register,
-    /// A ROM.
+    /// A ROM, with its read port.
     Rom,
-    /// A constant.
+    /// A constant value.
     Constant,
-    /// Rounding of a number to fewer places.
+    /// Rounding of a number to fewer fraction bits.
     Rounding,
-    /// Narrowing that saturates.
+    /// Saturation of a number to a narrower format.
     Limiter,
-    /// Both.
+    /// Rounding of a number to fewer fraction bits, followed by saturation.
     RoundingLimiter,
     /// A multiplexer with this number of inputs.
     Mux(usize),
-    /// A multiplier of operands that are so wide.
+    /// A multiplier with the widths of its two operands in bits.
     Multiplier(u32, u32),
     /// An adder.
     Adder,
@@ -31,7 +31,7 @@ pub enum BlockKind {
     Subtractor,
     /// A comparison of two numbers.
     Comparator,
-    /// Operators that one statement of the description makes, how many of each of `OPERATORS`.
+    /// Several operators from one statement of the description. The array has the number of each kind of operator in `OPERATORS`.
     Several([u16; 5]),
     /// All bits inverted.
     Inverter,
@@ -39,7 +39,7 @@ pub enum BlockKind {
     Gate,
     /// Bits under another name, or side by side.
     Wiring,
-    /// None of these.
+    /// A block of any other kind.
     Other,
 }
 

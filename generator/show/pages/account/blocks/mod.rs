@@ -56,20 +56,20 @@ fn stage(design: &Design, pipeline: &Pipeline, cell: NetId) -> usize {
 pub struct Block {
     /// The number of the block in the source's figure.
     pub number: Option<u16>,
-    /// Its name.
+    /// The name of the block: the name of the net that it drives.
     pub name: String,
-    /// The kind of the block.
+    /// The kind of the block, such as an adder or a register.
     pub kind: BlockKind,
     /// The number format of the block's output.
     pub format: String,
-    /// The net that the block drives.
+    /// The net that the block drives with its result.
     pub output: NetId,
-    /// The blocks, ports, constants and ROMs that it reads, by the nets that they drive. An operator has one for each
+    /// The nets that the block reads, each driven by another block, a port, a constant or a ROM. An operator has one for each
     /// operand.
     pub inputs: Vec<NetId>,
     /// For a mux, the select inputs: a field of the control word, or blocks.
     pub selected_by: Vec<NetId>,
-    /// One line; may be empty.
+    /// The comment of the description on the block, one line. It may be empty.
     pub doc: String,
     /// The nets of the registers, ROMs and operators inside the block.
     pub cells: Vec<NetId>,
@@ -77,15 +77,15 @@ pub struct Block {
     pub aliases: Vec<String>,
 }
 
-/// The blocks of a design.
+/// The blocks of a design: the hardware of each statement of its description.
 pub struct Blocks<'a> {
     design: &'a Design,
     groups: Groups<'a>,
 }
 
 impl<'a> Blocks<'a> {
-    /// Finds the blocks of a design. In a `figure`, gates and wiring are blocks only if the source numbers them, or
-    /// if several signals meet in them.
+    /// Finds the blocks of a design. If `figure` is set, the blocks are for a block diagram: gates and wiring are then blocks only
+    /// if the source numbers them, or if several signals meet in them.
     pub fn new(design: &'a Design, figure: bool) -> Self {
         Self { design, groups: Groups::new(design, figure) }
     }
@@ -399,12 +399,12 @@ impl<'a> Blocks<'a> {
         }
     }
 
-    /// Returns the outputs of the blocks, ports and ROMs behind a net.
+    /// Returns the output nets of the blocks, ports and ROMs whose values form the value of a net.
     pub fn behind(&self, net: NetId) -> &[NetId] {
         &self.groups.sources[net.index()]
     }
 
-    /// Returns the first and the last stage of a pipeline in which the block has operators.
+    /// Returns the number of the first and of the last pipeline stage that contains operators of the block.
     pub fn stages(&self, block: &Block) -> (usize, usize) {
         let design = self.design;
         let Some(pipeline) = &design.pipeline else { return (0, 0) };
@@ -466,7 +466,7 @@ impl<'a> Blocks<'a> {
         (fields, strobes)
     }
 
-    /// Returns the block or port that drives the value of a net.
+    /// Returns the output net of the block, or the port, whose value a net carries.
     pub fn driver(&self, net: NetId) -> Option<NetId> {
         self.groups.driver(net)
     }
