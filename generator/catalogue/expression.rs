@@ -14,6 +14,7 @@ use glint_rtl::blocks::shift::{normalise, normalise_by_pairs, right_by};
 use glint_rtl::dsl::{Designer, Register, Signal, Step, end, step, valid};
 use glint_rtl::netlist::About;
 
+use crate::mirror::MirrorChain;
 use crate::piecewise::{PolynomialDatapath, StepMultiplier, Tables, number};
 
 /// Describes the hardware of `expression`: a datapath and a microprogram for the plan of the configuration's formulas.
@@ -48,6 +49,10 @@ struct PlanDatapath<'d, 'p> {
     polynomials: Vec<Option<PolynomialDatapath<'d, 'p>>>,
     /// The two factors of each product, or `None` for a node that is no product.
     factors: Vec<Option<[Signal<'d>; 2]>>,
+    /// The chain of mirrors that ends at each node, if one does.
+    chains: Vec<Option<MirrorChain>>,
+    /// Whether each node is inside a chain of mirrors, and so not built itself.
+    is_inner: Vec<bool>,
 }
 
 impl<'d, 'p> PlanDatapath<'d, 'p> {
@@ -65,12 +70,15 @@ impl<'d, 'p> PlanDatapath<'d, 'p> {
             let is_register = *is_held && !has_own;
             registers.push(is_register.then(|| d.register(&node.name, node.format)));
         }
+        let (chains, is_inner) = mirror_chains(plan, schedule);
         Self {
             d,
             plan,
             found,
             schedule,
             is_pipelined,
+            chains,
+            is_inner,
             registers,
             signals: vec![None; count],
             polynomials: (0..count).map(|_| None).collect(),
@@ -81,13 +89,18 @@ impl<'d, 'p> PlanDatapath<'d, 'p> {
     /// Builds the nodes in their order, except for what follows from products: these need the multiplier.
     fn build(&mut self) {
         for at in 0..self.plan.nodes.len() {
+            if self.is_inner[at] {
+                continue;
+            }
             let node = &self.plan.nodes[at];
             if let Operation::Multiply(a, b) = node.operation {
                 self.factors[at] = Some(self.distinct_factors(&node.name, [a, b]));
             }
             let is_behind_product =
                 node.operation.inputs().iter().any(|it| self.signals[it.0].is_none());
-            let value = if matches!(node.operation, Operation::Multiply(..)) || is_behind_product {
+            let value = if self.chains[at].is_some() {
+                Some(self.mirrored(NodeId(at)))
+            } else if matches!(node.operation, Operation::Multiply(..)) || is_behind_product {
                 None
             } else {
                 Some(self.logic(NodeId(at)))
@@ -135,6 +148,18 @@ impl<'d, 'p> PlanDatapath<'d, 'p> {
         // The plan knows narrower limits of the value than the signal's.
         let name = format!("{name}_kept");
         self.d.narrow(&name, signal, format, Rounding::Truncate, Overflow::Wrap)
+    }
+
+    /// Builds the chain of mirrors that ends at a node.
+    fn mirrored(&self, id: NodeId) -> Signal<'d> {
+        let PlanNode { name, format, .. } = self.plan.node(id);
+        let chain = self.chains[id.0].as_ref().expect("a chain that ends at the node");
+        let name = match self.registers[id.0] {
+            Some(_) => format!("{name}_next"),
+            None => name.clone(),
+        };
+        let value = chain.build(self.d, self.plan, &name, &|input| self.signal(input));
+        self.in_format(&name, value, *format)
     }
 
     /// Builds a node as logic.
@@ -311,6 +336,30 @@ impl<'d, 'p> PlanDatapath<'d, 'p> {
             _ => before.read_as(node.format),
         }
     }
+}
+
+/// Returns the chain of mirrors that ends at each node of a plan, and whether each node is inside a chain.
+fn mirror_chains(
+    plan: &ExpressionPlan,
+    schedule: &PlanSchedule,
+) -> (Vec<Option<MirrorChain>>, Vec<bool>) {
+    let count = plan.nodes.len();
+    let mut chains = vec![None; count];
+    let mut is_inner = vec![false; count];
+    // Of two chains, the one that ends later is the longer one.
+    for at in (0..count).rev() {
+        if is_inner[at] {
+            continue;
+        }
+        let Some(chain) = MirrorChain::ending_at(plan, NodeId(at), &schedule.held) else {
+            continue;
+        };
+        for node in chain.inner() {
+            is_inner[node.0] = true;
+        }
+        chains[at] = Some(chain);
+    }
+    (chains, is_inner)
 }
 
 /// Returns two signals with as many fraction bits as the finer one has.

@@ -11,6 +11,7 @@ pub mod expression;
 pub mod function;
 pub mod gauss;
 pub mod lyon;
+mod mirror;
 pub mod normaliser;
 pub mod piecewise;
 pub mod quad_cosine;

@@ -399,6 +399,13 @@ impl Designer {
         self.signal(self.add_named(name, Format::BIT, Driver::Op(Op::Or(a, b))))
     }
 
+    /// Returns a bit that is 1 if one of `a` and `b` is 1, and the other one 0. Both must have one bit.
+    #[track_caller]
+    pub fn xor<'d>(&'d self, name: &str, a: Signal<'d>, b: Signal<'d>) -> Signal<'d> {
+        let (a, b) = (self.one_bit(a), self.one_bit(b));
+        self.signal(self.add_named(name, Format::BIT, Driver::Op(Op::Xor(a, b))))
+    }
+
     /// Returns a bit that is 1 if `a < b` as values, so the binary points are aligned first.
     #[track_caller]
     pub fn less<'d>(&'d self, name: &str, a: Signal<'d>, b: Signal<'d>) -> Signal<'d> {

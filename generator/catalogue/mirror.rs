@@ -1,0 +1,192 @@
+//! Builds a value that conditions mirror, such as an angle in one of eight octants, as a single sum.
+//!
+//! A plan mirrors a value v at a constant c by a choice between v and c − v. A chain of such choices, and the rounding behind it,
+//! has the value ±v + base: the sign is the parity of the conditions, and the base is a constant for each combination of them. So
+//! one adder does what the plan states as a difference and a choice for each mirror.
+
+use glint_base::fixed::{Format, Overflow, Rounding};
+use glint_plan::{ExpressionPlan, NodeId, Operation};
+use glint_rtl::dsl::{Designer, Signal};
+
+/// The most mirrors in a chain: each doubles the number of constants.
+const MOST_MIRRORS: usize = 3;
+
+/// One mirror of a chain.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Mirror {
+    /// The value is mirrored where this node is 1.
+    condition: NodeId,
+    /// The constant c of c − v: its raw value and its fraction bits.
+    constant: (i128, i32),
+}
+
+/// A value that one condition after the other mirrors.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct MirrorChain {
+    /// The value before the first mirror.
+    start: NodeId,
+    /// The first mirror first.
+    mirrors: Vec<Mirror>,
+    /// The node that rounds the mirrored value to nearest, if there is one.
+    rounded: Option<NodeId>,
+    /// The nodes that are not built themselves, because the chain takes their place.
+    inner: Vec<NodeId>,
+}
+
+impl MirrorChain {
+    /// Returns the chain that ends at a node, if it saves an adder. `held` says which nodes have registers.
+    pub(super) fn ending_at(plan: &ExpressionPlan, end: NodeId, held: &[bool]) -> Option<Self> {
+        let mut chain =
+            Self { start: end, mirrors: Vec::new(), rounded: None, inner: Vec::new() };
+        if let Operation::Narrow(a, Rounding::Nearest) = plan.node(end).operation {
+            let drops_bits = plan.node(a).format.frac > plan.node(end).format.frac;
+            if drops_bits && readers(plan, a) == [end] && !held[a.0] {
+                chain.rounded = Some(end);
+                chain.start = a;
+            }
+        }
+        let before_mirrors = chain.start;
+        while let Some((mirror, before, difference)) = mirror_at(plan, chain.start) {
+            let top = chain.start;
+            if chain.mirrors.len() == MOST_MIRRORS || held[difference.0] {
+                break;
+            }
+            if top != before_mirrors && (held[top.0] || readers(plan, top).len() > 2) {
+                break;
+            }
+            chain.mirrors.insert(0, mirror);
+            chain.inner.push(difference);
+            chain.inner.push(top);
+            chain.start = before;
+        }
+        chain.inner.retain(|node| *node != end);
+        let adders = chain.mirrors.len() + usize::from(chain.rounded.is_some());
+        (!chain.mirrors.is_empty() && adders > 1).then_some(chain)
+    }
+
+    /// Returns the nodes that are not built themselves.
+    pub(super) fn inner(&self) -> &[NodeId] {
+        &self.inner
+    }
+
+    /// Builds the chain and returns its value, which still may be wider than the format of its last node. `signal` gives the
+    /// nodes that are built.
+    pub(super) fn build<'d>(
+        &self,
+        d: &'d Designer,
+        plan: &ExpressionPlan,
+        name: &str,
+        signal: &dyn Fn(NodeId) -> Signal<'d>,
+    ) -> Signal<'d> {
+        let start = signal(self.start);
+        let mut frac = start.format().frac;
+        for mirror in &self.mirrors {
+            frac = frac.max(mirror.constant.1);
+        }
+        let half = match self.rounded {
+            Some(node) => 1i128 << (frac - plan.node(node).format.frac - 1),
+            None => 0,
+        };
+        let mut conditions = Vec::new();
+        for mirror in &self.mirrors {
+            conditions.push(signal(mirror.condition));
+        }
+        let base = chosen_base(d, &format!("{name}_base"), &self.bases(frac, half), frac, &conditions);
+        let mut is_negative = conditions[0];
+        for (number, condition) in conditions.iter().enumerate().skip(1) {
+            is_negative = d.xor(&format!("{name}_is_negative{number}"), is_negative, *condition);
+        }
+        // −v is ~v with a carry into the sum.
+        let value = start.as_signed().with_fraction(frac);
+        let inverted = d.not(&format!("{name}_inverted"), value);
+        let value = d.choose(&format!("{name}_mirrored"), is_negative, [value, inverted]);
+        let sum = d.add_carry(&format!("{name}_sum"), base, value, is_negative);
+        match self.rounded {
+            Some(node) => {
+                let format = plan.node(node).format;
+                d.narrow(name, sum, format, Rounding::Truncate, Overflow::Wrap)
+            }
+            None => sum,
+        }
+    }
+
+    /// Returns the constant of each combination of conditions, raw with `frac` fraction bits, and with `half` added. Bit 0 of a
+    /// combination is the first condition.
+    fn bases(&self, frac: i32, half: i128) -> Vec<i128> {
+        let mut bases = Vec::new();
+        for combination in 0..1usize << self.mirrors.len() {
+            let mut base = 0;
+            for (number, mirror) in self.mirrors.iter().enumerate() {
+                if combination >> number & 1 == 1 {
+                    let (raw, own) = mirror.constant;
+                    base = (raw << (frac - own)) - base;
+                }
+            }
+            bases.push(base + half);
+        }
+        bases
+    }
+}
+
+/// Returns the mirror at a node, the value before it, and the node of the difference; `None` for any other node.
+fn mirror_at(plan: &ExpressionPlan, id: NodeId) -> Option<(Mirror, NodeId, NodeId)> {
+    let Operation::Choose { condition, cases: [value, mirrored] } = plan.node(id).operation else {
+        return None;
+    };
+    let Operation::Subtract(constant, subtrahend) = plan.node(mirrored).operation else {
+        return None;
+    };
+    let Operation::Constant { raw, .. } = plan.node(constant).operation else { return None };
+    if subtrahend != value || readers(plan, mirrored) != [id] {
+        return None;
+    }
+    let constant = (raw, plan.node(constant).format.frac);
+    Some((Mirror { condition, constant }, value, mirrored))
+}
+
+/// Returns the nodes that read a node.
+fn readers(plan: &ExpressionPlan, id: NodeId) -> Vec<NodeId> {
+    let mut readers = Vec::new();
+    for (at, node) in plan.nodes.iter().enumerate() {
+        if node.operation.inputs().contains(&id) {
+            readers.push(NodeId(at));
+        }
+    }
+    readers
+}
+
+/// Returns the constant that the conditions choose. `bases` has the constants by combination.
+fn chosen_base<'d>(
+    d: &'d Designer,
+    name: &str,
+    bases: &[i128],
+    frac: i32,
+    conditions: &[Signal<'d>],
+) -> Signal<'d> {
+    let mut row = Vec::new();
+    for (number, raw) in bases.iter().enumerate() {
+        let same = bases.iter().position(|other| other == raw).unwrap_or(number);
+        let constant = match same < number {
+            true => row[same],
+            false => {
+                d.raw_constant(&format!("{name}{number}"), *raw, Format::holding(*raw, *raw, frac))
+            }
+        };
+        row.push(constant);
+    }
+    for (number, condition) in conditions.iter().enumerate() {
+        let mut next = Vec::new();
+        for (place, pair) in row.chunks(2).enumerate() {
+            let is_same = pair[0].name() == pair[1].name();
+            next.push(match is_same {
+                true => pair[0],
+                false => {
+                    let level = format!("{name}_of{number}_{place}");
+                    d.choose(&level, *condition, [pair[0], pair[1]])
+                }
+            });
+        }
+        row = next;
+    }
+    row[0]
+}
