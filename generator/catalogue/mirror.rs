@@ -36,8 +36,7 @@ pub(super) struct MirrorChain {
 impl MirrorChain {
     /// Returns the chain that ends at a node, if it saves an adder. `held` says which nodes have registers.
     pub(super) fn ending_at(plan: &ExpressionPlan, end: NodeId, held: &[bool]) -> Option<Self> {
-        let mut chain =
-            Self { start: end, mirrors: Vec::new(), rounded: None, inner: Vec::new() };
+        let mut chain = Self { start: end, mirrors: Vec::new(), rounded: None, inner: Vec::new() };
         if let Operation::Narrow(a, Rounding::Nearest) = plan.node(end).operation {
             let drops_bits = plan.node(a).format.frac > plan.node(end).format.frac;
             if drops_bits && readers(plan, a) == [end] && !held[a.0] {
@@ -91,7 +90,8 @@ impl MirrorChain {
         for mirror in &self.mirrors {
             conditions.push(signal(mirror.condition));
         }
-        let base = chosen_base(d, &format!("{name}_base"), &self.bases(frac, half), frac, &conditions);
+        let base =
+            chosen_base(d, &format!("{name}_base"), &self.bases(frac, half), frac, &conditions);
         let mut is_negative = conditions[0];
         for (number, condition) in conditions.iter().enumerate().skip(1) {
             is_negative = d.xor(&format!("{name}_is_negative{number}"), is_negative, *condition);

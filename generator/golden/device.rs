@@ -120,6 +120,13 @@ pub trait Formula: Send + Sync {
     /// frame.
     fn exact(&self, operands: &[f64]) -> Vec<f64>;
 
+    /// Returns the values that output number `output` may be close to where the formula has `value`. There are two if the output
+    /// wraps. For example, an output from −1 to below 1 that wraps may be close to −1 or to 1 where the formula has 1.
+    fn right_values(&self, value: f64, output: usize) -> [f64; 2] {
+        let _ = output;
+        [value; 2]
+    }
+
     /// Returns whether the contract promises anything about output number `output`, for these values of the operands. For
     /// example, a device may promise nothing for a divisor of 0.
     fn is_promised(&self, operands: &[f64], output: usize) -> bool {
@@ -263,7 +270,10 @@ impl<F: Formula> Contract for OfModel<F> {
         let operands: Vec<f64> = pairs.map(|(it, &raw)| it.format.to_f64(raw.into())).collect();
         for (output, value) in self.formula.exact(&operands).into_iter().enumerate() {
             let is_promised = self.formula.is_promised(&operands, output);
-            values.push(if is_promised { [value; 2] } else { ANY_VALUE });
+            values.push(match is_promised {
+                true => self.formula.right_values(value, output),
+                false => ANY_VALUE,
+            });
         }
     }
 

@@ -10,11 +10,11 @@ use super::device::{self, Formula};
 use super::frame::{Frame, FrameStep, Slot, State, idle, step_by};
 use super::polynomial::Polynomial;
 use super::{Contract, Model, Term};
-use glint_base::fixed::exp2;
+use glint_base::fixed::{Format, exp2};
 use glint_config::Config;
 use glint_formula::{Enclosure, RBig};
 use glint_keys::expression::found;
-use glint_plan::{ExpressionPlan, NodeId, Operation, PlanStep, ProvedPlan};
+use glint_plan::{ExpressionPlan, NodeId, Operation, PlanStep, ProvedPlan, StatedWidth};
 
 /// A plan with the places of its values in the state of the model.
 struct PlanModel {
@@ -140,6 +140,16 @@ pub fn contract(config: &Config) -> Box<dyn Contract> {
     device(&found).contract(ProvedFormulas { found })
 }
 
+/// Returns the two numbers nearest to a format that differ from a value by a multiple of the format's range. The first is in the
+/// format. For example, 1.25 gives −0.75 and 1.25 for s0.7, whose range is 2.
+fn values_in_format(value: f64, format: Format) -> [f64; 2] {
+    let range = exp2(format.width() as i32 - format.frac);
+    let least = format.to_f64(format.min_raw());
+    let inside = value - range * ((value - least) / range).floor();
+    let is_in_upper_half = inside - least > range / 2.0;
+    [inside, if is_in_upper_half { inside - range } else { inside + range }]
+}
+
 /// The widest interval of a formula's value, in units of the result's last place, whose middle measures the error well enough.
 const WIDEST_VALUE: f64 = 1e-6;
 
@@ -184,6 +194,13 @@ impl Formula for ProvedFormulas {
             values.push(value.map_or(f64::NAN, Enclosure::middle));
         }
         values
+    }
+
+    fn right_values(&self, value: f64, output: usize) -> [f64; 2] {
+        match &self.found.statement.results[output].width {
+            Some(StatedWidth { format, wraps: true }) => values_in_format(value, *format),
+            _ => [value; 2],
+        }
     }
 
     fn is_promised(&self, operands: &[f64], output: usize) -> bool {

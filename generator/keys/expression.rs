@@ -11,8 +11,8 @@ use glint_base::fixed::{Format, MAX_WIDTH};
 use glint_base::identifier;
 use glint_base::key_error::KeyError;
 use glint_config::{Config, Key, Problems, Schema, TableEntries, TableEntry, TextPattern, Value};
-use glint_formula::{Comparison, Expression, Fault, Kind, parse};
-use glint_plan::{ExpressionStatement, ProvedPlan, StatedOperand, StatedResult, find};
+use glint_formula::{Comparison, Expression, Fault, Kind, Operator, parse};
+use glint_plan::{ExpressionStatement, ProvedPlan, StatedOperand, StatedResult, StatedWidth, find};
 
 use super::function::End;
 
@@ -52,6 +52,19 @@ fn result_fields() -> Vec<Key> {
             1.0,
             0.5..=1024.0,
             "The result is nearer to the formula than this, in units of its last place.",
+        ),
+        Key::integer(
+            "bits",
+            12,
+            1..=64,
+            "The width. Without it, the integer bits follow from the values.",
+        ),
+        Key::flag("signed", true, "With bits: whether the result has a sign."),
+        Key::choice(
+            "overflow",
+            "refuse",
+            &["refuse", "saturate", "wrap"],
+            "With bits: what happens to values beyond them. refuse allows none.",
         ),
         Key::text(
             "where",
@@ -299,7 +312,49 @@ fn result(
         None => None,
     };
     let error = record.number("error").unwrap_or(1.0);
-    Ok(StatedResult { name, formula, fraction, error, promise })
+    let (formula, width) = match record.bits("bits") {
+        None => (formula, None),
+        Some(bits) => {
+            let format = stated_format(record, bits, fraction)?;
+            let overflow = record.text("overflow").unwrap_or("refuse");
+            let width = StatedWidth { format, wraps: overflow == "wrap" };
+            let formula = match overflow {
+                "saturate" => saturated(formula, format),
+                _ => formula,
+            };
+            (formula, Some(width))
+        }
+    };
+    if width.is_none() {
+        for field in ["signed", "overflow"] {
+            if record.field(field).is_some() {
+                let message = format!("`{field}` has no effect without `bits`");
+                let key = format!("{whole}.{field}");
+                return Err(StatementError::new(key, message, "add bits, or remove it"));
+            }
+        }
+    }
+    Ok(StatedResult { name, formula, fraction, error, promise, width })
+}
+
+/// Returns the format of a result with `bits` bits.
+fn stated_format(record: &TableEntry, bits: u32, fraction: u32) -> Result<Format, StatementError> {
+    let signed = record.flag("signed");
+    let frac = fraction as i32;
+    Ok(Format { signed, int: bits as i32 - i32::from(signed) - frac, frac })
+}
+
+/// Returns the formula with its value limited to a format. For example, `x + y` in s0.7 is `min(max(x + y, -1), 127/128)`.
+fn saturated(formula: Expression, format: Format) -> Expression {
+    let span = formula.span.clone();
+    let (least, most) = format.range();
+    let limit = |raw: i128| {
+        let number = parse(&format!("{raw} / 2^{}", format.frac)).expect("a formula of a number");
+        Box::new(Expression::new(number.kind, span.clone()))
+    };
+    let not_below = Kind::Binary(Operator::Max, Box::new(formula), limit(least));
+    let not_below = Box::new(Expression::new(not_below, span.clone()));
+    Expression::new(Kind::Binary(Operator::Min, not_below, limit(most)), span.clone())
 }
 
 /// Returns a formula in terms of operands alone.

@@ -370,7 +370,7 @@ impl ErrorAnalysis<'_> {
         // A result's format holds all values that are within the allowed error, so that its error tells whether it fits.
         let drops_bits = match node.operation {
             Operation::ShiftLeft(..) => true,
-            Operation::Narrow(..) => !self.plan.results.contains(&id),
+            Operation::Narrow(..) => !self.plan.proved.contains(&id),
             _ => false,
         };
         if drops_bits {

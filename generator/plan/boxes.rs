@@ -132,7 +132,7 @@ impl<'p> ResultProof<'p> {
         visit: &mut dyn FnMut(&NodeError, Option<&Undecided>),
     ) {
         let analysis = ErrorAnalysis { plan: self.plan, needed: &self.needed, only };
-        let node = self.plan.results[self.result];
+        let node = self.plan.proved[self.result];
         let operands = self.statement.enclosed_operands(limits);
         analysis.run(&operands, &mut |values, undecided| visit(&values[node.0], undecided));
     }

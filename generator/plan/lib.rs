@@ -17,6 +17,7 @@
 //!     fraction: 8,
 //!     error: 1.0,
 //!     promise: None,
+//!     width: None,
 //! };
 //! let statement = ExpressionStatement { operands: vec![operand("x"), operand("y")], results: vec![length] };
 //! let found = find(&statement).unwrap();
@@ -46,7 +47,7 @@ pub use node::{Approximation, NodeId, Operation, PlanNode};
 pub use plan::ExpressionPlan;
 pub use refusal::PlanRefusal;
 pub use schedule::{PlanSchedule, PlanStep};
-pub use statement::{ExpressionStatement, StatedOperand, StatedResult};
+pub use statement::{ExpressionStatement, StatedOperand, StatedResult, StatedWidth};
 
 #[cfg(test)]
 mod tests;

@@ -21,7 +21,7 @@ use super::node::{Approximation, NodeId, Operation};
 use super::plan::ExpressionPlan;
 use super::range::{NoRange, range_of};
 use super::refusal::PlanRefusal;
-use super::statement::{ExpressionStatement, StatedResult};
+use super::statement::{ExpressionStatement, StatedResult, StatedWidth};
 
 /// The widest operand of a table of polynomials, in bits. A wider one is shortened first.
 const WIDEST_OPERAND: u32 = 20;
@@ -123,7 +123,10 @@ pub(super) fn lowered(
         lowering.known.push((Expression::operand(&operand.name), node));
     }
     for number in 0..statement.results.len() {
-        let node = lowering.result(number).map_err(|refusal| refusal.of_result(number))?;
+        let of_result = |refusal: PlanRefusal| refusal.of_result(number);
+        let proved = lowering.result(number).map_err(of_result)?;
+        let node = lowering.in_stated_width(number, proved).map_err(of_result)?;
+        lowering.plan.proved.push(proved);
         lowering.plan.results.push(node);
     }
     Ok((lowering.plan, lowering.sources))
@@ -153,6 +156,24 @@ impl<'s> Lowering<'s> {
             Operation::Operand(_) => self.plan.copy(&name, node),
             _ => Ok(node),
         }
+    }
+
+    /// Returns the node of a result in its stated width, if it has one.
+    fn in_stated_width(&mut self, number: usize, node: NodeId) -> Result<NodeId, PlanRefusal> {
+        let StatedResult { name, width, .. } = &self.statement.results[number];
+        let Some(StatedWidth { format, wraps }) = *width else { return Ok(node) };
+        let own = self.plan.node(node).format;
+        let (low, high) = own.range();
+        if !wraps && !(format.holds(low) && format.holds(high)) {
+            let [low, high] = [low, high].map(|raw| own.to_f64(raw));
+            let message = format!(
+                "`{name}` has {} bits, {format}, and its values need {own}, from {low} to {high}",
+                format.width()
+            );
+            let remedy = "give it more bits, or overflow = \"saturate\" or \"wrap\"";
+            return Err(PlanRefusal::new(message, remedy));
+        }
+        self.plan.narrow(&format!("{name}_in_width"), node, format, Rounding::Truncate)
     }
 
     /// Returns limits of the values of a part where something is promised.
@@ -443,6 +464,7 @@ impl<'s> Lowering<'s> {
     fn largest_error(&self, node: NodeId) -> f64 {
         let mut plan = self.plan.clone();
         plan.results = vec![node];
+        plan.proved = vec![node];
         let mut largest: Option<f64> = None;
         for result in &self.statement.results {
             let mut statement = self.statement.clone();

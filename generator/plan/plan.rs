@@ -17,6 +17,9 @@ pub struct ExpressionPlan {
     pub nodes: Vec<PlanNode>,
     /// The node of each result, in the order of the statement.
     pub results: Vec<NodeId>,
+    /// The node of each result before its high bits are dropped: the node whose error is proved. It is the node of the result
+    /// itself unless that wraps.
+    pub proved: Vec<NodeId>,
 }
 
 impl ExpressionPlan {
@@ -28,7 +31,7 @@ impl ExpressionPlan {
     /// Returns for each node whether the result number `result` depends on it.
     pub fn needed_for(&self, result: usize) -> Vec<bool> {
         let mut needed = vec![false; self.nodes.len()];
-        needed[self.results[result].0] = true;
+        needed[self.proved[result].0] = true;
         for at in (0..self.nodes.len()).rev() {
             if needed[at] {
                 for input in self.nodes[at].operation.inputs() {
@@ -230,6 +233,12 @@ impl ExpressionPlan {
         b: NodeId,
     ) -> Result<NodeId, PlanRefusal> {
         let (first, second, frac) = self.aligned(a, b);
+        if first.1 <= second.0 {
+            return Ok(a);
+        }
+        if second.1 <= first.0 {
+            return Ok(b);
+        }
         let range = (first.0.min(second.0), first.1.min(second.1));
         self.exact(name, Operation::Minimum(a, b), range, frac)
     }
@@ -241,6 +250,12 @@ impl ExpressionPlan {
         b: NodeId,
     ) -> Result<NodeId, PlanRefusal> {
         let (first, second, frac) = self.aligned(a, b);
+        if first.1 <= second.0 {
+            return Ok(b);
+        }
+        if second.1 <= first.0 {
+            return Ok(a);
+        }
         let range = (first.0.max(second.0), first.1.max(second.1));
         self.exact(name, Operation::Maximum(a, b), range, frac)
     }

@@ -37,6 +37,18 @@ pub struct StatedResult {
     pub error: f64,
     /// The condition on the operands under which the error is promised; `None` if it is promised for the whole domain.
     pub promise: Option<Comparison>,
+    /// The width, if it is stated; otherwise the integer bits follow from the values of the formula.
+    pub width: Option<StatedWidth>,
+}
+
+/// The whole format of a result, with what happens to values beyond it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct StatedWidth {
+    /// The format.
+    pub format: Format,
+    /// Whether a value beyond the format loses its high bits, so that it is right modulo the range of the format. For example, an
+    /// angle of 1 half turn is −1 then. Otherwise a formula with such values is refused.
+    pub wraps: bool,
 }
 
 impl ExpressionStatement {

@@ -336,9 +336,7 @@ fn random_formulas_agree_or_are_refused_with_reason() {
                 .assert_passes();
         }
     }
-    println!(
-        "{agreed} agree, {refused} are refused, {unproved} of them by limits of the planner"
-    );
+    println!("{agreed} agree, {refused} are refused, {unproved} of them by limits of the planner");
     let all = agreed + refused;
     assert!(100 * refused <= MOST_REFUSED * all, "{refused} of {all} are refused");
     assert!(100 * unproved <= MOST_UNPROVED * all, "{unproved} of {all} are not proved");
