@@ -333,12 +333,11 @@ impl Piecewise {
     /// function has no value there. Fails also if the proof takes too long.
     pub fn prove(&self, function: &TargetFunction) -> Result<f64, Refusal> {
         let (first, last) = self.domain;
-        let of = |raw: i64| self.error_at(function, raw);
-        let larger = |a: f64, b: f64| Ok(a.max(b));
-        match &function.curve {
-            Curve::Formula(_) if function.is_wide() => self.prove_by_segments(function),
-            _ => (first..=last).into_par_iter().map(of).try_reduce(|| 0.0, larger),
+        if matches!(function.curve, Curve::Formula(_)) && function.is_wide() {
+            return self.prove_by_segments(function);
         }
+        let errors = (first..=last).into_par_iter().map(|raw| self.error_at(function, raw));
+        errors.try_reduce(|| 0.0, |a, b| Ok(a.max(b)))
     }
 
     /// Returns the largest error of the result of a raw operand.

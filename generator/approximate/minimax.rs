@@ -17,12 +17,11 @@ pub fn minimax(at: &[f64], values: &[f64], degree: usize) -> ([f64; MOST], f64) 
         return (level(at, values, &all, false).0, 0.0);
     }
     // Extrema of the Chebyshev polynomial, by their places among the points.
-    let mut reference: Vec<usize> = (0..=count)
-        .map(|k| {
-            let part = (1.0 - libm::cos(std::f64::consts::PI * k as f64 / count as f64)) / 2.0;
-            (part * (at.len() - 1) as f64 + 0.5) as usize
-        })
-        .collect();
+    let mut reference: Vec<usize> = Vec::with_capacity(count + 1);
+    for k in 0..=count {
+        let part = (1.0 - libm::cos(std::f64::consts::PI * k as f64 / count as f64)) / 2.0;
+        reference.push((part * (at.len() - 1) as f64 + 0.5) as usize);
+    }
     for k in 1..=count {
         reference[k] = reference[k].max(reference[k - 1] + 1);
     }
@@ -33,8 +32,8 @@ pub fn minimax(at: &[f64], values: &[f64], degree: usize) -> ([f64; MOST], f64) 
     for _ in 0..EXCHANGES {
         let (coefficients, height) = level(at, values, &reference, true);
         let error = |k: usize| values[k] - at_point(&coefficients, at[k]);
-        let worst = (0..at.len()).max_by(|&a, &b| error(a).abs().total_cmp(&error(b).abs()));
-        let worst = worst.unwrap_or(0);
+        let worst =
+            (0..at.len()).max_by(|&a, &b| error(a).abs().total_cmp(&error(b).abs())).unwrap_or(0);
         let largest = error(worst).abs();
         if largest < best.1 {
             best = (coefficients, largest);

@@ -131,7 +131,7 @@ impl Reduction {
         let plain = Restore { shift: self.guard, ..Restore::default() };
         match &self.rule {
             Rule::Size(centre) => {
-                let centre = centre.filter(|_| raw < 0);
+                let centre = if raw < 0 { *centre } else { None };
                 (raw.abs().min(mask), Restore { centre, ..plain })
             }
             Rule::Quadrants(phase) => {
@@ -200,13 +200,13 @@ impl Reduction {
         let place = formula.span.clone();
         let (fraction, text) = text;
         let inner = parse(&text).map_err(|fault| Refusal::new(KEY, fault.message, "\"none\""))?;
-        let formula = formula.substitute(&Expression::operand("x"), &inner, &place);
+        let reduced = formula.substitute(&Expression::operand("x"), &inner, &place);
         let last = match rule {
             Rule::Size(_) if wider => function.domain.0.abs().max(function.domain.1),
             _ => (1 << bits) - 1,
         };
         let inner = TargetFunction {
-            curve: Curve::Formula(formula),
+            curve: Curve::Formula(reduced),
             domain: (0, last),
             operand: Format::unsigned(bits as i32 - fraction, fraction),
             outside: Outside::Anything,
@@ -245,6 +245,24 @@ fn unlike<T>(wanted: &str) -> Result<T, Refusal> {
 
 fn near(a: f64, b: f64) -> bool {
     (a - b).abs() <= EQUAL * a.abs().max(b.abs()).max(1e-3)
+}
+
+/// Returns whether all values are near the first.
+fn all_near(values: &[f64]) -> bool {
+    values.iter().all(|&value| near(value, values[0]))
+}
+
+/// Returns whether values at the eighths of a period are a sine that is `phase` quadrants late.
+fn is_sine(values: &[f64; 8], phase: usize) -> bool {
+    let at = |eighth: usize| values[(eighth + 8 - 2 * phase) % 8];
+    let largest = at(2);
+    let is_zero = |value: f64| value.abs() <= EQUAL * largest;
+    largest > 0.0
+        && is_zero(at(0))
+        && is_zero(at(4))
+        && near(at(3), at(1))
+        && near(at(5), -at(1))
+        && near(at(7), -at(1))
 }
 
 /// A rule, the bits of a number, and the number's fraction bits with the operand that the number denotes, as a formula of the
@@ -312,23 +330,12 @@ impl Whole<'_> {
             let message = "the domain is no period of four quadrants with a power of two operands";
             return refused(message, "scale the operand, as in sin(2 * pi * x) from 0 to 1");
         }
-        let at = |eighths: i64| {
-            let raw = first + (eighths * quarter / 2 - first).rem_euclid(count);
-            self.at(raw as f64 * exp2(-frac))
-        };
-        let values = (0..8).map(at).collect::<Result<Vec<f64>, _>>()?;
-        let sine = |phase: usize| {
-            let of = |eighth: usize| values[(eighth + 8 - 2 * phase) % 8];
-            let whole = of(2);
-            let zero = |value: f64| value.abs() <= EQUAL * whole;
-            whole > 0.0
-                && zero(of(0))
-                && zero(of(4))
-                && [(1, 1.0), (3, 1.0), (5, -1.0), (7, -1.0)]
-                    .iter()
-                    .all(|&(eighth, sign)| near(of(eighth), sign * of(1)))
-        };
-        let Some(phase) = (0..4).find(|phase| sine(*phase)) else {
+        let mut values = [0.0; 8];
+        for (eighth, value) in values.iter_mut().enumerate() {
+            let raw = first + (eighth as i64 * quarter / 2 - first).rem_euclid(count);
+            *value = self.at(raw as f64 * exp2(-frac))?;
+        }
+        let Some(phase) = (0..4).find(|phase| is_sine(&values, *phase)) else {
             return unlike("its quadrants are not those of a sine");
         };
         let from = first + (-(phase as i64) * quarter - first).rem_euclid(count);
@@ -351,13 +358,14 @@ impl Whole<'_> {
                 ratios.push(libm::log2(values[2] / values[0]));
             }
         }
-        let all = |values: &[f64]| values.iter().all(|&value| near(value, values[0]));
         let width = format.width();
         let (step, ratio) = (steps[0], (ratios[0] + 0.5).floor());
         let rises = ratio > 0.0;
-        let (pairs, factor, added) = if all(&steps) {
+        let (pairs, factor, added) = if all_near(&steps) {
             (false, 0.0, step)
-        } else if all(&ratios) && near(ratios[0], ratio) && self.at(exp2(low - format.frac))? > 0.0
+        } else if all_near(&ratios)
+            && near(ratios[0], ratio)
+            && self.at(exp2(low - format.frac))? > 0.0
         {
             (ratio % 2.0 != 0.0, ratio, 0.0)
         } else {
@@ -370,21 +378,21 @@ impl Whole<'_> {
             );
         }
         // The octave, or the pair of octaves, on which the polynomials are fitted: the one with the largest results.
-        let of = |octave: i32| if pairs { octave >> 1 } else { octave };
+        let group_of = |octave: i32| if pairs { octave >> 1 } else { octave };
         let own = match factor {
             0.0 => format.frac.clamp(low, high),
-            _ => of(if rises { high } else { low }),
+            _ => group_of(if rises { high } else { low }),
         };
         let places = if pairs { factor.abs() } else { factor.abs() / 2.0 };
         let fraction = (self.function.fraction + self.guard) as i32;
-        let restore = |zeros: u32| {
-            let octave = (width as i32 - 1 - zeros as i32).clamp(low, high);
-            let away = of(octave) - own;
-            let addend = (added * f64::from(away) * exp2(fraction) + 0.5).floor() as i64;
-            (away.unsigned_abs() * places as u32, addend)
-        };
         let count = 2u32 << (width - 1).max(1).ilog2();
-        let restores = (0..count).map(restore).collect();
+        let mut restores = Vec::with_capacity(count as usize);
+        for zeros in 0..count {
+            let octave = (width as i32 - 1 - zeros as i32).clamp(low, high);
+            let away = group_of(octave) - own;
+            let addend = (added * f64::from(away) * exp2(fraction) + 0.5).floor() as i64;
+            restores.push((away.unsigned_abs() * places as u32, addend));
+        }
         let rule = Rule::Octaves { width, pairs, restores };
         let rest = width - 1;
         Ok(if pairs {
@@ -399,8 +407,7 @@ impl Whole<'_> {
     fn exponent(&self) -> ReductionResult {
         let TargetFunction { domain: (first, last), operand: Format { frac, .. }, .. } =
             *self.function;
-        let value = |raw: f64| raw * exp2(-frac);
-        let (from, to) = (value(first as f64), value(last as f64));
+        let [from, to] = [first, last].map(|raw| raw as f64 * exp2(-frac));
         let slope = (self.logarithm_at(to)? - self.logarithm_at(from)?) / (to - from);
         for part in [0.25, 0.5, 0.875] {
             let x = from + (to - from) * part;

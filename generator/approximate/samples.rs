@@ -26,54 +26,18 @@ impl Samples {
     /// Fails if a point is no pair of numbers or at no operand of the domain, if two points have the same operand, if the
     /// domain has no point at an end, or if the points have a gap.
     pub fn read(text: &str, fraction: u32, domain: (i64, i64)) -> Result<Self, Refusal> {
-        let refused = |message: String, remedy: &str| Err(Refusal::new(KEY, message, remedy));
         let mut points: Vec<(i64, Enclosure)> = Vec::new();
         for point in text.split(' ').filter(|point| !point.is_empty()) {
-            let numbers =
-                point.split_once(',').and_then(|(x, y)| Some((parse(x).ok()?, number(y)?)));
-            let Some((x, y)) = numbers.filter(|(x, _)| x.enclose(&[]).is_ok()) else {
-                let remedy = "a number for x, a comma and a number for y";
-                return refused(format!("the sample `{point}` is no pair of numbers"), remedy);
-            };
-            let Some(raw) = raw_operand(&x, fraction) else {
-                let message =
-                    format!("the sample `{point}` is at no operand with {fraction} fraction bits");
-                let remedy = "more operand.fraction bits, or number the samples: 0, 1, 2 …";
-                return refused(message, remedy);
-            };
-            let inside = i64::try_from(raw).ok().filter(|raw| (domain.0..=domain.1).contains(raw));
-            let Some(raw) = inside else {
-                let message = format!("the sample `{point}` is outside the domain");
-                return refused(message, "change function.from or function.to, or leave it out");
-            };
-            points.push((raw, y));
+            points.push(read_point(point, fraction, domain)?);
         }
         points.sort_by_key(|point| point.0);
-        let value = |raw: i64| raw as f64 * exp2(-(fraction as i32));
-        if let Some(pair) = points.windows(2).find(|pair| pair[0].0 == pair[1].0) {
-            let message = format!("there are two samples for x = {}", value(pair[0].0));
-            return refused(message, "keep one of the two, or their mean");
-        }
-        let ends = points.first().zip(points.last()).map(|(first, last)| (first.0, last.0));
-        if ends != Some(domain) {
-            let missing = if ends.is_some_and(|it| it.0 == domain.0) { domain.1 } else { domain.0 };
-            let message =
-                format!("there is no sample at the end of the domain, x = {}", value(missing));
-            return refused(message, "add it, or let the domain end at a sample");
-        }
-        let steps: Vec<i64> = points.windows(2).map(|pair| pair[1].0 - pair[0].0).collect();
-        for (at, step) in steps.iter().enumerate().filter(|_| steps.len() > 2) {
-            let beside = [at.checked_sub(1), Some(at + 1)].into_iter().flatten();
-            let longest = beside.filter_map(|at| steps.get(at)).max();
-            if longest.is_some_and(|longest| *step > GAP * longest) {
-                let [from, to] = [at, at + 1].map(|at| value(points[at].0));
-                let message = format!("there is a gap between the samples at x = {from} and {to}");
-                return refused(message, "add samples there, or make two functions of it");
-            }
-        }
+        check_points(&points, fraction, domain)?;
         let slopes = slopes(&points);
-        let points = points.into_iter().zip(slopes);
-        Ok(Self(points.map(|((raw, value), slope)| (raw, value, slope)).collect()))
+        let mut samples = Vec::with_capacity(points.len());
+        for ((raw, value), slope) in points.into_iter().zip(slopes) {
+            samples.push((raw, value, slope));
+        }
+        Ok(Self(samples))
     }
 
     /// Returns the number of samples in the list.
@@ -99,6 +63,71 @@ impl Samples {
     }
 }
 
+/// Reads a point `x,y`. Returns its raw operand and its value.
+///
+/// # Errors
+/// Fails if the point is no pair of numbers, or at no operand of the domain.
+fn read_point(point: &str, fraction: u32, domain: (i64, i64)) -> Result<(i64, Enclosure), Refusal> {
+    let numbers = point.split_once(',').and_then(|(x, y)| Some((parse(x).ok()?, number(y)?)));
+    let Some((x, y)) = numbers.filter(|(x, _)| x.enclose(&[]).is_ok()) else {
+        let message = format!("the sample `{point}` is no pair of numbers");
+        return Err(Refusal::new(KEY, message, "a number for x, a comma and a number for y"));
+    };
+    let Some(raw) = raw_operand(&x, fraction) else {
+        let message =
+            format!("the sample `{point}` is at no operand with {fraction} fraction bits");
+        let remedy = "more operand.fraction bits, or number the samples: 0, 1, 2 …";
+        return Err(Refusal::new(KEY, message, remedy));
+    };
+    match i64::try_from(raw) {
+        Ok(raw) if (domain.0..=domain.1).contains(&raw) => Ok((raw, y)),
+        _ => {
+            let message = format!("the sample `{point}` is outside the domain");
+            let remedy = "change function.from or function.to, or leave it out";
+            Err(Refusal::new(KEY, message, remedy))
+        }
+    }
+}
+
+/// Refuses points, in the order of their operands, if two have the same operand, if they miss an end of the domain, or if they have a
+/// gap.
+fn check_points(
+    points: &[(i64, Enclosure)],
+    fraction: u32,
+    domain: (i64, i64),
+) -> Result<(), Refusal> {
+    let unit = exp2(-(fraction as i32));
+    for pair in points.windows(2) {
+        if pair[0].0 == pair[1].0 {
+            let message = format!("there are two samples for x = {}", pair[0].0 as f64 * unit);
+            return Err(Refusal::new(KEY, message, "keep one of the two, or their mean"));
+        }
+    }
+    let first = points.first().map(|point| point.0);
+    let last = points.last().map(|point| point.0);
+    if (first, last) != (Some(domain.0), Some(domain.1)) {
+        let missing = if first == Some(domain.0) { domain.1 } else { domain.0 };
+        let x = missing as f64 * unit;
+        let message = format!("there is no sample at the end of the domain, x = {x}");
+        return Err(Refusal::new(KEY, message, "add it, or let the domain end at a sample"));
+    }
+    let steps: Vec<i64> = points.windows(2).map(|pair| pair[1].0 - pair[0].0).collect();
+    if steps.len() <= 2 {
+        return Ok(());
+    }
+    for (at, step) in steps.iter().enumerate() {
+        let before = if at > 0 { steps[at - 1] } else { 0 };
+        let after = steps.get(at + 1).copied().unwrap_or(0);
+        if *step > GAP * before.max(after) {
+            let [from, to] = [at, at + 1].map(|at| points[at].0 as f64 * unit);
+            let message = format!("there is a gap between the samples at x = {from} and {to}");
+            let remedy = "add samples there, or make two functions of it";
+            return Err(Refusal::new(KEY, message, remedy));
+        }
+    }
+    Ok(())
+}
+
 /// Returns the raw operand that a number is: exactly, or as the `f64` that its many digits were printed from.
 fn raw_operand(x: &Expression, fraction: u32) -> Option<i128> {
     match x.ceiling(fraction) {
@@ -110,27 +139,41 @@ fn raw_operand(x: &Expression, fraction: u32) -> Option<i128> {
     }
 }
 
+/// A chord between two neighbouring points: its length along x, and its slope.
+type Chord = (f64, f64);
+
 /// Returns the slopes of Steffen's curve at points.
 fn slopes(points: &[(i64, Enclosure)]) -> Vec<f64> {
-    let chord = |pair: &[(i64, Enclosure)]| {
+    let mut chords: Vec<Chord> = Vec::new();
+    for pair in points.windows(2) {
         let length = (pair[1].0 - pair[0].0) as f64;
-        (length, (pair[1].1.middle() - pair[0].1.middle()) / length)
+        let slope = (pair[1].1.middle() - pair[0].1.middle()) / length;
+        chords.push((length, slope));
+    }
+    let [first, .., last] = chords[..] else {
+        // One chord is its own slope at both ends.
+        return chords.iter().flat_map(|&chord| [end_slope(chord, None); 2]).collect();
     };
-    let chords: Vec<(f64, f64)> = points.windows(2).map(chord).collect();
-    let within = |(h, s): (f64, f64), (k, t): (f64, f64)| {
-        let parabola = (s * k + t * h) / (h + k);
-        let least = s.abs().min(t.abs()).min(parabola.abs() / 2.0);
-        if s * t > 0.0 { 2.0 * least.copysign(s) } else { 0.0 }
-    };
-    // The parabola through the last three points, as far as it goes the way of the last chord.
-    let end = |(h, s): (f64, f64), beside: Option<&(f64, f64)>| {
-        let parabola = beside.map_or(s, |(k, t)| s + (s - t) * h / (h + k));
-        if parabola * s <= 0.0 { 0.0 } else { parabola.abs().min(2.0 * s.abs()).copysign(s) }
-    };
-    let first = chords.first().map(|it| end(*it, chords.get(1)));
-    let last = chords.last().map(|it| end(*it, chords.len().checked_sub(2).map(|at| &chords[at])));
-    let middle = chords.windows(2).map(|pair| within(pair[0], pair[1]));
-    first.into_iter().chain(middle).chain(last).collect()
+    let mut slopes = vec![end_slope(first, Some(chords[1]))];
+    for pair in chords.windows(2) {
+        slopes.push(inner_slope(pair[0], pair[1]));
+    }
+    slopes.push(end_slope(last, Some(chords[chords.len() - 2])));
+    slopes
+}
+
+/// Returns the slope of Steffen's curve at a point between two chords.
+fn inner_slope((h, s): Chord, (k, t): Chord) -> f64 {
+    let parabola = (s * k + t * h) / (h + k);
+    let least = s.abs().min(t.abs()).min(parabola.abs() / 2.0);
+    if s * t > 0.0 { 2.0 * least.copysign(s) } else { 0.0 }
+}
+
+/// Returns the slope of Steffen's curve at an end. The curve follows the parabola through the last three points, as far as that keeps
+/// to the direction of the last chord. `beside` is the chord next to the last.
+fn end_slope((h, s): Chord, beside: Option<Chord>) -> f64 {
+    let parabola = beside.map_or(s, |(k, t)| s + (s - t) * h / (h + k));
+    if parabola * s <= 0.0 { 0.0 } else { parabola.abs().min(2.0 * s.abs()).copysign(s) }
 }
 
 fn number(text: &str) -> Option<Enclosure> {

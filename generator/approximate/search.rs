@@ -72,11 +72,11 @@ pub(super) fn search(function: &TargetFunction, wish: Wish) -> Result<Piecewise,
     if let Some(found) = attempt(function, wish)? {
         return Ok(found);
     }
-    let misses = |error: &f64| {
+    let count_missed = NEAREST.partition_point(|error| {
         let larger = TargetFunction { error: *error, ..function.clone() };
         *error <= function.error || !matches!(attempt(&larger, wish), Ok(Some(_)))
-    };
-    let reached = NEAREST.get(NEAREST.partition_point(misses));
+    });
+    let reached = NEAREST.get(count_missed);
     let keeps = match wish.degree {
         Some(degree) => format!("degree {degree} does not keep"),
         None => format!("no degree up to {DEGREES} keeps"),
@@ -148,15 +148,13 @@ fn cheapest(seen: &AllowedResults, wish: Wish) -> Option<Piecewise> {
     let mut found: Vec<(f64, Segments, Widths, Widths)> = Vec::new();
     let mut least = f64::INFINITY;
     // Those first that are rarely far from the best, so that others are seldom searched to their end.
-    for degree in [2, 3, 1, 0].into_iter().filter(|it| wish.degree.is_none_or(|own| own == *it)) {
-        let most = |least: f64| {
-            // The constant alone has as many bits as the result.
-            let word = f64::from(seen.result.width()) / BITS_A_CELL;
-            (((least - STEP * f64::from(degree)) / word).max(0.0) as usize).min(1 << ADDRESS)
-        };
-        for cut in cuts(&few, degree, wish.layout, most(least)) {
+    for degree in [2, 3, 1, 0] {
+        if wish.degree.is_some_and(|wanted| wanted != degree) {
+            continue;
+        }
+        for cut in cuts(&few, degree, wish.layout, most_words(seen, degree, least)) {
             let base = STEP * f64::from(degree) + OCTAVE * f64::from(cut.octaves);
-            if cut.words() > most(least) {
+            if cut.words() > most_words(seen, degree, least) {
                 continue;
             }
             let table = Table::new(&few, cut);
@@ -173,45 +171,40 @@ fn cheapest(seen: &AllowedResults, wish: Wish) -> Option<Piecewise> {
     }
     found.sort_by(|a, b| a.0.total_cmp(&b.0));
     let more = seen.thinned(WIDENING);
-    found.into_iter().find_map(|(_, cut, widths, most)| {
-        let chosen = widths.clone();
+    found.into_iter().find_map(|(_, cut, chosen, most)| {
         let table = Table::new(&more, cut);
-        let (mut widths, words) = table.settled(widths, &most)?;
-        if widths != chosen {
-            (widths, _) = table.lowered(widths, words);
+        let (mut widened, words) = table.settled(chosen.clone(), &most)?;
+        if widened != chosen {
+            (widened, _) = table.lowered(widened, words);
         }
         let table = Table::new(seen, cut);
-        let (widths, words) = table.settled(widths, &most)?;
+        let (widths, words) = table.settled(widened, &most)?;
         table.finished(&widths, words)
     })
+}
+
+/// Returns the most words that a table may have to cost no more than `least`: the constant alone has as many bits as the result.
+fn most_words(seen: &AllowedResults, degree: u32, least: f64) -> usize {
+    let word = f64::from(seen.result.width()) / BITS_A_CELL;
+    (((least - STEP * f64::from(degree)) / word).max(0.0) as usize).min(1 << ADDRESS)
 }
 
 /// Returns the ways to cut the domain, into no more than `most` segments, that are fine enough for polynomials of the degree,
 /// before anything is rounded.
 fn cuts(seen: &AllowedResults, degree: u32, layout: Option<Layout>, most: usize) -> Vec<Segments> {
-    let possible = |cut: &Segments| {
-        cut.words() <= most.min(1 << ADDRESS)
-            && cut.octaves + cut.prefix + u32::from(degree > 0) <= seen.bits
-    };
-    let mut worst = None;
-    let mut finest = |layout: Layout, octaves: u32| {
-        let cut = |prefix| Segments { bits: seen.bits, layout, octaves, prefix };
-        let least = u32::from(octaves == 0);
-        (least..=ADDRESS)
-            .map(cut)
-            .take_while(possible)
-            .find(|cut| Table::may_fit(seen, *cut, degree, &mut worst))
-    };
+    let mut search = CutSearch { seen, degree, most, worst: None };
     let mut cuts: Vec<Segments> = Vec::new();
-    let wanted = |own: Layout| layout.is_none_or(|layout| layout == own);
-    if wanted(Layout::Uniform) {
-        cuts.extend(finest(Layout::Uniform, 0));
+    if layout.is_none_or(|wanted| wanted == Layout::Uniform) {
+        cuts.extend(search.coarsest(Layout::Uniform, 0));
     }
     let uniform = cuts.first().map_or(most, Segments::words);
-    for own in [Layout::Octaves, Layout::Halving].into_iter().filter(|own| wanted(*own)) {
+    for own in [Layout::Octaves, Layout::Halving] {
+        if layout.is_some_and(|wanted| wanted != own) {
+            continue;
+        }
         let mut least = if layout.is_some() { usize::MAX } else { uniform };
         for octaves in 1..seen.bits.min(MOST_BITS) {
-            let Some(cut) = finest(own, octaves) else { continue };
+            let Some(cut) = search.coarsest(own, octaves) else { continue };
             if cut.words() < least {
                 least = cut.words();
                 cuts.push(cut);
@@ -221,9 +214,45 @@ fn cuts(seen: &AllowedResults, degree: u32, layout: Option<Layout>, most: usize)
             }
         }
     }
-    let finer: Vec<Segments> =
-        cuts.iter().map(|cut| Segments { prefix: cut.prefix + 1, ..*cut }).collect();
-    cuts.extend(finer.into_iter().filter(possible));
+    for cut in cuts.clone() {
+        let finer = Segments { prefix: cut.prefix + 1, ..cut };
+        if search.is_possible(&finer) {
+            cuts.push(finer);
+        }
+    }
     cuts.sort_by_key(Segments::words);
     cuts
+}
+
+/// The search for the ways to cut a domain that are fine enough for polynomials of a degree.
+struct CutSearch<'s> {
+    seen: &'s AllowedResults<'s>,
+    degree: u32,
+    /// The most segments.
+    most: usize,
+    /// An operand in a segment that was too long.
+    worst: Option<i64>,
+}
+
+impl CutSearch<'_> {
+    /// Returns whether a cut has few enough segments, and enough bits for the offsets in them.
+    fn is_possible(&self, cut: &Segments) -> bool {
+        cut.words() <= self.most.min(1 << ADDRESS)
+            && cut.octaves + cut.prefix + u32::from(self.degree > 0) <= self.seen.bits
+    }
+
+    /// Returns the cut with the fewest segments of a layout that is fine enough, if there is one.
+    fn coarsest(&mut self, layout: Layout, octaves: u32) -> Option<Segments> {
+        let least = u32::from(octaves == 0);
+        for prefix in least..=ADDRESS {
+            let cut = Segments { bits: self.seen.bits, layout, octaves, prefix };
+            if !self.is_possible(&cut) {
+                return None;
+            }
+            if Table::may_fit(self.seen, cut, self.degree, &mut self.worst) {
+                return Some(cut);
+            }
+        }
+        None
+    }
 }

@@ -91,17 +91,23 @@ impl<'f> AllowedResults<'f> {
         // An odd one, so that the low bits take every value.
         let stride = if count > held { count.div_ceil(held) as i64 | 1 } else { 1 };
         let stricter = if stride > 1 { stricter } else { 0.0 };
-        let of = |at: u64| function.right((first + at as i64 * stride).min(last), stricter);
         let seen = count.div_ceil(stride as u64) + u64::from(stride > 1);
-        let all = (0..seen).into_par_iter().map(of).try_fold(Nearest::default, Nearest::with);
-        let all = all.try_reduce(Nearest::default, |a, b| Ok(a.and(b)))?;
+        let results = (0..seen).into_par_iter().map(|at| {
+            let raw = (first + at as i64 * stride).min(last);
+            function.right(raw, stricter)
+        });
+        let parts = results.try_fold(Nearest::default, Nearest::with);
+        let all = parts.try_reduce(Nearest::default, |a, b| Ok(a.and(b)))?;
         let (low, high) = all.nearest;
         let result = Format::holding(low.into(), high.into(), function.fraction as i32);
         let (least, most) = (result.min_raw() as i64, result.max_raw() as i64);
         let mut right = all.right;
-        right.iter_mut().for_each(|it| *it = (it.0.max(least), it.1.min(most)));
-        if right.iter().any(|(low, high)| low > high) {
-            return Ok(None);
+        for (low, high) in &mut right {
+            *low = (*low).max(least);
+            *high = (*high).min(most);
+            if low > high {
+                return Ok(None);
+            }
         }
         Ok(Some(Self { function, origin, bits, stride, right, result, whole: None }))
     }
@@ -124,16 +130,14 @@ impl<'f> AllowedResults<'f> {
         let result = Format::holding(low.into(), high.into(), whole.fraction as i32);
         let (least, most) = (result.min_raw() as i64, result.max_raw() as i64);
         for from in (first..=last).step_by(BLOCK) {
-            let of = |raw: i64| {
+            let block = from..=last.min(from + BLOCK as i64 - 1);
+            let polynomials = block.into_par_iter().map(|raw| {
                 let (_, low, high) = whole.right(raw, 0.0)?;
                 let (number, restore) = reduction.reduce(raw);
                 Ok((number as usize, restore.polynomials((low.max(least), high.min(most)))))
-            };
-            let some: Vec<_> = (from..=last.min(from + BLOCK as i64 - 1))
-                .into_par_iter()
-                .map(of)
-                .collect::<Result<_, Refusal>>()?;
-            for (number, (low, high)) in some {
+            });
+            let polynomials: Vec<_> = polynomials.collect::<Result<_, Refusal>>()?;
+            for (number, (low, high)) in polynomials {
                 let right = &mut seen.right[number];
                 *right = (right.0.max(low), right.1.min(high));
                 if right.0 > right.1 {
@@ -161,5 +165,11 @@ impl<'f> AllowedResults<'f> {
 
     pub(super) fn number(&self, raw: i64) -> u64 {
         (raw - self.origin) as u64
+    }
+
+    /// Returns the number of operands below `raw` that the search looks at.
+    pub(super) fn seen_below(&self, raw: i64) -> usize {
+        let (first, _) = self.function.domain;
+        ((raw - first) as u64).div_ceil(self.stride as u64) as usize
     }
 }

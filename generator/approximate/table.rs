@@ -53,11 +53,13 @@ pub(super) struct Widths {
 impl Widths {
     /// Returns the cuts of the products; none if one would have to gain bits.
     fn steps(&self) -> Option<Vec<HornerStep>> {
-        let of = |(k, &offset): (usize, &u32)| {
+        let mut steps = Vec::with_capacity(self.offset.len());
+        for (k, &offset) in self.offset.iter().enumerate() {
             let dropped = self.guard[k + 1] + offset as i32 - self.guard[k];
-            u32::try_from(dropped).ok().map(|dropped| HornerStep { offset, dropped })
-        };
-        self.offset.iter().enumerate().map(of).collect()
+            let dropped = u32::try_from(dropped).ok()?;
+            steps.push(HornerStep { offset, dropped });
+        }
+        Some(steps)
     }
 
     /// Returns the widths with `change` bits more of variable number `at`, if that may be.
@@ -81,9 +83,20 @@ impl Widths {
 
     /// Limits every variable to its width in `most`.
     fn no_wider(mut self, most: &Self) -> Self {
-        self.guard.iter_mut().zip(&most.guard).for_each(|(own, most)| *own = (*own).min(*most));
-        self.offset.iter_mut().zip(&most.offset).for_each(|(own, most)| *own = (*own).min(*most));
+        for (own, most) in self.guard.iter_mut().zip(&most.guard) {
+            *own = (*own).min(*most);
+        }
+        for (own, most) in self.offset.iter_mut().zip(&most.offset) {
+            *own = (*own).min(*most);
+        }
         self
+    }
+
+    /// Returns the widths with one bit more of variable number `at`, but none wider than in `most`. Returns `None` if that changes
+    /// nothing.
+    fn widened(&self, at: usize, most: &Self) -> Option<Self> {
+        let wider = self.with(at, 1)?.no_wider(most);
+        (wider != *self).then_some(wider)
     }
 
     /// Returns how many variables there are.
@@ -126,25 +139,31 @@ impl<'s> Table<'s> {
         if low > high {
             return None;
         }
-        let before = |raw: i64| ((raw - first) as u64).div_ceil(seen.stride as u64) as usize;
+        let mut points: Vec<(i64, f64)> = Vec::new();
         let many = (high - low + 1).min(FITTED);
         let step = (many - 1).max(1);
-        let raws = (0..many).map(|k| low + (high - low) * k / step);
-        let point = |raw: i64| {
+        for k in 0..many {
+            let raw = low + (high - low) * k / step;
+            let offset = cut.place(seen.number(raw)).offset;
             // It had limits before: all formulas have, or the nearest operand that was looked at has.
             let value = seen.function.limits(raw).map_or(f64::NAN, |limits| limits.middle());
-            (cut.place(seen.number(raw)).offset, value)
-        };
-        let mut points: Vec<(i64, f64)> = raws.map(point).collect();
+            points.push((offset, value));
+        }
         // Halving segments run the other way.
         points.sort_by_key(|it| it.0);
         let unit = exp2(-(cut.rest() as i32));
-        Some(CandidateSegment {
-            seen: before(low)..before(high + 1).min(seen.right.len()),
-            at: points.iter().map(|it| it.0 as f64 * unit).collect(),
-            values: points.iter().map(|it| it.1).collect(),
-            offsets: points.into_iter().map(|it| it.0).collect(),
-        })
+        let mut piece = CandidateSegment {
+            seen: seen.seen_below(low)..seen.seen_below(high + 1).min(seen.right.len()),
+            offsets: Vec::new(),
+            at: Vec::new(),
+            values: Vec::new(),
+        };
+        for (offset, value) in points {
+            piece.offsets.push(offset);
+            piece.at.push(offset as f64 * unit);
+            piece.values.push(value);
+        }
+        Some(piece)
     }
 
     /// Returns whether polynomials of unlimited precision are so near to the function that a rounding to the nearest may be. The
@@ -157,18 +176,27 @@ impl<'s> Table<'s> {
         worst: &mut Option<i64>,
     ) -> bool {
         let table = Self { seen, cut, pieces: Vec::new() };
-        let fits = |piece: &CandidateSegment| match degree {
-            0 => table.constant(piece, &[], &[], 0).is_some(),
-            _ => minimax(&piece.at, &piece.values, degree as usize).1 < seen.function.error - 0.5,
-        };
-        let is_too_long = |word: &usize| table.piece(*word).is_some_and(|piece| !fits(&piece));
-        let first = worst.map(|raw| cut.place(seen.number(raw)).word).filter(is_too_long);
-        let found = first.or_else(|| table.words().find_any(is_too_long));
-        if let Some(word) = found.filter(|_| first.is_none()) {
-            let (first, last) = seen.function.domain;
-            *worst = Some((seen.origin + cut.numbers(word).0 as i64).clamp(first, last));
+        if let Some(raw) = *worst
+            && table.is_too_long(cut.place(seen.number(raw)).word, degree)
+        {
+            return false;
         }
-        found.is_none()
+        let too_long = table.words().find_any(|word| table.is_too_long(*word, degree));
+        let Some(word) = too_long else { return true };
+        let (first, last) = seen.function.domain;
+        *worst = Some((seen.origin + cut.numbers(word).0 as i64).clamp(first, last));
+        false
+    }
+
+    /// Returns whether the segment of a word is too long for polynomials of the degree, even with unlimited precision.
+    fn is_too_long(&self, word: usize, degree: u32) -> bool {
+        let Some(piece) = self.piece(word) else { return false };
+        if degree == 0 {
+            return self.constant(&piece, &[], &[], 0).is_none();
+        }
+        let (_, error) = minimax(&piece.at, &piece.values, degree as usize);
+        let fits = error < self.seen.function.error - 0.5;
+        !fits
     }
 
     /// Returns the narrowest coefficients and offsets, none wider than these, if any are right.
@@ -223,20 +251,19 @@ impl<'s> Table<'s> {
     /// the words with them.
     pub(super) fn settled(&self, mut widths: Widths, most: &Widths) -> Option<(Widths, Words)> {
         let count = widths.count();
-        let wider = |widths: &Widths, at| {
-            let wider = widths.with(at, 1)?.no_wider(most);
-            (wider != *widths).then_some(wider)
-        };
         loop {
-            let one_wider = (0..count).filter_map(|at| wider(&widths, at));
-            for some in [widths.clone()].into_iter().chain(one_wider) {
-                if let Some(words) = self.fitted(&some) {
-                    return Some((some, words));
+            if let Some(words) = self.fitted(&widths) {
+                return Some((widths, words));
+            }
+            for at in 0..count {
+                let Some(one_wider) = widths.widened(at, most) else { continue };
+                if let Some(words) = self.fitted(&one_wider) {
+                    return Some((one_wider, words));
                 }
             }
             let before = widths.clone();
             for at in 0..count {
-                widths = wider(&widths, at).unwrap_or(widths);
+                widths = widths.widened(at, most).unwrap_or(widths);
             }
             if widths == before {
                 return None;
@@ -247,17 +274,25 @@ impl<'s> Table<'s> {
     /// Returns the words of a table with these widths, if there are such with which every operand that is looked at is right.
     fn fitted(&self, widths: &Widths) -> Option<Words> {
         let steps = widths.steps()?;
-        let fit = |piece: &Option<CandidateSegment>| match piece {
+        let fitted_words = self.pieces.par_iter().map(|piece| match piece {
             None => Some(None),
-            Some(piece) => {
-                let mut coefficients = vec![0; widths.guard.len()];
-                let none = vec![0; piece.at.len()];
-                let (shape, degree) = ((widths, &steps[..]), widths.guard.len() - 1);
-                let found = self.place(piece, shape, &none, &mut coefficients, degree);
-                found.then_some(Some(coefficients))
-            }
-        };
-        self.pieces.par_iter().map(fit).collect()
+            Some(piece) => self.fitted_piece(piece, widths, &steps).map(Some),
+        });
+        fitted_words.collect()
+    }
+
+    /// Returns coefficients of these widths with which every operand of the segment that is looked at is right.
+    fn fitted_piece(
+        &self,
+        piece: &CandidateSegment,
+        widths: &Widths,
+        steps: &[HornerStep],
+    ) -> Option<Vec<i64>> {
+        let degree = widths.guard.len() - 1;
+        let mut coefficients = vec![0; degree + 1];
+        let no_product = vec![0; piece.at.len()];
+        let found = self.place(piece, (widths, steps), &no_product, &mut coefficients, degree);
+        found.then_some(coefficients)
     }
 
     /// Chooses coefficient `k` and all lower coefficients. `product` is the addend of coefficient `k` at the points of the
@@ -278,20 +313,27 @@ impl<'s> Table<'s> {
             return constant.is_some();
         }
         let unit = exp2(-widths.guard[k]);
-        let rests = piece.values.iter().zip(&piece.at).zip(product);
-        let rests =
-            rests.map(|((value, at), &product)| value - product as f64 * unit * at.powi(k as i32));
-        let wanted = minimax(&piece.at, &rests.collect::<Vec<f64>>(), k).0[k] / unit;
+        let mut rests: Vec<f64> = Vec::with_capacity(piece.at.len());
+        for (point, &product) in product.iter().enumerate() {
+            let power = piece.at[point].powi(k as i32);
+            rests.push(piece.values[point] - product as f64 * unit * power);
+        }
+        let (polynomial, _) = minimax(&piece.at, &rests, k);
+        let wanted = polynomial[k] / unit;
         let nearest = (wanted + 0.5).floor();
         let other = if wanted < nearest { nearest - 1.0 } else { nearest + 1.0 };
-        [nearest, other].into_iter().any(|coefficient| {
+        for coefficient in [nearest, other] {
             coefficients[k] = coefficient as i64;
-            let sums = piece.offsets.iter().zip(product).map(|(&offset, product)| {
-                steps[k - 1].product(coefficients[k] + product, offset, self.cut.rest())
-            });
-            let sums: Vec<i64> = sums.collect();
-            self.place(piece, shape, &sums, coefficients, k - 1)
-        })
+            let mut sums: Vec<i64> = Vec::with_capacity(piece.at.len());
+            for (&offset, product) in piece.offsets.iter().zip(product) {
+                let sum = coefficients[k] + product;
+                sums.push(steps[k - 1].product(sum, offset, self.cut.rest()));
+            }
+            if self.place(piece, shape, &sums, coefficients, k - 1) {
+                return true;
+            }
+        }
+        false
     }
 
     /// Returns the constant with which every operand of the segment is right: the middle of all such. `above` are the other
@@ -326,29 +368,35 @@ impl<'s> Table<'s> {
     /// Returns the formats of the coefficients, the constant first.
     fn formats(&self, widths: &Widths, words: &Words) -> Vec<Format> {
         let fraction = self.seen.function.fraction as i32;
-        let format = |(k, guard): (usize, &i32)| {
-            let (low, high) = words.iter().flatten().fold((i64::MAX, i64::MIN), |ends, word| {
-                (ends.0.min(word[k]), ends.1.max(word[k]))
-            });
-            Format::holding(low.into(), high.into(), fraction + guard)
-        };
-        widths.guard.iter().enumerate().map(format).collect()
+        let mut formats = Vec::with_capacity(widths.guard.len());
+        for (k, guard) in widths.guard.iter().enumerate() {
+            let (mut low, mut high) = (i64::MAX, i64::MIN);
+            for word in words.iter().flatten() {
+                low = low.min(word[k]);
+                high = high.max(word[k]);
+            }
+            formats.push(Format::holding(low.into(), high.into(), fraction + guard));
+        }
+        formats
     }
 
     /// Returns by how many bits each coefficient that is multiplied is too wide for a multiplier.
     fn excess(formats: &[Format]) -> impl Iterator<Item = u32> {
-        let signed = |format: &Format| format.width() + u32::from(!format.signed);
-        formats.iter().skip(1).map(move |format| signed(format).saturating_sub(FACTOR))
+        formats.iter().skip(1).map(|format| {
+            let signed_width = format.width() + u32::from(!format.signed);
+            signed_width.saturating_sub(FACTOR)
+        })
     }
 
     /// Returns the cost of table and partial products in look-up tables.
     pub(super) fn cost(&self, widths: &Widths, words: &Words) -> f64 {
         let formats = self.formats(widths, words);
         let width: u32 = formats.iter().map(|format| format.width()).sum();
-        let partial =
-            Self::excess(&formats).zip(&widths.offset).map(|(bits, offset)| bits * offset);
-        words.len() as f64 * f64::from(width) / BITS_A_CELL
-            + PARTIAL * f64::from(partial.sum::<u32>())
+        let mut partial = 0;
+        for (bits, offset) in Self::excess(&formats).zip(&widths.offset) {
+            partial += bits * offset;
+        }
+        words.len() as f64 * f64::from(width) / BITS_A_CELL + PARTIAL * f64::from(partial)
     }
 
     /// Returns narrower widths than `most`, from which the search begins again so that no factor is too wide; none where none is.
@@ -377,11 +425,11 @@ impl<'s> Table<'s> {
         // A word that no operand of the domain reads gets the word before it, or the first known word if there is none before
         // it.
         let mut before = words.iter().flatten().next()?.clone();
-        let words = words.into_iter().map(|word| {
-            before = word.unwrap_or_else(|| before.clone());
-            before.clone()
-        });
-        let words: Vec<Vec<i64>> = words.collect();
+        let mut filled: Vec<Vec<i64>> = Vec::with_capacity(words.len());
+        for word in words {
+            before = word.unwrap_or(before);
+            filled.push(before.clone());
+        }
         let mut found = Piecewise {
             operand: function.operand,
             domain: function.domain,
@@ -390,37 +438,55 @@ impl<'s> Table<'s> {
             origin: self.seen.origin,
             segments: self.cut,
             coefficients,
-            words,
+            words: filled,
             steps: widths.steps()?,
             sums: vec![*polynomial; widths.guard.len()],
             result: whole.map_or(*polynomial, |it| it.2),
             bound: f64::INFINITY,
         };
-        let (low, high) = function.domain;
-        let none = [(i128::MAX, i128::MIN); MOST_SUMS];
-        let with = |mut ends: [Interval; MOST_SUMS], sums: &[Interval]| {
-            for (end, sum) in ends.iter_mut().zip(sums) {
-                *end = (end.0.min(sum.0), end.1.max(sum.1));
-            }
-            ends
-        };
-        let ends = if function.is_wide() {
-            let walks = (0..found.words.len()).filter_map(|word| found.walk(word));
-            walks.fold(none, |ends, walk| with(ends, &walk.sums))
-        } else {
-            let of = |ends, raw| {
-                with(ends, &found.sums_of(raw).map(|sum| (i128::from(sum), i128::from(sum))))
-            };
-            let folded = (low..=high).into_par_iter().fold(|| none, of);
-            folded.reduce(|| none, |a, b| with(a, &b))
-        };
-        let sums = found.sums.iter_mut().zip(ends).zip(&found.coefficients).skip(1);
-        for ((sum, (low, high)), coefficient) in sums {
-            *sum = Format::holding(low, high, coefficient.frac);
+        let ends = limits_of_sums(&found, function.is_wide());
+        for (k, sum) in found.sums.iter_mut().enumerate().skip(1) {
+            let (low, high) = ends[k];
+            *sum = Format::holding(low, high, found.coefficients[k].frac);
         }
-        let products = found.steps.iter().zip(&found.sums[1..]);
-        let widest = products.map(|(step, sum)| sum.width() + 1 + step.offset);
-        let narrow = widest.max().unwrap_or(0) < MAX_WIDTH;
-        narrow.then_some(found)
+        for (step, sum) in found.steps.iter().zip(&found.sums[1..]) {
+            let product_width = sum.width() + 1 + step.offset;
+            if product_width >= MAX_WIDTH {
+                return None;
+            }
+        }
+        Some(found)
     }
+}
+
+/// Returns the limits of each partial sum over all operands of the domain. If the domain is wide, it computes intervals within each
+/// segment, and otherwise the sums of every operand.
+fn limits_of_sums(found: &Piecewise, is_wide: bool) -> [Interval; MOST_SUMS] {
+    let no_limits = [(i128::MAX, i128::MIN); MOST_SUMS];
+    if is_wide {
+        let mut ends = no_limits;
+        for word in 0..found.words.len() {
+            if let Some(walk) = found.walk(word) {
+                ends = hull(ends, &walk.sums);
+            }
+        }
+        return ends;
+    }
+    let (low, high) = found.domain;
+    let parts = (low..=high).into_par_iter().fold(
+        || no_limits,
+        |ends, raw| {
+            let sums = found.sums_of(raw).map(i128::from);
+            hull(ends, &sums.map(|sum| (sum, sum)))
+        },
+    );
+    parts.reduce(|| no_limits, |a, b| hull(a, &b))
+}
+
+/// Widens each interval of `ends` so that it contains the interval of the same partial sum in `sums`.
+fn hull(mut ends: [Interval; MOST_SUMS], sums: &[Interval]) -> [Interval; MOST_SUMS] {
+    for (end, sum) in ends.iter_mut().zip(sums) {
+        *end = (end.0.min(sum.0), end.1.max(sum.1));
+    }
+    ends
 }

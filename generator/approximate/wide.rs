@@ -78,12 +78,14 @@ impl Piecewise {
 
     /// Returns the polynomial of a word and its derivative, in units of the result.
     fn polynomial(&self, word: usize, way: Enclosure) -> (Enclosure, Enclosure) {
-        let zero = Enclosure::exactly(0.0);
-        let words = self.words[word].iter().enumerate().rev();
-        words.fold((zero, zero), |(value, slope), (k, &coefficient)| {
-            let coefficient = Enclosure::exactly(coefficient as f64 * exp2(-self.beyond(k)));
-            (value * way + coefficient, slope * way + value)
-        })
+        let mut value = Enclosure::exactly(0.0);
+        let mut slope = Enclosure::exactly(0.0);
+        for (k, &raw) in self.words[word].iter().enumerate().rev() {
+            let coefficient = Enclosure::exactly(raw as f64 * exp2(-self.beyond(k)));
+            slope = slope * way + value;
+            value = value * way + coefficient;
+        }
+        (value, slope)
     }
 
     /// Proves the bound over intervals, as [`Piecewise::prove`] does over operands.
@@ -92,38 +94,50 @@ impl Piecewise {
     /// Fails as [`Piecewise::prove`] does, or if the proof takes too long.
     pub(super) fn prove_by_segments(&self, function: &TargetFunction) -> Result<f64, Refusal> {
         let left = AtomicU64::new(MOST);
-        let of = |word: usize| {
-            let Some(walk) = self.walk(word) else { return Ok(0.0) };
-            for (sum, format) in walk.sums.iter().zip(&self.sums).skip(1) {
-                if !format.holds(sum.0) || !format.holds(sum.1) {
-                    let message = format!("a sum of the word {word} is not {format}");
-                    return Err(Refusal::new("result.fraction", message, "change the formats"));
+        let words = (0..self.words.len()).into_par_iter();
+        let bounds = words.map(|word| self.prove_segment(function, word, &left));
+        bounds.try_reduce(|| 0.0, |a, b| Ok(a.max(b)))
+    }
+
+    /// Proves the bound over the operands that read a word. `left` is the number of intervals that the proof may still look at.
+    ///
+    /// # Errors
+    /// Fails as [`Piecewise::prove`] does, or if no intervals are left.
+    fn prove_segment(
+        &self,
+        function: &TargetFunction,
+        word: usize,
+        left: &AtomicU64,
+    ) -> Result<f64, Refusal> {
+        let Some(walk) = self.walk(word) else { return Ok(0.0) };
+        for (sum, format) in walk.sums.iter().zip(&self.sums).skip(1) {
+            if !format.holds(sum.0) || !format.holds(sum.1) {
+                let message = format!("a sum of the word {word} is not {format}");
+                return Err(Refusal::new("result.fraction", message, "change the formats"));
+            }
+        }
+        let mut bound: f64 = 0.0;
+        let mut open: Vec<(i64, i64)> = self.operands_of(word).into_iter().collect();
+        while let Some((low, high)) = open.pop() {
+            if left.fetch_sub(1, Ordering::Relaxed) <= 1 {
+                left.store(0, Ordering::Relaxed);
+                return Err(unproved());
+            }
+            if high - low < FEW {
+                for raw in low..=high {
+                    bound = bound.max(self.error_at(function, raw)?);
+                }
+                continue;
+            }
+            match self.error_between(function, word, (low, high), walk.lag) {
+                Some(whole) if whole < function.error => bound = bound.max(whole),
+                _ => {
+                    let middle = low + (high - low) / 2;
+                    open.extend([(low, middle), (middle + 1, high)]);
                 }
             }
-            let mut bound: f64 = 0.0;
-            let mut open: Vec<(i64, i64)> = self.operands_of(word).into_iter().collect();
-            while let Some((low, high)) = open.pop() {
-                if left.fetch_sub(1, Ordering::Relaxed) <= 1 {
-                    left.store(0, Ordering::Relaxed);
-                    return Err(unproved());
-                }
-                if high - low < FEW {
-                    for raw in low..=high {
-                        bound = bound.max(self.error_at(function, raw)?);
-                    }
-                    continue;
-                }
-                match self.error_between(function, word, (low, high), walk.lag) {
-                    Some(whole) if whole < function.error => bound = bound.max(whole),
-                    _ => {
-                        let middle = low + (high - low) / 2;
-                        open.extend([(low, middle), (middle + 1, high)]);
-                    }
-                }
-            }
-            Ok(bound)
-        };
-        (0..self.words.len()).into_par_iter().map(of).try_reduce(|| 0.0, |a, b| Ok(a.max(b)))
+        }
+        Ok(bound)
     }
 
     /// Returns the largest error of some operands of a word; none where the formula may jump among them or have no derivative, or

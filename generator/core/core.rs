@@ -135,8 +135,10 @@ impl Core {
     /// packages around the core.
     pub fn core_digest(&self) -> String {
         let schema = (self.device.schema)();
-        let around = |key: &&Key| ["interface", "package"].contains(&key.table_and_leaf().0);
-        self.digest_of(schema.all_keys().filter(|key| !around(key)))
+        self.digest_of(schema.all_keys().filter(|key| {
+            let (table, _) = key.table_and_leaf();
+            !["interface", "package"].contains(&table)
+        }))
     }
 
     fn digest_of<'k>(&self, keys: impl Iterator<Item = &'k Key>) -> String {

@@ -3,8 +3,6 @@
 //! They are worked examples, computations with their results, the clocks of a line, and the vectors of a test bench. Manifests
 //! and pages print them.
 
-use std::iter::repeat;
-
 use glint_golden::Contract;
 
 /// One computation with the values of all operands and outputs.
@@ -77,18 +75,20 @@ pub struct ContractFacts {
 impl ContractFacts {
     /// Extracts the parts of a contract that a program can use: domain, outputs, formulas and bound.
     pub fn new(contract: &dyn Contract) -> Self {
-        let operands = contract.operands();
-        let colours = operands.iter().filter(|operand| operand.colour);
-        let colours = colours.map(|colour| Some(colour.name.clone())).chain(repeat(None));
-        let domain = operands.iter();
+        let mut domain = Vec::new();
+        for operand in contract.operands() {
+            domain.push((operand.name.clone(), operand.domain));
+        }
+        // Each colour operand belongs to an output, in their order.
+        let mut colours = contract.operands().iter().filter(|operand| operand.colour);
+        let mut outputs = Vec::new();
+        for output in contract.outputs() {
+            let colour = colours.next().map(|colour| colour.name.clone());
+            outputs.push((output.name.clone(), colour));
+        }
         Self {
-            domain: domain.map(|operand| (operand.name.clone(), operand.domain)).collect(),
-            outputs: contract
-                .outputs()
-                .iter()
-                .zip(colours)
-                .map(|(output, colour)| (output.name.clone(), colour))
-                .collect(),
+            domain,
+            outputs,
             length: contract.length().map(str::to_owned),
             // Without a bound there is nothing that results could be held against.
             f: match contract.highlight() {

@@ -102,26 +102,27 @@ pub fn operands_at(
     n: f64,
     neutral: &[(&str, i64)],
 ) -> Option<Vec<i64>> {
-    let has = |name| operands.iter().any(|operand| operand.name == name);
-    if !has(COSINE) || !has(EXPONENT) {
-        return None;
+    for needed in [COSINE, EXPONENT] {
+        if !operands.iter().any(|operand| operand.name == needed) {
+            return None;
+        }
     }
-    operands
-        .iter()
-        .filter(|operand| !operand.colour)
-        .map(|operand| {
-            let (low, high) = operand.domain;
-            let nearest = |value: f64| operand.format.quantise(value) as i64;
-            match operand.name.as_str() {
-                COSINE => Some(nearest(libm::cos(gamma)).clamp(low, high)),
-                EXPONENT => exponent_at(operand, n),
-                name => {
-                    let given = neutral.iter().find(|(other, _)| *other == name);
-                    Some(given.map_or(0, |(_, raw)| *raw).clamp(low, high))
-                }
+    let mut control = Vec::new();
+    for operand in operands {
+        if operand.colour {
+            continue;
+        }
+        let (low, high) = operand.domain;
+        control.push(match operand.name.as_str() {
+            COSINE => (operand.format.quantise(libm::cos(gamma)) as i64).clamp(low, high),
+            EXPONENT => exponent_at(operand, n)?,
+            name => {
+                let given = neutral.iter().find(|(other, _)| *other == name);
+                given.map_or(0, |(_, raw)| *raw).clamp(low, high)
             }
-        })
-        .collect()
+        });
+    }
+    Some(control)
 }
 
 #[cfg(test)]

@@ -275,15 +275,21 @@ impl Reflectance for DecayArithmetic {
             Decay::Angle => &[0.0],
         };
         let last = 1i64 << self.keys.distance(self.of);
-        let after = |from: &i64| Some(from + (from / PARTS).max(1));
-        let firsts = std::iter::successors(Some(1), after).take_while(|from| *from <= last);
-        let distances: Vec<(i64, i64)> =
-            firsts.map(|from| (from, (from + from / PARTS).min(last))).collect();
-        let [ratio, rounding, coarse] = octaves
-            .iter()
-            .flat_map(|&octave| distances.iter().map(move |some| self.of_distances(*some, octave)))
-            .max_by(|a, b| a.iter().sum::<f64>().total_cmp(&b.iter().sum()))
-            .unwrap_or_default();
+        let mut worst = None;
+        let mut largest = f64::NEG_INFINITY;
+        for &octave in octaves {
+            let mut from = 1;
+            while from <= last {
+                let to = (from + from / PARTS).min(last);
+                let errors = self.of_distances((from, to), octave);
+                let sum: f64 = errors.iter().sum();
+                if sum.total_cmp(&largest).is_ge() {
+                    (worst, largest) = (Some(errors), sum);
+                }
+                from += (from / PARTS).max(1);
+            }
+        }
+        let [ratio, rounding, coarse] = worst.unwrap_or_default();
         let ulp = |fraction: u32| exp2(-(fraction as i32));
         vec![
             ("ratio.fraction", "the polynomials of decay over distance, times n", ratio),

@@ -61,16 +61,15 @@ impl Frame {
     /// # Panics
     /// Panics if there is no microinstruction. A program must have at least one.
     pub fn device(self, program: impl IntoIterator<Item = FrameStep>) -> Device {
-        let operands = self.operands().map(|(name, format, domain)| Operand {
-            name: name.to_owned(),
-            format,
-            domain,
-            colour: false,
-            doc: String::new(),
-        });
-        let operands = operands.collect();
-        let outputs = self.results().map(|(name, format)| Output { name: name.to_owned(), format });
-        let outputs = outputs.collect();
+        let mut operands = Vec::new();
+        for (name, format, domain) in self.operands() {
+            let (name, doc) = (name.to_owned(), String::new());
+            operands.push(Operand { name, format, domain, colour: false, doc });
+        }
+        let mut outputs = Vec::new();
+        for (name, format) in self.results() {
+            outputs.push(Output { name: name.to_owned(), format });
+        }
         Device { model: self.model(program), operands, outputs }
     }
 
@@ -108,8 +107,10 @@ impl Device {
 
     /// Returns the accuracy contract of the device: the golden model computes the results, and `formula` states the exact values.
     pub fn contract(self, formula: impl Formula + 'static) -> Box<dyn Contract> {
-        let shown = |output: &Output| self.model.signals().iter().position(|it| *it == output.name);
-        let shown = self.outputs.iter().filter_map(shown).collect();
+        let mut shown = Vec::new();
+        for output in &self.outputs {
+            shown.extend(self.model.signals().iter().position(|it| *it == output.name));
+        }
         Box::new(OfModel { device: self, shown, formula })
     }
 }
@@ -197,28 +198,39 @@ impl<F> OfModel<F> {
     /// Returns the raw outputs of the result with this number, after power-up; `None` if the device never shows it.
     fn shown(&self, operands: &[i64], index: u64) -> Option<Vec<i64>> {
         let mut model = self.device.model.clone();
-        let strobes = |strobe: u64| {
-            let pairs = self.device.operands.iter().zip(operands);
-            let ports = pairs.flat_map(|(it, &raw)| [it.format.bits(raw.into()), strobe]);
-            [1, strobe].into_iter().chain(ports).collect::<Vec<u64>>()
-        };
-        model.clock(&strobes(1));
-        let rest = strobes(0);
+        model.clock(&self.inputs(operands, 1));
+        let rest = self.inputs(operands, 0);
         let mut left = index;
         for _ in 0..LONGEST {
             if model.is_valid() {
                 if left == 0 {
-                    let shown = self.shown.iter().zip(&self.device.outputs);
-                    let raw = |(&at, output): (&usize, &Output)| {
-                        output.format.raw(model.values()[at]) as i64
-                    };
-                    return Some(shown.map(raw).collect());
+                    return Some(self.raw_outputs(&model));
                 }
                 left -= 1;
             }
             model.clock(&rest);
         }
         None
+    }
+
+    /// Returns the bits of all inputs of the model in a clock without reset. `start` and the write strobes have the value
+    /// `strobe`.
+    fn inputs(&self, operands: &[i64], strobe: u64) -> Vec<u64> {
+        let mut inputs = vec![1, strobe];
+        for (operand, &raw) in self.device.operands.iter().zip(operands) {
+            inputs.push(operand.format.bits(raw.into()));
+            inputs.push(strobe);
+        }
+        inputs
+    }
+
+    /// Returns the raw outputs that the model shows now.
+    fn raw_outputs(&self, model: &ClockedModel) -> Vec<i64> {
+        let mut outputs = Vec::with_capacity(self.shown.len());
+        for (&at, output) in self.shown.iter().zip(&self.device.outputs) {
+            outputs.push(output.format.raw(model.values()[at]) as i64);
+        }
+        outputs
     }
 }
 

@@ -8,7 +8,7 @@ use std::sync::Arc;
 
 use super::device::{self, Formula};
 use super::frame::{Frame, idle, step, step_by};
-use super::inverse_root::{Root, unit_vector};
+use super::inverse_root::{Root, centred, unit_vector};
 use super::narrow::{Narrow, rounding_error};
 use super::{Contract, Model, Sweep, Term};
 use glint_base::fixed::{Format, Rounding, exp2};
@@ -20,10 +20,10 @@ fn device(config: &Config) -> device::Device {
     let it = Arc::new(CosineFormula::new(config));
     let Keys { fraction, other, kept, .. } = it.keys;
     let mut frame = Frame::default();
-    let mut component =
-        |name, fraction: u32| frame.operand(name, Format::signed(1, fraction as i32));
-    let normal = ["nx", "ny", "nz"].map(|name| component(name, fraction));
-    let half = ["hx", "hy", "hz"].map(|name| component(name, other));
+    let of_normal = Format::signed(1, fraction as i32);
+    let normal = ["nx", "ny", "nz"].map(|name| frame.operand(name, of_normal));
+    let of_half = Format::signed(1, other as i32);
+    let half = ["hx", "hy", "hz"].map(|name| frame.operand(name, of_half));
     let sum = frame.register("sum", Format::signed(4, it.keys.products() as i32));
     let squares = frame.register("squares", Format::unsigned(4, 2 * fraction as i32));
     let mantissa = frame.register("mantissa", Format::unsigned(it.root.width as i32, 0));
@@ -69,6 +69,11 @@ pub fn model(config: &Config) -> Box<dyn Model> {
 /// Returns the accuracy contract of the device `dot-product`: the exact cosine, and the proven bound of its error.
 pub fn contract(config: &Config) -> Box<dyn Contract> {
     device(config).contract(CosineFormula::new(config))
+}
+
+/// Returns the raw numbers of `fraction` fraction bits that are nearest to the components of a vector.
+fn raw_vector(vector: [f64; 3], fraction: u32) -> [i64; 3] {
+    vector.map(|component| (component * exp2(fraction as i32)).round() as i64)
 }
 
 /// The formula: N·H, limited to 0 … 1, for a normal N of any length.
@@ -128,20 +133,19 @@ impl Formula for CosineFormula {
     fn terms(&self) -> Vec<Term> {
         let [root, factors, rounding] = self.errors();
         let units = exp2(self.keys.kept as i32);
-        let term = |key, what, error| Term { key, what, units: error * units };
-        vec![
-            term("table.address", "the inverse root", root),
-            term("factor.bits", "rounding of the factors", factors),
-            term("output.rounding", "rounding of the cosine", rounding),
-        ]
+        let terms = [
+            ("table.address", "the inverse root", root),
+            ("factor.bits", "rounding of the factors", factors),
+            ("output.rounding", "rounding of the cosine", rounding),
+        ];
+        terms.map(|(key, what, error)| Term { key, what, units: error * units }).into()
     }
 
     /// Returns a unit vector, and another close to it, or close to a right angle with it: highlights are near a product of 1,
     /// and at 0 the result begins to be clamped.
     fn hint(&self, unit: &mut dyn FnMut() -> f64) -> Option<Vec<i64>> {
-        let mut centred = || [(); 3].map(|()| 2.0 * unit() - 1.0);
-        let normal = unit_vector(centred());
-        let off = centred();
+        let normal = unit_vector(centred(unit));
+        let off = centred(unit);
         let along: f64 = (0..3).map(|axis| normal[axis] * off[axis]).sum();
         let across = unit_vector([0, 1, 2].map(|axis| off[axis] - along * normal[axis]));
         // `small` is about the angle between `half` and its target, drawn evenly over octaves. The target is `normal` if `near`,
@@ -154,12 +158,11 @@ impl Formula for CosineFormula {
                 across[axis] + small * off[axis]
             }
         });
-        let raw = |vector: [f64; 3], fraction: u32| {
-            vector.map(|component| (component * exp2(fraction as i32)).round() as i64)
-        };
         let Keys { fraction, other, .. } = self.keys;
         let length = exp2(1) * libm::exp2(-unit() * f64::from(fraction));
-        Some([raw(normal.map(|it| length * it), fraction), raw(unit_vector(half), other)].concat())
+        let normal = raw_vector(normal.map(|it| length * it), fraction);
+        let half = raw_vector(unit_vector(half), other);
+        Some([normal, half].concat())
     }
 
     /// Returns every sum of squares, which determines the inverse root.

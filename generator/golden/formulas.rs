@@ -125,11 +125,11 @@ pub fn quad_power(n: i64) -> u32 {
 /// Returns `cosᵏ` of an angle in radians of whatever sign, 0 where it is a right angle or more. k is a power of two.
 #[inline]
 fn lobe(angle: f64, k: u32) -> f64 {
-    let angle = angle.abs();
-    if angle >= FRAC_PI_2 {
+    let magnitude = angle.abs();
+    if magnitude >= FRAC_PI_2 {
         return 0.0;
     }
-    (0..k.ilog2()).fold(libm::cos(angle), |power, _| power * power)
+    (0..k.ilog2()).fold(libm::cos(magnitude), |power, _| power * power)
 }
 
 /// Returns the formula of the device `quad-cosine` (seed 000): `cosᵏ(√(n/k)·δ)`, where [`quad_power`] gives k. `delta` is the

@@ -72,12 +72,14 @@ pub(super) fn slope(config: &Config) -> Option<f64> {
     let (function, it) = found(config).ok()?;
     let Curve::Formula(formula) = &function.curve else { return None };
     let [low, high] = [it.domain.0, it.domain.1].map(|raw| it.operand.to_f64(raw.into()));
-    let place = |at: u32| low + (high - low) * f64::from(at) / f64::from(PIECES);
-    let steepest = |at: u32| {
-        let (_, slope) = formula.slope("x", Enclosure::between(place(at), place(at + 1))).ok()?;
-        Some(slope.low.abs().max(slope.high.abs()))
-    };
-    (0..PIECES).try_fold(0.0, |most: f64, at| Some(most.max(steepest(at)?)))
+    let mut steepest: f64 = 0.0;
+    for piece in 0..PIECES {
+        let [from, to] =
+            [piece, piece + 1].map(|at| low + (high - low) * f64::from(at) / f64::from(PIECES));
+        let (_, slope) = formula.slope("x", Enclosure::between(from, to)).ok()?;
+        steepest = steepest.max(slope.low.abs().max(slope.high.abs()));
+    }
+    Some(steepest)
 }
 
 /// The function with the bound that was proved.

@@ -97,6 +97,11 @@ impl Root {
     }
 }
 
+/// Returns a vector whose components are random numbers from −1 to 1. `unit` returns random numbers from 0 to 1.
+pub(super) fn centred(unit: &mut dyn FnMut() -> f64) -> [f64; 3] {
+    [(); 3].map(|()| 2.0 * unit() - 1.0)
+}
+
 /// Returns the unit vector of a direction; the zero vector stays.
 pub(super) fn unit_vector(vector: [f64; 3]) -> [f64; 3] {
     let now = vector.map(|it| it * it).iter().sum::<f64>().sqrt();

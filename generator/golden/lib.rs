@@ -231,12 +231,13 @@ pub trait Contract: Send + Sync {
         let (mut raw, mut exact) = (Vec::new(), Vec::new());
         self.results(operands, 0, &mut raw);
         self.exact(operands, 0, &mut exact);
-        let outputs = self.outputs().iter().zip(&raw).zip(exact);
-        let errors = outputs.map(|((output, &raw), exact)| {
+        let mut largest: f64 = 0.0;
+        for ((output, raw), exact) in self.outputs().iter().zip(raw).zip(exact) {
             let unit = exp2(-output.format.frac);
-            nearer(raw as f64, exact.map(|value| value / unit))
-        });
-        errors.fold(0.0, f64::max)
+            let error = nearer(raw as f64, exact.map(|value| value / unit));
+            largest = largest.max(error);
+        }
+        largest
     }
 
     /// Returns remarks about the formula of this configuration for a user, with numbers. For example, a remark may say that

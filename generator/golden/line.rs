@@ -98,11 +98,11 @@ pub fn angle_expression(format: Format) -> String {
 /// domain.
 pub fn angle_operands(format: Format) -> [Operand; 2] {
     let domain = (format.min_raw() as i64, format.max_raw() as i64);
-    let operand = |name: &str, doc: &str| control(name, format, domain, doc);
     [
-        operand("delta_zeta", "angle from a point to the next, in right angles"),
-        operand("zeta_start", "angle of the first point, in right angles"),
+        ("delta_zeta", "angle from a point to the next, in right angles"),
+        ("zeta_start", "angle of the first point, in right angles"),
     ]
+    .map(|(name, doc)| control(name, format, domain, doc))
 }
 
 /// Returns the operand `length` as an accuracy contract sees it, with every value of `length_bits` bits in its domain.

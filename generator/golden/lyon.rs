@@ -47,10 +47,10 @@ impl Keys {
         match self.scale {
             Scale::Multiplier => n,
             Scale::Shift => {
-                let n = n.max(1);
-                let below = n.ilog2();
+                let positive = n.max(1);
+                let below = positive.ilog2();
                 // Above the geometric mean of two powers of two, the upper one is nearer.
-                i64::from(below) + i64::from(n * n > 2 << (2 * below))
+                i64::from(below) + i64::from(positive * positive > 2 << (2 * below))
             }
         }
     }

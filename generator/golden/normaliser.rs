@@ -115,12 +115,12 @@ impl Formula for Normaliser {
     fn terms(&self) -> Vec<Term> {
         let [chord, root] = self.root.error();
         let units = exp2(self.keys.kept as i32);
-        let term = |key, what, error| Term { key, what, units: error * units };
-        vec![
-            term("table.address", "straight segments for the inverse root", chord),
-            term("inverse.fraction", "rounding of the inverse root", root),
-            term("output.rounding", "rounding of the results", self.rounding_error()),
-        ]
+        let terms = [
+            ("table.address", "straight segments for the inverse root", chord),
+            ("inverse.fraction", "rounding of the inverse root", root),
+            ("output.rounding", "rounding of the results", self.rounding_error()),
+        ];
+        terms.map(|(key, what, error)| Term { key, what, units: error * units }).into()
     }
 
     /// Draws vectors of any length, each octave as often as any other: the shift goes by the length.

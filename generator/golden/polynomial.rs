@@ -42,8 +42,8 @@ impl Polynomial {
             move |s: &mut State| {
                 let place = it.place(raw(s));
                 // The highest coefficient is a word of the table and no register.
-                let above = above.map_or(it.words[place.word][it.degree()], |above| s[above]);
-                let sum = it.sum(k, place, above) >> if k == 0 { it.guard() } else { 0 };
+                let sum_above = above.map_or(it.words[place.word][it.degree()], |above| s[above]);
+                let sum = it.sum(k, place, sum_above) >> if k == 0 { it.guard() } else { 0 };
                 s[own] = it.sums[k].raw(it.sums[k].bits(sum.into())) as i64;
             }
         })

@@ -13,59 +13,48 @@ use super::contract::{self, COSINE};
 use super::device::{self, Formula};
 use super::frame::{Frame, Slot, State};
 use super::highlight::Variation;
-use super::inverse_root::unit_vector;
+use super::inverse_root::{centred, unit_vector};
 use super::narrow::Narrow;
 use super::{
     Axis, Contract, Model, Sweep, Term, Values, blinn, cosine_power, dot_product, function, gauss,
     quadratic, schlick, threshold,
 };
-use glint_base::fixed::{Rounding, exp2};
+use glint_base::fixed::{Format, Rounding, exp2};
 use glint_config::Config;
-use glint_formula::{Kind, parse};
+use glint_formula::{Expression, Kind, parse};
 use glint_keys::shading::{HighlightDevice, Keys, PartConfigs};
 
 /// Returns the device: the parts of each light, one after the other, followed by the sum of ambient, diffuse and specular light.
 fn device(keys: &Keys, parts: &PartConfigs) -> device::Device {
     let mut frame = Frame::default();
-    let mut vector = |name: &str, suffix: &str, format| {
-        ["x", "y", "z"].map(|axis| frame.operand(&format!("{name}{axis}{suffix}"), format))
-    };
-    let normal = vector("n", "", keys.normal_format());
-    let of_light = |suffix| ["l", "h"].map(|name| vector(name, suffix, keys.light_format()));
-    let lights: Vec<[[Slot; 3]; 2]> = keys.suffixes().map(of_light).collect();
+    let normal = vector(&mut frame, "n", "", keys.normal_format());
+    let mut lights: Vec<[[Slot; 3]; 2]> = Vec::new();
+    for suffix in keys.suffixes() {
+        lights.push(["l", "h"].map(|name| vector(&mut frame, name, suffix, keys.light_format())));
+    }
     let exponent = keys.has_exponent().then(|| frame.operand("exponent", keys.exponent_format()));
     let [ambient, diffuse, specular] = ["ambient", "diffuse", "specular"].map(|kind| {
         ["red", "green", "blue"]
             .map(|it| frame.operand(&format!("{kind}_{it}"), keys.colour_format()))
     });
 
-    /// Returns an operand of a part: a value so many places to the left.
-    fn left(
-        (name, slot, places): (&'static str, Slot, u32),
-    ) -> (&'static str, impl Fn(&State) -> i64 + Send + Sync) {
-        (name, move |s: &State| s[slot] << places)
-    }
-    let [nx, ny, nz] = normal;
-    let cosine = |frame: &mut Frame, name: &str, config: &Config, [x, y, z]: [Slot; 3]| {
-        let given = [("nx", nx), ("ny", ny), ("nz", nz), ("hx", x), ("hy", y), ("hz", z)];
-        let given = given.map(|(name, slot)| left((name, slot, 0)));
-        frame.part(name, &*dot_product::model(config), given).out("cosine_out")
-    };
     let (mut facing, mut shine) = (Vec::new(), Vec::new());
     for (suffix, [light, half]) in keys.suffixes().zip(lights) {
-        facing.push(cosine(&mut frame, &format!("diffuse_cosine{suffix}"), &parts.facing, light));
+        let name = format!("diffuse_cosine{suffix}");
+        facing.push(cosine(&mut frame, &name, &parts.facing, normal, light));
         let name = format!("specular_cosine{suffix}");
-        let cos_gamma = cosine(&mut frame, &name, &parts.cosine, half);
+        let cos_gamma = cosine(&mut frame, &name, &parts.cosine, normal, half);
         let (model, name) = ((part(keys).model)(&parts.highlight), format!("highlight{suffix}"));
         let Some(exponent) = exponent else {
-            let part = frame.part(&name, &*model, [left(("x", cos_gamma, 0))]);
+            let part = frame.part(&name, &*model, [left("x", cos_gamma, 0)]);
             shine.push([part.out("result_out"); 3]);
             continue;
         };
-        let colours = ["red", "green", "blue"].into_iter().zip(specular);
-        let colours = colours.map(|(name, slot)| (name, slot, keys.guard()));
-        let given = [("cos_gamma", cos_gamma, 0), ("exponent", exponent, 0)];
-        let part = frame.part(&name, &*model, given.into_iter().chain(colours).map(left));
+        let mut given = vec![left("cos_gamma", cos_gamma, 0), left("exponent", exponent, 0)];
+        for (name, slot) in ["red", "green", "blue"].into_iter().zip(specular) {
+            given.push(left(name, slot, keys.guard()));
+        }
+        let part = frame.part(&name, &*model, given);
         shine.push(["red_out", "green_out", "blue_out"].map(|it| part.out(it)));
     }
 
@@ -98,6 +87,33 @@ fn device(keys: &Keys, parts: &PartConfigs) -> device::Device {
         }
     }
     device
+}
+
+/// Adds the three operands of a vector, and returns their slots.
+fn vector(frame: &mut Frame, name: &str, suffix: &str, format: Format) -> [Slot; 3] {
+    ["x", "y", "z"].map(|axis| frame.operand(&format!("{name}{axis}{suffix}"), format))
+}
+
+/// Returns an operand of a part: the value of a slot, shifted by `places` to the left.
+fn left(
+    name: &'static str,
+    slot: Slot,
+    places: u32,
+) -> (&'static str, impl Fn(&State) -> i64 + Send + Sync) {
+    (name, move |s: &State| s[slot] << places)
+}
+
+/// Adds a part that computes the cosine between the normal and another vector, and returns the slot of the cosine.
+fn cosine(
+    frame: &mut Frame,
+    name: &str,
+    config: &Config,
+    [nx, ny, nz]: [Slot; 3],
+    [x, y, z]: [Slot; 3],
+) -> Slot {
+    let slots = [("nx", nx), ("ny", ny), ("nz", nz), ("hx", x), ("hy", y), ("hz", z)];
+    let operands = slots.map(|(name, slot)| left(name, slot, 0));
+    frame.part(name, &*dot_product::model(config), operands).out("cosine_out")
 }
 
 /// The golden side of a highlight.
@@ -194,24 +210,46 @@ impl Shading {
             None => function::at(&self.keys.formula, cosine),
         }
     }
+
+    /// Returns the cosine between a unit normal and another unit vector, limited to 0 … 1.
+    fn cosine(&self, unit_normal: &[f64], vector: &[f64]) -> f64 {
+        let sum: f64 = unit_normal.iter().zip(vector).map(|(a, b)| a * b).sum();
+        if self.keys.two_sided { sum.abs() } else { sum }.clamp(0.0, 1.0)
+    }
+
+    /// Returns the cosine between the normal and the vector `vector` of a light, as a Python expression.
+    fn cosine_expression(&self, vector: &str, suffix: &str) -> String {
+        let squares = "(nx ** 2 + ny ** 2 + nz ** 2)";
+        let axes = ["x", "y", "z"].map(|axis| format!("n{axis} * {vector}{axis}{suffix}"));
+        let along = format!("({}) / sqrt({squares})", axes.join(" + "));
+        let above = match self.keys.two_sided {
+            true => format!("abs({along})"),
+            false => contract::clamped_at_0(&along),
+        };
+        format!("(min({above}, 1) if {squares} > 0 else 0)")
+    }
 }
 
 impl Formula for Shading {
     fn exact(&self, v: &[f64]) -> Vec<f64> {
-        let unit = unit_vector([v[0], v[1], v[2]]);
-        let cosine = |vector: &[f64]| {
-            let sum: f64 = unit.iter().zip(vector).map(|(a, b)| a * b).sum();
-            if self.keys.two_sided { sum.abs() } else { sum }.clamp(0.0, 1.0)
-        };
+        let normal = unit_vector([v[0], v[1], v[2]]);
         let (vectors, rest) = v[3..].split_at(6 * self.keys.lights as usize);
         let (exponent, material) = rest.split_at(usize::from(self.keys.has_exponent()));
         let n = exponent.first().map_or(0, |&n| n as i64);
-        let of_lights = |of: &dyn Fn(&[f64]) -> f64| vectors.chunks(6).map(of).sum::<f64>();
-        let facing = of_lights(&|light| cosine(&light[..3]));
-        let f = of_lights(&|light| self.f(cosine(&light[3..]), n));
+        let (mut facing, mut f) = (0.0, 0.0);
+        for light in vectors.chunks(6) {
+            let (to_light, half) = light.split_at(3);
+            facing += self.cosine(&normal, to_light);
+            f += self.f(self.cosine(&normal, half), n);
+        }
         let most = exp2(self.keys.colour_bits as i32) - 1.0;
-        let colour = |at: usize| material[at] + material[3 + at] * facing + material[6 + at] * f;
-        (0..3).map(|at| colour(at).clamp(0.0, most)).collect()
+        let mut colours = Vec::with_capacity(3);
+        for at in 0..3 {
+            let (ambient, diffuse, specular) = (material[at], material[3 + at], material[6 + at]);
+            let colour = ambient + diffuse * facing + specular * f;
+            colours.push(colour.clamp(0.0, most));
+        }
+        colours
     }
 
     /// Derives the terms of a colour's error. An error of an operand of a part grows by the part's slope in it, and the part adds
@@ -251,16 +289,6 @@ impl Formula for Shading {
 
     /// Returns the formulas of the colours; none where the highlight's formula reads a table, or nobody wrote it.
     fn expressions(&self) -> Vec<String> {
-        let squares = "(nx ** 2 + ny ** 2 + nz ** 2)";
-        let cosine = |vector: &str, suffix: &str| {
-            let axes = ["x", "y", "z"].map(|axis| format!("n{axis} * {vector}{axis}{suffix}"));
-            let along = format!("({}) / sqrt({squares})", axes.join(" + "));
-            let above = match self.keys.two_sided {
-                true => format!("abs({along})"),
-                false => contract::clamped_at_0(&along),
-            };
-            format!("(min({above}, 1) if {squares} > 0 else 0)")
-        };
         let (operand, f) = match self.highlight.highlight() {
             Some(highlight) => (COSINE, highlight.expressions()),
             None => ("x", self.highlight.expressions()),
@@ -271,22 +299,20 @@ impl Formula for Shading {
         }
         let (mut facing, mut shine) = (Vec::new(), Vec::new());
         for suffix in self.keys.suffixes() {
-            facing.push(cosine("l", suffix));
-            let of = parse(&cosine("h", suffix)).expect("a formula");
-            let f = f.substitute(&glint_formula::Expression::operand(operand), &of, &(0..0));
-            shine.push(format!("({})", f.python()));
+            facing.push(self.cosine_expression("l", suffix));
+            let cosine = parse(&self.cosine_expression("h", suffix)).expect("a formula");
+            let of_light = f.substitute(&Expression::operand(operand), &cosine, &(0..0));
+            shine.push(format!("({})", of_light.python()));
         }
         let [facing, shine] = [facing, shine].map(|parts| parts.join(" + "));
         let most = exp2(self.keys.colour_bits as i32) - 1.0;
-        let colours = ["red", "green", "blue"].into_iter();
-        colours
-            .map(|colour| {
-                let sum = format!(
-                    "ambient_{colour} + diffuse_{colour} * ({facing}) + specular_{colour} * ({shine})"
-                );
-                format!("min({}, {most:?})", contract::clamped_at_0(&sum))
-            })
-            .collect()
+        let colours = ["red", "green", "blue"].map(|colour| {
+            let sum = format!(
+                "ambient_{colour} + diffuse_{colour} * ({facing}) + specular_{colour} * ({shine})"
+            );
+            format!("min({}, {most:?})", contract::clamped_at_0(&sum))
+        });
+        colours.into()
     }
 
     /// Returns a unit of each light, and half a one that the result is rounded by.
@@ -298,21 +324,29 @@ impl Formula for Shading {
     /// sum does not saturate.
     fn hint(&self, unit: &mut dyn FnMut() -> f64) -> Option<Vec<i64>> {
         let Keys { normal, light, colour_bits, most, lights, .. } = self.keys;
-        let mut centred = || [(); 3].map(|()| 2.0 * unit() - 1.0);
-        let direction = unit_vector(centred());
-        let pairs = (0..lights).map(|_| [unit_vector(centred()), centred()]);
-        let pairs: Vec<[[f64; 3]; 2]> = pairs.collect();
+        let direction = unit_vector(centred(unit));
+        let mut pairs: Vec<[[f64; 3]; 2]> = Vec::new();
+        for _ in 0..lights {
+            pairs.push([unit_vector(centred(unit)), centred(unit)]);
+        }
         let n = self.keys.least() as f64 + unit() * (most - self.keys.least()) as f64;
         let (length, away) = (0.25 + 1.5 * unit(), unit() * 2.0 / n.sqrt());
-        let raw = |value: f64, fraction: u32| (value * exp2(fraction as i32)).round() as i64;
-        let mut operands: Vec<i64> = direction.map(|it| raw(it * length, normal)).into();
+        let mut operands = Vec::new();
+        for component in direction {
+            operands.push(raw(component * length, normal));
+        }
         for [to_light, off] in pairs {
             let half = unit_vector([0, 1, 2].map(|axis| direction[axis] + away * off[axis]));
-            operands.extend([to_light, half].concat().into_iter().map(|it| raw(it, light)));
+            operands.extend(to_light.map(|component| raw(component, light)));
+            operands.extend(half.map(|component| raw(component, light)));
         }
-        operands.extend(self.keys.has_exponent().then(|| n.round() as i64));
+        if self.keys.has_exponent() {
+            operands.push(n.round() as i64);
+        }
         let share = exp2(colour_bits as i32) / (1.0 + 2.0 * f64::from(lights));
-        operands.extend((0..9).map(|_| (unit() * share) as i64));
+        for _ in 0..9 {
+            operands.push((unit() * share) as i64);
+        }
         Some(operands)
     }
 
@@ -320,32 +354,44 @@ impl Formula for Shading {
     fn sweep(&self) -> Option<Sweep> {
         let Keys { normal, light, colour_bits, most, .. } = self.keys;
         let (one, to_light, white) = (1 << normal, 1 << light, (1 << colour_bits) - 1);
-        let fixed = |(name, value): (&str, i64)| Axis {
-            name: name.to_owned(),
-            values: Values::List(vec![value]),
-        };
+        let mut axes = vec![Axis { name: "nx".to_owned(), values: Values::Range(-one, one) }];
+        axes.push(fixed_axis("ny".to_owned(), 0));
+        axes.push(fixed_axis("nz".to_owned(), one / 2));
         let of_light =
             [("lx", 0), ("ly", 0), ("lz", to_light), ("hx", 0), ("hy", 0), ("hz", to_light)];
-        let lights = self.keys.suffixes().flat_map(|suffix| {
-            of_light.map(|(name, value)| fixed((&format!("{name}{suffix}"), value)))
-        });
-        let material = [("ambient", white / 8), ("diffuse", white / 2), ("specular", white / 3)];
-        let material = material.into_iter().flat_map(|(kind, value)| {
-            ["red", "green", "blue"].map(|colour| fixed((&format!("{kind}_{colour}"), value)))
-        });
-        let least = self.keys.least();
-        let exponents = Values::List([8, 4, 2, 1].map(|part| (most / part).max(least)).into());
-        let mut axes = vec![Axis { name: "nx".to_owned(), values: Values::Range(-one, one) }];
-        axes.extend([("ny", 0), ("nz", one / 2)].map(fixed).into_iter().chain(lights));
-        if self.keys.has_exponent() {
-            axes.push(Axis { name: "exponent".to_owned(), values: exponents });
+        for suffix in self.keys.suffixes() {
+            for (name, value) in of_light {
+                axes.push(fixed_axis(format!("{name}{suffix}"), value));
+            }
         }
-        axes.extend(material);
+        if self.keys.has_exponent() {
+            let least = self.keys.least();
+            let exponents = [8, 4, 2, 1].map(|part| (most / part).max(least));
+            let values = Values::List(exponents.into());
+            axes.push(Axis { name: "exponent".to_owned(), values });
+        }
+        for (kind, value) in
+            [("ambient", white / 8), ("diffuse", white / 2), ("specular", white / 3)]
+        {
+            for colour in ["red", "green", "blue"] {
+                axes.push(fixed_axis(format!("{kind}_{colour}"), value));
+            }
+        }
         Some(Sweep {
             axes,
             omits: "normals out of one plane, other lights and materials".to_owned(),
         })
     }
+}
+
+/// Returns the raw number of `fraction` fraction bits that is nearest to a value.
+fn raw(value: f64, fraction: u32) -> i64 {
+    (value * exp2(fraction as i32)).round() as i64
+}
+
+/// Returns the axis of a sweep with one value.
+fn fixed_axis(name: String, value: i64) -> Axis {
+    Axis { name, values: Values::List(vec![value]) }
 }
 
 #[cfg(test)]

@@ -57,12 +57,14 @@ impl ThresholdArithmetic {
     fn thresholds(keys: &Keys) -> Vec<i64> {
         // 100 · largest · word ≥ level · 2^F, for the least word; less than 2^30 · 2^24.
         let unit = 100 * ((1 << keys.operands.colours.bits) - 1);
-        let word = |level: i64| {
-            let wanted = level << keys.f.fraction;
-            wanted / unit + i64::from(wanted % unit != 0)
-        };
         let largest = (1 << keys.f.fraction) - 1;
-        keys.levels.iter().map(|&level| word(level.into()).min(largest)).collect()
+        let mut words = Vec::with_capacity(keys.levels.len());
+        for &level in &keys.levels {
+            let wanted = i64::from(level) << keys.f.fraction;
+            let word = wanted / unit + i64::from(wanted % unit != 0);
+            words.push(word.min(largest));
+        }
+        words
     }
 
     /// Returns `n/2·(cos γ − 1)`, not below −1.0.
@@ -145,12 +147,13 @@ impl Reflectance for ThresholdArithmetic {
     /// within the margin, or at a right angle from (1 − n/2)² if that is more: since the base falls with the cosine, not at both.
     fn variation(&self) -> Option<Variation> {
         let (least, most) = self.keys.domain.exponents();
-        let jump = |n: i64| {
+        let mut jump: f64 = 0.0;
+        for n in least..=most {
             let level = self.threshold(n) as f64 * exp2(-(self.keys.f.fraction as i32));
             let base = (1.0 - n as f64 / 2.0).max(0.0);
-            (level + self.margin).max(base * base)
-        };
-        Some(Variation { slope: most as f64, jump: (least..=most).map(jump).fold(0.0, f64::max) })
+            jump = jump.max((level + self.margin).max(base * base));
+        }
+        Some(Variation { slope: most as f64, jump })
     }
 
     /// Returns the square and 0 where the exact square is within the bound on its error of ROM(n): either is right there.
@@ -203,15 +206,13 @@ impl Reflectance for ThresholdArithmetic {
         let (first, last) = self.keys.domain.exponents();
         let colour = Format::unsigned(colour_bits as i32, 0);
         let output = Narrow::new(f.fraction, colour, f.output_rounding);
-        let hidden = |n: i64| self.threshold(n) - 1;
         // One n of each octave represents the octave.
-        let Some((n, word)) = (0..=12)
-            .map(|octave| (1i64 << octave).clamp(first, last))
-            .map(|n| (n, hidden(n)))
-            .max_by_key(|&(n, word)| (word, -n))
-        else {
+        let octaves = (0..=12).map(|octave| (1i64 << octave).clamp(first, last));
+        let largest_hidden = |n: i64| self.threshold(n) - 1;
+        let Some(n) = octaves.max_by_key(|&n| (largest_hidden(n), -n)) else {
             return Vec::new();
         };
+        let word = largest_hidden(n);
         let shown = output.apply(word.max(0) * largest);
         if shown == 0 {
             return Vec::new();

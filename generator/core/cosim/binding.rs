@@ -61,10 +61,13 @@ impl<'a> Binding<'a> {
             let measure = Measure::new(design, contract, &compared)?;
             (Host::Core(core), compared, measure, registers(design).count())
         };
-        let address = || design.register(design.control.address).q;
+        let address = match design.pipeline {
+            Some(_) => None,
+            None => Some(design.register(design.control.address).q),
+        };
         Ok(Self {
             outputs: design.outputs().map(|port| port.net).collect(),
-            address: design.pipeline.is_none().then(address),
+            address,
             space: Arc::new(Space::new(&ports)),
             points: PointSource::new(contract),
             design,
@@ -98,9 +101,9 @@ impl<'a> Binding<'a> {
 
     /// Returns an upper bound of the number of results of one computation.
     pub(super) fn longest(&self) -> u64 {
-        let operands = self.measure.contract.operands();
+        let Some(length) = self.points.length() else { return 1 };
+        let (_, longest) = self.measure.contract.operands()[length].domain;
         // A length of 0 is a result too.
-        let results = |at: usize| operands[at].domain.1.unsigned_abs() + 1;
-        self.points.length().map_or(1, results)
+        longest.unsigned_abs() + 1
     }
 }

@@ -29,12 +29,15 @@ impl Driven {
             let at = model.inputs().iter().position(|other| other == name);
             at.with_context(|| format!("the golden model has no input `{name}`"))
         };
-        let operands = operands.map(|name| Ok((input(name)?, input(&format!("{name}_write"))?)));
+        let mut places = Vec::new();
+        for name in operands {
+            places.push((input(name)?, input(&format!("{name}_write"))?));
+        }
         Ok(Self {
             inputs: vec![0; model.inputs().len()],
             reset: input("rst_n")?,
             start: input("start")?,
-            operands: operands.collect::<Result<_>>()?,
+            operands: places,
             busy: signal(model.as_ref(), "busy")?,
             valid: signal(model.as_ref(), "valid")?,
             model,

@@ -6,7 +6,6 @@
 //! up to the first stream in which model and hardware differ.
 
 use std::io::Write;
-use std::ops::Range;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -95,16 +94,14 @@ impl<'a> Lockstep<'a> {
             return Ok(self.outcome(self.group::<1>([course], 0, &differs, progress)?));
         }
         let together = streams.div_ceil(2).min(LANES as u64);
-        let numbers = |first: u64| -> Range<u64> { first..streams.min(first + together) };
-        let groups: Vec<Vec<StreamRecord>> = (0..streams.div_ceil(together))
-            .into_par_iter()
-            .map(|group| {
-                let first = group * together;
-                let courses = numbers(first).map(|number| self.course(points, streams, number));
-                self.group::<LANES>(courses, first, &differs, progress)
-            })
-            .collect::<Result<_>>()?;
-        Ok(self.outcome(groups.into_iter().flatten()))
+        let groups = (0..streams.div_ceil(together)).into_par_iter().map(|group| {
+            let first = group * together;
+            let numbers = first..streams.min(first + together);
+            let courses = numbers.map(|number| self.course(points, streams, number));
+            self.group::<LANES>(courses, first, &differs, progress)
+        });
+        let records: Vec<Vec<StreamRecord>> = groups.collect::<Result<_>>()?;
+        Ok(self.outcome(records.into_iter().flatten()))
     }
 
     /// Runs streams from number `first` on in one simulator; they are cut short when one before them differs.
@@ -192,17 +189,18 @@ impl<'a> Lockstep<'a> {
 
     /// Adds the clocks of a stream up to its end to the vectors.
     fn add(&self, vectors: &mut Vectors, alone: &mut Runner<'_, 1>) -> Result<()> {
-        let shows = |alone: &Runner<'_, 1>| alone.simulator.value(self.binding.ports.valid) == 1;
+        let valid = self.binding.ports.valid;
         while !alone.ended() {
             alone.prepare()?;
             alone.simulator.settle()?;
-            let before = shows(alone);
+            let before = alone.simulator.value(valid) == 1;
             let outputs = self.binding.outputs.iter();
             vectors.expected.push(outputs.map(|&net| alone.simulator.value(net)).collect());
             vectors.inputs.push(alone.first().inputs().to_vec());
             alone.simulate()?;
             // Nothing is left of the power-up: in a core from the first result on, in a pipeline from the clock after it.
-            let shown = if self.binding.is_pipeline() { before } else { shows(alone) };
+            let after = alone.simulator.value(valid) == 1;
+            let shown = if self.binding.is_pipeline() { before } else { after };
             if vectors.known_from == 0 && shown {
                 vectors.known_from = vectors.expected.len();
             }
@@ -237,16 +235,16 @@ impl<'a> Lockstep<'a> {
                 );
             }
         }
-        let course = |inputs: &Vec<Vec<u64>>| Course::Recorded {
-            recording: Arc::new(Recording::new(inputs)),
-            clocks,
-        };
         let nowhere = AtomicU64::new(u64::MAX);
-        let groups: Vec<Vec<StreamRecord>> = streams
-            .par_chunks(LANES)
-            .map(|streams| self.group::<LANES>(streams.iter().map(course), 0, &nowhere, &|_| ()))
-            .collect::<Result<_>>()?;
-        Ok(self.outcome(groups.into_iter().flatten()))
+        let groups = streams.par_chunks(LANES).map(|streams| {
+            let courses = streams.iter().map(|inputs| Course::Recorded {
+                recording: Arc::new(Recording::new(inputs)),
+                clocks,
+            });
+            self.group::<LANES>(courses, 0, &nowhere, &|_| ())
+        });
+        let records: Vec<Vec<StreamRecord>> = groups.collect::<Result<_>>()?;
+        Ok(self.outcome(records.into_iter().flatten()))
     }
 
     /// Runs the same as [`Lockstep::run`], but in one stream. `file` receives the waveform of the stream from clock `from`

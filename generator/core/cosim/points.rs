@@ -265,18 +265,20 @@ impl<'a> PointSource<'a> {
     /// its range. The operands that lead to the largest `f`, such as `cos_gamma`, stay.
     pub fn show(&self, control: &mut [i64]) {
         let Some(highlight) = self.highlight else { return };
-        let rest =
-            (0..self.control).filter(|&at| self.peak[at].is_none() && self.length != Some(at));
-        for at in rest {
+        for at in 0..self.control {
+            if self.peak[at].is_some() || self.length == Some(at) {
+                continue;
+            }
             let (low, high) = self.operands[at].domain;
-            let dim = |raw: &i64| {
-                let mut there = control.to_vec();
-                there[at] = *raw;
-                (value(highlight, &there) - MIDDLE).abs()
-            };
-            let choices = [control[at], low, high];
-            let best = choices.into_iter().min_by(|a, b| dim(a).total_cmp(&dim(b)));
-            control[at] = best.unwrap_or(control[at]);
+            let mut there = control.to_vec();
+            let mut nearest = f64::INFINITY;
+            for raw in [control[at], low, high] {
+                there[at] = raw;
+                let distance = (value(highlight, &there) - MIDDLE).abs();
+                if distance < nearest {
+                    (nearest, control[at]) = (distance, raw);
+                }
+            }
         }
     }
 
@@ -285,14 +287,16 @@ impl<'a> PointSource<'a> {
         let highlight = self.highlight?;
         let peak = self.peak(highlight, far);
         let top = value(highlight, &peak);
-        let mut far = far.to_vec();
+        let mut end = far.to_vec();
         for _ in 0..OCTAVES {
-            let bottom = value(highlight, &far);
+            let bottom = value(highlight, &end);
             if bottom < top {
-                return Some(Way { peak, far, top, bottom });
+                return Some(Way { peak, far: end, top, bottom });
             }
             // As large as at the peak: it is nearer that the formula falls, if anywhere.
-            far.iter_mut().zip(&peak).for_each(|(far, &peak)| *far = between(peak, *far, 0.5));
+            for (far, &peak) in end.iter_mut().zip(&peak) {
+                *far = between(peak, *far, 0.5);
+            }
         }
         None
     }
@@ -310,43 +314,42 @@ impl<'a> PointSource<'a> {
     /// angle, the components of a vector), or the first operands if none has a fraction.
     fn search(&self, highlight: &Highlight) -> Vec<Option<i64>> {
         let control = &self.operands[..self.control];
-        let moves = |at: &usize| self.length != Some(*at);
-        let fractions = (0..control.len()).filter(moves).filter(|&at| control[at].format.frac > 0);
-        let mut moved: Vec<usize> = fractions.take(MOVED).collect();
-        if moved.is_empty() {
-            moved = (0..control.len()).filter(moves).take(MOVED).collect();
+        let mut moved: Vec<usize> =
+            (0..control.len()).filter(|&at| self.length != Some(at)).collect();
+        if moved.iter().any(|&at| control[at].format.frac > 0) {
+            moved.retain(|&at| control[at].format.frac > 0);
         }
-        let candidates: Vec<[i64; 3]> = moved
-            .iter()
-            .map(|&at| {
-                let (low, high) = control[at].domain;
-                [0.clamp(low, high), high, low]
-            })
-            .collect();
+        moved.truncate(MOVED);
         let mut random = Random::new(1);
-        let settings: Vec<Vec<i64>> = (0..SETTINGS)
-            .map(|_| (0..control.len()).map(|at| self.one(&mut random, at)).collect())
-            .collect();
+        let mut settings: Vec<Vec<i64>> = Vec::new();
+        for _ in 0..SETTINGS {
+            settings.push((0..control.len()).map(|at| self.one(&mut random, at)).collect());
+        }
         let mut best = (f64::NEG_INFINITY, Vec::new());
         for combination in 0..3usize.pow(moved.len() as u32) {
-            let digits = (0..moved.len()).map(|digit| combination / 3usize.pow(digit as u32) % 3);
-            let peak: Vec<i64> = candidates
-                .iter()
-                .zip(digits)
-                .map(|(candidates, digit)| candidates[digit])
-                .collect();
+            let mut peak: Vec<i64> = Vec::new();
+            let mut rest = combination;
+            for &at in &moved {
+                let (low, high) = control[at].domain;
+                peak.push([0.clamp(low, high), high, low][rest % 3]);
+                rest /= 3;
+            }
             let mut sum = 0.0;
             for setting in &settings {
-                let mut at = setting.clone();
-                moved.iter().zip(&peak).for_each(|(&moved, &raw)| at[moved] = raw);
-                sum += highlight.reference(&at);
+                let mut operands = setting.clone();
+                for (&at, &raw) in moved.iter().zip(&peak) {
+                    operands[at] = raw;
+                }
+                sum += highlight.reference(&operands);
             }
             if sum > best.0 {
                 best = (sum, peak);
             }
         }
         let mut found = vec![None; control.len()];
-        moved.into_iter().zip(best.1).for_each(|(at, raw)| found[at] = Some(raw));
+        for (at, raw) in moved.into_iter().zip(best.1) {
+            found[at] = Some(raw);
+        }
         found
     }
 }
@@ -453,11 +456,11 @@ pub(super) mod tests {
 
         /// Makes a contract with operands of these bits and largest values.
         fn contract(self, operands: &[(&str, i32, i64)]) -> Highlight {
-            let operand = |&(name, bits, high): &(&str, i32, i64)| {
-                control(name, Format::unsigned(bits, 0), (0, high), "")
-            };
-            let operands = operands.iter().map(operand).collect();
-            Highlight::new(self, operands, Products::none(Format::unsigned(0, 10)))
+            let mut controls = Vec::new();
+            for &(name, bits, high) in operands {
+                controls.push(control(name, Format::unsigned(bits, 0), (0, high), ""));
+            }
+            Highlight::new(self, controls, Products::none(Format::unsigned(0, 10)))
         }
 
         fn pair(says: bool) -> Highlight {

@@ -68,12 +68,12 @@ impl Ports {
         let find = |role: Role| design.port(|other| other == role).map(|port| port.net);
         let input = |role: Role| design.inputs().position(|port| port.role == role);
         let lacks = |name: &str| format!("`{}` has no port `{name}`", design.name);
-        let (start, valid) = if pipelined {
-            (input(Role::InValid), (find(Role::Valid), "out_valid"))
+        let (start_port, start_name, valid_name) = if pipelined {
+            (input(Role::InValid), "in_valid", "out_valid")
         } else {
-            (input(Role::Start), (find(Role::Valid), "valid"))
+            (input(Role::Start), "start", "valid")
         };
-        let start = start.with_context(|| lacks(if pipelined { "in_valid" } else { "start" }))?;
+        let start = start_port.with_context(|| lacks(start_name))?;
         let mut operands = Vec::new();
         for (data, port) in design.inputs().enumerate() {
             let strobe = match port.role {
@@ -83,18 +83,19 @@ impl Ports {
             };
             let net = design.net(port.net);
             let name = net.name.clone();
-            let at = contract.operands().iter().position(|operand| operand.name == name);
-            let at = at.with_context(|| format!("the contract has no operand `{name}`"))?;
+            let place = contract.operands().iter().position(|operand| operand.name == name);
+            let at = place.with_context(|| format!("the contract has no operand `{name}`"))?;
             operands.push(OperandPort { name, data, strobe, format: net.format, at });
         }
         for operand in contract.operands() {
             let found = operands.iter().any(|port| port.name == operand.name);
             ensure!(found, "the contract speaks of operand `{}`", operand.name);
         }
-        let results = contract.outputs().iter().map(|output| {
+        let mut results = Vec::new();
+        for output in contract.outputs() {
             let net = design.find(&output.name).with_context(|| lacks(&output.name))?;
-            Ok((net, design.net(net).format))
-        });
+            results.push((net, design.net(net).format));
+        }
         let side = design.pipeline.as_ref().map(|pipeline| mask(pipeline.side));
         let core = if pipelined { None } else { Some(design.handshake()?) };
         Ok(Self {
@@ -104,12 +105,12 @@ impl Ports {
             out_ready: input(Role::OutReady),
             side_in: input(Role::SideIn).zip(side),
             operands,
-            valid: valid.0.with_context(|| lacks(valid.1))?,
+            valid: find(Role::Valid).with_context(|| lacks(valid_name))?,
             busy: core.as_ref().map(|it| it.busy),
             done: core.as_ref().map(|it| it.done),
             overlaps: !pipelined && design.control.overlaps,
             side_out: find(Role::SideOut),
-            results: results.collect::<Result<_>>()?,
+            results,
         })
     }
 }

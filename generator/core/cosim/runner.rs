@@ -32,6 +32,7 @@ pub(super) struct Runner<'a, const LANES: usize> {
 }
 
 /// The inputs of a clock and the values predicted after it, for each lane.
+#[derive(Clone)]
 struct PredictedClock<const LANES: usize> {
     /// The inputs. If only a single clock is prepared, they are the simulator's own, and this list is empty.
     inputs: Vec<[u64; LANES]>,
@@ -55,22 +56,23 @@ impl<'a, const LANES: usize> Runner<'a, LANES> {
     ) -> Result<Self> {
         let simulator = Simulator::new(binding.design)?;
         let busy = binding.ports.busy.is_some_and(|busy| simulator.lane(busy, 0) == 1);
-        let stream = |course| Stream::new(binding, course, busy);
+        let streams =
+            courses.into_iter().take(LANES).map(|course| Stream::new(binding, course, busy));
         let pipeline = binding.is_pipeline();
         let ahead = if pipeline || LANES == 1 { 1 } else { AHEAD };
-        let lanes = |count| vec![[0; LANES]; count];
-        let clock = || PredictedClock {
-            inputs: lanes(if ahead == 1 { 0 } else { binding.ports.inputs }),
+        let compared = binding.compared.len();
+        let clock = PredictedClock {
+            inputs: vec![[0; LANES]; if ahead == 1 { 0 } else { binding.ports.inputs }],
             idle: [false; LANES],
-            predicted: lanes(binding.compared.len()),
-            known: lanes(if pipeline { binding.compared.len() } else { 0 }),
+            predicted: vec![[0; LANES]; compared],
+            known: vec![[0; LANES]; if pipeline { compared } else { 0 }],
             compared: [0; LANES],
         };
         Ok(Self {
             binding,
-            streams: courses.into_iter().take(LANES).map(stream).collect(),
+            streams: streams.collect(),
             differ: [false; LANES],
-            ahead: std::iter::repeat_with(clock).take(ahead).collect(),
+            ahead: vec![clock; ahead],
             simulator,
         })
     }
@@ -101,11 +103,15 @@ impl<'a, const LANES: usize> Runner<'a, LANES> {
     /// # Errors
     /// Fails if the simulation does not settle, if the VCD cannot be written, or if a golden model does not finish a computation.
     pub(super) fn run(&mut self) -> Result<u64> {
-        let points = |streams: &[Stream]| streams.iter().map(|it| it.seen.points).sum::<u64>();
-        let before = points(&self.streams);
+        let before = self.points();
         self.prepare()?;
         self.simulate()?;
-        Ok(points(&self.streams) - before)
+        Ok(self.points() - before)
+    }
+
+    /// Returns the number of results that all streams have seen.
+    fn points(&self) -> u64 {
+        self.streams.iter().map(|stream| stream.seen.points).sum()
     }
 
     /// Computes the inputs and the predictions of the next clocks, for all streams that have not ended.
@@ -146,8 +152,10 @@ impl<'a, const LANES: usize> Runner<'a, LANES> {
     /// Fails if the simulation does not settle, or if the VCD cannot be written.
     pub(super) fn simulate(&mut self) -> Result<()> {
         let single = self.ahead.len() == 1;
-        let address = self.binding.address.filter(|_| single);
-        let address = address.map_or([0; LANES], |net| self.simulator.lanes(net));
+        let address = match self.binding.address {
+            Some(net) if single => self.simulator.lanes(net),
+            _ => [0; LANES],
+        };
         for clock in &mut self.ahead {
             if single {
                 self.simulator.clock()?;

@@ -50,16 +50,21 @@ impl Reached {
         let (mut raw, mut exact) = (Vec::new(), Vec::new());
         contract.results(&operands, 0, &mut raw);
         contract.exact(&operands, 0, &mut exact);
-        let outputs = contract.outputs().iter().zip(&raw).zip(exact).enumerate();
-        let errors = outputs.map(|(output, ((it, &raw), exact))| {
+        let mut largest: Option<Self> = None;
+        for (output, it) in contract.outputs().iter().enumerate() {
+            let raw = raw[output];
             let unit = exp2(-it.format.frac);
-            let exact = exact.map(|value| value / unit);
-            let near = |value: f64| (raw as f64 - value).abs();
-            let units = nearer(raw as f64, exact);
-            let exact = if near(exact[1]) < near(exact[0]) { exact[1] } else { exact[0] };
-            Self { units, operands: operands.clone(), output, raw, exact }
-        });
-        errors.reduce(larger)
+            let either = exact[output].map(|value| value / unit);
+            let units = nearer(raw as f64, either);
+            let [first, second] = either.map(|value| (raw as f64 - value).abs());
+            let exact = if second < first { either[1] } else { either[0] };
+            let error = Self { units, operands: operands.clone(), output, raw, exact };
+            largest = Some(match largest {
+                Some(known) => larger(known, error),
+                None => error,
+            });
+        }
+        largest
     }
 }
 
@@ -85,17 +90,17 @@ pub fn worst(
 ) -> Option<Reached> {
     let points = PointSource::new(contract);
     let climber = Climber::new(contract);
-    let climb = |start: u64| {
-        let mut random = Random::new(seed ^ start.wrapping_mul(0xd134_2543_de82_ef95));
-        let end = climber.from(points.of_domain(&mut random));
-        progress();
-        end
-    };
     let (mut climbed, mut highest) = (None, Vec::<ClimbResult>::new());
     let mut first = 0;
     while first < starts {
         let next = first.saturating_add(BATCH).min(starts);
-        let ends: Vec<ClimbResult> = (first..next).into_par_iter().map(climb).collect();
+        let climbs = (first..next).into_par_iter().map(|start| {
+            let mut random = Random::new(seed ^ start.wrapping_mul(0xd134_2543_de82_ef95));
+            let end = climber.from(points.of_domain(&mut random));
+            progress();
+            end
+        });
+        let ends: Vec<ClimbResult> = climbs.collect();
         // If errors are equal, the error of the first start wins, whatever the order in which the errors come.
         let outputs = ends.iter().filter_map(|end| Reached::at(contract, end.operands.clone()));
         climbed = climbed.into_iter().chain(outputs).reduce(larger);
@@ -104,12 +109,12 @@ pub fn worst(
         highest.truncate(HIGHEST);
         first = next;
     }
-    let look = |end: &ClimbResult| {
+    let looks = highest.par_iter().map(|end| {
         let found = climber.look_around(end.highest.clone());
         progress();
         found
-    };
-    let around: Vec<Vec<i64>> = highest.par_iter().map(look).collect();
+    });
+    let around: Vec<Vec<i64>> = looks.collect();
     let found = around.into_iter().filter_map(|operands| Reached::at(contract, operands));
     Some(found.fold(climbed?, larger))
 }

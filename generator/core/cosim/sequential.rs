@@ -47,13 +47,17 @@ impl SequentialModel {
             })
         };
         let inputs: Vec<NetId> = design.inputs().map(|port| port.net).collect();
-        let input = |name: &String| {
+        let mut order = Vec::new();
+        for name in model.inputs() {
             let id = find(name)?;
             let at = inputs.iter().position(|&input| input == id);
-            at.with_context(|| format!("the golden model takes `{name}` for an input"))
-        };
-        let order = model.inputs().iter().map(input).collect::<Result<Vec<_>>>()?;
-        let compared = model.signals().iter().map(find).collect::<Result<Vec<_>>>()?;
+            order
+                .push(at.with_context(|| format!("the golden model takes `{name}` for an input"))?);
+        }
+        let mut compared = Vec::new();
+        for name in model.signals() {
+            compared.push(find(name)?);
+        }
         for id in design.outputs().map(|port| port.net).chain(registers(design)) {
             let name = &design.net(id).name;
             ensure!(compared.contains(&id), "the golden model does not predict `{name}`");
@@ -134,7 +138,7 @@ impl SequentialModel {
 
 /// Returns the registers of a design that its golden model must predict.
 pub(super) fn registers(design: &Design) -> impl Iterator<Item = NetId> {
-    let registers = design.registers.iter();
-    let registers = registers.filter(|register| register.kind != RegisterKind::Internal);
-    registers.map(|register| register.q)
+    let predicted =
+        design.registers.iter().filter(|register| register.kind != RegisterKind::Internal);
+    predicted.map(|register| register.q)
 }

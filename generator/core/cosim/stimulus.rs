@@ -11,7 +11,7 @@
 use std::sync::Arc;
 
 use super::points::PointSource;
-use super::ports::{OperandPort, Ports};
+use super::ports::Ports;
 use super::random::Random;
 use glint_base::fixed::mask;
 
@@ -163,15 +163,22 @@ impl Stimulus {
                 _ => all,
             }
         };
-        let places = self.ports.operands.iter().enumerate();
-        let drawn = places.filter(|(at, _)| written >> at & 1 == 1);
-        let free = drawn.fold(0, |free, (_, port)| free | 1 << port.at);
+        let mut free = 0;
+        for (at, port) in self.ports.operands.iter().enumerate() {
+            if written >> at & 1 == 1 {
+                free |= 1 << port.at;
+            }
+        }
         self.next.copy_from_slice(&self.written);
         points.draw(&mut self.random, &mut self.next, free);
         // Operands that moved toward the peak are written too.
-        let moved = |port: &OperandPort| self.next[port.at] != self.written[port.at];
-        let moved = self.ports.operands.iter().enumerate().filter(|(_, port)| moved(port));
-        Phase::Writing(moved.fold(written, |written, (at, _)| written | 1 << at))
+        let mut changed = written;
+        for (at, port) in self.ports.operands.iter().enumerate() {
+            if self.next[port.at] != self.written[port.at] {
+                changed |= 1 << at;
+            }
+        }
+        Phase::Writing(changed)
     }
 
     /// Writes of the operands in `left`: one, or all at once, perhaps together with `start`.

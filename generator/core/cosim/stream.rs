@@ -206,9 +206,16 @@ impl Stream {
                 Host::Core(core) => (core.predicted()[at], None),
                 Host::Pipe(pipe) => (pipe.expected(at)?, pipe.point(at)),
             };
-            let from = from.filter(|_| self.source.place().is_some());
-            let from = from.map(|(place, taken)| (place, self.seen.clocks - taken));
-            (simulated(net) != golden).then(|| (at, golden, from.unwrap_or((place, since))))
+            if simulated(net) == golden {
+                return None;
+            }
+            let start = match from {
+                Some((place, taken)) if self.source.place().is_some() => {
+                    (place, self.seen.clocks - taken)
+                }
+                _ => (place, since),
+            };
+            Some((at, golden, start))
         });
         // If several points in a pipeline differ, the first is reported.
         let Some((at, golden, (seed, since))) = differences.min_by_key(|(.., (seed, _))| *seed)

@@ -63,11 +63,10 @@ impl ComputationTrial {
 /// # Errors
 /// Fails if the device never ends, or never raises `valid`.
 pub fn timing(design: &Design, contract: &dyn Contract) -> Result<HandshakeTiming> {
-    let ports = |it: &Operand| (it.format.min_raw(), it.format.max_raw());
-    let trials: Vec<ComputationTrial> = corners(contract, ports)
-        .iter()
-        .map(|operands| run(design, contract, operands, &mut |_| Ok(())))
-        .collect::<Result<_>>()?;
+    let mut trials: Vec<ComputationTrial> = Vec::new();
+    for operands in corners(contract, |it| (it.format.min_raw(), it.format.max_raw())) {
+        trials.push(run(design, contract, &operands, &mut |_| Ok(()))?);
+    }
     let seen = &trials[0].timing;
     // Up to the clock `decision`, no operand influences the control word or its effects.
     let decision = trials[0].decision;
@@ -92,11 +91,14 @@ pub fn timing(design: &Design, contract: &dyn Contract) -> Result<HandshakeTimin
 
 /// Returns the lowest operands within these ends, the highest, and those in the middle.
 fn corners(contract: &dyn Contract, ends: fn(&Operand) -> (i128, i128)) -> [Vec<i64>; 3] {
-    let corner = |pick: fn(i128, i128) -> i128| {
-        let raw = |(low, high)| pick(low, high) as i64;
-        contract.operands().iter().map(|operand| raw(ends(operand))).collect()
-    };
-    [corner(|low, _| low), corner(|_, high| high), corner(i128::midpoint)]
+    let mut corners = [Vec::new(), Vec::new(), Vec::new()];
+    for operand in contract.operands() {
+        let (low, high) = ends(operand);
+        corners[0].push(low as i64);
+        corners[1].push(high as i64);
+        corners[2].push(i128::midpoint(low, high) as i64);
+    }
+    corners
 }
 
 /// Returns sample computations with their results and clocks: the corners of the domain, and random points. Users check the device
@@ -108,8 +110,8 @@ pub fn computations(design: &Design, contract: &dyn Contract) -> Result<Vec<Comp
     let mut random = Random::new(1);
     let mut points = PointSource::new(contract);
     points.shorten(SHORT);
-    let domain = |it: &Operand| (it.domain.0.into(), it.domain.1.into());
-    let mut list = Vec::from(corners(contract, domain).map(|corner| points.clamped(corner)));
+    let corners = corners(contract, |it| (it.domain.0.into(), it.domain.1.into()));
+    let mut list = Vec::from(corners.map(|corner| points.clamped(corner)));
     list.resize_with(COMPUTATIONS, || points.of_domain(&mut random));
     list.into_iter().map(|operands| computation(design, contract, operands)).collect()
 }
@@ -200,26 +202,26 @@ pub fn line(design: &Design, contract: &dyn Contract) -> Result<Option<LineClock
 pub fn example(design: &Design, contract: &dyn Contract) -> Result<WorkedExample> {
     let operands = typical(contract, &[]);
     let trial = run(design, contract, &operands, &mut |_| Ok(()))?;
-    let quantity = |name: &str, format: Format, raw: i64| Quantity {
-        name: name.to_owned(),
-        raw: i128::from(raw),
-        value: format.to_f64(i128::from(raw)),
-    };
-    let outputs = |(_, raw): &(u32, Vec<i64>)| -> Vec<Quantity> {
-        let pairs = contract.outputs().iter().zip(raw);
-        pairs.map(|(output, &raw)| quantity(&output.name, output.format, raw)).collect()
-    };
-    let results: Vec<Vec<Quantity>> = trial.results.iter().map(outputs).collect();
-    Ok(WorkedExample {
-        operands: contract
-            .operands()
-            .iter()
-            .zip(&operands)
-            .map(|(operand, &raw)| quantity(&operand.name, operand.format, raw))
-            .collect(),
-        outputs: results.first().context("it shows no result")?.clone(),
-        results,
-    })
+    let mut results: Vec<Vec<Quantity>> = Vec::new();
+    for (_, outputs) in &trial.results {
+        let mut result = Vec::new();
+        for (output, &raw) in contract.outputs().iter().zip(outputs) {
+            result.push(quantity(&output.name, output.format, raw));
+        }
+        results.push(result);
+    }
+    let mut given = Vec::new();
+    for (operand, &raw) in contract.operands().iter().zip(&operands) {
+        given.push(quantity(&operand.name, operand.format, raw));
+    }
+    let outputs = results.first().context("it shows no result")?.clone();
+    Ok(WorkedExample { operands: given, outputs, results })
+}
+
+/// Returns a number with its name and its value.
+fn quantity(name: &str, format: Format, raw: i64) -> Quantity {
+    let raw = i128::from(raw);
+    Quantity { name: name.to_owned(), raw, value: format.to_f64(raw) }
 }
 
 /// Returns typical operands of a contract, for a worked example; operands in `given` keep their values. The function lowers the
@@ -227,25 +229,21 @@ pub fn example(design: &Design, contract: &dyn Contract) -> Result<WorkedExample
 pub fn typical(contract: &dyn Contract, given: &[Option<i64>]) -> Vec<i64> {
     let given = |at: usize| given.get(at).copied().flatten();
     let mut colour = 0;
-    let mut values: Vec<i64> = contract
-        .operands()
-        .iter()
-        .enumerate()
-        .map(|(at, operand)| {
-            let (low, high) = operand.domain;
-            if let Some(raw) = given(at) {
-                raw
-            } else if operand.colour {
-                colour += 1;
-                high - high * (colour - 1) / 3
-            } else if operand.format.frac > 0 {
-                // Close to 1.0 for a cosine, close to 0 for an operand with a sign.
-                if low < 0 { high / 64 } else { high - (high - low) / 64 }
-            } else {
-                20.clamp(low, high) * i64::from(high > 1)
-            }
-        })
-        .collect();
+    let mut values: Vec<i64> = Vec::new();
+    for (at, operand) in contract.operands().iter().enumerate() {
+        let (low, high) = operand.domain;
+        values.push(if let Some(raw) = given(at) {
+            raw
+        } else if operand.colour {
+            colour += 1;
+            high - high * (colour - 1) / 3
+        } else if operand.format.frac > 0 {
+            // Close to 1.0 for a cosine, close to 0 for an operand with a sign.
+            if low < 0 { high / 64 } else { high - (high - low) / 64 }
+        } else {
+            20.clamp(low, high) * i64::from(high > 1)
+        });
+    }
     let Some(highlight) = contract.highlight() else {
         let hinted = hinted(contract).unwrap_or(values.clone());
         return (0..).zip(hinted).map(|(at, raw)| given(at).unwrap_or(raw)).collect();
@@ -300,14 +298,19 @@ fn slow_down(
 /// Returns the first operands that the contract hints at for which no output is 0 or at an end of its format.
 fn hinted(contract: &dyn Contract) -> Option<Vec<i64>> {
     let (mut random, points) = (Random::new(1), PointSource::new(contract));
-    let inside = |operands: &Vec<i64>| {
+    for _ in 0..TRIES {
+        let operands = points.hint(&mut random)?;
         let mut raw = Vec::new();
-        contract.results(operands, 0, &mut raw);
-        let ends = |format: Format| [0, format.min_raw(), format.max_raw()];
-        let mut outputs = contract.outputs().iter().zip(raw);
-        outputs.all(|(output, raw)| !ends(output.format).contains(&i128::from(raw)))
-    };
-    (0..TRIES).map_while(|_| points.hint(&mut random)).find(inside)
+        contract.results(&operands, 0, &mut raw);
+        let is_inside = contract.outputs().iter().zip(raw).all(|(output, raw)| {
+            let format = output.format;
+            ![0, format.min_raw(), format.max_raw()].contains(&i128::from(raw))
+        });
+        if is_inside {
+            return Some(operands);
+        }
+    }
+    None
 }
 
 /// Returns the values of nets in each clock of the computation of [`example`]. Clock 0 is the clock in which `start` is high,
@@ -358,8 +361,10 @@ fn run(
     instance.simulator.clock()?;
     instance.release();
     let Ports { valid, busy, done, overlaps, .. } = instance.ports;
-    let address = |_| (design.register(design.control.address).q, netlist::decided_by_data(design));
-    let decided = busy.map(address);
+    let decided = busy.map(|_| {
+        let address = design.register(design.control.address).q;
+        (address, netlist::decided_by_data(design))
+    });
     let mut trial = ComputationTrial {
         timing: HandshakeTiming::default(),
         results: Vec::new(),
@@ -369,9 +374,11 @@ fn run(
     for clock in 1..LIMIT {
         watch(&mut instance.simulator)?;
         let high = |net| instance.simulator.value(net) == 1;
-        let address = |net| instance.simulator.value(net) as usize;
-        if decided.as_ref().is_some_and(|(net, decided)| decided.contains(&address(*net))) {
-            trial.decision.get_or_insert(clock);
+        if let Some((address, decided)) = &decided {
+            let executed = instance.simulator.value(*address) as usize;
+            if decided.contains(&executed) {
+                trial.decision.get_or_insert(clock);
+            }
         }
         let shows = high(valid);
         if shows {

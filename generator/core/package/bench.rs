@@ -98,18 +98,14 @@ fn bench(job: &EmitJob, vectors: &Vectors) -> Result<String> {
     }
     let address = design.registers.get(design.control.address.index()).map(|register| register.q);
     let address_width = address.map_or(1, |address| design.width(address));
-    let microprogram: Vec<_> = design
-        .control
-        .microprogram
-        .iter()
-        .enumerate()
-        .map(|(at, it)| StepLabel {
-            label: literal(at as u64, address_width),
-            address: at,
-            // Within a string literal of Verilog.
-            name: ascii(&it.name).replace('\\', "/").replace('"', "'").replace('%', "%%"),
-        })
-        .collect();
+    let mut microprogram = Vec::new();
+    for (address, microinstruction) in design.control.microprogram.iter().enumerate() {
+        let label = literal(address as u64, address_width);
+        // Within a string literal of Verilog.
+        let text = ascii(&microinstruction.name);
+        let name = text.replace('\\', "/").replace('"', "'").replace('%', "%%");
+        microprogram.push(StepLabel { label, address, name });
+    }
     let reset = design.port(|role| role == Role::Reset).map(port_name);
     let stimulus: Vec<_> = inputs.iter().map(|port| port_name(port)).collect();
     let stimulus = format!("{{{}}} = {}[{}];", stimulus.join(", "), own.stimulus, own.clock);
@@ -164,13 +160,14 @@ fn vector_file(design: &Design, title: &str, ports: &[&Port], rows: &[Vec<u64>])
         }
         words.push(packed(row, &widths));
     }
-    let columns = ports.iter().map(|port| {
+    let mut columns = Vec::new();
+    for port in ports {
         let net = design.net(port.net);
-        format!("{} [{}]", net.name, net.format.width())
-    });
-    let columns = columns.collect::<Vec<_>>().join(", ");
+        columns.push(format!("{} [{}]", net.name, net.format.width()));
+    }
+    let columns_line = format!("From the top bit, with widths: {}", columns.join(", "));
     let mut lines = vec![format!("// {}: {title}, a word a clock", design.name)];
-    lines.extend(comment(0, &format!("From the top bit, with widths: {columns}")));
+    lines.extend(comment(0, &columns_line));
     lines.extend(words);
     Ok(lines.join("\n") + "\n")
 }

@@ -67,15 +67,15 @@ pub fn file(
 
 /// Returns one line for each number. If its value differs from the raw integer, a Python comment shows the value.
 fn lines(quantities: &[Quantity], code: fn(&str, i128) -> String) -> Vec<String> {
-    let line = |quantity: &Quantity| {
-        let code = code(&quantity.name, quantity.raw);
-        if quantity.value == quantity.raw as f64 {
-            code
-        } else {
-            format!("{code}  # {}", quantity.value)
+    let mut lines = Vec::new();
+    for quantity in quantities {
+        let mut line = code(&quantity.name, quantity.raw);
+        if quantity.value != quantity.raw as f64 {
+            line += &format!("  # {}", quantity.value);
         }
-    };
-    quantities.iter().map(line).collect()
+        lines.push(line);
+    }
+    lines
 }
 
 /// Returns the Python driver that the cocotb benches share. Its last line has a digest of its text.

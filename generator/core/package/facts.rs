@@ -144,7 +144,8 @@ pub fn ports(design: &Design) -> Vec<PortFacts<'_>> {
         width: 1,
         ..PortFacts::default()
     };
-    let of_port = |port: &netlist::Port| {
+    let mut ports = vec![clock];
+    for port in &design.ports {
         let net = design.net(port.net);
         let strobe = match port.role {
             Role::Operand { strobe } => Some(name(design, strobe)),
@@ -152,7 +153,7 @@ pub fn ports(design: &Design) -> Vec<PortFacts<'_>> {
         };
         let number =
             matches!(port.role, Role::Operand { .. } | Role::Point | Role::Result | Role::Status);
-        PortFacts {
+        ports.push(PortFacts {
             name: &net.name,
             direction: if port.role.is_input() { "input" } else { "output" },
             role: role(port.role),
@@ -163,9 +164,9 @@ pub fn ports(design: &Design) -> Vec<PortFacts<'_>> {
             strobe,
             block: net.block,
             doc: &net.doc,
-        }
-    };
-    std::iter::once(clock).chain(design.ports.iter().map(of_port)).collect()
+        });
+    }
+    ports
 }
 
 fn name(design: &Design, net: NetId) -> &str {
@@ -222,39 +223,40 @@ pub fn fields(design: &Design) -> Vec<FieldFacts<'_>> {
 /// Returns the microinstructions of a design, from address 0.
 pub fn microprogram(design: &Design) -> Vec<MicroinstructionFacts<'_>> {
     let control = &design.control;
-    let names = || control.fields.iter().map(|field| field.name.as_str());
-    control
-        .microprogram
-        .iter()
-        .enumerate()
-        .map(|(address, it)| MicroinstructionFacts {
-            address,
-            name: &it.name,
-            fields: names().zip(it.values.iter().copied()).collect(),
-            sequence: match &it.sequence {
-                netlist::Sequence::Next => SequenceFacts::Plain("next"),
-                netlist::Sequence::WaitStart => SequenceFacts::Plain("wait for start"),
-                netlist::Sequence::End => SequenceFacts::Plain("end"),
-                netlist::Sequence::LoopWhile { condition, to } => {
-                    let condition = name(design, *condition);
-                    if *to > address {
-                        SequenceFacts::Jump { jump_to: *to, condition }
-                    } else {
-                        SequenceFacts::Loop { loop_to: *to, condition }
-                    }
+    let mut facts = Vec::new();
+    for (address, microinstruction) in control.microprogram.iter().enumerate() {
+        let names = control.fields.iter().map(|field| field.name.as_str());
+        let fields = names.zip(microinstruction.values.iter().copied()).collect();
+        let sequence = match &microinstruction.sequence {
+            netlist::Sequence::Next => SequenceFacts::Plain("next"),
+            netlist::Sequence::WaitStart => SequenceFacts::Plain("wait for start"),
+            netlist::Sequence::End => SequenceFacts::Plain("end"),
+            netlist::Sequence::LoopWhile { condition, to } => {
+                let condition = name(design, *condition);
+                if *to > address {
+                    SequenceFacts::Jump { jump_to: *to, condition }
+                } else {
+                    SequenceFacts::Loop { loop_to: *to, condition }
                 }
-            },
-        })
-        .collect()
+            }
+        };
+        let name = &microinstruction.name;
+        facts.push(MicroinstructionFacts { address, name, fields, sequence });
+    }
+    facts
 }
 
 /// Returns the ROMs of a design, including the control ROM.
 pub fn roms<'a>(design: &'a Design, naming: &'a Naming) -> Vec<RomFacts<'a>> {
     let in_file = !naming.style.inline;
-    let entry = |(at, rom): (usize, &'a netlist::NetlistRom)| {
+    let mut facts = Vec::new();
+    for (at, rom) in design.roms.iter().enumerate() {
+        if rom.shares.is_some() {
+            continue;
+        }
         let width = design.width(rom.data);
         let binary = is_control_rom(design, RomId(at as u32));
-        RomFacts {
+        facts.push(RomFacts {
             name: &rom.name,
             file: in_file.then(|| naming.files[at].as_str()),
             parameter: in_file.then(|| naming.parameters[at].as_str()),
@@ -267,8 +269,7 @@ pub fn roms<'a>(design: &'a Design, naming: &'a Naming) -> Vec<RomFacts<'a>> {
             words: naming.style.inline.then_some(&rom.words[..]),
             doc: &rom.doc,
             block: rom.block,
-        }
-    };
-    let memories = design.roms.iter().enumerate().filter(|(_, rom)| rom.shares.is_none());
-    memories.map(entry).collect()
+        });
+    }
+    facts
 }

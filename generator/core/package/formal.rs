@@ -14,7 +14,7 @@ use super::output_files::OutputFiles;
 use crate::observation::Computation;
 use glint_rtl::netlist::HandshakeTiming;
 use glint_rtl::netlist::termination::{self, Left};
-use glint_rtl::netlist::{Design, Driver, NetId, Op, Partition, Port, RegId, Role, Sequence};
+use glint_rtl::netlist::{Design, Driver, NetId, Op, Partition, RegId, Role, Sequence};
 use glint_rtl::verilog::naming::Naming;
 use glint_rtl::verilog::rows::{Row, connections, separated};
 use glint_rtl::verilog::text::{Names, literal, range};
@@ -130,18 +130,18 @@ pub fn files(job: &EmitJob, files: &mut OutputFiles) -> Result<()> {
     let name = format!("{module}_formal");
     let mut names = Names::of_ports(design);
     let instance = names.fresh("dut");
-    let exact = exact(timing);
-    let bounded = match exact {
+    let exact_clocks = exact(timing);
+    let remaining = match exact_clocks {
         Some(_) => None,
         None => termination::remaining(design).zip(termination::latest_done(design)),
     };
-    let depth = match &exact {
+    let depth = match &exact_clocks {
         // An induction that is longer than a computation has seen its start.
         Some((_, start)) => start + 2,
         // An induction longer than the registers before `valid` knows their outputs.
         None => UNROLLED.max(valid_delay(design) + 3),
     };
-    let largest_age = match (&exact, &bounded) {
+    let largest_age = match (&exact_clocks, &remaining) {
         (Some((_, start)), _) => Some(*start),
         // The remaining clocks are added to the age.
         (None, Some((_, most))) => Some(2 * most),
@@ -154,13 +154,13 @@ pub fn files(job: &EmitJob, files: &mut OutputFiles) -> Result<()> {
     let waits = design.control.microprogram.iter().any(|it| it.sequence == Sequence::WaitStart);
     // If steps are unrolled, z3 solves a few steps with much state between them at once. The same holds for a device that
     // begins a computation as another ends. It solves many steps faster if they are not unrolled.
-    let unroll = exact.is_none() || design.control.overlaps;
-    let exact = exact.zip(age.as_ref()).map(|((clocks, start), age)| EventClocks {
+    let unroll = exact_clocks.is_none() || design.control.overlaps;
+    let exact = exact_clocks.zip(age.as_ref()).map(|((clocks, start), age)| EventClocks {
         valid: age.literal(clocks[0]),
         done: age.literal(clocks[1]),
         last: age.literal(start - 1),
     });
-    let bounded = bounded.zip(age.as_ref()).map(|((left, most), age)| Bounded {
+    let bounded = remaining.zip(age.as_ref()).map(|((left, most), age)| Bounded {
         // Results follow one another without a pause, once the first is there.
         first: match timing.valid_to_valid {
             Some(1) => timing.start_to_valid.map(|first| age.literal(first)),
@@ -200,22 +200,24 @@ pub fn files(job: &EmitJob, files: &mut OutputFiles) -> Result<()> {
 
 /// Returns the ports of a wrapper for the clock and the inputs of a design. A solver chooses the values of these ports.
 pub(super) fn inputs_of(design: &Design) -> Vec<String> {
-    let input = |port: &Port| {
+    let mut inputs = vec!["input  wire clk".to_owned()];
+    for port in design.inputs() {
         let net = design.net(port.net);
         let range = range(net.format.width());
         let space = if range.is_empty() { "" } else { " " };
-        format!("input  wire {range}{space}{}", net.name)
-    };
-    std::iter::once("input  wire clk".to_owned()).chain(design.inputs().map(input)).collect()
+        inputs.push(format!("input  wire {range}{space}{}", net.name));
+    }
+    inputs
 }
 
 /// Returns the wires of a wrapper for the outputs of a design.
 pub(super) fn outputs_of(design: &Design) -> Vec<String> {
-    let output = |port: &Port| {
+    let mut rows = Vec::new();
+    for port in design.outputs() {
         let net = design.net(port.net);
-        Row::port("", "wire", net.format.width(), false, &net.name, "")
-    };
-    Row::declarations(&design.outputs().map(output).collect::<Vec<_>>())
+        rows.push(Row::port("", "wire", net.format.width(), false, &net.name, ""));
+    }
+    Row::declarations(&rows)
 }
 
 /// Returns the proof that every computation ends: in each microinstruction, the age plus the largest number of remaining
@@ -248,22 +250,20 @@ fn bounded_view(
             counters.push((counter, name));
         }
     }
-    let end = |left: &Left| {
-        let counter = counters.iter().find(|(counter, _)| left.counter == Some(*counter));
-        let counted = counter.map_or_else(String::new, |(_, name)| format!(" + {name}"));
-        let sum = format!("{}{counted}", age.name);
-        match left.clocks {
-            0 => sum,
-            clocks => format!("{sum} + {}", age.literal(clocks as u32)),
-        }
-    };
     let address_width = design.width(address);
-    let latest = left
-        .iter()
-        .enumerate()
-        .map(|(at, left)| Latest { label: literal(at as u64, address_width), end: end(left) });
+    let mut latest = Vec::new();
+    for (at, left) in left.iter().enumerate() {
+        let mut end = age.name.clone();
+        if let Some((_, name)) = counters.iter().find(|(id, _)| left.counter == Some(*id)) {
+            end += &format!(" + {name}");
+        }
+        if left.clocks != 0 {
+            end += &format!(" + {}", age.literal(left.clocks as u32));
+        }
+        latest.push(Latest { label: literal(at as u64, address_width), end });
+    }
     Bounded {
-        latest: latest.collect(),
+        latest,
         address: executed,
         most: age.literal(most),
         first: None,

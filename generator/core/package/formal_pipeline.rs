@@ -94,8 +94,9 @@ pub fn files(job: &EmitJob, pipeline: &Pipeline, files: &mut OutputFiles) -> Res
         1 => first.to_owned(),
         _ => format!("{{{register}[{}:1], {first}}}", latency - 1),
     };
-    let result = |role: Role| matches!(role, Role::Result | Role::Status | Role::SideOut);
-    let results = design.outputs().filter(|port| result(port.role));
+    let results = design
+        .outputs()
+        .filter(|port| matches!(port.role, Role::Result | Role::Status | Role::SideOut));
     let within = format!("{instance}.*");
     let wrapper = fill!("pipeline_formal.sv" {
         name: &'a str = &name,

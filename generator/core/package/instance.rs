@@ -39,17 +39,20 @@ pub fn instances(design: &Design, inputs: &EmitInputs) -> Result<Vec<InstanceExa
 }
 
 fn instance(design: &Design, top: Top) -> InstanceExample {
-    let wires = match top.face {
+    let rows = match top.face {
         Face::Core => core_wires(design),
         Face::Stream | Face::Registers(_) => {
             let ports = top.ports.iter().filter(|port| port.name != top.clock);
             ports.map(wire).collect()
         }
     };
-    let wires = Row::declarations(&wires).join("\n");
+    let wires = Row::declarations(&rows).join("\n");
     let width = top.ports.iter().map(|port| port.name.len()).max().unwrap_or(0);
-    let connection = |port: &TopPort| format!("    .{0:width$} ({0})", port.name);
-    let connections = separated(top.ports.iter().map(connection).collect()).join("\n");
+    let mut connected = Vec::new();
+    for port in &top.ports {
+        connected.push(format!("    .{0:width$} ({0})", port.name));
+    }
+    let connections = separated(connected).join("\n");
     let module = top.module;
     let verilog = format!("{wires}\n{module} u_{module} (\n{connections}\n);\n");
     InstanceExample { module, what: top.what, verilog }

@@ -10,7 +10,7 @@ use super::file_kind::FileKind;
 use super::output_files::OutputFiles;
 use super::tops::{Face, Top, TopPort};
 use super::wrap::fields::Transfer;
-use glint_rtl::netlist::{Port, Role};
+use glint_rtl::netlist::Role;
 use glint_rtl::verilog::rows::separated;
 use glint_rtl::verilog::text::{Names, ascii, comment, constant_name, literal};
 
@@ -54,13 +54,15 @@ fn component<'a>(top: &'a Top, of_core: &[String]) -> VhdlComponent<'a> {
 
 fn vhdl(job: &EmitJob, tops: &[Top]) -> Result<String> {
     let (name, design, naming) = (job.name(), job.design, job.naming);
-    let memories = design.roms.iter().enumerate().filter(|(_, rom)| rom.shares.is_none());
-    let memories: Vec<(String, &String)> = memories
-        .filter(|_| !naming.style.inline)
-        .map(|(at, _)| (vhdl_name(&naming.parameters[at]), &naming.files[at]))
-        .collect();
-    let generic = |(name, file): &(String, &String)| format!("{name} : string := \"{file}\"");
-    let generics = listed(memories.iter().map(generic).collect());
+    let (mut generics, mut passed) = (Vec::new(), Vec::new());
+    for (at, rom) in design.roms.iter().enumerate() {
+        if rom.shares.is_none() && !naming.style.inline {
+            let (name, file) = (vhdl_name(&naming.parameters[at]), &naming.files[at]);
+            generics.push(format!("{name} : string := \"{file}\""));
+            passed.push(format!("{name} => {name}"));
+        }
+    }
+    let generics = listed(generics);
     // For each result: the wire to the component, its type, and the assignment.
     let mut names = Names::new(design.nets.iter().map(|net| net.name.as_str()));
     let mut outputs = Vec::new();
@@ -100,8 +102,7 @@ fn vhdl(job: &EmitJob, tops: &[Top]) -> Result<String> {
         components: Vec<VhdlComponent<'a>> = tops.iter().map(|top| component(top, &generics)).collect(),
         generics: Vec<String>,
         // The generics of the entity. The component has the same generics.
-        passed: Vec<String> =
-            separated(memories.iter().map(|(name, _)| format!("{name} => {name}")).collect()),
+        passed: Vec<String> = separated(passed),
         ports: Vec<String> = listed(ports),
         outputs: Vec<(String, String, String)>,
         connections: Vec<String> = separated(connections),
@@ -224,21 +225,20 @@ struct Structure {
 
 fn systemverilog(job: &EmitJob) -> Result<String> {
     let (name, design) = (job.name(), job.design);
-    let ports = || design.ports.iter().filter(|port| is_number(port.role));
     let mut names = Names::new(design.nets.iter().map(|net| net.name.as_str()));
-    let number = |port: &Port| {
+    let mut numbers: Vec<VerilogConstant> = Vec::new();
+    for port in design.ports.iter().filter(|port| is_number(port.role)) {
         let net = design.net(port.net);
         let colon = if net.doc.is_empty() { "" } else { ": " };
         let doc = format!("{}, {}{colon}{}", net.name, net.format, ascii(&net.doc));
-        VerilogConstant {
+        numbers.push(VerilogConstant {
             name: net.name.clone(),
             constant: constant_name(&net.name),
             kind: names.fresh(&format!("{}_t", net.name)),
             doc: comment(4, &doc),
             format: net.format,
-        }
-    };
-    let numbers: Vec<VerilogConstant> = ports().map(number).collect();
+        });
+    }
     let mut transfers = Vec::new();
     if job.inputs.around.stream {
         for (net, transfer) in

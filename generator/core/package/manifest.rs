@@ -14,7 +14,7 @@ use super::inputs::EmitInputs;
 use super::map::BusRegister;
 use super::output_file::digest;
 use super::output_files::OutputFiles;
-use super::wrap::fields::{StreamField, Transfer};
+use super::wrap::fields::Transfer;
 use crate::observation::{Computation, ContractFacts, Quantity};
 use glint_rtl::netlist::HandshakeTiming;
 use glint_rtl::netlist::{Design, Pipeline, RegId};
@@ -95,10 +95,10 @@ fn file_names(files: &OutputFiles) -> serde_json::Map<String, Value> {
     ];
     let mut names = serde_json::Map::new();
     for (place, (list, kinds)) in lists.into_iter().enumerate() {
-        let files = files.local_paths(kinds);
+        let paths = files.local_paths(kinds);
         // The first four are there even if they are empty.
-        if place < 4 || !files.is_empty() {
-            names.insert(list.to_owned(), json!(files));
+        if place < 4 || !paths.is_empty() {
+            names.insert(list.to_owned(), json!(paths));
         }
     }
     names
@@ -155,38 +155,41 @@ pub fn contents(job: &EmitJob, others: &OutputFiles) -> Result<String> {
 
 /// Returns the layout of a transfer on each stream.
 fn stream(job: &EmitJob) -> Result<Value> {
-    let layout = |transfer: Transfer| {
-        let field = |it: &StreamField| json!({ "name": it.name, "low": it.low, "width": it.width });
-        let fields: Vec<Value> = transfer.fields.iter().map(field).collect();
-        json!({ "bits": transfer.bits, "fields": fields })
-    };
     let around = &job.inputs.around;
     Ok(json!({
-        "s_axis_tdata": layout(Transfer::sent(job)?),
-        "m_axis_tdata": layout(Transfer::received(job)?),
+        "s_axis_tdata": layout(&Transfer::sent(job)?),
+        "m_axis_tdata": layout(&Transfer::received(job)?),
         "user_bits": around.user_bits,
         "keep": around.keep,
     }))
 }
 
+/// Returns the fields of a transfer.
+fn layout(transfer: &Transfer) -> Value {
+    let mut fields = Vec::new();
+    for field in &transfer.fields {
+        fields.push(json!({ "name": field.name, "low": field.low, "width": field.width }));
+    }
+    json!({ "bits": transfer.bits, "fields": fields })
+}
+
 fn register(register: &BusRegister) -> Value {
-    let bits = register.bits.iter();
-    let bits = bits.map(|it| json!({ "name": it.name, "low": it.low, "width": it.width }));
-    json!({
-        "name": register.name,
-        "offset": register.offset(),
-        "bits": bits.collect::<Vec<Value>>(),
-    })
+    let mut bits = Vec::new();
+    for it in &register.bits {
+        bits.push(json!({ "name": it.name, "low": it.low, "width": it.width }));
+    }
+    json!({ "name": register.name, "offset": register.offset(), "bits": bits })
 }
 
 fn accuracy(accuracy: &ContractFacts) -> Value {
-    let outputs = accuracy.outputs.iter();
-    let outputs: serde_json::Map<_, _> =
-        outputs.map(|(output, operand)| (output.clone(), json!(operand))).collect();
-    let domain = accuracy.domain.iter();
-    let domain: serde_json::Map<_, _> = domain
-        .map(|(operand, (low, high))| (operand.clone(), json!({ "low": low, "high": high })))
-        .collect();
+    let mut outputs = serde_json::Map::new();
+    for (output, operand) in &accuracy.outputs {
+        outputs.insert(output.clone(), json!(operand));
+    }
+    let mut domain = serde_json::Map::new();
+    for (operand, (low, high)) in &accuracy.domain {
+        domain.insert(operand.clone(), json!({ "low": low, "high": high }));
+    }
     let highlight = accuracy.outputs.iter().all(|(_, operand)| operand.is_some());
     let value = if highlight { "operand * f" } else { "formula" };
     let mut entry = json!({
@@ -215,15 +218,13 @@ fn computations<'a>(
     let operands = in_port_order(design, accuracy.domain.iter().map(|(name, _)| name))?;
     let results = in_port_order(design, accuracy.outputs.iter().map(|(name, _)| name))?;
     let (operand_at, result_at) = (positions(&operands), positions(&results));
-    let points = inputs
-        .computations
-        .iter()
-        .map(|computation| line(computation, &operand_at, &result_at))
-        .collect::<Result<_>>()?;
-    let names = |ordered: Vec<(usize, &'a str)>| ordered.into_iter().map(|(_, name)| name);
+    let mut points = Vec::new();
+    for computation in &inputs.computations {
+        points.push(line(computation, &operand_at, &result_at)?);
+    }
     Ok(Some(ComputationNames {
-        operands: names(operands).collect(),
-        results: names(results).collect(),
+        operands: operands.into_iter().map(|(_, name)| name).collect(),
+        results: results.into_iter().map(|(_, name)| name).collect(),
         points,
     }))
 }
@@ -251,18 +252,22 @@ fn positions(ordered: &[(usize, &str)]) -> Vec<usize> {
 
 /// Returns a computation in a line: raw values in the orders of operands and results that are stated.
 fn line(computation: &Computation, operands: &[usize], results: &[usize]) -> Result<Box<RawValue>> {
-    let pick = |order: &[usize], values: &[i64]| -> Vec<i64> {
-        order.iter().map(|&place| values[place]).collect()
-    };
-    let shown = computation.results.iter();
-    let valid: Vec<u32> = shown.clone().map(|result| result.clock).collect();
-    let results: Vec<_> = shown.map(|result| pick(results, &result.outputs)).collect();
+    let (mut valid, mut outputs) = (Vec::new(), Vec::new());
+    for result in &computation.results {
+        valid.push(result.clock);
+        outputs.push(in_order(results, &result.outputs));
+    }
     Ok(to_raw_value(&json!({
-        "operands": pick(operands, &computation.operands),
+        "operands": in_order(operands, &computation.operands),
         "valid": valid,
-        "results": results,
+        "results": outputs,
         "done": computation.done,
     }))?)
+}
+
+/// Returns the values at these places.
+fn in_order(places: &[usize], values: &[i64]) -> Vec<i64> {
+    places.iter().map(|&place| values[place]).collect()
 }
 
 fn control(design: &Design) -> Value {
@@ -308,11 +313,14 @@ fn pipeline(pipeline: &Pipeline) -> Value {
 }
 
 fn quantities(quantities: &[Quantity]) -> Vec<Value> {
-    // Raw values fit 64 bits, as every net does.
-    let entry = |quantity: &Quantity| {
-        let raw = i64::try_from(quantity.raw)
-            .map_or_else(|_| json!(quantity.raw as u64), |raw| json!(raw));
-        json!({ "name": quantity.name, "raw": raw, "value": quantity.value })
-    };
-    quantities.iter().map(entry).collect()
+    let mut entries = Vec::new();
+    for quantity in quantities {
+        // Raw values fit 64 bits, as every net does.
+        let raw = match i64::try_from(quantity.raw) {
+            Ok(raw) => json!(raw),
+            Err(_) => json!(quantity.raw as u64),
+        };
+        entries.push(json!({ "name": quantity.name, "raw": raw, "value": quantity.value }));
+    }
+    entries
 }

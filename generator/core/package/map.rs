@@ -239,18 +239,18 @@ fn results(design: &Design, place: &mut u32) -> Vec<PortPlacement> {
         return ports.iter().map(|port| placed(design, port, String::new(), place)).collect();
     }
     let mut at = 0;
-    let together = |port: &&Port| {
+    let mut results = Vec::new();
+    for port in ports {
         let net = design.net(port.net);
         let part = PortBits { place: *place, at, low: 0, width: net.format.width() };
         at += padded(port);
-        PortPlacement {
+        results.push(PortPlacement {
             name: net.name.clone(),
             format: net.format,
             strobe: String::new(),
             parts: vec![part],
-        }
-    };
-    let results = ports.iter().map(together).collect();
+        });
+    }
     *place += 1;
     results
 }
@@ -267,10 +267,13 @@ fn fixed(
     (operands, results): (usize, usize),
     (last_operand, last): (u32, u32),
 ) -> Result<Vec<BusRegister>> {
-    let version = |part: &str| part.parse::<u64>().unwrap_or_default();
-    let version = version(env!("CARGO_PKG_VERSION_MAJOR")) << 16
-        | version(env!("CARGO_PKG_VERSION_MINOR")) << 8
-        | version(env!("CARGO_PKG_VERSION_PATCH"));
+    let [major, minor, patch] = [
+        env!("CARGO_PKG_VERSION_MAJOR"),
+        env!("CARGO_PKG_VERSION_MINOR"),
+        env!("CARGO_PKG_VERSION_PATCH"),
+    ]
+    .map(|part| part.parse::<u64>().unwrap_or_default());
+    let version = major << 16 | minor << 8 | patch;
     let hash = inputs.configuration.get(..8).unwrap_or_default();
     let hash = u64::from_str_radix(hash, 16).unwrap_or_default();
     let CommonRegisters { register: mut registers } =
@@ -308,25 +311,31 @@ fn of_results(results: &[PortPlacement], design: &Design) -> Vec<BusRegister> {
     let places: BTreeSet<u32> =
         results.iter().flat_map(|result| &result.parts).map(|part| part.place).collect();
     if alone || places.len() > 1 {
-        let own = |result: &PortPlacement| own(result, Access::Read, &doc(design, &result.name));
-        return results.iter().flat_map(own).collect();
+        let mut registers = Vec::new();
+        for result in results {
+            registers.extend(own(result, Access::Read, &doc(design, &result.name)));
+        }
+        return registers;
     }
-    let of_result = |result: &PortPlacement| {
+    let mut fields = Vec::new();
+    for result in results {
         let part = result.parts[0];
         let width = if result.format.signed { part.width.next_multiple_of(8) } else { part.width };
-        bits(&result.name, (part.at, width), Access::Read, 0, &doc(design, &result.name))
-    };
+        let doc = doc(design, &result.name);
+        fields.push(bits(&result.name, (part.at, width), Access::Read, 0, &doc));
+    }
     vec![BusRegister {
         name: "results".to_owned(),
         place: results[0].parts[0].place,
         doc: "All results; a read waits for the computation that is under way".to_owned(),
-        bits: results.iter().map(of_result).collect(),
+        bits: fields,
     }]
 }
 
 /// Returns the registers of a port, which no other port has a part in.
 fn own(port: &PortPlacement, access: Access, doc: &str) -> Vec<BusRegister> {
-    let register = |(number, part): (usize, &PortBits)| {
+    let mut registers = Vec::new();
+    for (number, part) in port.parts.iter().enumerate() {
         let (name, doc) = match port.parts.len() {
             1 => (port.name.clone(), doc.to_owned()),
             _ => (
@@ -340,9 +349,9 @@ fn own(port: &PortPlacement, access: Access, doc: &str) -> Vec<BusRegister> {
             _ => (part.width, "raw"),
         };
         let value = bits("value", (0, width), access, 0, raw);
-        BusRegister { name, place: part.place, doc, bits: vec![value] }
-    };
-    port.parts.iter().enumerate().map(register).collect()
+        registers.push(BusRegister { name, place: part.place, doc, bits: vec![value] });
+    }
+    registers
 }
 
 fn doc(design: &Design, name: &str) -> String {

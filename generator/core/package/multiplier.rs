@@ -35,9 +35,11 @@ pub fn files(job: &EmitJob, files: &mut OutputFiles) -> Result<()> {
     let name = job.naming.multiplier();
     let title = format!("{name}: a product, and the register that takes it while `enable` is high");
     let header = |form: &str| -> Vec<String> {
-        let separate = || ["//".to_owned()];
-        let lines = comment(0, &title).into_iter().chain(separate()).chain(comment(0, form));
-        lines.chain(header::regenerated(&job.inputs.origin())).collect()
+        let mut lines = comment(0, &title);
+        lines.push("//".to_owned());
+        lines.extend(comment(0, form));
+        lines.extend(header::regenerated(&job.inputs.origin()));
+        lines
     };
     let portable =
         fill!("multiplier.v" { header: Vec<String> = header(PORTABLE), name: &'a str = &name })?;
@@ -51,16 +53,19 @@ pub fn files(job: &EmitJob, files: &mut OutputFiles) -> Result<()> {
 
 /// Returns every pin of factors, the unused one between them, and product, five a line.
 fn pins() -> Vec<String> {
-    let bus = |pin: char, width: usize, net: &'static str| {
-        (0..width).map(move |bit| match net {
-            "" => format!(".{pin}{bit}(1'b0)"),
-            net => format!(".{pin}{bit}({net}[{bit}])"),
-        })
-    };
-    let pins = bus('A', WIDTH, "a_wide")
-        .chain(bus('B', WIDTH, "b_wide"))
-        .chain(bus('C', WIDTH, ""))
-        .chain(bus('P', 2 * WIDTH, "whole"));
-    let pins = separated(pins.collect());
-    pins.chunks(5).map(|line| line.join(" ")).collect()
+    let mut pins = Vec::new();
+    for (pin, width, net) in [
+        ('A', WIDTH, "a_wide"),
+        ('B', WIDTH, "b_wide"),
+        ('C', WIDTH, ""),
+        ('P', 2 * WIDTH, "whole"),
+    ] {
+        for bit in 0..width {
+            pins.push(match net {
+                "" => format!(".{pin}{bit}(1'b0)"),
+                net => format!(".{pin}{bit}({net}[{bit}])"),
+            });
+        }
+    }
+    separated(pins).chunks(5).map(|line| line.join(" ")).collect()
 }

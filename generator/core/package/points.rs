@@ -8,7 +8,7 @@ pub(super) mod pipeline;
 use anyhow::Result;
 use glint_base::fill;
 
-use glint_rtl::netlist::{Design, NetId, Port, Role};
+use glint_rtl::netlist::{Design, NetId, Role};
 use glint_rtl::verilog::rows::{connections, variables};
 use glint_rtl::verilog::text::Names;
 
@@ -59,12 +59,15 @@ impl PointList {
         [reset, valid]: [NetId; 2],
     ) -> Self {
         let name_of = |net: NetId| design.net(net).name.clone();
-        let named = |is: &dyn Fn(Role) -> bool| -> Vec<String> {
-            let ports = design.ports.iter().filter(|port| is(port.role));
-            ports.map(|port| name_of(port.net)).collect()
-        };
-        let (operands, results) = (named(&is_operand), named(&|role| role == Role::Result));
-        let line = |count: usize| vec!["%h"; count].join(" ");
+        let (mut operands, mut results) = (Vec::new(), Vec::new());
+        for port in &design.ports {
+            if is_operand(port.role) {
+                operands.push(name_of(port.net));
+            }
+            if port.role == Role::Result {
+                results.push(name_of(port.net));
+            }
+        }
         Self {
             name: format!("{}_points", design.name),
             module: design.name.clone(),
@@ -76,8 +79,8 @@ impl PointList {
             connections: connections(design),
             reset: name_of(reset),
             valid: name_of(valid),
-            scan: line(operands.len()),
-            print: line(results.len()),
+            scan: vec!["%h"; operands.len()].join(" "),
+            print: vec!["%h"; results.len()].join(" "),
             operands,
             results,
         }
@@ -101,16 +104,18 @@ pub fn points_bench(design: &Design, limit: u32) -> Result<PointsBench> {
     let name_of = |net: NetId| design.net(net).name.clone();
     let is_operand = |role| matches!(role, Role::Operand { .. });
     let list = PointList::new(design, limit, is_operand, [handshake.reset, handshake.valid]);
-    let strobe = |port: &Port| match port.role {
-        Role::Operand { strobe } => Some(name_of(strobe)),
-        _ => None,
-    };
+    let mut strobes = Vec::new();
+    for port in design.inputs() {
+        if let Role::Operand { strobe } = port.role {
+            strobes.push(name_of(strobe));
+        }
+    }
     let text = fill!("points.v" {
         list: &'a PointList = &list,
         names: Variables = Variables::new(&mut Names::of_ports(design)),
         start: String = name_of(handshake.start),
         busy: String = name_of(handshake.busy),
-        strobes: Vec<String> = design.inputs().filter_map(strobe).collect(),
+        strobes: Vec<String>,
     })?;
     Ok(list.bench(text))
 }

@@ -77,10 +77,14 @@ impl Top {
 
     /// Returns the ports of a standard interface, each with its name in the definition of the interface.
     pub fn ports_of(&self, protocol: &Protocol) -> Vec<(&TopPort, String)> {
-        let named = |port: &TopPort| {
-            Some(port.name.strip_prefix(protocol.name)?.strip_prefix('_')?.to_owned())
-        };
-        self.signals().filter_map(|port| Some((port, named(port)?))).collect()
+        let prefix = format!("{}_", protocol.name);
+        let mut ports = Vec::new();
+        for port in self.signals() {
+            if let Some(name) = port.name.strip_prefix(&prefix) {
+                ports.push((port, name.to_owned()));
+            }
+        }
+        ports
     }
 
     /// Returns whether the module has an interrupt output, which is active as long as an interrupt is pending.
@@ -147,19 +151,20 @@ pub fn tops(job: &EmitJob, files: &OutputFiles) -> Result<Vec<Top>> {
 }
 
 fn core_ports(design: &Design) -> Vec<TopPort> {
-    let port = |port: &glint_rtl::netlist::Port| {
+    let mut ports = listed("in clk");
+    for port in &design.ports {
         let net = design.net(port.net);
         let width = net.format.width();
-        TopPort {
+        ports.push(TopPort {
             name: net.name.clone(),
             input: port.role.is_input(),
             width,
             vector: width > 1,
             signal: String::new(),
             doc: ascii(&net.doc),
-        }
-    };
-    listed("in clk").into_iter().chain(design.ports.iter().map(port)).collect()
+        });
+    }
+    ports
 }
 
 fn stream_ports(job: &EmitJob) -> Result<Vec<TopPort>> {
@@ -181,14 +186,15 @@ fn stream_ports(job: &EmitJob) -> Result<Vec<TopPort>> {
 
 /// Parses ports from text: directions and names, the widths of vectors, and signals of LiteX.
 fn listed(ports: &str) -> Vec<TopPort> {
-    let port = |port: &str| {
+    let mut listed = Vec::new();
+    for port in ports.split(", ") {
         let mut words = port.split(' ');
         let input = words.next() == Some("in");
         let name = words.next().unwrap_or_default().to_owned();
         let width = words.next().and_then(|width| width.parse().ok());
         let signal = words.next().unwrap_or_default().to_owned();
         let (vector, width) = (width.is_some(), width.unwrap_or(1));
-        TopPort { name, input, width, vector, signal, doc: String::new() }
-    };
-    ports.split(", ").map(port).collect()
+        listed.push(TopPort { name, input, width, vector, signal, doc: String::new() });
+    }
+    listed
 }

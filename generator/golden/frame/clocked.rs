@@ -62,16 +62,26 @@ impl Frame {
         assert!(!program.is_empty(), "a device idles in its first microinstruction");
         // Of signals that differ in one clock the first is reported: one that a user of the device sees.
         self.shown.sort_by_key(|shown| !shown.output);
-        let inputs =
-            self.operands.iter().flat_map(|it| [it.name.clone(), it.name.clone() + "_write"]);
-        let signals = self.shown.iter().map(|shown| shown.name.clone());
+        let mut inputs: Vec<String> = ["rst_n", "start"].map(str::to_owned).into();
+        let mut written = Vec::new();
+        for operand in &self.operands {
+            inputs.push(operand.name.clone());
+            inputs.push(format!("{}_write", operand.name));
+            written.push(operand.slot);
+        }
+        let mut signals: Vec<String> = HANDSHAKE.map(str::to_owned).into();
+        let mut shown = Vec::new();
+        for signal in &self.shown {
+            signals.push(signal.name.clone());
+            shown.push((signal.slot, mask(signal.format.width())));
+        }
         let fixed = ModelConstants {
-            inputs: ["rst_n", "start"].map(str::to_owned).into_iter().chain(inputs).collect(),
-            signals: HANDSHAKE.map(str::to_owned).into_iter().chain(signals).collect(),
-            shown: self.shown.iter().map(|it| (it.slot, mask(it.format.width()))).collect(),
+            inputs,
+            signals,
+            shown,
             outputs: self.shown.iter().filter(|it| it.output).count(),
             program,
-            written: self.operands.iter().map(|it| it.slot).collect(),
+            written,
             buffered: false,
             operands: self.operands,
             logic: self.logic,
@@ -259,8 +269,8 @@ impl Model for ClockedModel {
 /// condition.
 fn taking(program: &[FrameStep]) -> Option<Vec<FrameStep>> {
     let mut longer = Vec::new();
-    for (at, here) in program.iter().enumerate() {
-        let mut here = here.clone();
+    for (at, step) in program.iter().enumerate() {
+        let mut here = step.clone();
         if let Next::SkipIf(count, _) = &mut here.next {
             let skipped = program.iter().skip(at + 1).take(*count as usize);
             *count += skipped.filter(|it| it.valid).count() as u32;

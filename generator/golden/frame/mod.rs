@@ -46,6 +46,13 @@ pub struct Slot(usize);
 /// adjacent and in the order of the part's own golden model.
 pub type State = [i64];
 
+impl Slot {
+    /// Returns the slot in the state of a whole device, for a slot of a part whose state begins at `base`.
+    fn after(self, base: usize) -> Self {
+        Self(base + self.0)
+    }
+}
+
 impl Index<Slot> for State {
     type Output = i64;
 
@@ -108,8 +115,8 @@ pub fn step_by<A: Send + Sync + 'static>(
     arithmetic: &Arc<A>,
     does: impl Fn(&A, &mut State) + Send + Sync + 'static,
 ) -> FrameStep {
-    let arithmetic = arithmetic.clone();
-    step(move |state| does(&arithmetic, state))
+    let shared = arithmetic.clone();
+    step(move |state| does(&shared, state))
 }
 
 impl FrameStep {

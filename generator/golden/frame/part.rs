@@ -68,35 +68,40 @@ impl Frame {
     where
         V: Fn(&State) -> i64 + Send + Sync + 'static,
     {
-        let part = model.clocked().and_then(|it| it.registered());
-        let part = part.filter(|it| it.fixed.valid_delay == 0);
-        let part = part.unwrap_or_else(|| panic!("`{name}` is no part: it has no frame"));
+        let registered = model.clocked().and_then(|it| it.registered());
+        let part = match registered {
+            Some(part) if part.fixed.valid_delay == 0 => part,
+            _ => panic!("`{name}` is no part: it has no frame"),
+        };
         let (it, base) = (&*part.fixed, self.slots);
         self.slots += part.state.len();
-        let own = |slot: Slot| Slot(base + slot.0);
-        let signals = part.signals()[part.signals().len() - it.shown.len()..].iter();
-        let shown: Vec<_> = signals.zip(&it.shown).collect();
-        let (outputs, registers) = shown.split_at(it.outputs);
-        self.shown.extend(registers.iter().map(|(signal, (slot, mask))| FrameSignal {
-            name: format!("{name}_{signal}"),
-            output: false,
-            slot: own(*slot),
-            format: Format::unsigned(mask.count_ones() as i32, 0),
-        }));
+        let mut outputs = Vec::new();
+        let shown_signals = &part.signals()[part.signals().len() - it.shown.len()..];
+        for (at, (signal, &(slot, mask))) in shown_signals.iter().zip(&it.shown).enumerate() {
+            let own = slot.after(base);
+            if at < it.outputs {
+                outputs.push((signal.clone(), own));
+                continue;
+            }
+            let name = format!("{name}_{signal}");
+            let format = Format::unsigned(mask.count_ones() as i32, 0);
+            self.shown.push(FrameSignal { name, output: false, slot: own, format });
+        }
         for (slot, value) in &it.logic {
-            let value = value.clone();
-            self.logic.push((own(*slot), Arc::new(move |s| value(&s[base..]))));
+            let of_part = value.clone();
+            self.logic.push((slot.after(base), Arc::new(move |s| of_part(&s[base..]))));
         }
         self.edges.extend(it.edges.iter().map(|does| within(base, does)));
 
-        let operands = operands.into_iter().map(|(operand, value)| {
-            let found = it.operands.iter().find(|it| it.name == operand);
-            let found = found.unwrap_or_else(|| panic!("`{name}` has no operand `{operand}`"));
-            (own(found.slot), (found.min, found.max), value)
-        });
-        let operands: Vec<_> = operands.collect();
+        let mut loads = Vec::new();
+        for (operand, value) in operands {
+            let Some(found) = it.operands.iter().find(|it| it.name == operand) else {
+                panic!("`{name}` has no operand `{operand}`");
+            };
+            loads.push((found.slot.after(base), (found.min, found.max), value));
+        }
         let load: Does = Arc::new(move |s| {
-            for (slot, (min, max), value) in &operands {
+            for (slot, (min, max), value) in &loads {
                 s[*slot] = value(s).clamp(*min, *max);
             }
         });
@@ -106,35 +111,47 @@ impl Frame {
         }
         let before = self.parts.pop().unwrap_or_else(idle);
         self.parts.push(FrameStep { does: Some(then(load, before.does.clone())), ..before });
-        self.parts.extend(it.program.iter().map(|here| {
-            let taken: Vec<_> = it.taken.iter().map(|&(from, to)| (own(from), own(to))).collect();
-            let takes: Option<Does> = here.takes_results.then(|| -> Does {
-                Arc::new(move |s| taken.iter().for_each(|&(from, to)| s[to] = s[from]))
-            });
-            let does = here.does.as_ref().map(|does| within(base, does));
-            let inside = |holds: &Condition| -> Condition {
-                let holds = holds.clone();
-                Arc::new(move |s| holds(&s[base..]))
+        for here in &it.program {
+            let own = here.does.as_ref().map(|does| within(base, does));
+            let does = match here.takes_results {
+                true => Some(then(takes_results(base, &it.taken), own)),
+                false => own,
             };
-            FrameStep {
-                does: takes.map(|takes| then(takes, does.clone())).or(does),
-                next: match &here.next {
-                    Next::RepeatWhile(holds) => Next::RepeatWhile(inside(holds)),
-                    Next::SkipIf(count, holds) => Next::SkipIf(*count, inside(holds)),
-                    Next::Following | Next::End => Next::Following,
-                },
-                ..idle()
-            }
-        }));
-        let outputs = outputs.iter().map(|(name, (slot, _))| ((*name).clone(), own(*slot)));
-        Part { name: name.to_owned(), outputs: outputs.collect() }
+            let next = match &here.next {
+                Next::RepeatWhile(holds) => Next::RepeatWhile(condition_within(base, holds)),
+                Next::SkipIf(count, holds) => Next::SkipIf(*count, condition_within(base, holds)),
+                Next::Following | Next::End => Next::Following,
+            };
+            self.parts.push(FrameStep { does, next, ..idle() });
+        }
+        Part { name: name.to_owned(), outputs }
     }
 }
 
 /// Returns the operation of a part whose state begins at `base`.
 fn within(base: usize, does: &Does) -> Does {
-    let does = does.clone();
-    Arc::new(move |s| does(&mut s[base..]))
+    let of_part = does.clone();
+    Arc::new(move |s| of_part(&mut s[base..]))
+}
+
+/// Returns the condition of a part whose state begins at `base`.
+fn condition_within(base: usize, holds: &Condition) -> Condition {
+    let of_part = holds.clone();
+    Arc::new(move |s| of_part(&s[base..]))
+}
+
+/// Returns the operation that loads the results of a part, whose state begins at `base`, into their registers. `taken` pairs the
+/// result and the register.
+fn takes_results(base: usize, taken: &[(Slot, Slot)]) -> Does {
+    let mut pairs = Vec::new();
+    for (result, register) in taken {
+        pairs.push((result.after(base), register.after(base)));
+    }
+    Arc::new(move |s| {
+        for &(result, register) in &pairs {
+            s[register] = s[result];
+        }
+    })
 }
 
 /// Returns an operation that does `first` and then `second`. Neither may read a slot that the other writes.

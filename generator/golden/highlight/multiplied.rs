@@ -62,19 +62,17 @@ impl Products {
         outputs: Vec<String>,
     ) -> Self {
         let format = Format::unsigned(bits as i32, 0);
-        let operand = |(name, doc): (&str, String)| Operand {
-            name: name.to_owned(),
-            format,
-            domain: (0, format.max_raw() as i64),
-            colour: true,
-            doc,
-        };
+        let domain = (0, format.max_raw() as i64);
+        let mut colours = Vec::new();
+        for (name, doc) in operands {
+            colours.push(Operand { name: name.to_owned(), format, domain, colour: true, doc });
+        }
         Self {
             f,
             bits,
             rounding,
             narrow: Narrow::new(f.frac as u32, format, rounding),
-            operands: operands.into_iter().map(operand).collect(),
+            operands: colours,
             outputs: outputs.into_iter().map(|name| Output { name, format }).collect(),
             schedule: ProductOrder::AtOnce,
         }

@@ -144,10 +144,11 @@ impl Analysis {
         let (_, most) = exponents(keys);
         let anywhere = most / 2.0 * (largest + it.products) + base;
         it.weights = (0..2 * BINS).map(|distance| Weight::new(keys, distance, anywhere)).collect();
-        let square = |(i, j): (usize, usize)| {
-            it.weights[i.abs_diff(j)].exponent / 2.0 * (it.errors.product(i, j) + it.products)
-        };
-        it.square = it.pairs().map(square).fold(0.0, f64::max);
+        for (i, j) in it.pairs() {
+            let weight = it.weights[i.abs_diff(j)].exponent / 2.0;
+            let error = weight * (it.errors.product(i, j) + it.products);
+            it.square = it.square.max(error);
+        }
         it
     }
 

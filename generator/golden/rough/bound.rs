@@ -42,20 +42,21 @@ pub fn shares(it: &RoughArithmetic) -> Vec<ErrorShare> {
 fn exact(it: &RoughArithmetic) -> Vec<ErrorShare> {
     let keys = &it.keys;
     let analysis = Analysis::new(keys, &it.sine);
-    let of = |&(i, j): &(usize, usize)| analysis.bound(i, j, true);
-    let pairs = analysis.pairs();
-    let at = pairs.reduce(|one, other| if of(&other) > of(&one) { other } else { one });
-    let at = at.unwrap_or_default();
-    let linear = analysis.weights[at.0.abs_diff(at.1)].linear;
+    // The bins of γ and dγ with the largest bound.
+    let (mut gamma, mut dgamma) = (0, 0);
+    for (i, j) in analysis.pairs() {
+        if analysis.bound(i, j, true) > analysis.bound(gamma, dgamma, true) {
+            (gamma, dgamma) = (i, j);
+        }
+    }
+    let linear = analysis.weights[gamma.abs_diff(dgamma)].linear;
     let base = analysis.square + analysis.base;
-    let mut shares: Vec<ErrorShare> = sine_terms(keys)
-        .iter()
-        .enumerate()
-        .map(|(k, &(key, what))| {
-            let part = |error, shape| split(keys, error, shape)[k];
-            (key, what, linear * analysis.errors.part(at.0, at.1, part))
-        })
-        .collect();
+    let mut shares: Vec<ErrorShare> = Vec::new();
+    for (k, &(key, what)) in sine_terms(keys).iter().enumerate() {
+        let error =
+            analysis.errors.part(gamma, dgamma, |error, shape| split(keys, error, shape)[k]);
+        shares.push((key, what, linear * error));
+    }
     let twice = 2.0 * analysis.base + analysis.ulp;
     shares.extend([
         (
@@ -69,7 +70,9 @@ fn exact(it: &RoughArithmetic) -> Vec<ErrorShare> {
     if keys.clamp {
         let sum: f64 = shares.iter().map(|share| share.2).sum();
         let part = pairs::largest_error(it, &analysis) / sum;
-        shares.iter_mut().for_each(|share| share.2 *= part);
+        for (_, _, error) in &mut shares {
+            *error *= part;
+        }
     }
     shares
 }

@@ -74,13 +74,14 @@ impl Reflectance for RoughArithmetic {
     /// Returns every cos γ and every n, with some settings of dγ of the domain, of both signs.
     fn sweep(&self) -> Option<Sweep> {
         let (low, high) = self.keys.cos_dgamma_domain();
-        let mut deviations: Vec<i64> = SWEPT_DEVIATIONS
-            .into_iter()
-            .filter(|&degrees| degrees < self.keys.deviation)
-            .chain([self.keys.deviation])
-            .map(|degrees| (libm::cos(degrees.to_radians()) / self.keys.ulp()).ceil() as i64)
-            .map(|raw| raw.clamp(low, high))
-            .collect();
+        let mut degrees = SWEPT_DEVIATIONS.to_vec();
+        degrees.retain(|&degrees| degrees < self.keys.deviation);
+        degrees.push(self.keys.deviation);
+        let mut deviations: Vec<i64> = Vec::new();
+        for setting in degrees {
+            let raw = (libm::cos(setting.to_radians()) / self.keys.ulp()).ceil() as i64;
+            deviations.push(raw.clamp(low, high));
+        }
         deviations.dedup();
         let axes = self.keys.control().into_iter().map(|operand| Axis {
             values: match operand.name.as_str() {

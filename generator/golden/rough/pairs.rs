@@ -177,15 +177,15 @@ impl PairSearch<'_> {
     fn cosines_of(&self, bin: usize) -> Vec<RawCosine> {
         let keys = &self.it.keys;
         let one = 1_i64 << keys.operands.cosine.fraction;
-        let raw = |edge: usize| libm::cos(edge as f64 * BIN) * one as f64;
-        let (low, high) = (raw(bin + 1).floor() as i64 - 1, raw(bin).ceil() as i64 + 1);
+        let [first, last] = [bin + 1, bin].map(|edge| libm::cos(edge as f64 * BIN) * one as f64);
+        let (low, high) = (first.floor() as i64 - 1, last.ceil() as i64 + 1);
         let unit = exp2(-(keys.sine_fraction as i32));
-        let cosines = (low.max(0)..=high.min(keys.largest_cosine())).map(|raw| {
+        let mut cosines: Vec<RawCosine> = Vec::new();
+        for raw in low.max(0)..=high.min(keys.largest_cosine()) {
             let sine = ((one * one - raw * raw) as f64).sqrt() / one as f64;
             let error = (self.it.sine.at(raw) as f64 * unit - sine).abs() + F64;
-            RawCosine { raw, sine, error }
-        });
-        let mut cosines: Vec<RawCosine> = cosines.collect();
+            cosines.push(RawCosine { raw, sine, error });
+        }
         cosines.sort_by(|one, other| other.error.total_cmp(&one.error));
         cosines
     }

@@ -68,24 +68,29 @@ pub fn address<'d>(
 pub fn cosine_power_table(power: u32, bits: i32, fraction: i32) -> Vec<i128> {
     let format = Format::unsigned(0, fraction);
     let steps = 1u32 << bits;
-    let value = |step: u32| {
+    let mut values = Vec::new();
+    for step in 0..steps {
         let angle = f64::from(step) * exp2(-bits) * std::f64::consts::FRAC_PI_2;
         let cosine = libm::cos(angle);
-        (0..power).fold(1.0, |product, _| product * cosine)
-    };
-    let middle = |step: u32| format.quantise((value(step) + value(step + 1)) / 2.0);
-    (0..steps - 1).map(middle).chain([0]).collect()
+        values.push((0..power).fold(1.0, |product, _| product * cosine));
+    }
+    let mut words: Vec<i128> = Vec::new();
+    for ends in values.windows(2) {
+        words.push(format.quantise((ends[0] + ends[1]) / 2.0));
+    }
+    words.push(0);
+    words
 }
 
 /// Returns the comments of a table from [`cosine_power_table`]: for each word, the angle at which its step begins. For example,
 /// word 1 of 2048 for the square has the comment `cos^2, 0.044 degrees`.
 pub fn step_comments(power: u32, bits: i32) -> Vec<String> {
-    let degrees = |step: u32| f64::from(step) * exp2(-bits) * 90.0;
     let steps = 1u32 << bits;
-    (0..steps)
-        .map(|step| {
-            let on = if step + 1 == steps { " and on" } else { "" };
-            format!("cos^{power}, {:.3} degrees{on}", degrees(step))
-        })
-        .collect()
+    let mut comments = Vec::new();
+    for step in 0..steps {
+        let degrees = f64::from(step) * exp2(-bits) * 90.0;
+        let on = if step + 1 == steps { " and on" } else { "" };
+        comments.push(format!("cos^{power}, {degrees:.3} degrees{on}"));
+    }
+    comments
 }

@@ -44,13 +44,13 @@ impl<'d> Colours<'d> {
         let names = ["red", "green", "blue"];
         let mut channels = Vec::new();
         for (at, name) in names.into_iter().enumerate() {
-            let blocks = blocks.map(|blocks| blocks[at]);
+            let own = blocks.map(|blocks| blocks[at]);
             let mut operand =
                 designer.operand(name, format).doc("intensity of the light times k_s");
-            if let Some(blocks) = blocks {
+            if let Some(blocks) = own {
                 operand = operand.block(blocks.register).inputs(blocks.inputs.0, blocks.inputs.1);
             }
-            channels.push(Channel { name, operand, blocks });
+            channels.push(Channel { name, operand, blocks: own });
         }
         Self { designer, format, channels }
     }

@@ -72,10 +72,10 @@ impl<'d> Divider<'d> {
                 ));
             }
         }
-        let bits = bits.max(2);
+        let quotient_bits = bits.max(2);
         let frac = dividend.format().frac.max(divisor.format().frac);
-        let divisor = divisor.with_fraction(frac);
-        let format = divisor.format();
+        let aligned_divisor = divisor.with_fraction(frac);
+        let format = aligned_divisor.format();
         // Neither the dividend nor a remainder exceeds the divisor: their upper bits are 0.
         let cut = |name: &str, signal: Signal<'d>| {
             d.narrow(name, signal, format, Rounding::Truncate, Overflow::Wrap)
@@ -83,15 +83,15 @@ impl<'d> Divider<'d> {
         let dividend = cut(&part("dividend"), dividend.with_fraction(frac));
 
         let held = d.register(&part("divisor"), format).doc("the divisor");
-        held.takes(divisor);
+        held.takes(aligned_divisor);
         let remainder = d
             .register(&part("remainder"), format)
             .doc("the dividend, then what the bits so far leave of it, at most the divisor");
         let quotient = d
-            .register(name, Format::unsigned(0, bits))
+            .register(name, Format::unsigned(0, quotient_bits))
             .doc("the quotient, which bits enter at the bottom");
-        let last = Format::holding(0, i128::from(bits) - 1, 0);
-        let last = d.raw_constant(&part("last"), i128::from(bits) - 1, last);
+        let most = i128::from(quotient_bits) - 1;
+        let last = d.raw_constant(&part("last"), most, Format::holding(0, most, 0));
         let remaining = d.down_counter(&part("remaining"), last).doc("bits to come after the next");
 
         let doubled = remainder.q().shift_left(1).with_fraction(frac);
@@ -104,7 +104,7 @@ impl<'d> Divider<'d> {
         let stepped = cut(&part("stepped"), left);
         let source = d.mux(&part("source"), [dividend, stepped]);
         remainder.takes(source.out());
-        let upper = quotient.q().bits(0, Format::unsigned(bits - 1, 0));
+        let upper = quotient.q().bits(0, Format::unsigned(quotient_bits - 1, 0));
         quotient.takes(upper.above(bit, quotient.format()));
         Self {
             quotient,

@@ -122,13 +122,8 @@ impl<'d> Line<'d> {
     /// and the outputs.
     #[track_caller]
     pub fn microprogram(&self, clocks: u32) {
-        let clocks = clocks.max(1);
-        self.designer.valid_after(self.angle.loading(), clocks);
-        let drain = |left: u32| match left {
-            0 => "last point on the output".to_owned(),
-            1 => "last point a clock away".to_owned(),
-            left => format!("last point {left} clocks away"),
-        };
+        let delay = clocks.max(1);
+        self.designer.valid_after(self.angle.loading(), delay);
         let mut steps = vec![
             step("operands", []),
             step(
@@ -137,7 +132,7 @@ impl<'d> Line<'d> {
                     self.next.pick(self.start),
                     self.angle.load(),
                     self.intervals.load(),
-                    jump_if(self.empty, &drain(clocks - 1)),
+                    jump_if(self.empty, &drain(delay - 1)),
                 ],
             ),
             step(
@@ -150,10 +145,19 @@ impl<'d> Line<'d> {
                 ],
             ),
         ];
-        for left in (1..clocks).rev() {
+        for left in (1..delay).rev() {
             steps.push(step(&drain(left), []));
         }
         steps.push(step(&drain(0), [end()]));
         self.designer.microprogram(steps);
+    }
+}
+
+/// Returns the name of the microinstruction in which the last point is `left` clocks away from the outputs.
+fn drain(left: u32) -> String {
+    match left {
+        0 => "last point on the output".to_owned(),
+        1 => "last point a clock away".to_owned(),
+        left => format!("last point {left} clocks away"),
     }
 }

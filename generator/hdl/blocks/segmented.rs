@@ -96,15 +96,11 @@ impl Segmentation {
     fn blocks(&self) -> Vec<EntryBlock> {
         let ranges = self.segments.len() as u32;
         let rest = self.operand_bits - 2 * ranges;
-        let mut blocks: Vec<EntryBlock> = (0u32..)
-            .zip(&self.segments)
-            .map(|(range, &prefix)| EntryBlock {
-                bits: self.operand_bits - 2 * range,
-                prefix,
-                base: 0,
-            })
-            .chain([EntryBlock { bits: rest, prefix: rest, base: 0 }])
-            .collect();
+        let mut blocks: Vec<EntryBlock> = Vec::new();
+        for (range, &prefix) in (0u32..).zip(&self.segments) {
+            blocks.push(EntryBlock { bits: self.operand_bits - 2 * range, prefix, base: 0 });
+        }
+        blocks.push(EntryBlock { bits: rest, prefix: rest, base: 0 });
         let mut order: Vec<usize> = (0..blocks.len()).collect();
         order.sort_by_key(|&at| std::cmp::Reverse(blocks[at].prefix));
         let mut next = 0;

@@ -69,8 +69,8 @@ impl<'d> Squarings<'d> {
         again: impl IntoIterator<Item = StepSetting>,
     ) -> Vec<Step> {
         let name = register.q().name();
-        let first = first.into_iter().chain([register.load()]);
-        let mut steps = vec![step(&format!("{name} <- base^2"), first)];
+        let of_base = first.into_iter().chain([register.load()]);
+        let mut steps = vec![step(&format!("{name} <- base^2"), of_base)];
         if let Some(remaining) = self.counter {
             let one = self.designer.raw_constant("one_left", 1, remaining.q().format());
             let more = self.designer.less("more", one, remaining.q()).doc("not the last squaring");

@@ -118,8 +118,12 @@ impl Designer {
             return wrong;
         }
         let given: Vec<&str> = operands.iter().map(|(operand, _)| *operand).collect();
-        let asked = design.ports.iter().filter(|it| matches!(it.role, Role::Operand { .. }));
-        let asked: Vec<&str> = asked.map(|it| design.net(it.net).name.as_str()).collect();
+        let mut asked: Vec<&str> = Vec::new();
+        for port in &design.ports {
+            if matches!(port.role, Role::Operand { .. }) {
+                asked.push(&design.net(port.net).name);
+            }
+        }
         let same = given.len() == asked.len() && asked.iter().all(|it| given.contains(it));
         if !same {
             let [asked, given] = [asked, given].map(|names| names.join(", "));
@@ -175,19 +179,31 @@ impl Designer {
 /// Returns the registers and synchronous memories between parts: each takes a clock that nothing waits for.
 fn delayed(inner: &mut Inner) -> Vec<Diagnostic> {
     let Inner { design, placed, .. } = inner;
-    let registers = design.registers.iter().filter(|it| it.kind == RegisterKind::Internal);
-    let roms = design.roms.iter().filter(|it| it.synchronous).map(|it| it.data);
-    let nets = registers.map(|it| it.q).chain(roms).filter(|id| !placed.contains(id));
-    let found = nets.map(|id| {
+    let mut delayed: Vec<NetId> = Vec::new();
+    for register in &design.registers {
+        if register.kind == RegisterKind::Internal {
+            delayed.push(register.q);
+        }
+    }
+    for rom in &design.roms {
+        if rom.synchronous {
+            delayed.push(rom.data);
+        }
+    }
+    let mut found = Vec::new();
+    for id in delayed {
+        if placed.contains(&id) {
+            continue;
+        }
         let net = design.net(id);
         let message = format!(
             "`{}` follows its input by a clock, which a dataflow does not wait for: read the memory at once, leave the \
              register out, or make a part of it",
             net.name
         );
-        Diagnostic::new(codes::PART, message, net.location)
-    });
-    found.collect()
+        found.push(Diagnostic::new(codes::PART, message, net.location));
+    }
+    found
 }
 
 /// Returns the reason why a design cannot be a part.
@@ -228,23 +244,19 @@ impl<'d> InstanceBuilder<'d, '_> {
         location: SourceLocation,
     ) -> Instance<'d> {
         let (d, design) = (self.designer, self.design);
-        let ports = design.ports.iter().filter(|port| port.role == Role::Result);
-        let shown = ports.map(|port| (design.net(port.net).name.clone(), design.renamed(port.net)));
-        let shown: Vec<(String, NetId)> = shown.collect();
+        let mut shown: Vec<(String, NetId)> = Vec::new();
+        for port in &design.ports {
+            if port.role == Role::Result {
+                shown.push((design.net(port.net).name.clone(), design.renamed(port.net)));
+            }
+        }
         for id in kept(design, &shown) {
             self.net(id);
         }
-        let driver = |driver: &Driver| match driver {
-            Driver::Op(op) => Driver::Op(op.map(|id| self.nets[id])),
-            Driver::Field(field) => Driver::Field(self.fields[field]),
-            // Registers and memories drive their nets when they are made.
-            Driver::Register(_) | Driver::Rom(_) => Driver::Undriven,
-            other => other.clone(),
-        };
         for (id, placed) in &self.nets {
             let driver = match operands.get(id) {
                 Some(operand) => Driver::Op(Op::Relabel(*operand)),
-                None => driver(&design.net(*id).driver),
+                None => self.placed_driver(&design.net(*id).driver),
             };
             d.with(|inner| inner.design.nets[placed.index()].driver = driver);
         }
@@ -272,8 +284,17 @@ impl<'d> InstanceBuilder<'d, '_> {
         }
         self.program(load, location);
         let outputs = shown.into_iter().map(|(name, id)| (name, d.signal(self.nets[&id])));
-        let outputs = Some(outputs.collect());
-        Instance { designer: d, name: self.name.to_owned(), outputs }
+        Instance { designer: d, name: self.name.to_owned(), outputs: Some(outputs.collect()) }
+    }
+
+    /// Returns the driver of a placed net, given its driver in the part. Registers and memories drive their nets when they are made.
+    fn placed_driver(&self, driver: &Driver) -> Driver {
+        match driver {
+            Driver::Op(op) => Driver::Op(op.map(|id| self.nets[id])),
+            Driver::Field(field) => Driver::Field(self.fields[field]),
+            Driver::Register(_) | Driver::Rom(_) => Driver::Undriven,
+            other => other.clone(),
+        }
     }
 
     fn named(&self, name: &str) -> String {
@@ -310,40 +331,38 @@ impl<'d> InstanceBuilder<'d, '_> {
     fn program(&self, load: FieldId, location: SourceLocation) {
         let (d, control) = (self.designer, &self.design.control);
         let named = |at: usize| format!("{}: {}", self.name, control.microprogram[at].name);
-        let set = |field: FieldId, value: u64, what: &str| {
-            StepSetting::field(d, field, value, format!("{}.{what}", self.name))
-        };
-        let steps = control.microprogram.iter().enumerate().map(|(at, it)| {
-            let mut fields: Vec<_> = self.fields.iter().collect();
-            fields.sort_unstable();
-            let is_select =
-                |field: FieldId| matches!(control.fields[field.index()].kind, FieldKind::Select(_));
-            let stated = fields.into_iter().filter_map(|(field, own)| {
-                let value = it.values[field.index()];
-                let name = &control.fields[field.index()].name;
-                (value != 0 || is_select(*field)).then(|| set(*own, value, name))
-            });
-            let jump = match it.sequence {
-                Sequence::LoopWhile { condition, to } => {
-                    let condition = d.signal(self.nets[&condition]);
-                    Some(jump_if(condition, &named(to)))
+        let mut fields: Vec<_> = self.fields.iter().collect();
+        fields.sort_unstable();
+        let mut steps: Vec<Step> = Vec::new();
+        for (at, microinstruction) in control.microprogram.iter().enumerate() {
+            let mut settings = Vec::new();
+            for &(field, own) in &fields {
+                let value = microinstruction.values[field.index()];
+                let stated = &control.fields[field.index()];
+                if value != 0 || matches!(stated.kind, FieldKind::Select(_)) {
+                    let what = format!("{}.{}", self.name, stated.name);
+                    settings.push(StepSetting::field(d, *own, value, what));
                 }
-                _ => None,
-            };
-            let mut step = step(&named(at), stated.chain(jump));
-            step.location = it.location;
-            step
-        });
-        let steps: Vec<Step> = steps.collect();
+            }
+            if let Sequence::LoopWhile { condition, to } = microinstruction.sequence {
+                let condition = d.signal(self.nets[&condition]);
+                settings.push(jump_if(condition, &named(to)));
+            }
+            let mut step = step(&named(at), settings);
+            step.location = microinstruction.location;
+            steps.push(step);
+        }
         d.with(|inner| {
             if inner.parts.is_empty() {
                 inner.parts =
                     ["idle", "operands"].map(|name| Step { location, ..step(name, []) }).into();
             }
         });
-        let load = set(load, 1, "operands_load");
+        let load = StepSetting::field(d, load, 1, format!("{}.operands_load", self.name));
         d.with(|inner| {
-            inner.parts.last_mut().into_iter().for_each(|it| it.settings.push(load.clone()));
+            if let Some(before) = inner.parts.last_mut() {
+                before.settings.push(load);
+            }
             inner.parts.extend(steps);
         });
     }
@@ -351,19 +370,20 @@ impl<'d> InstanceBuilder<'d, '_> {
 
 /// Returns the nets on which results and the program depend, except for the handshake, in order.
 fn kept(design: &Design, shown: &[(String, NetId)]) -> Vec<NetId> {
-    let leads = |id: NetId| match design.net(id).driver {
+    let mut roots: Vec<NetId> = shown.iter().map(|(_, id)| *id).collect();
+    for microinstruction in &design.control.microprogram {
+        if let Sequence::LoopWhile { condition, .. } = microinstruction.sequence {
+            roots.push(condition);
+        }
+    }
+    let reached = cone::reached(roots, |id| match design.net(id).driver {
         Driver::Field(_) => Vec::new(),
         Driver::Register(it) if design.register(it).kind == RegisterKind::Operand => {
             design.register(it).data.into_iter().collect()
         }
         _ => read_by(design, id),
-    };
-    let conditions = design.control.microprogram.iter().filter_map(|it| match it.sequence {
-        Sequence::LoopWhile { condition, .. } => Some(condition),
-        _ => None,
     });
-    let kept = cone::reached(shown.iter().map(|(_, id)| *id).chain(conditions), leads);
-    let mut kept: Vec<NetId> = kept.into_iter().collect();
+    let mut kept: Vec<NetId> = reached.into_iter().collect();
     kept.sort_unstable();
     kept
 }

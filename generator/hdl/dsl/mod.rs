@@ -308,8 +308,8 @@ impl Designer {
             range = format.range();
         }
         let data = self.add_net(&format!("{name}_word"), format, range, Driver::Undriven, true);
-        let words = words.iter().map(|&raw| format.bits(raw)).collect();
-        let rom = NetRom::new(name, address.id(), data, words, Location::caller());
+        let bits = words.iter().map(|&raw| format.bits(raw)).collect();
+        let rom = NetRom::new(name, address.id(), data, bits, Location::caller());
         let id = self.with(|inner| inner.design.add_rom(NetRom { synchronous, ..rom }));
         Rom { designer: self, id }
     }

@@ -39,11 +39,12 @@ impl Designer {
         select.check_inputs(name, inputs.len());
         let (low, high) = hull(inputs.iter().map(|input| input.range())).unwrap_or((0, 0));
         let format = Format::holding(low, high, 0);
-        let carried = inputs.iter().map(|input| {
+        let mut carried = Vec::new();
+        for input in &inputs {
             let frac = input.format().frac;
-            self.resized(*input, Format { frac, int: format.int - frac, ..format })
-        });
-        let carried = carried.collect();
+            let carrier = Format { frac, int: format.int - frac, ..format };
+            carried.push(self.resized(*input, carrier));
+        }
         let op = Op::Mux { select: self.field_net(select.field()).id(), inputs: carried };
         let out = self.signal(self.add_net(name, format, (low, high), Driver::Op(op), true));
         OperandMux {

@@ -112,19 +112,18 @@ impl Step {
     /// Keeps the settings of registers in this microinstruction, and returns a new microinstruction for the settings
     /// that say where control goes next. `valid` is dropped.
     fn divided(&mut self) -> Self {
-        let comes_then = |setting: &StepSetting| {
-            matches!(setting.kind, SettingKind::Next | SettingKind::WaitForStart | SettingKind::End)
-        };
-        let (then, own) = self
-            .settings
-            .drain(..)
-            .filter(|setting| !matches!(setting.kind, SettingKind::Valid))
-            .partition(comes_then);
-        self.settings = own;
         // The selections stay, for a microinstruction after it that holds them.
         let mut after = step(&format!("{}, in output registers", self.name), [hold()]);
         after.location = self.location;
-        after.settings.extend::<Vec<StepSetting>>(then);
+        for setting in std::mem::take(&mut self.settings) {
+            match setting.kind {
+                SettingKind::Valid => {}
+                SettingKind::Next | SettingKind::WaitForStart | SettingKind::End => {
+                    after.settings.push(setting);
+                }
+                _ => self.settings.push(setting),
+            }
+        }
         after
     }
 }

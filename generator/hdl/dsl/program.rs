@@ -196,19 +196,21 @@ pub(crate) fn assemble(d: &Designer, program: &MicroprogramSource) {
     if foreign(d, steps) {
         return;
     }
-    let field = |setting: &StepSetting| match setting.kind {
-        SettingKind::Field { field, .. } => Some(field),
-        _ => None,
-    };
-    let picked = steps.iter().flat_map(|step| step.settings.iter().filter_map(field));
-    let picked: HashSet<FieldId> = picked.collect();
+    let mut picked: HashSet<FieldId> = HashSet::new();
+    for setting in steps.iter().flat_map(|step| &step.settings) {
+        if let SettingKind::Field { field, .. } = setting.kind {
+            picked.insert(field);
+        }
+    }
     d.with(|inner| inner.picked = picked);
     let sequences: Vec<Sequence> = steps.iter().map(|step| sequence(d, steps, step)).collect();
-    let loops = sequences.iter().filter_map(|sequence| match sequence {
-        Sequence::LoopWhile { condition, to } => Some((*condition, *to)),
-        _ => None,
-    });
-    let (conditions, targets): (BTreeSet<NetId>, BTreeSet<usize>) = loops.unzip();
+    let (mut conditions, mut targets) = (BTreeSet::new(), BTreeSet::new());
+    for sequence in &sequences {
+        if let Sequence::LoopWhile { condition, to } = sequence {
+            conditions.insert(*condition);
+            targets.insert(*to);
+        }
+    }
     let (conditions, targets) = (Vec::from_iter(conditions), Vec::from_iter(targets));
     let waits = sequences.contains(&Sequence::WaitStart);
     d.with(|inner| inner.partition = Partition::Control);
@@ -327,8 +329,8 @@ fn microinstructions(
     fields: &SequenceFields,
     conditions: &[NetId],
 ) -> Vec<Microinstruction> {
-    let kinds: Vec<FieldKind> = d
-        .with(|inner| inner.design.control.fields.iter().map(|field| field.kind.clone()).collect());
+    let fields_of_word = d.with(|inner| inner.design.control.fields.clone());
+    let kinds: Vec<FieldKind> = fields_of_word.into_iter().map(|field| field.kind).collect();
     let mut microinstructions: Vec<Microinstruction> = Vec::new();
     for (step, sequence) in steps.iter().zip(sequences) {
         let own = &step.name;

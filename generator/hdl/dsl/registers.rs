@@ -65,8 +65,8 @@ impl Designer {
         range: Interval,
     ) -> Signal<'d> {
         let format = Format::holding(range.0, range.1, inputs[0].format().frac);
-        let inputs = inputs.map(|input| self.resized(input, format)).to_vec();
-        let op = Op::Mux { select: select.id(), inputs };
+        let resized = inputs.map(|input| self.resized(input, format));
+        let op = Op::Mux { select: select.id(), inputs: resized.to_vec() };
         self.signal(self.add_net(name, format, range, Driver::Op(op), true))
     }
 
@@ -136,8 +136,8 @@ impl Designer {
     #[track_caller]
     pub fn select(&self, name: &str, choices: &[&str]) -> Select<'_> {
         let width = usize::BITS - choices.len().saturating_sub(1).leading_zeros();
-        let choices = choices.iter().map(|&choice| choice.to_owned()).collect();
-        let field = self.add_field(name, width.max(1), FieldKind::Select(choices));
+        let names = choices.iter().map(|&choice| choice.to_owned()).collect();
+        let field = self.add_field(name, width.max(1), FieldKind::Select(names));
         Select { designer: self, field }
     }
 

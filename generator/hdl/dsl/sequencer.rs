@@ -1,6 +1,8 @@
 //! Builds the sequencer of a device, which executes its microprogram: the address counter, the run flag, the control ROM and the
 //! handshake outputs.
 
+use std::collections::HashSet;
+
 use super::Designer;
 use crate::netlist::microcode;
 use crate::netlist::{
@@ -175,24 +177,32 @@ fn moved_beside(d: &Designer, microinstructions: &mut [Microinstruction], addres
             inner.design.nets[field.net.index()].driver = Driver::Field(FieldId(at as u32));
         }
         inner.design.control.fields = fields;
-        let is_partly = |id: &u32| inner.partly_used.contains(&FieldId(*id));
-        let partly = (0..).zip(&left).filter(|(_, id)| is_partly(id)).map(|(at, _)| FieldId(at));
-        inner.partly_used = partly.collect();
+        let mut partly_used = HashSet::new();
+        for (at, before) in (0..).zip(&left) {
+            if inner.partly_used.contains(&FieldId(*before)) {
+                partly_used.insert(FieldId(at));
+            }
+        }
+        inner.partly_used = partly_used;
     });
     let mut number = 1;
     while !beside.is_empty() {
         number += 1;
-        let mut width = 0;
-        let fits = |(field, _): &&(Field, Vec<u64>)| {
+        let (mut width, mut count) = (0, 0);
+        for (field, _) in &beside {
             width += width_of(field);
-            width <= MAX_WIDTH
-        };
-        let taken: Vec<_> = beside.drain(..beside.iter().take_while(fits).count()).collect();
+            if width > MAX_WIDTH {
+                break;
+            }
+            count += 1;
+        }
+        let taken: Vec<_> = beside.drain(..count).collect();
         let widths: Vec<u32> = taken.iter().map(|(field, _)| width_of(field)).collect();
-        let word = |at: usize| {
-            microcode::pack(&widths, &taken.iter().map(|it| it.1[at]).collect::<Vec<u64>>())
-        };
-        let words = (0..microinstructions.len()).map(word).collect();
+        let mut words = Vec::new();
+        for at in 0..microinstructions.len() {
+            let values: Vec<u64> = taken.iter().map(|(_, values)| values[at]).collect();
+            words.push(microcode::pack(&widths, &values));
+        }
         let mut low: u32 = widths.iter().sum();
         let name = format!("control{number}");
         let format = Format::unsigned(low as i32, 0);

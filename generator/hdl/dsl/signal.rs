@@ -381,8 +381,8 @@ impl Designer {
             Some((low, high)) if !format.signed => (low, high),
             _ => format.range(),
         };
-        let parts = parts.iter().map(|part| part.id()).collect();
-        self.signal(self.add_wiring(name, format, range, Driver::Op(Op::Concat(parts))))
+        let nets = parts.iter().map(|part| part.id()).collect();
+        self.signal(self.add_wiring(name, format, range, Driver::Op(Op::Concat(nets))))
     }
 
     /// Returns a bit that is 1 if both `a` and `b` are 1. Both must have one bit.
@@ -493,8 +493,8 @@ impl Designer {
         }
         let (low, high) = hull(inputs.iter().map(|input| input.range())).unwrap_or((0, 0));
         let format = Format::holding(low, high, frac);
-        let inputs = inputs.iter().map(|input| self.resized(*input, format)).collect();
-        let op = Op::Mux { select, inputs };
+        let resized = inputs.iter().map(|input| self.resized(*input, format)).collect();
+        let op = Op::Mux { select, inputs: resized };
         self.signal(self.add_net(name, format, (low, high), Driver::Op(op), true))
     }
 
@@ -532,8 +532,8 @@ impl Designer {
             Ordering::Equal => "same",
             Ordering::Less => "low",
         };
-        let range = Some(a.range()).filter(|range| interval::fits(*range, format));
-        let range = range.unwrap_or_else(|| format.range());
+        let fits = interval::fits(a.range(), format);
+        let range = if fits { a.range() } else { format.range() };
         a.resized_as(suffix, format, range).id()
     }
 }

@@ -116,12 +116,17 @@ impl Control {
     /// Returns the microinstructions from which control reaches microinstruction `at` in exactly `clocks` clocks, in ascending
     /// order.
     pub fn predecessors(&self, at: usize, clocks: u32) -> Vec<usize> {
-        let leads = |from: usize, after: &[usize]| {
-            self.successors(from).iter().any(|to| after.contains(to))
-        };
-        (0..clocks).fold(vec![at], |after, _| {
-            (0..self.microprogram.len()).filter(|&from| leads(from, &after)).collect()
-        })
+        let mut after = vec![at];
+        for _ in 0..clocks {
+            let mut before = Vec::new();
+            for from in 0..self.microprogram.len() {
+                if self.successors(from).iter().any(|to| after.contains(to)) {
+                    before.push(from);
+                }
+            }
+            after = before;
+        }
+        after
     }
 }
 

@@ -28,15 +28,22 @@ pub fn delay_of_valid(design: &Design) -> Option<u32> {
     registers_from_control(design, valid.net)
 }
 
-/// Returns the registers between the control word and a net on the shortest way, or all that there are if the control word
-/// has no influence; `None` if an operand has.
-fn registers_from_control(design: &Design, net: NetId) -> Option<u32> {
-    let is_control = |net: NetId| match design.net(net).driver {
+/// Returns whether a net is the control word, or a field of it.
+fn is_control(design: &Design, net: NetId) -> bool {
+    match design.net(net).driver {
         Driver::Field(_) => true,
         Driver::Rom(rom) => rom == design.control.rom,
         _ => false,
+    }
+}
+
+/// Returns the registers between the control word and a net on the shortest way, or all that there are if the control word
+/// has no influence; `None` if an operand has.
+fn registers_from_control(design: &Design, net: NetId) -> Option<u32> {
+    let inputs = |net| match is_control(design, net) {
+        true => Vec::new(),
+        false => design.combinational_inputs(net),
     };
-    let inputs = |net| if is_control(net) { Vec::new() } else { design.combinational_inputs(net) };
     let (mut seen, mut front) = (HashSet::new(), vec![net]);
     let (mut delay, mut shortest) = (0, None);
     while !front.is_empty() {
@@ -45,7 +52,7 @@ fn registers_from_control(design: &Design, net: NetId) -> Option<u32> {
         for net in cone::reached(front, inputs) {
             seen.insert(net);
             match &design.net(net).driver {
-                _ if is_control(net) => {
+                _ if is_control(design, net) => {
                     shortest.get_or_insert(delay);
                 }
                 Driver::Register(register) => {

@@ -3,7 +3,7 @@
 
 use std::collections::BTreeMap;
 
-use super::{Design, Driver, NetId, Op, RegId};
+use super::{Design, Driver, NetId, Op, Pipeline, RegId};
 
 /// A delay line: registers that carry values from one stage to a later one, with no reader in between. All its values travel
 /// between the same two stages.
@@ -59,19 +59,8 @@ impl Design {
         let Some(pipeline) = &self.pipeline else { return Vec::new() };
         let Some(memory) = pipeline.delay_memory else { return Vec::new() };
         let readers = self.readers();
-        // The register that alone reads another, and is like it but for its stage.
-        let next = |at: usize| {
-            let register = &self.registers[at];
-            let [NetReader::Register(next)] = readers[register.q.index()][..] else { return None };
-            let after = &self.registers[next];
-            (after.enable == register.enable
-                && register.reset.is_none()
-                && after.reset.is_none()
-                && !pipeline.side_values.contains(&register.q)
-                && self.multiplier(RegId(at as u32)).is_none())
-            .then_some(next)
-        };
-        let next: Vec<Option<usize>> = (0..self.registers.len()).map(next).collect();
+        let next: Vec<Option<usize>> =
+            (0..self.registers.len()).map(|at| self.next_of_line(pipeline, &readers, at)).collect();
         let mut lines: BTreeMap<(usize, usize), DelayLine> = BTreeMap::new();
         for (at, register) in self.registers.iter().enumerate() {
             let Some(data) = register.data else { continue };
@@ -94,8 +83,30 @@ impl Design {
                 line.values.push(Delayed { data, registers });
             }
         }
-        let bits = |line: &DelayLine| line.values.iter().map(|it| self.width(it.data)).sum();
-        lines.into_values().filter(|line| memory.pays(line.words(), bits(line))).collect()
+        let mut lines: Vec<DelayLine> = lines.into_values().collect();
+        lines.retain(|line| {
+            let bits = line.values.iter().map(|it| self.width(it.data)).sum();
+            memory.pays(line.words(), bits)
+        });
+        lines
+    }
+
+    /// Returns the register that alone reads register number `at`, if it differs from it by its stage only.
+    fn next_of_line(
+        &self,
+        pipeline: &Pipeline,
+        readers: &[Vec<NetReader>],
+        at: usize,
+    ) -> Option<usize> {
+        let register = &self.registers[at];
+        let [NetReader::Register(next)] = readers[register.q.index()][..] else { return None };
+        let after = &self.registers[next];
+        let is_alike = after.enable == register.enable
+            && register.reset.is_none()
+            && after.reset.is_none()
+            && !pipeline.side_values.contains(&register.q)
+            && self.multiplier(RegId(at as u32)).is_none();
+        is_alike.then_some(next)
     }
 
     /// Returns whether a net is, through wires, a word of a ROM that is read on the clock.

@@ -49,8 +49,8 @@ pub fn cell<'a, Operand: Copy, const N: usize>(
         Op::Xor(a, b) => two(of(*a), of(*b), |a, b| a ^ b),
         Op::Add { a, b, carry } => {
             let sum = two(of(*a), of(*b), |a, b| a.wrapping_add(b));
-            let carry = carry.map_or(&[0; N], of);
-            two(&sum, carry, |sum, carry| sum.wrapping_add(carry) & all)
+            let carry_in = carry.map_or(&[0; N], of);
+            two(&sum, carry_in, |sum, carry| sum.wrapping_add(carry) & all)
         }
         Op::Sub(a, b) => two(of(*a), of(*b), |a, b| a.wrapping_sub(b) & all),
         Op::Mul(a, b) if is_signed(*a) => {
@@ -128,13 +128,13 @@ impl<'a> Interpreter<'a> {
     /// Performs the rising edge after [`Interpreter::settle`]: registers and synchronous ROMs take their new values.
     pub fn edge(&mut self) {
         let design = self.design;
-        let reset = design.port(|role| role == super::Role::Reset);
-        let reset = reset.is_some_and(|port| self.value(port.net) == 0);
+        let reset_port = design.port(|role| role == super::Role::Reset);
+        let is_reset = reset_port.is_some_and(|port| self.value(port.net) == 0);
         let mut next = Vec::new();
         for register in &design.registers {
             let enabled = register.enable.is_none_or(|enable| self.value(enable) == 1);
             match (register.reset, register.data) {
-                (Some(bits), _) if reset => next.push((register.q, bits)),
+                (Some(bits), _) if is_reset => next.push((register.q, bits)),
                 (_, Some(data)) if enabled => next.push((register.q, self.value(data))),
                 _ => {}
             }

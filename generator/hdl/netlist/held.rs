@@ -134,18 +134,15 @@ impl<'a> Steady<'a> {
         let mut thresholds = vec![[0; 3]; count];
         // The earliest reader of each net.
         let mut read: Vec<Option<Thresholds>> = vec![None; count];
-        let note = |read: &mut Vec<Option<Thresholds>>, of: NetId, by: Thresholds| {
-            let earliest = read[of.index()].unwrap_or([u32::MAX; 3]);
-            read[of.index()] = Some(std::array::from_fn(|at| earliest[at].min(by[at])));
-        };
-        let loaded = design.registers.iter().enumerate().filter_map(|(number, register)| {
-            let data = register.data?;
-            let by = register.enable.map_or([0; 3], |_| until(needed[data.index()], [u32::MAX; 3]));
-            Some((RegId(number as u32), data, by))
-        });
-        let registers: Vec<_> = loaded.collect();
-        for (_, data, by) in &registers {
-            note(&mut read, *data, *by);
+        let mut registers = Vec::new();
+        for (number, register) in design.registers.iter().enumerate() {
+            let Some(data) = register.data else { continue };
+            let by = match register.enable {
+                Some(_) => until(needed[data.index()], [u32::MAX; 3]),
+                None => [0; 3],
+            };
+            note_reader(&mut read[data.index()], by);
+            registers.push((RegId(number as u32), data, by));
         }
         for cell in cells.iter().rev() {
             let at = cell.net.index();
@@ -161,14 +158,19 @@ impl<'a> Steady<'a> {
             };
             thresholds[at] = until(needed[at], wanted);
             for &of in &cell.operands {
-                note(&mut read, of, thresholds[at]);
+                note_reader(&mut read[of.index()], thresholds[at]);
             }
         }
-        let is_cell = |at: usize| matches!(design.nets[at].driver, Driver::Op(_));
-        let holds = (0..count).map(|at| steady[at] && is_cell(at) && arrival[at] > 0).collect();
-        let late = (0..count).filter(|&at| steady[at] && needed[at] > 0).map(|at| arrival[at]);
-        let places: BTreeSet<u32> = late.chain([0]).collect();
-        let places = places.into_iter().collect();
+        let mut holds = Vec::with_capacity(count);
+        let mut places = BTreeSet::from([0]);
+        for at in 0..count {
+            let is_cell = matches!(design.nets[at].driver, Driver::Op(_));
+            holds.push(steady[at] && is_cell && arrival[at] > 0);
+            if steady[at] && needed[at] > 0 {
+                places.insert(arrival[at]);
+            }
+        }
+        let places = Vec::from_iter(places);
         Self { design, cells, thresholds, holds, registers, places }
     }
 
@@ -179,14 +181,19 @@ impl<'a> Steady<'a> {
         loop {
             let tried = windows.map(|(low, high)| {
                 let count = (high - low + 1).min(TRIED);
-                let spread = move |at: usize| low + at * (high - low) / (count - 1).max(1);
-                (0..count).map(spread).collect::<Vec<_>>()
+                let spread = (0..count).map(|at| low + at * (high - low) / (count - 1).max(1));
+                spread.collect::<Vec<usize>>()
             });
-            let pairs = tried[0].iter().flat_map(|&first| {
-                let later = tried[1].iter().filter(move |&&second| second >= first);
-                later.map(move |&second| [first, second])
-            });
-            let best = pairs.min_by_key(|&pair| self.cost(self.at(pair))).unwrap_or([0, 0]);
+            let mut pairs = Vec::new();
+            for &first in &tried[0] {
+                for &second in &tried[1] {
+                    if second >= first {
+                        pairs.push([first, second]);
+                    }
+                }
+            }
+            let cheapest = pairs.into_iter().min_by_key(|&pair| self.cost(self.at(pair)));
+            let best = cheapest.unwrap_or([0, 0]);
             if windows.iter().all(|(low, high)| high - low < TRIED) {
                 return self.at(best);
             }
@@ -232,8 +239,13 @@ impl<'a> Steady<'a> {
         for &(_, data, by) in &self.registers {
             held[data.index()] |= self.is_cut(data, clock(by, places), places);
         }
-        let nets = held.iter().zip(&self.design.nets).filter(|(held, _)| **held);
-        (longest, nets.map(|(_, net)| net.format.width()).sum())
+        let mut bits = 0;
+        for (net, is_held) in self.design.nets.iter().zip(held) {
+            if is_held {
+                bits += net.format.width();
+            }
+        }
+        (longest, bits)
     }
 
     /// Returns the nets that are followed by a register, each with the readers that take the register in its place.
@@ -253,6 +265,12 @@ impl<'a> Steady<'a> {
         }
         cut
     }
+}
+
+/// Notes a reader of a net that reads it in these clocks. `earliest` is the earliest reader that is known.
+fn note_reader(earliest: &mut Option<Thresholds>, by: Thresholds) {
+    let known = earliest.unwrap_or([u32::MAX; 3]);
+    *earliest = Some(std::array::from_fn(|at| known[at].min(by[at])));
 }
 
 /// Estimates how long a cell of an FPGA takes, with the wires to it, in hundredths of a nanosecond. Only which of two places is

@@ -113,17 +113,20 @@ impl Pipeline {
         design: &'a Design,
         stage: usize,
     ) -> impl Iterator<Item = (&'a str, &'a Net)> {
-        let made = move |net: &Net, at: usize| match net.driver {
-            Driver::Op(_) => at == stage,
-            // The word of a block memory is there a stage after its address.
-            Driver::Rom(rom) => at == stage + usize::from(design.rom(rom).synchronous),
-            _ => false,
-        };
-        let nets = design.iter().zip(&self.stage_of);
-        let nets = nets.filter(move |((id, net), at)| {
-            net.named && !self.handshake.contains(id) && !self.is_shared(*id) && made(net, **at)
-        });
-        nets.map(|((id, net), _)| (self.value_of[id.index()].as_str(), net))
+        let mut computed = Vec::new();
+        for ((id, net), &at) in design.iter().zip(&self.stage_of) {
+            let is_computed_here = match net.driver {
+                Driver::Op(_) => at == stage,
+                // The word of a block memory is there a stage after its address.
+                Driver::Rom(rom) => at == stage + usize::from(design.rom(rom).synchronous),
+                _ => false,
+            };
+            let is_value = net.named && !self.handshake.contains(&id) && !self.is_shared(id);
+            if is_computed_here && is_value {
+                computed.push((self.value_of[id.index()].as_str(), net));
+            }
+        }
+        computed.into_iter()
     }
 }
 

@@ -66,13 +66,19 @@ impl Design {
         // Only nets have a location of their own in the description. Mistakes of all other parts get the location of
         // the first net.
         let Some(first) = self.nets.first().map(|net| net.location) else { return };
-        let registers = self.registers.iter();
-        let of_registers = registers.flat_map(|it| [Some(it.q), it.data, it.enable]).flatten();
-        let roms = self.roms.iter();
-        let of_roms = roms.flat_map(|it| [Some(it.address), Some(it.data), it.enable]).flatten();
-        let of_ports = self.ports.iter().map(|port| port.net);
-        let of_fields = self.control.fields.iter().map(|field| field.net);
-        for net in of_registers.chain(of_roms).chain(of_ports).chain(of_fields) {
+        let mut referred: Vec<NetId> = Vec::new();
+        for register in &self.registers {
+            referred.push(register.q);
+            referred.extend(register.data);
+            referred.extend(register.enable);
+        }
+        for rom in &self.roms {
+            referred.extend([rom.address, rom.data]);
+            referred.extend(rom.enable);
+        }
+        referred.extend(self.ports.iter().map(|port| port.net));
+        referred.extend(self.control.fields.iter().map(|field| field.net));
+        for net in referred {
             missing(net.index(), nets, "net", first);
         }
         for rom in self.roms.iter().filter_map(|rom| rom.shares) {
@@ -192,9 +198,10 @@ impl Design {
                 && let Err(why) = self.cell(id, op)
             {
                 let named = |net: &Net| format!("`{}` ({})", net.name, net.format);
-                let operands = op.operands().into_iter().map(|operand| named(self.net(operand)));
-                let operands = operands.collect::<Vec<String>>().join(", ");
-                let message = format!("{} = {} of {operands}: {why}", named(net), op.mnemonic());
+                let operands: Vec<String> =
+                    op.operands().into_iter().map(|operand| named(self.net(operand))).collect();
+                let (result, cell) = (named(net), op.mnemonic());
+                let message = format!("{result} = {cell} of {}: {why}", operands.join(", "));
                 found.push(Diagnostic::new(codes::WIDTH, message, net.location));
             }
         }
@@ -217,7 +224,6 @@ impl Design {
         let signed = |id: NetId| self.net(id).format.signed;
         let own = width(id);
         let same = |operands: &[NetId]| operands.iter().all(|&operand| width(operand) == own);
-        let ok = |holds: bool, why: &'static str| if holds { Ok(()) } else { Err(why) };
         const EQUAL: &str = "the widths must be equal";
         const BIT: &str = "the result is one bit";
         match op {
@@ -343,4 +349,9 @@ impl Design {
             }
         }
     }
+}
+
+/// Returns `why` as an error unless the condition holds.
+fn ok(holds: bool, why: &'static str) -> Result<(), &'static str> {
+    if holds { Ok(()) } else { Err(why) }
 }

@@ -7,21 +7,22 @@ use glint_base::target::Timing;
 /// Returns the delay from the operands of the cell `op` to its value, in nanoseconds. `width` gives the width of each operand in
 /// bits.
 pub fn delay_of<N: Copy>(timing: &Timing, op: &Op<N>, width: &impl Fn(N) -> u32) -> f64 {
-    // Look-up tables have four inputs.
-    let levels = |inputs: u32| {
-        let bits = u32::BITS - (inputs.max(2) - 1).leading_zeros();
-        timing.logic * f64::from(bits.div_ceil(2))
-    };
     match op {
         Op::Relabel(_) | Op::Extend(_) | Op::Slice { .. } | Op::Concat(_) | Op::Not(_) => 0.0,
         Op::And(..) | Op::Or(..) | Op::Xor(..) => timing.logic,
         Op::Add { a, .. } | Op::Sub(a, _) => timing.chain(width(*a)),
         Op::Less(a, _) => timing.chain(width(*a)) + 0.4 * timing.logic,
         Op::Mul(..) => timing.product,
-        Op::Equal(a, _) => levels(2 * width(*a)),
-        Op::Any(a) | Op::All(a) => levels(width(*a)),
-        Op::Mux { select, inputs } => levels(inputs.len() as u32 + width(*select)),
+        Op::Equal(a, _) => tables(timing, 2 * width(*a)),
+        Op::Any(a) | Op::All(a) => tables(timing, width(*a)),
+        Op::Mux { select, inputs } => tables(timing, inputs.len() as u32 + width(*select)),
     }
+}
+
+/// Returns the delay of a tree of look-up tables of four inputs that has this many inputs.
+fn tables(timing: &Timing, inputs: u32) -> f64 {
+    let bits = u32::BITS - (inputs.max(2) - 1).leading_zeros();
+    timing.logic * f64::from(bits.div_ceil(2))
 }
 
 /// Returns the delay of a mux among `values` values, in nanoseconds.
@@ -52,13 +53,9 @@ pub fn node_delay(timing: &Timing, graph: &Graph, id: NodeId) -> f64 {
 /// Synthesis turns a mux with a constant input into the set or the reset of the register behind it. The select of the
 /// mux then passes through a look-up table with the clock enable, and takes a longer path after that.
 pub fn setup(timing: &Timing, graph: &Graph, id: NodeId) -> f64 {
-    let constant = |input: &NodeId| graph.constant_of(*input).is_some();
-    match &graph.node(id).cell {
-        Cell::Op(Op::Mux { inputs, .. }) if graph.width(id) > 1 && inputs.iter().any(constant) => {
-            timing.logic
-        }
-        _ => 0.0,
-    }
+    let Cell::Op(Op::Mux { inputs, .. }) = &graph.node(id).cell else { return 0.0 };
+    let has_constant = inputs.iter().any(|input| graph.constant_of(*input).is_some());
+    if has_constant && graph.width(id) > 1 { timing.logic } else { 0.0 }
 }
 
 /// Returns the select of a mux of a value and a constant, if synthesis implements the mux by the reset of the register behind it.

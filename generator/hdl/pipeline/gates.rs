@@ -47,35 +47,36 @@ fn part(
     label: &Label,
 ) -> NodeId {
     let format = Format::unsigned(width as i32, 0);
-    let slice = |graph: &mut Graph, of: NodeId| graph.op(NodeOp::Slice { of, low }, format, label);
-    // The select, or its inverse, on every bit.
-    let spread = |graph: &mut Graph, inverted: bool| {
-        let select =
-            if inverted { graph.op(NodeOp::Not(select), Format::BIT, label) } else { select };
-        let sign = graph.op(NodeOp::Relabel(select), Format::signed(0, 0), label);
-        graph.resize(sign, width, true)
-    };
     let (value, inverse, ones) = match pair {
         (None, None) => {
-            let inputs = vec![slice(graph, zero), slice(graph, one)];
-            return graph.op(NodeOp::Mux { select, inputs }, format, label);
+            let zero = graph.op(NodeOp::Slice { of: zero, low }, format, label);
+            let one = graph.op(NodeOp::Slice { of: one, low }, format, label);
+            return graph.op(NodeOp::Mux { select, inputs: vec![zero, one] }, format, label);
         }
         (Some(a), Some(b)) if a == b => {
             let bits = if a { u64::MAX } else { 0 };
             return graph.constant(bits, format, label);
         }
         (Some(_), Some(one)) => {
-            let all = spread(graph, !one);
+            let all = spread(graph, select, !one, width, label);
             return graph.op(NodeOp::Relabel(all), format, label);
         }
         // The input that is not known shows while the select is the other's.
-        (Some(constant), None) => (slice(graph, one), false, constant),
-        (None, Some(constant)) => (slice(graph, zero), true, constant),
+        (Some(constant), None) => (one, false, constant),
+        (None, Some(constant)) => (zero, true, constant),
     };
-    let gate = spread(graph, inverse != ones);
-    let gate = graph.op(NodeOp::Relabel(gate), format, label);
-    let op = if ones { NodeOp::Or(value, gate) } else { NodeOp::And(value, gate) };
+    let slice = graph.op(NodeOp::Slice { of: value, low }, format, label);
+    let all = spread(graph, select, inverse != ones, width, label);
+    let gate = graph.op(NodeOp::Relabel(all), format, label);
+    let op = if ones { NodeOp::Or(slice, gate) } else { NodeOp::And(slice, gate) };
     graph.op(op, format, label)
+}
+
+/// Returns the bit `select`, or its inverse, on every one of `width` bits.
+fn spread(graph: &mut Graph, select: NodeId, inverted: bool, width: u32, label: &Label) -> NodeId {
+    let bit = if inverted { graph.op(NodeOp::Not(select), Format::BIT, label) } else { select };
+    let sign = graph.op(NodeOp::Relabel(bit), Format::signed(0, 0), label);
+    graph.resize(sign, width, true)
 }
 
 /// Returns the bits of a node that wiring alone determines, from the lowest up.

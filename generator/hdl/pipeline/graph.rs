@@ -301,10 +301,10 @@ impl Graph {
                 }
             }
             NodeOp::Add { a, b, carry } => {
-                let carry = carry.is_none_or(|carry| self.constant_of(carry) == Some(0));
+                let no_carry = carry.is_none_or(|carry| self.constant_of(carry) == Some(0));
                 match (self.constant_of(*a), self.constant_of(*b)) {
-                    (Some(0), _) if carry && same(self, *b) => Some(*b),
-                    (_, Some(0)) if carry && same(self, *a) => Some(*a),
+                    (Some(0), _) if no_carry && same(self, *b) => Some(*b),
+                    (_, Some(0)) if no_carry && same(self, *a) => Some(*a),
                     _ => None,
                 }
             }
@@ -409,11 +409,11 @@ impl Graph {
                     return again(self, part, low);
                 }
                 let label = Label { named: false, ..self.node(of).label.clone() };
-                let pieces = wanted.into_iter().rev().map(|(of, low, width)| {
+                let mut pieces = Vec::new();
+                for (of, low, width) in wanted.into_iter().rev() {
                     let format = Format::unsigned(width as i32, 0);
-                    self.op(NodeOp::Slice { of, low }, format, &label)
-                });
-                let pieces = pieces.collect();
+                    pieces.push(self.op(NodeOp::Slice { of, low }, format, &label));
+                }
                 Some(self.op(NodeOp::Concat(pieces), format, &label))
             }
             _ => None,
@@ -470,6 +470,9 @@ impl Cell {
 
 /// Returns how many bits a number of this range needs. For example, 0 to 5 need 3 bits, and −4 to 3 need 3 with the sign.
 fn bits_for(range: Interval, signed: bool) -> u32 {
-    let bits = |raw: i128| 128 - if raw < 0 { !raw } else { raw }.leading_zeros();
-    (bits(range.0).max(bits(range.1)) + u32::from(signed)).max(1)
+    let [low, high] = [range.0, range.1].map(|raw| {
+        let magnitude = if raw < 0 { !raw } else { raw };
+        128 - magnitude.leading_zeros()
+    });
+    (low.max(high) + u32::from(signed)).max(1)
 }

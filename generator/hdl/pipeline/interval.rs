@@ -66,18 +66,25 @@ pub fn clocks<'a>(
             Ok((1..=longest.min(most)).rev().find(reaches).unwrap_or(1))
         }
         IntervalGoal::Multipliers(allowed) => {
-            let all = || (1..=most).filter(reaches).map(|it| (it, problems(it).multipliers()));
-            let Some((interval, fewest)) = all().min_by_key(|&(_, multipliers)| multipliers) else {
+            // The interval with the fewest multipliers, and their number.
+            let mut best: Option<(usize, usize)> = None;
+            for interval in (1..=most).filter(reaches) {
+                let multipliers = problems(interval).multipliers();
+                if multipliers <= allowed {
+                    return Ok(interval);
+                }
+                if best.is_none_or(|(_, fewest)| multipliers < fewest) {
+                    best = Some((interval, multipliers));
+                }
+            }
+            let Some((interval, fewest)) = best else {
                 // The schedule says why.
                 return Ok(1);
             };
-            if fewest > allowed {
-                let message = format!(
-                    "`{name}` has {fewest} multipliers at the least: with a point every {interval} clocks"
-                );
-                return error(PipelineErrorKind::Multipliers { fewest }, message);
-            }
-            Ok(all().find(|&(_, multipliers)| multipliers <= allowed).map_or(interval, |it| it.0))
+            let message = format!(
+                "`{name}` has {fewest} multipliers at the least: with a point every {interval} clocks"
+            );
+            error(PipelineErrorKind::Multipliers { fewest }, message)
         }
     }
 }

@@ -36,11 +36,19 @@ pub fn count(
 ) -> Option<(NodeId, Vec<Option<usize>>)> {
     let cone = Cone::of(graph, conditions, free);
     let [leaf] = cone.leaves[..] else { return None };
-    let hold = |values: HashMap<NodeId, [u64; 1]>| {
-        conditions.iter().filter(|condition| values[condition] == [1]).count()
-    };
-    let of = |number: u64| cone.values(graph, number).map(hold);
-    (cone.bits <= MOST_SELECTED).then(|| (leaf, (0..1 << cone.bits).map(of).collect()))
+    if cone.bits > MOST_SELECTED {
+        return None;
+    }
+    let mut counts = Vec::new();
+    for number in 0..1 << cone.bits {
+        let values = cone.values(graph, number);
+        counts.push(
+            values.map(|values| {
+                conditions.iter().filter(|condition| values[condition] == [1]).count()
+            }),
+        );
+    }
+    Some((leaf, counts))
 }
 
 /// The nets on which conditions depend.

@@ -32,16 +32,15 @@ pub fn rebuilt(
         }
         place.push(id);
     }
-    let steps = unrolled.steps.iter().cloned().map(|mut step| {
+    let mut steps = unrolled.steps.clone();
+    for step in &mut steps {
         for (_, node) in &mut step.registers {
             *node = place[node.index()];
         }
-        step
-    });
-    Unrolled {
-        steps: steps.collect(),
-        operands: unrolled.operands.clone(),
-        results: unrolled.results.iter().map(|&(port, id)| (port, place[id.index()])).collect(),
-        graph,
     }
+    let mut results = unrolled.results.clone();
+    for (_, node) in &mut results {
+        *node = place[node.index()];
+    }
+    Unrolled { steps, operands: unrolled.operands.clone(), results, graph }
 }

@@ -42,10 +42,13 @@ impl<'a> Request<'a> {
         // their most.
         let steps = self.unrolled.steps.len();
         let decided = !decided_by_data(self.sequential).is_empty();
-        let most = latest_done(self.sequential).filter(|_| decided);
-        let clocks = most.map_or(steps, |it| steps.max(it as usize)) + 1;
-        let problems = |interval| self.problems(self.options.registered, interval);
-        interval::clocks(self.sequential, self.options, clocks, problems)
+        let mut most = steps;
+        if decided && let Some(latest) = latest_done(self.sequential) {
+            most = steps.max(latest as usize);
+        }
+        interval::clocks(self.sequential, self.options, most + 1, |interval| {
+            self.problems(self.options.registered, interval)
+        })
     }
 
     /// Returns the schedule that reaches the requested clock frequency or number of stages.

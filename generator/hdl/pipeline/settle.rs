@@ -71,8 +71,8 @@ fn below(graph: &mut Graph, id: NodeId, over: NodeId) -> NodeId {
             op
             @ (NodeOp::Slice { .. } | NodeOp::Concat(_) | NodeOp::Extend(_) | NodeOp::Relabel(_)),
         ) => {
-            let op = op.map(|&operand| below(graph, operand, over));
-            graph.op(op, node.format, &node.label)
+            let replaced = op.map(|&operand| below(graph, operand, over));
+            graph.op(replaced, node.format, &node.label)
         }
         _ => id,
     }

@@ -155,22 +155,27 @@ fn summed(
     format: Format,
     label: &Label,
 ) -> NodeId {
-    let top = |graph: &Graph, term: &ShiftedValue| term.places + graph.width(term.value);
-    parts.sort_by_key(|term| std::cmp::Reverse(top(graph, term)));
+    parts.sort_by_key(|term| std::cmp::Reverse(width_with_places(graph, term)));
     // The widest last: no other sum is as wide.
     parts.rotate_left(1);
-    let sum = parts.into_iter().reduce(|sum, term| {
-        let width = top(graph, &sum).max(top(graph, &term)) + 1;
-        let width = width.min(format.width());
+    let mut terms = parts.into_iter();
+    let mut sum = terms.next().expect("a product has parts");
+    for term in terms {
+        let widest = width_with_places(graph, &sum).max(width_with_places(graph, &term));
+        let width = (widest + 1).min(format.width());
         let signed = [sum, term].iter().any(|it| graph.node(it.value).format.signed);
         let [a, b] = [sum, term].map(|it| in_ones(graph, it, width, signed, label));
         let (op, format) = (NodeOp::Add { a, b, carry: None }, integer(signed, width));
         let value = shortened(graph, op, format, format.range(), &label.part("sum"));
-        ShiftedValue { value, places: 0 }
-    });
-    let sum =
-        in_ones(graph, sum.expect("a product has parts"), format.width(), format.signed, label);
-    graph.op(NodeOp::Relabel(sum), format, label)
+        sum = ShiftedValue { value, places: 0 };
+    }
+    let value = in_ones(graph, sum, format.width(), format.signed, label);
+    graph.op(NodeOp::Relabel(value), format, label)
+}
+
+/// Returns the number of bits of a value, with the places by which it is shifted up.
+fn width_with_places(graph: &Graph, term: &ShiftedValue) -> u32 {
+    term.places + graph.width(term.value)
 }
 
 /// Returns a term as a number of this width and sign.
@@ -225,8 +230,10 @@ fn cut(
     };
     let upper_format = integer(signed, limit + graph.width(upper_factor));
     let upper_label = label.part("upper");
-    let upper = parts(graph, target, [upper_bits, upper_factor], upper_format, &upper_label);
-    let upper = upper.into_iter().map(|term| ShiftedValue { places: term.places + places, ..term });
+    let mut terms = parts(graph, target, [upper_bits, upper_factor], upper_format, &upper_label);
+    for term in &mut terms {
+        term.places += places;
+    }
     // The lower bits have no sign; their product has the sign of the other operand.
     let width = graph.width(rest_factor);
     let lower = if rest <= MOST_ROWS && rest * width <= target.row_bits {
@@ -238,28 +245,29 @@ fn cut(
         let format = integer(signed, bits + width);
         parts(graph, target, [lower_bits, rest_factor], format, &label.part("lower"))
     };
-    upper.chain(lower).collect()
+    terms.extend(lower);
+    terms
 }
 
 /// Returns the product of the lowest `rest` bits of `wide` with `narrow`, a row for each.
 fn rows(graph: &mut Graph, wide: NodeId, rest: u32, narrow: NodeId, label: &Label) -> NodeId {
     let signed = graph.node(narrow).format.signed;
     let width = graph.width(narrow);
-    let format = |width: u32| integer(signed, width);
+    let of_row = integer(signed, width);
     let mut sum: Option<NodeId> = None;
     for row in 0..rest {
         let bit = slice(graph, wide, row, Format::BIT, &label.part("row"));
         let unnamed = unnamed(&label.part("row"));
-        let zero = graph.constant(0, format(width), &unnamed);
+        let zero = graph.constant(0, of_row, &unnamed);
         let mux = NodeOp::Mux { select: bit, inputs: vec![zero, narrow] };
-        let taken = graph.op(mux, format(width), &unnamed);
+        let taken = graph.op(mux, of_row, &unnamed);
         let shifted = shifted(graph, ShiftedValue { value: taken, places: row }, &unnamed);
         sum = Some(match sum {
             None => shifted,
             Some(sum) => {
                 let total = width + row + 1;
                 let [a, b] = [sum, shifted].map(|it| graph.resize(it, total, signed));
-                let (op, format) = (NodeOp::Add { a, b, carry: None }, format(total));
+                let (op, format) = (NodeOp::Add { a, b, carry: None }, integer(signed, total));
                 shortened(graph, op, format, format.range(), &label.part("rows"))
             }
         });
@@ -267,7 +275,7 @@ fn rows(graph: &mut Graph, wide: NodeId, rest: u32, narrow: NodeId, label: &Labe
     sum.expect("there is a row for every bit of the rest, which is not empty")
 }
 
-fn integer(signed: bool, width: u32) -> Format {
+pub(super) fn integer(signed: bool, width: u32) -> Format {
     Format { signed, int: width as i32 - i32::from(signed), frac: 0 }
 }
 

@@ -5,6 +5,7 @@ use std::collections::{BTreeSet, HashMap, HashSet};
 use super::graph::{self, Cell, Graph, NodeId};
 use super::schedule::{Schedule, ScheduleProblem, megahertz};
 use super::sharing;
+use super::split::integer;
 use super::unroll::Unrolled;
 use super::{Delays, Goal, Options};
 use crate::netlist::{
@@ -198,10 +199,9 @@ impl StageBuilder<'_> {
     /// Returns `wish`, with a number added if another value has that name in any stage. For example, a second value `base` is
     /// named `base_2`.
     fn distinct(&self, wish: &str) -> String {
-        let taken = |name: &String| self.names.values().any(|other| other == name);
         let mut name = wish.to_owned();
         let mut number = 2;
-        while taken(&name) {
+        while self.names.values().any(|other| *other == name) {
             name = format!("{wish}_{number}");
             number += 1;
         }
@@ -221,11 +221,15 @@ impl StageBuilder<'_> {
         name
     }
 
+    /// Returns the net of the port with this role, if there is one.
+    fn net_with(&self, role: Role) -> Option<NetId> {
+        self.design.port(|it| it == role).map(|it| it.net)
+    }
+
     /// Makes the valid bits of the points on their way, and says when points move.
     fn handshake(&mut self) {
         let latency = self.schedule.latency;
-        let find = |design: &Design, role: Role| design.port(|it| it == role).map(|it| it.net);
-        let offered = find(&self.design, Role::InValid).expect("every pipeline has the port");
+        let offered = self.net_with(Role::InValid).expect("every pipeline has the port");
         let mut valid = vec![offered];
         for stage in 1..=latency {
             let name = self.staged("valid", stage);
@@ -245,7 +249,7 @@ impl StageBuilder<'_> {
         self.documented(out_valid, "the results are on the outputs");
         self.pipeline.handshake.push(out_valid);
         self.design.ports.push(Port { net: out_valid, role: Role::Valid });
-        if let Some(ready) = find(&self.design, Role::OutReady) {
+        if let Some(ready) = self.net_with(Role::OutReady) {
             let empty =
                 self.net("no_result".to_owned(), latency, Format::BIT, Driver::Op(Op::Not(last)));
             self.design.nets[empty.index()].named = false;
@@ -273,7 +277,7 @@ impl StageBuilder<'_> {
             self.register(valid[stage], valid[stage - 1], self.advance, Some(0));
         }
         self.pipeline.valid = valid.split_off(1);
-        if let Some(mut side) = find(&self.design, Role::SideIn) {
+        if let Some(mut side) = self.net_with(Role::SideIn) {
             let format = self.design.net(side).format;
             for stage in 1..=latency {
                 let name = self.staged("side", stage);
@@ -350,22 +354,17 @@ impl StageBuilder<'_> {
     fn units(&mut self, registered: bool) -> Vec<(sharing::MultiplierUnit, [NetId; 2])> {
         let mut made = Vec::new();
         for (number, unit) in (1..).zip(self.problems.units(self.schedule)) {
-            let products = unit.serves.iter().flatten().map(|(id, _)| *id);
-            let first = products.clone().map(|id| self.schedule.stage[id.index()]).min();
+            let products: Vec<NodeId> = unit.serves.iter().flatten().map(|(id, _)| *id).collect();
+            let first = products.iter().map(|id| self.schedule.stage[id.index()]).min();
             let stage = first.unwrap_or(2);
-            let format = |width: u32| Format {
-                signed: unit.signed,
-                int: width as i32 - i32::from(unit.signed),
-                frac: 0,
-            };
             let name = self.free(format!("multiplier_{number}"));
-            let mut factor = |side: usize, letter: &str| {
+            let factors = [(unit.widths[0], "a"), (unit.widths[1], "b")].map(|(width, letter)| {
                 let name = self.free(format!("{name}_{letter}"));
-                let q = self.net(name, stage - 1, format(unit.widths[side]), Driver::Undriven);
+                let format = integer(unit.signed, width);
+                let q = self.net(name, stage - 1, format, Driver::Undriven);
                 self.documented(q, "the factor of the slot's product")
-            };
-            let factors = [factor(0, "a"), factor(1, "b")];
-            let wide = format(unit.widths[0] + unit.widths[1]);
+            });
+            let wide = integer(unit.signed, unit.widths[0] + unit.widths[1]);
             let op = Driver::Op(Op::Mul(factors[0], factors[1]));
             let product = self.net(self.free(format!("{name}_product")), stage - 1, wide, op);
             let q = self.net(name.clone(), stage, wide, Driver::Undriven);
@@ -373,13 +372,16 @@ impl StageBuilder<'_> {
                 self.pipeline.registered.push(RegId(self.design.registers.len() as u32));
             }
             self.register(q, product, self.advance, None);
-            self.shared.extend(products.map(|id| (id, q)));
+            for id in products {
+                self.shared.insert(id, q);
+            }
             // The multiplier works in the slot before the one in which its register has the product.
-            let serves = (0..self.pipeline.interval).map(|slot| {
+            let mut serves = Vec::new();
+            for slot in 0..self.pipeline.interval {
                 let served = unit.serves[(slot + 1) % self.pipeline.interval].as_ref();
-                served.map(|(id, _)| self.names[id].clone())
-            });
-            let (nets, serves) = (vec![factors[0], factors[1], product, q], serves.collect());
+                serves.push(served.map(|(id, _)| self.names[id].clone()));
+            }
+            let nets = vec![factors[0], factors[1], product, q];
             self.pipeline.units.push(netlist::Unit { name, nets, serves });
             made.push((unit, factors));
         }
@@ -399,22 +401,22 @@ impl StageBuilder<'_> {
                 // In slots without a product any value may come: the value of the slot before.
                 let first = inputs.iter().rev().flatten().next().copied();
                 let mut known = first.unwrap_or(q);
-                let inputs = inputs.into_iter().map(|input| {
+                let mut filled: Vec<NetId> = Vec::new();
+                for input in inputs {
                     known = input.unwrap_or(known);
-                    known
-                });
-                let inputs: Vec<NetId> = inputs.collect();
+                    filled.push(known);
+                }
                 let data = match self.pipeline.slot {
-                    Some(select) if inputs.iter().any(|it| *it != inputs[0]) => {
+                    Some(select) if filled.iter().any(|it| *it != filled[0]) => {
                         let name = self.free(format!("{}_next", self.design.net(q).name));
                         let format = self.design.net(q).format;
                         let stage = self.pipeline.stage_of[q.index()] - 1;
-                        let mux = Driver::Op(Op::Mux { select, inputs });
-                        let mux = self.net(name, stage, format, mux);
-                        self.pipeline.units[at].nets.insert(0, mux);
-                        mux
+                        let mux = Driver::Op(Op::Mux { select, inputs: filled });
+                        let chosen = self.net(name, stage, format, mux);
+                        self.pipeline.units[at].nets.insert(0, chosen);
+                        chosen
                     }
-                    _ => inputs[0],
+                    _ => filled[0],
                 };
                 self.register(q, data, self.advance, None);
             }
@@ -485,8 +487,8 @@ impl StageBuilder<'_> {
 
     /// Makes a cell in a stage.
     fn cell(&mut self, id: NodeId, op: &graph::NodeOp, stage: usize) -> NetId {
-        let op = op.map(|&operand| self.value(operand, stage));
-        self.of_node(id, stage, Driver::Op(op), self.graph.node(id).label.named)
+        let cell = op.map(|&operand| self.value(operand, stage));
+        self.of_node(id, stage, Driver::Op(cell), self.graph.node(id).label.named)
     }
 
     /// Returns a register of `stage` that takes the `value` that the stage before has for node `id`.
@@ -524,11 +526,11 @@ impl StageBuilder<'_> {
         let Cell::Op(op) = &node.cell else {
             unreachable!("a schedule holds every value to its last use");
         };
-        let op = op.map(|&operand| self.value(operand, stage));
+        let wiring = op.map(|&operand| self.value(operand, stage));
         let name = self.distinct(&node.label.name);
         self.names.entry(id).or_insert(name);
         // It is wiring: written where it is used.
-        let net = self.of_node(id, stage, Driver::Op(op), false);
+        let net = self.of_node(id, stage, Driver::Op(wiring), false);
         self.values.insert((id, stage), net);
         net
     }
@@ -572,52 +574,60 @@ impl StageBuilder<'_> {
             let stored = &mut self.design.nets[out.index()];
             (stored.range, stored.doc, stored.block) = (net.range, net.doc, net.block);
             stored.location = net.location;
-            let role = self.sequential.ports.iter().find(|it| it.net == port).map(|it| it.role);
-            let role = role.unwrap_or(Role::Result);
+            let sequential_port = self.sequential.ports.iter().find(|it| it.net == port);
+            let role = sequential_port.map_or(Role::Result, |it| it.role);
             self.design.ports.push(Port { net: out, role });
         }
     }
 
     /// Describes each stage.
     fn stages(&self, unrolled: &Unrolled) -> Vec<Stage> {
-        let microprogram = &self.sequential.control.microprogram;
-        (0..self.schedule.latency)
-            .map(|stage| {
-                let steps: BTreeSet<usize> = self
-                    .problems
-                    .live()
-                    .iter()
-                    .filter(|id| self.computed_in(**id) == stage)
-                    .filter(|id| !self.graph.node(**id).cell.is_wiring())
-                    .filter(|id| !matches!(self.graph.node(**id).cell, Cell::Operand(_)))
-                    .map(|id| self.graph.node(*id).step)
-                    .collect();
-                let mut microinstructions: Vec<String> = Vec::new();
-                for step in steps {
-                    let address = unrolled.steps.get(step).map_or(0, |step| step.address);
-                    let name = &microprogram[address].name;
-                    if microinstructions.last() != Some(name) {
-                        microinstructions.push(name.clone());
-                    }
-                }
-                let boundary = stage + 1;
-                let registers = (0..).map(RegId).zip(&self.design.registers);
-                // The register inside a multiplier takes no register of the fabric, nor does the register of a block
-                // memory.
-                let registers = registers.filter(|(id, _)| !self.pipeline.registered.contains(id));
-                let bits = registers.map(|(_, register)| register.q);
-                let bits = bits.filter(|q| self.pipeline.stage_of[q.index()] == boundary);
-                Stage {
-                    microinstructions,
-                    logic_ns: self.schedule.logic[stage],
-                    slack_ns: self.schedule.period
-                        - self.problems.register_ns()
-                        - self.schedule.logic[stage],
-                    register_bits: bits.map(|q| self.design.width(q)).sum(),
-                    delayed_bits: 0,
-                }
-            })
-            .collect()
+        let mut stages = Vec::new();
+        for stage in 0..self.schedule.latency {
+            let logic = self.schedule.logic[stage];
+            stages.push(Stage {
+                microinstructions: self.microinstructions(unrolled, stage),
+                logic_ns: logic,
+                slack_ns: self.schedule.period - self.problems.register_ns() - logic,
+                register_bits: self.register_bits(stage + 1),
+                delayed_bits: 0,
+            });
+        }
+        stages
+    }
+
+    /// Returns the names of the microinstructions that compute something in a stage.
+    fn microinstructions(&self, unrolled: &Unrolled, stage: usize) -> Vec<String> {
+        let mut steps: BTreeSet<usize> = BTreeSet::new();
+        for &id in self.problems.live() {
+            let node = self.graph.node(id);
+            let is_logic = !node.cell.is_wiring() && !matches!(node.cell, Cell::Operand(_));
+            if is_logic && self.computed_in(id) == stage {
+                steps.insert(node.step);
+            }
+        }
+        let mut names: Vec<String> = Vec::new();
+        for step in steps {
+            let address = unrolled.steps.get(step).map_or(0, |step| step.address);
+            let name = &self.sequential.control.microprogram[address].name;
+            if names.last() != Some(name) {
+                names.push(name.clone());
+            }
+        }
+        names
+    }
+
+    /// Returns the number of register bits at the end of a stage. The register inside a multiplier takes no register of the fabric,
+    /// nor does the register of a block memory.
+    fn register_bits(&self, boundary: usize) -> u32 {
+        let mut bits = 0;
+        for (id, register) in (0..).map(RegId).zip(&self.design.registers) {
+            let is_at_boundary = self.pipeline.stage_of[register.q.index()] == boundary;
+            if is_at_boundary && !self.pipeline.registered.contains(&id) {
+                bits += self.design.width(register.q);
+            }
+        }
+        bits
     }
 
     /// Returns the stage whose logic computes a node. For a product in the register of a multiplier, it is the stage

@@ -90,21 +90,21 @@ fn chosen_behind(
     let (select, inputs) = choice(graph, from)?;
     let same = graph.node(from).format;
     let each = Label { named: false, ..label.part("before") };
-    let inputs = inputs.into_iter().map(|input| {
-        let input = graph.op(NodeOp::Relabel(input), same, &each);
+    let mut sums = Vec::new();
+    for choice in inputs {
+        let input = graph.op(NodeOp::Relabel(choice), same, &each);
         let each_op = match op {
             NodeOp::Sub(..) => NodeOp::Sub(constant, input),
             _ => NodeOp::Add { a: input, b: constant, carry: None },
         };
         let range =
             of_cell(&each_op, format, &|id| graph.node(id).format, &|id| graph.node(id).range);
-        match graph.constant_of(input) {
+        sums.push(match graph.constant_of(input) {
             Some(_) => graph.op(each_op, format, &each),
             None => within(graph, each_op, format, range, &each, true),
-        }
-    });
-    let inputs = inputs.collect();
-    Some(graph.insert(Cell::Op(NodeOp::Mux { select, inputs }), format, range, label))
+        });
+    }
+    Some(graph.insert(Cell::Op(NodeOp::Mux { select, inputs: sums }), format, range, label))
 }
 
 /// Returns the select and the inputs of a choice between a value and a constant, if a node is such a choice or has

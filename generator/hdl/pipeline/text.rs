@@ -71,7 +71,7 @@ pub fn parsed(text: &str) -> Result<Unrolled, String> {
             continue;
         }
         let (value, operation) = line.split_once(" = ").unwrap_or((line, ""));
-        let (value, range) = match value.split_once(" [") {
+        let (value, stated_range) = match value.split_once(" [") {
             Some((value, range)) => {
                 let (low, high) = range
                     .trim_end_matches(']')
@@ -83,7 +83,7 @@ pub fn parsed(text: &str) -> Result<Unrolled, String> {
         };
         let (name, format) = value.split_once(' ').ok_or_else(|| wrong("no format"))?;
         let format: Format = format.parse()?;
-        let range = range.unwrap_or_else(|| format.range());
+        let range = stated_range.unwrap_or_else(|| format.range());
         let label = Label::new(name.to_owned(), Location::caller());
         let mut words = operation.split_whitespace();
         let operation = words.next();

@@ -153,14 +153,13 @@ impl<'a> Executor<'a> {
     fn power_up(&mut self) -> State {
         let design = self.design;
         let graph = &mut self.unrolled.graph;
-        let mut unknown = |net: &Net| {
-            let cell = Cell::Unknown(net.name.clone());
-            graph.insert(cell, net.format, net.format.range(), &label(net))
-        };
-        State {
-            registers: design.registers.iter().map(|it| unknown(design.net(it.q))).collect(),
-            roms: design.roms.iter().map(|rom| unknown(design.net(rom.data))).collect(),
-        }
+        let registers = design
+            .registers
+            .iter()
+            .map(|register| unknown(graph, design.net(register.q)))
+            .collect();
+        let roms = design.roms.iter().map(|rom| unknown(graph, design.net(rom.data))).collect();
+        State { registers, roms }
     }
 
     /// Returns the clock that takes `start`, with all operands.
@@ -184,16 +183,15 @@ impl<'a> Executor<'a> {
             match microinstruction.sequence {
                 Sequence::Next => at = At { state: after, address: at.address + 1 },
                 Sequence::LoopWhile { to, .. } => {
-                    let condition = condition.expect("a loop has a condition");
-                    match self.unrolled.graph.constant_of(condition) {
+                    let again = condition.expect("a loop has a condition");
+                    match self.unrolled.graph.constant_of(again) {
                         Some(taken) => {
                             let address = if taken == 1 { to } else { at.address + 1 };
                             at = At { state: after, address };
                         }
                         None if to <= at.address => {
                             let free = at.state.registers.clone();
-                            let state =
-                                self.iterations(after, condition, (to, at.address), &free)?;
+                            let state = self.iterations(after, again, (to, at.address), &free)?;
                             at = At { state, address: at.address + 1 };
                         }
                         None => {
@@ -202,7 +200,7 @@ impl<'a> Executor<'a> {
                                 let why = "is skipped by some points, and shows results";
                                 return Err(self.cannot(at.address, why));
                             };
-                            let state = self.either(condition, &executed, &after);
+                            let state = self.either(again, &executed, &after);
                             at = At { state, address: to };
                         }
                     }
@@ -261,8 +259,8 @@ impl<'a> Executor<'a> {
             let Some(before) = self.follow(at, Some(last))? else {
                 return Err(self.cannot(last, "is executed under a condition, and shows results"));
             };
-            let (after, again) = self.execute(&At { state: before, address: last })?;
-            let again = again.expect("a loop has a condition");
+            let (after, loop_condition) = self.execute(&At { state: before, address: last })?;
+            let again = loop_condition.expect("a loop has a condition");
             state = self.either(condition, &after, &state);
             let asked = self.unrolled.graph.cone([again]);
             for (at, held) in entry.registers.iter_mut().enumerate() {
@@ -296,35 +294,28 @@ impl<'a> Executor<'a> {
         let (steps, visits) = (self.unrolled.steps.len(), self.visits.clone());
         let nodes = self.unrolled.graph.nodes.len();
         let unknown = self.power_up();
-        let forget = |state: &mut State| {
-            for (at, _) in counters.iter().enumerate().filter(|(_, counts)| **counts) {
-                state.registers[at] = unknown.registers[at];
-            }
-        };
         let mut now = first.clone();
-        forget(&mut now);
+        forget(&mut now, counters, &unknown);
         for bit in (0..bits).rev() {
             let mut after = now.clone();
             for _ in 0..1 << bit {
                 let before = self.follow(At { state: after, address: to }, Some(last)).ok()??;
                 (after, _) = self.execute(&At { state: before, address: last }).ok()?;
-                forget(&mut after);
+                forget(&mut after, counters, &unknown);
                 for held in &mut after.registers {
                     *held = settled(&mut self.unrolled.graph, *held);
                 }
             }
             let graph = &mut self.unrolled.graph;
             let label = Label { named: false, ..graph.node(count).label.clone() };
-            let bit_of = |iterations: usize| iterations >> bit & 1;
-            let is_place = |place: &u32| {
-                let mut values = iterations.iter().enumerate();
-                values.all(|(at, it)| it.is_none_or(|it| bit_of(it) == at >> place & 1))
-            };
-            let taken = match (0..graph.width(count)).find(is_place) {
+            let taken = match bit_with_count(graph.width(count), &iterations, bit) {
                 Some(low) => graph.op(NodeOp::Slice { of: count, low }, Format::BIT, &label),
                 None => {
-                    let bits = iterations.iter().map(|it| bit_of(it.unwrap_or(0)) as u64);
-                    let inputs = bits.map(|it| graph.constant(it, Format::BIT, &label)).collect();
+                    let mut inputs = Vec::new();
+                    for iterations in &iterations {
+                        let taken = iterations.unwrap_or(0) >> bit & 1;
+                        inputs.push(graph.constant(taken as u64, Format::BIT, &label));
+                    }
                     graph.op(NodeOp::Mux { select: count, inputs }, Format::BIT, &label)
                 }
             };
@@ -335,13 +326,23 @@ impl<'a> Executor<'a> {
         for node in &mut self.unrolled.graph.nodes[nodes..] {
             node.step = steps - 1;
         }
-        let graph = &self.unrolled.graph;
-        let pairs = || now.registers.iter().zip(&first.registers).enumerate();
-        let changed = pairs().filter(|(at, (now, first))| !counters[*at] && now != first);
-        let cone = graph.cone(changed.map(|(_, (now, _))| *now));
-        let counted = counters.iter().zip(&unknown.registers).filter(|(counts, _)| **counts);
-        let depends = counted.map(|(_, it)| it).any(|it| cone.binary_search(it).is_ok());
-        (!depends && now.roms == first.roms).then_some(now)
+        if now.roms != first.roms {
+            return None;
+        }
+        let mut changed = Vec::new();
+        for (at, &counts) in counters.iter().enumerate() {
+            if !counts && now.registers[at] != first.registers[at] {
+                changed.push(now.registers[at]);
+            }
+        }
+        // No changed register may depend on the counter.
+        let cone = self.unrolled.graph.cone(changed);
+        for (at, &counts) in counters.iter().enumerate() {
+            if counts && cone.binary_search(&unknown.registers[at]).is_ok() {
+                return None;
+            }
+        }
+        Some(now)
     }
 
     /// Returns one microinstruction: the state after it, and the condition of a loop.
@@ -352,13 +353,12 @@ impl<'a> Executor<'a> {
                 self.cannot(at.address, "is part of a computation of more than 4096 clocks")
             );
         }
-        let architectural =
-            |kind| matches!(kind, RegisterKind::Architectural | RegisterKind::Operand);
-        let registers = design.registers.iter().enumerate();
-        let registers = registers
-            .filter(|(_, register)| architectural(register.kind))
-            .map(|(number, _)| (RegId(number as u32), at.state.registers[number]))
-            .collect();
+        let mut registers = Vec::new();
+        for (number, register) in design.registers.iter().enumerate() {
+            if matches!(register.kind, RegisterKind::Architectural | RegisterKind::Operand) {
+                registers.push((RegId(number as u32), at.state.registers[number]));
+            }
+        }
         let visit = self.visits[at.address];
         self.visits[at.address] += 1;
         self.unrolled.graph.step = self.unrolled.steps.len();
@@ -369,9 +369,12 @@ impl<'a> Executor<'a> {
             match clock.graph().constant_of(valid) {
                 Some(0) => {}
                 Some(_) => {
-                    let is_result = |role| matches!(role, Role::Result | Role::Status);
-                    let ports = design.ports.iter().filter(|port| is_result(port.role));
-                    let results = ports.map(|port| (port.net, clock.value(port.net))).collect();
+                    let mut results = Vec::new();
+                    for port in &design.ports {
+                        if matches!(port.role, Role::Result | Role::Status) {
+                            results.push((port.net, clock.value(port.net)));
+                        }
+                    }
                     self.shown = Some(results);
                     return Ok((at.state.clone(), None));
                 }
@@ -394,25 +397,16 @@ impl<'a> Executor<'a> {
     fn either(&mut self, condition: NodeId, yes: &State, no: &State) -> State {
         let design = self.design;
         let graph = &mut self.unrolled.graph;
-        let mut choose = |(&yes, &no): (&NodeId, &NodeId), net: &Net| {
-            if yes == no {
-                return yes;
-            }
-            let mux = NodeOp::Mux { select: condition, inputs: vec![no, yes] };
-            graph.op(mux, net.format, &label(net))
-        };
-        let registers = yes.registers.iter().zip(&no.registers);
-        let roms = yes.roms.iter().zip(&no.roms);
-        State {
-            registers: registers
-                .zip(&design.registers)
-                .map(|(pair, register)| choose(pair, design.net(register.q)))
-                .collect(),
-            roms: roms
-                .zip(&design.roms)
-                .map(|(pair, rom)| choose(pair, design.net(rom.data)))
-                .collect(),
+        let mut state = yes.clone();
+        for (at, held) in state.registers.iter_mut().enumerate() {
+            let net = design.net(design.registers[at].q);
+            *held = choose(graph, condition, *held, no.registers[at], net);
         }
+        for (at, held) in state.roms.iter_mut().enumerate() {
+            let net = design.net(design.roms[at].data);
+            *held = choose(graph, condition, *held, no.roms[at], net);
+        }
+        state
     }
 
     fn cannot(&self, address: usize, why: &str) -> Diagnostic {
@@ -441,4 +435,37 @@ impl<'a> Executor<'a> {
         }
         Ok(())
     }
+}
+
+/// Adds a node with the unknown value that a net has at power-up.
+fn unknown(graph: &mut Graph, net: &Net) -> NodeId {
+    let cell = Cell::Unknown(net.name.clone());
+    graph.insert(cell, net.format, net.format.range(), &label(net))
+}
+
+/// Replaces the registers that count iterations by their unknown values at power-up.
+fn forget(state: &mut State, counters: &[bool], unknown: &State) {
+    for (at, &counts) in counters.iter().enumerate() {
+        if counts {
+            state.registers[at] = unknown.registers[at];
+        }
+    }
+}
+
+/// Returns the bit of a word that has the value of bit `bit` of a count, if there is one. `counts` has the count for each value of the
+/// word, or `None` for a value that the word never has.
+fn bit_with_count(width: u32, counts: &[Option<usize>], bit: u32) -> Option<u32> {
+    (0..width).find(|place| {
+        let mut values = counts.iter().enumerate();
+        values.all(|(word, count)| count.is_none_or(|count| count >> bit & 1 == word >> place & 1))
+    })
+}
+
+/// Returns `yes` if the condition holds, and else `no`: a mux, unless both are the same node.
+fn choose(graph: &mut Graph, condition: NodeId, yes: NodeId, no: NodeId, net: &Net) -> NodeId {
+    if yes == no {
+        return yes;
+    }
+    let mux = NodeOp::Mux { select: condition, inputs: vec![no, yes] };
+    graph.op(mux, net.format, &label(net))
 }

@@ -22,9 +22,9 @@ pub(super) fn divide(
 ) -> CompiledDesign {
     let mut is_wide: Vec<bool> = widths(compiler).iter().map(|&bits| bits > NARROW).collect();
     // A slot that takes a wide slot at the edge is itself wide, and so is a slot that takes that slot.
-    let reads_of = reads.iter().map(|edge| (edge.to, edge.address));
-    let pairs = reads_of.chain(registers.iter().map(|edge| (edge.q, edge.data)));
-    let pairs: Vec<(Slot, Slot)> = pairs.collect();
+    let mut pairs: Vec<(Slot, Slot)> = Vec::new();
+    pairs.extend(reads.iter().map(|edge| (edge.to, edge.address)));
+    pairs.extend(registers.iter().map(|edge| (edge.q, edge.data)));
     while let Some((to, _)) =
         pairs.iter().find(|(to, from)| is_wide[*from as usize] && !is_wide[*to as usize])
     {
@@ -296,11 +296,10 @@ impl BankSplitter<'_> {
             }
         }
         let places = of_net.iter().map(|&slot| self.place(slot)).collect();
-        let segments = self
-            .steps
-            .chunk_by(|(a, _), (b, _)| a == b)
-            .map(|chunk| StepGroup { sources: chunk[0].0, len: chunk.len() as u32 })
-            .collect();
+        let mut segments = Vec::new();
+        for group in self.steps.chunk_by(|(a, _), (b, _)| a == b) {
+            segments.push(StepGroup { sources: group[0].0, len: group.len() as u32 });
+        }
         CompiledDesign {
             steps: self.steps.into_iter().map(|(_, step)| step).collect(),
             segments,

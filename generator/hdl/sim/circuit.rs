@@ -47,6 +47,20 @@ struct Observed {
     id: usize,
 }
 
+impl Observed {
+    /// Returns the atom of a net, with a signal number of its own.
+    fn new(design: &Design, net: NetId, direction: Direction) -> Self {
+        Self {
+            net,
+            name: design.net(net).name.clone(),
+            width: design.width(net),
+            signed: design.net(net).format.signed,
+            direction,
+            id: get_signal_id(),
+        }
+    }
+}
+
 /// The names of microinstructions, and the nets that tell which one is executed.
 #[derive(Debug)]
 struct MicroinstructionNames {
@@ -64,24 +78,14 @@ impl<const LANES: usize> Circuit<LANES> {
     pub fn new(design: &Design) -> Result<Self> {
         let program = Arc::new(CompiledDesign::new(design)?);
         let inputs = vec![[0; LANES]; program.inputs()];
-        let observed = |net: NetId, direction| Observed {
-            net,
-            name: design.net(net).name.clone(),
-            width: design.width(net),
-            signed: design.net(net).format.signed,
-            direction,
-            id: get_signal_id(),
-        };
-        let ports = design
-            .ports
-            .iter()
-            .map(|port| {
-                let input = port.role.is_input();
-                observed(port.net, if input { Direction::Input } else { Direction::Output })
-            })
-            .collect();
+        let mut ports = Vec::new();
+        for port in &design.ports {
+            let direction = if port.role.is_input() { Direction::Input } else { Direction::Output };
+            ports.push(Observed::new(design, port.net, direction));
+        }
         let scopes = scopes(design).into_iter().map(|(name, nets)| {
-            (name, nets.into_iter().map(|net| observed(net, Direction::Local)).collect())
+            let local = nets.into_iter().map(|net| Observed::new(design, net, Direction::Local));
+            (name, local.collect())
         });
         let mut circuit = Self {
             clock: Signal::default(),
@@ -128,8 +132,11 @@ pub(super) fn scopes(design: &Design) -> Vec<(String, Vec<NetId>)> {
         None => names.push("datapath".to_owned()),
     }
     let mut scopes: Vec<_> = names.into_iter().map(|name| (name, Vec::new())).collect();
-    let is_port = |id| design.ports.iter().any(|port| port.net == id);
-    for (id, net) in design.iter().filter(|(id, net)| net.named && !is_port(*id)) {
+    for (id, net) in design.iter() {
+        let is_port = design.ports.iter().any(|port| port.net == id);
+        if !net.named || is_port {
+            continue;
+        }
         let scope = match &design.pipeline {
             Some(pipeline) if pipeline.handshake.contains(&id) => 0,
             Some(pipeline) => 1 + pipeline.clock_of(id),
@@ -144,12 +151,13 @@ impl MicroinstructionNames {
     fn new(design: &Design) -> Self {
         let control = &design.control;
         let names = control.microprogram.iter().map(|it| it.name.clone()).collect();
-        let registers = &design.registers;
-        let state = registers
-            .get(control.address.index())
-            .zip(registers.get(control.run.index()))
-            .filter(|_| !control.microprogram.is_empty())
-            .map(|(address, run)| (address.q, run.q));
+        let mut state = None;
+        if !control.microprogram.is_empty()
+            && let Some(address) = design.registers.get(control.address.index())
+            && let Some(run) = design.registers.get(control.run.index())
+        {
+            state = Some((address.q, run.q));
+        }
         Self { names, state, id: get_signal_id() }
     }
 }

@@ -62,8 +62,7 @@ impl<'a> Compiler<'a> {
                 }
                 let address = self.of_net[design.rom(*rom).address.index()];
                 let words = self.roms[rom.index()];
-                let read = |to| Instruction::Read { to, address, words };
-                self.emit(&[address], read)
+                self.emit(&[address], |to| Instruction::Read { to, address, words })
             }
             Driver::Field(field) => {
                 let word = design.rom(design.control.rom).data;
@@ -122,29 +121,38 @@ impl<'a> Compiler<'a> {
     /// one, except in circles. The value then need not be copied to be [`Compiler::stable`].
     fn readers_first(&self) -> Vec<&'a NetlistRegister> {
         let registers = &self.design.registers;
-        let slot = |net: NetId| self.of_net[net.index()];
-        let by_slot: HashMap<Slot, usize> =
-            registers.iter().enumerate().map(|(at, register)| (slot(register.q), at)).collect();
+        let mut by_slot: HashMap<Slot, usize> = HashMap::new();
+        for (at, register) in registers.iter().enumerate() {
+            by_slot.insert(self.of_net[register.q.index()], at);
+        }
+        // The other registers that each register reads, and the number of readers of each.
+        let mut read_by: Vec<Vec<usize>> = Vec::new();
         let mut readers = vec![0; registers.len()];
-        let read_by = |at: usize| {
-            let register: &NetlistRegister = &registers[at];
-            let nets = register.data.iter().chain(&register.enable);
-            nets.filter_map(|&net| by_slot.get(&slot(net)).copied()).filter(move |&of| of != at)
-        };
-        (0..registers.len()).flat_map(read_by).for_each(|of| readers[of] += 1);
+        for (at, register) in registers.iter().enumerate() {
+            let mut read = Vec::new();
+            for net in register.data.iter().chain(&register.enable) {
+                if let Some(&of) = by_slot.get(&self.of_net[net.index()])
+                    && of != at
+                {
+                    readers[of] += 1;
+                    read.push(of);
+                }
+            }
+            read_by.push(read);
+        }
         let mut ordered = Vec::with_capacity(registers.len());
         let mut placed = vec![false; registers.len()];
         let mut ready: Vec<usize> = (0..registers.len()).filter(|&at| readers[at] == 0).collect();
         while ordered.len() < registers.len() {
             // In a circle, one register goes ahead of the registers that read it.
-            let first = || placed.iter().position(|&placed| !placed);
-            let Some(at) = ready.pop().or_else(first) else { break };
+            let next = ready.pop().or_else(|| placed.iter().position(|&placed| !placed));
+            let Some(at) = next else { break };
             if placed[at] {
                 continue;
             }
             placed[at] = true;
             ordered.push(&registers[at]);
-            for of in read_by(at) {
+            for &of in &read_by[at] {
                 readers[of] -= 1;
                 if readers[of] == 0 {
                     ready.push(of);
@@ -158,21 +166,28 @@ impl<'a> Compiler<'a> {
     fn drop_unneeded(&mut self, reads: &[ReadEdge], registers: &[RegisterEdge]) {
         let design = self.design;
         let mut needed = vec![false; self.sources.len()];
-        let of_edge = reads
-            .iter()
-            .flat_map(|edge| [Some(edge.address), edge.enable])
-            .chain(registers.iter().flat_map(|edge| {
-                [Some(edge.data), edge.enable, edge.reset.map(|(rst_n, _)| rst_n)]
-            }))
-            .flatten();
-        let of_nets = design
-            .iter()
-            .filter(|(_, net)| net.named)
-            .map(|(id, _)| id)
-            .chain(design.ports.iter().map(|port| port.net))
-            .map(|net| self.of_net[net.index()]);
-        for slot in of_edge.chain(of_nets) {
-            needed[slot as usize] = true;
+        for edge in reads {
+            needed[edge.address as usize] = true;
+            if let Some(enable) = edge.enable {
+                needed[enable as usize] = true;
+            }
+        }
+        for edge in registers {
+            needed[edge.data as usize] = true;
+            if let Some(enable) = edge.enable {
+                needed[enable as usize] = true;
+            }
+            if let Some((rst_n, _)) = edge.reset {
+                needed[rst_n as usize] = true;
+            }
+        }
+        for (id, net) in design.iter() {
+            if net.named {
+                needed[self.of_net[id.index()] as usize] = true;
+            }
+        }
+        for port in &design.ports {
+            needed[self.of_net[port.net.index()] as usize] = true;
         }
         let mut dropped = HashSet::new();
         for step in self.steps.iter().rev() {
@@ -194,9 +209,11 @@ impl<'a> Compiler<'a> {
 
     /// Returns the slot of an enable, unless it is always 1.
     fn enable(&mut self, enable: Option<NetId>, written: &HashSet<Slot>) -> Option<Slot> {
-        let slot = enable.map(|net| self.of_net[net.index()]);
-        let slot = slot.filter(|&slot| self.known_value(slot) != Some(1));
-        slot.map(|slot| self.stable(slot, written))
+        let slot = self.of_net[enable?.index()];
+        if self.known_value(slot) == Some(1) {
+            return None;
+        }
+        Some(self.stable(slot, written))
     }
 
     /// Returns a slot that holds the value of `a` until the edge is over, although the edge has written the

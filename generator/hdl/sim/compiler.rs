@@ -109,15 +109,16 @@ impl<'a> Compiler<'a> {
     /// one source. A field of the control word is no such enable, because a microinstruction seldom changes all the
     /// values that it loads.
     pub(super) fn source(&mut self, enable: Option<NetId>) -> Slot {
-        let is_field = |net: &NetId| matches!(self.design.net(*net).driver, Driver::Field(_));
-        let enable = enable.filter(|net| !is_field(net));
-        let number = enable.and_then(|enable| self.enabled.get(&enable).copied());
-        let number = number.unwrap_or_else(|| {
-            let next = self.next_source + 1;
-            let after = if next == FIRST_FIELD { self.input_sources } else { next };
-            mem::replace(&mut self.next_source, after)
-        });
-        if let Some(enable) = enable {
+        let shared = enable.filter(|net| !matches!(self.design.net(*net).driver, Driver::Field(_)));
+        if let Some(enable) = shared
+            && let Some(&number) = self.enabled.get(&enable)
+        {
+            return self.fresh(1 << number);
+        }
+        let next = self.next_source + 1;
+        let after = if next == FIRST_FIELD { self.input_sources } else { next };
+        let number = mem::replace(&mut self.next_source, after);
+        if let Some(enable) = shared {
             self.enabled.insert(enable, number);
         }
         self.fresh(1 << number)

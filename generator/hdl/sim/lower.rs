@@ -46,8 +46,7 @@ impl Compiler<'_> {
                     None => self.add(a, b, drop),
                     Some(carry) => {
                         let carry = slot(*carry);
-                        let add = |to| Instruction::AddCarry { to, a, b, carry, drop };
-                        self.emit(&[a, b, carry], add)
+                        self.add_carry([a, b, carry], drop)
                     }
                 }
             }
@@ -146,17 +145,21 @@ impl Compiler<'_> {
         all
     }
 
+    /// Returns the slot with the sum of two slots and a carry.
+    fn add_carry(&mut self, [a, b, carry]: [Slot; 3], drop: u8) -> Slot {
+        self.emit(&[a, b, carry], |to| Instruction::AddCarry { to, a, b, carry, drop })
+    }
+
     fn add(&mut self, a: Slot, b: Slot, drop: u8) -> Slot {
         let (of_a, low_a, drop_a) = self.sliced(a);
         let (of_b, low_b, drop_b) = self.sliced(b);
         if of_a == a || of_b == b {
             return self.emit(&[a, b], |to| Instruction::Add { to, a, b, drop });
         }
-        let add = |to| {
+        self.emit(&[of_a, of_b], |to| {
             let (a, b) = (of_a, of_b);
             Instruction::AddSlices { to, a, b, low_a, drop_a, low_b, drop_b, drop }
-        };
-        self.emit(&[of_a, of_b], add)
+        })
     }
 
     /// Returns a mux of two inputs, merged with the logic that only prepares its operands. Chains of such muxes tell

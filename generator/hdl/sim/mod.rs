@@ -72,11 +72,10 @@ impl<const LANES: usize> Simulator<LANES> {
     /// # Errors
     /// Fails if [`Circuit::new`] fails.
     pub fn new(design: &Design) -> Result<Self> {
-        let name = |net| design.net(net).name.clone();
         Ok(Self {
             circuit: Circuit::new(design)?,
             name: design.name.clone(),
-            inputs: design.inputs().map(|port| name(port.net)).collect(),
+            inputs: design.inputs().map(|port| design.net(port.net).name.clone()).collect(),
             trace: None,
             time: 0,
         })

@@ -17,12 +17,12 @@ const TEXT: u32 = 1 << 9;
 /// Returns the scopes of a waveform with their nets, the ports first.
 fn shown(design: &Design) -> Vec<(String, Vec<&Net>)> {
     let ports = design.ports.iter().map(|port| design.net(port.net)).collect();
-    let scopes = scopes(design).into_iter();
-    let inner = scopes.map(|(scope, nets)| {
-        let nets = nets.into_iter().map(|net| design.net(net)).collect();
-        (format!("{}.{scope}", design.name), nets)
-    });
-    std::iter::once((design.name.clone(), ports)).chain(inner).collect()
+    let mut shown = vec![(design.name.clone(), ports)];
+    for (scope, ids) in scopes(design) {
+        let nets = ids.into_iter().map(|net| design.net(net)).collect();
+        shown.push((format!("{}.{scope}", design.name), nets));
+    }
+    shown
 }
 
 /// Returns the save file with which GTKWave shows a waveform of the design: `gtkwave FILE.vcd FILE.gtkw`. For example, it lists a

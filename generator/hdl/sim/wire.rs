@@ -40,8 +40,7 @@ pub(super) struct Wire<'a> {
 
 /// Returns a string as VCD can hold it: a space would end it. For example, `12 <- sin` becomes `12_<-_sin`.
 fn vcd_text(text: &str) -> String {
-    let graphic = |c: char| if c.is_ascii_graphic() { c } else { '_' };
-    text.chars().map(graphic).collect()
+    text.chars().map(|c| if c.is_ascii_graphic() { c } else { '_' }).collect()
 }
 
 impl Atom for Wire<'_> {
@@ -78,9 +77,9 @@ impl Atom for Wire<'_> {
             }
             ProbeView::Net { .. } => (format!("Bits::<{width}>"), TypeKind::Bits(width)),
             ProbeView::Microinstruction { names, .. } => {
-                let names = names.iter().map(|name| vcd_text(name));
-                let names = ["idle".to_owned()].into_iter().chain(names);
-                ("microinstruction".to_owned(), TypeKind::Enum(names.collect()))
+                let mut values = vec!["idle".to_owned()];
+                values.extend(names.iter().map(|name| vcd_text(name)));
+                ("microinstruction".to_owned(), TypeKind::Enum(values))
             }
         };
         TypeDescriptor { name, kind }
@@ -95,8 +94,10 @@ impl Atom for Wire<'_> {
             ProbeView::Microinstruction { run: false, .. } => VCDValue::String("idle".to_owned()),
             ProbeView::Microinstruction { names, .. } => {
                 let name = usize::try_from(self.bits).ok().and_then(|at| names.get(at));
-                let nameless = || format!("microinstruction_{}", self.bits);
-                VCDValue::String(name.map_or_else(nameless, |name| vcd_text(name)))
+                VCDValue::String(match name {
+                    Some(name) => vcd_text(name),
+                    None => format!("microinstruction_{}", self.bits),
+                })
             }
         }
     }

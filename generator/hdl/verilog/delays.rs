@@ -29,10 +29,17 @@ pub fn section(builder: &mut Builder<'_>, naming: &Naming) -> Vec<String> {
         let instance = builder.expressions.fresh(&format!("delay_of_{}", words + 1));
         let values: Vec<_> = lines.iter().flat_map(|line| &line.values).collect();
         let bits: u32 = values.iter().map(|it| plan.design.width(it.data)).sum();
-        let enable = enable.map_or(literal(1, 1), |enable| builder.expressions.whole(enable));
-        let leave = values.iter().map(|it| plan.design.register(it.last()).q);
-        let leave = together(leave.map(|q| plan.design.net(q).name.clone()).collect());
-        let enter = together(values.iter().map(|it| builder.expressions.whole(it.data)).collect());
+        let enable = match enable {
+            Some(enable) => builder.expressions.whole(enable),
+            None => literal(1, 1),
+        };
+        let mut leaving = Vec::new();
+        let mut entering = Vec::new();
+        for value in &values {
+            leaving.push(plan.design.net(plan.design.register(value.last()).q).name.clone());
+            entering.push(builder.expressions.whole(value.data));
+        }
+        let (leave, enter) = (together(leaving), together(entering));
         let reset = plan.reset.map_or(literal(1, 1), |reset| plan.design.net(reset).name.clone());
         let head = format!(
             "{} #(.WIDTH({bits}), .WORDS({words}), .BITS({})) {instance} (",

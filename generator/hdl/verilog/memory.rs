@@ -50,16 +50,16 @@ fn fields(design: &Design, width: u32) -> Result<Vec<String>> {
         total == width,
         "the fields of the control word have {total} bits, the control ROM {width}"
     );
-    let names: Vec<_> = fields
-        .iter()
-        .map(|field| match &field.lines[..] {
+    let mut names = Vec::new();
+    for field in fields {
+        names.push(match &field.lines[..] {
             [] => field.name.clone(),
             [line] => format!("{} (line {line})", field.name),
             lines => {
                 let lines: Vec<_> = lines.iter().map(ToString::to_string).collect();
                 format!("{} (lines {})", field.name, lines.join(" "))
             }
-        })
-        .collect();
+        });
+    }
     Ok(comment(0, &format!("Fields from the left: {}", names.join(", "))))
 }

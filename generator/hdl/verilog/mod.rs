@@ -81,8 +81,11 @@ pub fn modules(plan: &Plan, naming: &Naming, origin: &Origin) -> Vec<ModuleFile>
 /// # Errors
 /// Fails if the words of the control ROM are not exactly as wide as all fields, or if a word is wider than its ROM.
 pub fn memories(design: &Design, naming: &Naming) -> Result<Vec<(String, String)>> {
-    let apart = |id: &RomId| !naming.style.inline && !naming.second.contains(id);
-    let roms = naming.files.iter().enumerate().map(|(at, file)| (RomId(at as u32), file));
-    let roms = roms.filter(|(id, _)| apart(id));
-    roms.map(|(id, file)| Ok((file.clone(), memory::contents(design, id)?))).collect()
+    let mut memories = Vec::new();
+    for (id, file) in (0..).map(RomId).zip(&naming.files) {
+        if !naming.style.inline && !naming.second.contains(&id) {
+            memories.push((file.clone(), memory::contents(design, id)?));
+        }
+    }
+    Ok(memories)
 }

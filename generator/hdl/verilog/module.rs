@@ -328,9 +328,10 @@ impl<'a> Builder<'a> {
         let (range, last) = (range(width), rom.words.len().saturating_sub(1));
         let declaration = format!("    {attribute}reg {range} {memory} [0:{last}];");
         if style.inline {
-            let place = |address, _| format!("{memory}[{address}] = ");
-            let begin = vec![declaration, "    initial begin".to_owned()];
-            return [begin, words(design, id, 8, &place), vec!["    end".to_owned()]].concat();
+            let mut lines = vec![declaration, "    initial begin".to_owned()];
+            lines.extend(words(design, id, 8, &|address, _| format!("{memory}[{address}] = ")));
+            lines.push("    end".to_owned());
+            return lines;
         }
         let radix = if is_control_rom(design, id) { 'b' } else { 'h' };
         let parameter = &self.naming.parameters[id.index()];

@@ -61,7 +61,10 @@ impl Naming {
             });
         }
         let numbers = (0..design.roms.len() as u32).map(RomId);
-        let file = |rom: &NetlistRom| format!("{}_{}.mem", design.name, rom.name);
+        let mut files = Vec::new();
+        for rom in &design.roms {
+            files.push(format!("{}_{}.mem", design.name, rom.name));
+        }
         Self {
             control_instance,
             datapath_instance,
@@ -73,7 +76,7 @@ impl Naming {
                 .iter()
                 .map(|rom| names.fresh(&format!("{}_FILE", constant_name(&rom.name))))
                 .collect(),
-            files: design.roms.iter().map(file).collect(),
+            files,
             choices: choices(&design.control, &mut names),
             unused: names.fresh("unused"),
             valid: names.fresh("valid"),
@@ -116,14 +119,18 @@ impl Naming {
 }
 
 fn choices(control: &Control, names: &mut Names) -> Vec<Vec<String>> {
-    let mut of_field = |field: &crate::netlist::Field| match &field.kind {
-        FieldKind::Select(choices) => choices
-            .iter()
-            .map(|choice| names.fresh(constant_name(&format!("{} {choice}", field.name)).as_str()))
-            .collect(),
-        FieldKind::Enable | FieldKind::Flag | FieldKind::Sequence => Vec::new(),
-    };
-    control.fields.iter().map(&mut of_field).collect()
+    let mut all = Vec::new();
+    for field in &control.fields {
+        let mut of_field = Vec::new();
+        if let FieldKind::Select(choices) = &field.kind {
+            for choice in choices {
+                let wish = constant_name(&format!("{} {choice}", field.name));
+                of_field.push(names.fresh(&wish));
+            }
+        }
+        all.push(of_field);
+    }
+    all
 }
 
 /// Returns whether a ROM is the control ROM.

@@ -177,11 +177,11 @@ impl<'a> Plan<'a> {
     /// such comparisons.
     pub fn constant_comparison(&self, a: NetId, b: NetId) -> Option<u64> {
         let format = self.design.net(a).format;
-        let constant = |id: NetId| match self.roots[id.index()].single() {
+        let constants = [a, b].map(|id| match self.roots[id.index()].single() {
             Some(BitRun::Constant { value, .. }) => Some(format.raw(value)),
             _ => None,
-        };
-        match (constant(a), constant(b)) {
+        });
+        match (constants[0], constants[1]) {
             (Some(a), Some(b)) => Some(u64::from(a < b)),
             (Some(a), None) if a == format.max_raw() => Some(0),
             (None, Some(b)) if b == format.min_raw() => Some(0),

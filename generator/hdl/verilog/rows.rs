@@ -2,7 +2,7 @@
 
 use super::plan::Plan;
 use super::text::{COLUMNS, annotated, range};
-use crate::netlist::{Design, NetId, Port};
+use crate::netlist::{Design, NetId};
 
 /// Returns the texts with a comma after each except the last. For example, `a` and `b` become `a,` and `b`.
 pub fn separated(mut texts: Vec<String>) -> Vec<String> {
@@ -22,12 +22,14 @@ pub fn connections(design: &Design) -> Vec<String> {
 /// Returns a variable declaration for each input of a design and a wire declaration for each output. With `with_signs` they are
 /// signed where the ports are.
 pub fn variables(design: &Design, with_signs: bool) -> Vec<String> {
-    let row = |port: &Port| {
+    let mut rows = Vec::new();
+    for port in &design.ports {
         let net = design.net(port.net);
         let kind = if port.role.is_input() { "reg" } else { "wire" };
-        Row::port("", kind, net.format.width(), with_signs && net.format.signed, &net.name, "")
-    };
-    Row::declarations(&design.ports.iter().map(row).collect::<Vec<_>>())
+        let signed = with_signs && net.format.signed;
+        rows.push(Row::port("", kind, net.format.width(), signed, &net.name, ""));
+    }
+    Row::declarations(&rows)
 }
 
 /// One declaration of a net or port. Its parts are aligned in columns with the declarations around it.

@@ -23,14 +23,14 @@ pub fn module(
         let direction = if port.role.is_input() { "input" } else { "output" };
         ports.push(Row::net(plan, direction, "wire", port.net));
     }
-    let between: Vec<_> = units
-        .iter()
-        .flat_map(|(_, interface)| &interface.outputs)
-        .filter(|net| !plan.is_port(**net))
-        .map(|net| Row::net(plan, "", "wire", *net))
-        .collect();
-    let between = Row::declarations(&between);
-    let mut body = writer::section("Between the control unit and the datapath", between);
+    let mut between = Vec::new();
+    for net in units.iter().flat_map(|(_, interface)| &interface.outputs) {
+        if !plan.is_port(*net) {
+            between.push(Row::net(plan, "", "wire", *net));
+        }
+    }
+    let declarations = Row::declarations(&between);
+    let mut body = writer::section("Between the control unit and the datapath", declarations);
     for (partition, interface) in units {
         body.push(String::new());
         body.extend(instance(plan, naming, partition, interface));
@@ -46,16 +46,28 @@ fn instance(
     partition: Partition,
     interface: &Interface,
 ) -> Vec<String> {
-    let clock = interface.clocked.then_some("clk");
-    let nets = interface.inputs.iter().chain(&interface.outputs);
-    let names = clock.into_iter().chain(nets.map(|net| plan.design.net(*net).name.as_str()));
-    let connect = |name: &str| format!(".{name}({name})");
-    let roms = interface.roms.iter().filter(|_| !naming.style.inline);
-    let parameters = roms.map(|rom| connect(&naming.parameters[rom.index()]));
+    let mut connections = Vec::new();
+    if interface.clocked {
+        connections.push(connected("clk"));
+    }
+    for net in interface.inputs.iter().chain(&interface.outputs) {
+        connections.push(connected(&plan.design.net(*net).name));
+    }
+    let mut parameters = Vec::new();
+    if !naming.style.inline {
+        for rom in &interface.roms {
+            parameters.push(connected(&naming.parameters[rom.index()]));
+        }
+    }
     writer::instance(
         &naming.module(partition),
-        &separated(parameters.collect()),
+        &separated(parameters),
         naming.instance(partition),
-        &separated(names.map(connect).collect()),
+        &separated(connections),
     )
+}
+
+/// Returns the connection of a port, or of a parameter, with a net or parameter of the same name.
+fn connected(name: &str) -> String {
+    format!(".{name}({name})")
 }

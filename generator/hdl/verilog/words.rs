@@ -7,13 +7,14 @@ use glint_base::fixed::mask;
 
 /// Returns the comment on the word at `address` of a ROM, or `None` if the word has no comment.
 pub fn word_note(design: &Design, id: RomId, address: usize) -> Option<String> {
-    let given = design.rom(id).comments.get(address);
-    let name = || {
-        let executed =
-            design.control.microprogram.get(address).filter(|_| is_control_rom(design, id))?;
-        Some(&executed.name)
-    };
-    given.or_else(name).map(|text| ascii(text))
+    if let Some(comment) = design.rom(id).comments.get(address) {
+        return Some(ascii(comment));
+    }
+    if !is_control_rom(design, id) {
+        return None;
+    }
+    let executed = design.control.microprogram.get(address)?;
+    Some(ascii(&executed.name))
 }
 
 /// Returns a control word in binary, with `_` between its fields. For example, word 3 of `rough` is `01_1_0_0_1_0_0_1`.

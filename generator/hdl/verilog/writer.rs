@@ -11,8 +11,7 @@ pub fn module(
 ) -> String {
     let start = ["", "`default_nettype none", ""].map(str::to_owned);
     let head = head(0, &format!("module {name}"), parameters, "", ports);
-    let lines = header.into_iter().chain(start).chain(head).chain(body);
-    let lines: Vec<String> = lines.collect();
+    let lines = [header, start.into(), head, body].concat();
     format!("{}\nendmodule\n{other}\n`default_nettype wire\n", lines.join("\n"))
 }
 
@@ -23,8 +22,8 @@ pub fn instance(
     name: &str,
     connections: &[String],
 ) -> Vec<String> {
-    let connections = connections.iter().map(|it| format!("        {it}")).collect();
-    head(4, module, parameters, name, connections)
+    let indented = connections.iter().map(|it| format!("        {it}")).collect();
+    head(4, module, parameters, name, indented)
 }
 
 /// Returns a name with lists of parameters, if there are any, and of ports, which are indented already.

@@ -33,18 +33,22 @@ impl RustHdl {
     pub fn new(design: &Design, contract: &dyn Contract) -> Result<Self> {
         let latency = design.pipeline.as_ref().map(|pipeline| pipeline.stages.len() as u64);
         let in_ready = design.port(|role| role == Role::InReady).map(|port| port.net);
-        let team = |_| Ok(Team { instances: Instances::new(design, contract)?, latency, in_ready });
-        Ok(Self { teams: (0..rayon::current_num_threads()).map(team).collect::<Result<_>>()? })
+        let mut teams = Vec::new();
+        for _ in 0..rayon::current_num_threads() {
+            teams.push(Team { instances: Instances::new(design, contract)?, latency, in_ready });
+        }
+        Ok(Self { teams })
     }
 }
 
 impl Engine for RustHdl {
     fn compute(&mut self, points: &Points) -> Result<Vec<i64>> {
         let count = self.teams.len();
-        let share = |at: usize| points.len() * at / count..points.len() * (at + 1) / count;
-        let teams = self.teams.par_iter_mut().enumerate();
-        let parts: Vec<Vec<i64>> =
-            teams.map(|(at, team)| team.compute(points, share(at))).collect::<Result<_>>()?;
+        let shares = self.teams.par_iter_mut().enumerate().map(|(at, team)| {
+            let share = points.len() * at / count..points.len() * (at + 1) / count;
+            team.compute(points, share)
+        });
+        let parts: Vec<Vec<i64>> = shares.collect::<Result<_>>()?;
         Ok(parts.concat())
     }
 }
@@ -84,19 +88,14 @@ impl Team {
                 break;
             }
             let ready = in_ready.is_none_or(|net| instances.simulator.lane(net, 0) == 1);
-            let takes = |tasks: &VecDeque<LaneTask>| latency.map_or(tasks.is_empty(), |_| ready);
-            for tasks in tasks.iter_mut().filter(|tasks| takes(tasks)) {
-                tasks.extend(waiting.next().map(|point| LaneTask {
-                    point,
-                    shown: 0,
-                    taken: clock,
-                }));
+            let mut offered: [Option<&[i64]>; LANES] = [None; LANES];
+            for (tasks, offered) in tasks.iter_mut().zip(&mut offered) {
+                let takes = if latency.is_some() { ready } else { tasks.is_empty() };
+                if takes && let Some(point) = waiting.next() {
+                    tasks.push_back(LaneTask { point, shown: 0, taken: clock });
+                    *offered = Some(points.operands(point));
+                }
             }
-            let taken = |tasks: &VecDeque<LaneTask>| {
-                let newest = tasks.back().filter(|task| task.taken == clock);
-                newest.map(|task| points.operands(task.point))
-            };
-            let offered: [Option<&[i64]>; LANES] = array::from_fn(|lane| taken(&tasks[lane]));
             let was_offering = mem::replace(&mut offering, offered.iter().any(Option::is_some));
             if offering {
                 instances.offer(offered);
@@ -118,10 +117,10 @@ impl Team {
                 if shows {
                     ensure!(task.shown < results, "there are more than {results} results");
                     let to = (points.results[task.point] - base + task.shown) * width;
-                    out[to..to + width]
-                        .iter_mut()
-                        .zip(instances.results(lane))
-                        .for_each(|(to, raw)| *to = raw);
+                    for (place, raw) in out[to..to + width].iter_mut().zip(instances.results(lane))
+                    {
+                        *place = raw;
+                    }
                     task.shown += 1;
                 }
                 ensure!(clocks < LIMIT, "the device does not end");

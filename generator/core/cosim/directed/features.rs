@@ -175,7 +175,9 @@ impl Watch {
 
 /// Returns a copy of the design in which every net has a name, because only named nets can be watched in simulation.
 pub fn observable(design: &Design) -> Design {
-    let mut design = design.clone();
-    design.nets.iter_mut().for_each(|net| net.named = true);
-    design
+    let mut observable = design.clone();
+    for net in &mut observable.nets {
+        net.named = true;
+    }
+    observable
 }

@@ -21,7 +21,7 @@ mod pool;
 mod side_by_side;
 mod words;
 
-use std::collections::{BinaryHeap, HashMap, HashSet};
+use std::collections::{BTreeSet, BinaryHeap, HashMap, HashSet};
 use std::sync::{Arc, Mutex, PoisonError};
 
 use anyhow::Result;
@@ -83,11 +83,11 @@ impl ComputationCache {
             known.entry(key).or_default().clone()
         };
         // A thread that wants the same computations waits here.
-        let mut slot = slot.lock().unwrap_or_else(PoisonError::into_inner);
-        if slot.is_none() {
-            *slot = Some(computations(design, contract)?);
+        let mut found = slot.lock().unwrap_or_else(PoisonError::into_inner);
+        if found.is_none() {
+            *found = Some(computations(design, contract)?);
         }
-        Ok(slot.clone().unwrap_or_default())
+        Ok(found.clone().unwrap_or_default())
     }
 }
 
@@ -102,10 +102,14 @@ pub fn computations(design: &Design, contract: &dyn Contract) -> Result<Computat
     let mut watch = Watch::new(&observed);
     let mut candidates = Vec::new();
     let pool = pool::pool(contract);
-    let watched = [&pool.corners, &pool.drawn].into_iter().flat_map(|all| all.chunks(LANES));
-    let watched = watched.map(|batch| (batch, true));
-    let others = [&pool.readers, &pool.sweeps].into_iter().flat_map(|all| all.chunks(LANES));
-    let batches = watched.chain(others.map(|batch| (batch, false)));
+    let mut batches = Vec::new();
+    for (points, watched) in
+        [(&pool.corners, true), (&pool.drawn, true), (&pool.readers, false), (&pool.sweeps, false)]
+    {
+        for batch in points.chunks(LANES) {
+            batches.push((batch, watched));
+        }
+    }
     for (batch, watched) in batches {
         let shown = device.run(batch.iter().map(Vec::as_slice), |machine, busy| {
             if watched { watch.note(machine, busy) } else { watch.note_words(machine, busy) }
@@ -124,23 +128,32 @@ pub fn computations(design: &Design, contract: &dyn Contract) -> Result<Computat
     }
     let mut chosen: Vec<usize> = (0..pool.corners.len()).collect();
     if contract.length().is_some() {
-        let bright = candidates.iter_mut().filter(|candidate| candidate.class + 1 == CLASSES);
         let first = watch.count() as u32;
-        bright.for_each(|it| it.features.extend(it.read.iter().map(|word| first + word)));
+        for candidate in &mut candidates {
+            if candidate.class + 1 == CLASSES {
+                candidate.features.extend(candidate.read.iter().map(|word| first + word));
+            }
+        }
         let sweeping = candidates.len() - pool.sweeps.len();
         chosen.extend(sweeps(&candidates[sweeping..]).into_iter().map(|at| sweeping + at));
     }
-    let is_line = |at: &&usize| candidates[**at].shown.clocks > words::LONGEST;
-    let known =
-        chosen.iter().filter(is_line).flat_map(|&at| candidates[at].read.iter().copied()).collect();
+    let mut known = BTreeSet::new();
+    for &at in &chosen {
+        if candidates[at].shown.clocks > words::LONGEST {
+            known.extend(candidates[at].read.iter().copied());
+        }
+    }
     let of_words = words::chosen(design, contract, &candidates, &known)?;
     chosen.extend(of_words.chosen);
     chosen.sort_unstable();
     chosen.dedup();
     let words: usize = design.roms.iter().map(|rom| rom.words.len()).sum();
     choose(&candidates, watch.count(), watch.count() + words, &mut chosen);
-    let chosen = chosen.into_iter().map(|at| candidates[at].operands.clone());
-    let operands = chosen.chain(of_words.found).collect();
+    let mut operands = Vec::new();
+    for at in chosen {
+        operands.push(candidates[at].operands.clone());
+    }
+    operands.extend(of_words.found);
     Ok(Computations { operands, word_stride: of_words.word_stride })
 }
 
@@ -174,38 +187,55 @@ fn class(contract: &dyn Contract, shown: &OutputTrace) -> usize {
 /// Adds the candidates that show, per clock, the most features that were not shown often enough. It ends when no feature is
 /// missing or there are enough clocks. Features from number `words` on are ROM words, which must be read once.
 fn choose(candidates: &[PoolComputation], words: usize, count: usize, chosen: &mut Vec<usize>) {
-    let mut wanted = vec![TIMES; count];
-    wanted[words..].fill(1);
-    let mut clocks = 0;
-    let done = |wanted: &mut [u8], clocks: &mut u32, at: usize| {
-        *clocks += candidates[at].shown.clocks;
-        for &feature in &candidates[at].features {
-            let wanted = &mut wanted[feature as usize];
-            *wanted = wanted.saturating_sub(1);
-        }
-    };
+    let mut coverage = FeatureCoverage { wanted: vec![TIMES; count], clocks: 0 };
+    coverage.wanted[words..].fill(1);
     for &at in &*chosen {
-        done(&mut wanted, &mut clocks, at);
+        coverage.add(&candidates[at]);
     }
-    let gain = |wanted: &[u8], at: usize| {
-        let candidate = &candidates[at];
-        let news = candidate.features.iter().filter(|&&feature| wanted[feature as usize] > 0);
-        ((news.count() as u64) << 20) / u64::from(candidate.shown.clocks.max(1))
-    };
     // The gain of a candidate only falls as others are chosen. The first candidate whose gain has not changed is therefore
     // the best.
-    let mut heap: BinaryHeap<(u64, std::cmp::Reverse<usize>)> =
-        (0..candidates.len()).map(|at| (gain(&wanted, at), std::cmp::Reverse(at))).collect();
+    let mut heap = BinaryHeap::new();
+    for (at, candidate) in candidates.iter().enumerate() {
+        heap.push((coverage.gain(candidate), std::cmp::Reverse(at)));
+    }
     while let Some((stated, std::cmp::Reverse(at))) = heap.pop() {
-        let now = gain(&wanted, at);
+        let now = coverage.gain(&candidates[at]);
         if now == 0 {
             continue;
         }
         if now < stated {
             heap.push((now, std::cmp::Reverse(at)));
-        } else if clocks + candidates[at].shown.clocks <= MOST_CLOCKS {
-            done(&mut wanted, &mut clocks, at);
+        } else if coverage.clocks + candidates[at].shown.clocks <= MOST_CLOCKS {
+            coverage.add(&candidates[at]);
             chosen.push(at);
         }
+    }
+}
+
+/// The features that the chosen computations still lack, and their clocks.
+struct FeatureCoverage {
+    /// How many more times each feature must be shown.
+    wanted: Vec<u8>,
+    /// The clocks of all chosen computations.
+    clocks: u32,
+}
+
+impl FeatureCoverage {
+    /// Adds a computation.
+    fn add(&mut self, computation: &PoolComputation) {
+        self.clocks += computation.shown.clocks;
+        for &feature in &computation.features {
+            let wanted = &mut self.wanted[feature as usize];
+            *wanted = wanted.saturating_sub(1);
+        }
+    }
+
+    /// Returns the number of features that a computation would add, per 2^20 clocks.
+    fn gain(&self, computation: &PoolComputation) -> u64 {
+        let mut news: u64 = 0;
+        for &feature in &computation.features {
+            news += u64::from(self.wanted[feature as usize] > 0);
+        }
+        (news << 20) / u64::from(computation.shown.clocks.max(1))
     }
 }

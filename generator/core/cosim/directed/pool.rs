@@ -61,11 +61,6 @@ pub fn pool(contract: &dyn Contract) -> Pool {
         points.draw(&mut random, values, u64::MAX);
     }
     let control = points.operands().iter().filter(|operand| !operand.colour).count();
-    let bright = |values: &mut [i64]| {
-        for (value, operand) in values.iter_mut().zip(points.operands()).skip(control) {
-            *value = operand.domain.1;
-        }
-    };
     if contract.length().is_none() {
         for number in 0..SHOWN {
             let mut values = points.evenly(&mut random);
@@ -74,13 +69,13 @@ pub fn pool(contract: &dyn Contract) -> Pool {
                 1 => near_ends(&points, &mut random, &mut values),
                 _ => anywhere(&points, &mut random, &mut values),
             }
-            bright(&mut values);
+            brighten(&points, &mut values);
             points.show(&mut values[..control]);
             readers.push(values);
         }
     }
     if let Some((length, highlight)) = points.length().zip(contract.highlight()) {
-        sweeps = lines(highlight, &points, length, &bright);
+        sweeps = lines(highlight, &points, length);
     }
     for at in 0..control {
         let operand = &points.operands()[at];
@@ -91,7 +86,7 @@ pub fn pool(contract: &dyn Contract) -> Pool {
         }
         for value in low..=high {
             let mut values = points.evenly(&mut random);
-            bright(&mut values);
+            brighten(&points, &mut values);
             values[at] = value;
             if let Some(length) = points.length() {
                 values[length] = random.within(0, 2);
@@ -108,7 +103,16 @@ pub fn pool(contract: &dyn Contract) -> Pool {
         drawn.sort_by_key(|values| values[length]);
         readers.sort_by_key(|values| values[length]);
     }
-    Pool { corners: corners(&points, &bright), drawn, readers, sweeps }
+    Pool { corners: corners(&points), drawn, readers, sweeps }
+}
+
+/// Sets the colours to their largest values. They come after the control operands.
+fn brighten(points: &PointSource<'_>, values: &mut [i64]) {
+    let operands = points.operands();
+    let control = operands.iter().filter(|operand| !operand.colour).count();
+    for (value, operand) in values.iter_mut().zip(operands).skip(control) {
+        *value = operand.domain.1;
+    }
 }
 
 /// Moves operands with a fraction toward the ends of their domains, most of them to the upper end. A cosine there belongs to
@@ -138,56 +142,61 @@ fn anywhere(points: &PointSource<'_>, random: &mut Random, values: &mut [i64]) {
 }
 
 /// Returns every combination of the ends of the control operands' domains, and of their formats if those are not too many.
-fn corners(points: &PointSource<'_>, bright: &dyn Fn(&mut [i64])) -> Vec<Vec<i64>> {
-    let ends = |with_format: bool| -> Vec<Vec<i64>> {
-        let of = points.operands().iter().enumerate().map(|(at, operand)| {
-            let (low, high) = operand.domain;
-            if operand.colour {
-                return vec![high];
-            }
-            if points.length() == Some(at) {
-                return vec![high.min(CORNER_LENGTH)];
-            }
-            let format = operand.format;
-            let mut ends = vec![low, high];
-            if with_format {
-                ends.extend([format.min_raw() as i64, format.max_raw() as i64]);
-            }
-            ends.sort_unstable();
-            ends.dedup();
-            ends
-        });
-        of.collect()
-    };
-    let count = |ends: &[Vec<i64>]| {
-        ends.iter().map(Vec::len).fold(1, |product: usize, ends| product.saturating_mul(ends))
-    };
-    let ends = Some(ends(true)).filter(|ends| count(ends) <= MOST_CORNERS).unwrap_or(ends(false));
+fn corners(points: &PointSource<'_>) -> Vec<Vec<i64>> {
+    let mut ends = corner_values(points, true);
+    if combinations(&ends) > MOST_CORNERS {
+        ends = corner_values(points, false);
+    }
+    let mut corners: Vec<Vec<i64>> = Vec::new();
     // By their numbers: all of them would take more memory than there is where operands are many.
-    let corner = |mut number: usize| {
-        let digit = |ends: &Vec<i64>| {
-            let end = ends[number % ends.len()];
-            number /= ends.len();
-            end
-        };
-        let mut corner: Vec<i64> = ends.iter().rev().map(digit).collect();
-        corner.reverse();
-        corner
-    };
-    let mut corners: Vec<Vec<i64>> = (0..count(&ends).min(MOST_CORNERS)).map(corner).collect();
-    corners.iter_mut().for_each(|corner| bright(corner));
+    for number in 0..combinations(&ends).min(MOST_CORNERS) {
+        let mut corner = vec![0; ends.len()];
+        let mut rest = number;
+        for (value, ends) in corner.iter_mut().zip(&ends).rev() {
+            *value = ends[rest % ends.len()];
+            rest /= ends.len();
+        }
+        brighten(points, &mut corner);
+        corners.push(corner);
+    }
     corners
+}
+
+/// Returns the values of each operand in the corners: the ends of its domain, and of its format if that is wanted.
+fn corner_values(points: &PointSource<'_>, with_format: bool) -> Vec<Vec<i64>> {
+    let mut all = Vec::new();
+    for (at, operand) in points.operands().iter().enumerate() {
+        let (low, high) = operand.domain;
+        let mut ends = if operand.colour {
+            vec![high]
+        } else if points.length() == Some(at) {
+            vec![high.min(CORNER_LENGTH)]
+        } else if with_format {
+            let format = operand.format;
+            vec![low, high, format.min_raw() as i64, format.max_raw() as i64]
+        } else {
+            vec![low, high]
+        };
+        ends.sort_unstable();
+        ends.dedup();
+        all.push(ends);
+    }
+    all
+}
+
+/// Returns the number of combinations of one value for each operand.
+fn combinations(values: &[Vec<i64>]) -> usize {
+    let mut product: usize = 1;
+    for values in values {
+        product = product.saturating_mul(values.len());
+    }
+    product
 }
 
 /// Draws lines from the peak to the edge of the highlight, which read the words of a table one after another: for the
 /// first values of each other operand, and for each power of two of intervals, or the end of the domain if that is
 /// less. The longest are first.
-fn lines(
-    highlight: &Highlight,
-    points: &PointSource,
-    length: usize,
-    bright: &dyn Fn(&mut [i64]),
-) -> Vec<Vec<i64>> {
+fn lines(highlight: &Highlight, points: &PointSource, length: usize) -> Vec<Vec<i64>> {
     let mut random = Random::new(2);
     let mut lines = Vec::new();
     let operands = points.operands();
@@ -196,7 +205,7 @@ fn lines(
     let others: Vec<usize> = (0..operands.len()).filter(free).collect();
     for (bits, first) in LINE_BITS.rev().flat_map(|bits| FIRST_VALUES.map(|first| (bits, first))) {
         let mut values = points.evenly(&mut random);
-        bright(&mut values);
+        brighten(points, &mut values);
         for &at in &others {
             let (low, high) = operands[at].domain;
             values[at] = (low + first).min(high);

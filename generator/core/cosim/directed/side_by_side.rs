@@ -37,11 +37,13 @@ impl OutputTrace {
         if self.results.len() != from.results.len() || self.clocks != from.clocks {
             return u64::MAX;
         }
-        let outputs = |shown: &Self| -> Vec<u64> {
-            shown.results.iter().flat_map(|(_, outputs)| outputs.iter().copied()).collect()
-        };
-        let pairs = outputs(self).into_iter().zip(outputs(from));
-        pairs.fold(0, |sum: u64, (a, b)| sum.saturating_add(a.abs_diff(b)))
+        let mut sum: u64 = 0;
+        let own = self.results.iter().flat_map(|(_, outputs)| outputs);
+        let other = from.results.iter().flat_map(|(_, outputs)| outputs);
+        for (a, b) in own.zip(other) {
+            sum = sum.saturating_add(a.abs_diff(*b));
+        }
+        sum
     }
 }
 
@@ -140,10 +142,10 @@ impl SideBySide {
             self.machine.update(false, Some(&self.inputs));
             let bits = |net| lanes(self.machine.lanes(net));
             let (busy, valid) = (bits(self.busy), bits(self.ports.valid));
-            let ended =
-                |(lane, shown): (usize, &OutputTrace)| shown.clocks > 0 || busy >> lane & 1 == 0;
-            for (lane, shown) in shown.iter_mut().enumerate().filter(|(_, shown)| shown.clocks == 0)
-            {
+            for (lane, shown) in shown.iter_mut().enumerate() {
+                if shown.clocks > 0 {
+                    continue;
+                }
                 if busy >> lane & 1 == 0 {
                     shown.clocks = clock;
                 } else if valid >> lane & 1 == 1 {
@@ -152,7 +154,7 @@ impl SideBySide {
                     shown.results.push((clock, outputs.collect()));
                 }
             }
-            if shown.iter().enumerate().all(ended) {
+            if shown.iter().all(|shown| shown.clocks > 0) {
                 return Ok(shown);
             }
             see(&self.machine, busy);

@@ -14,7 +14,7 @@ use super::PoolComputation;
 use super::memories::Memories;
 use super::side_by_side::{LANES, OutputTrace, SideBySide};
 use crate::cosim::{PointSource, Random};
-use glint_golden::Contract;
+use glint_golden::{Contract, Operand};
 use glint_rtl::netlist::Design;
 use glint_rtl::sim::{CompiledDesign, Machine};
 
@@ -96,9 +96,9 @@ fn readers(candidates: &[PoolComputation]) -> BTreeMap<u32, Vec<usize>> {
     let mut readers: BTreeMap<u32, Vec<usize>> = BTreeMap::new();
     for at in order {
         for &word in &candidates[at].read {
-            let readers = readers.entry(word).or_default();
-            if readers.len() < LANES {
-                readers.push(at);
+            let of_word = readers.entry(word).or_default();
+            if of_word.len() < LANES {
+                of_word.push(at);
             }
         }
     }
@@ -117,9 +117,11 @@ impl WordSearch<'_> {
     /// Chooses computations that notice these bits of a word.
     fn word(&mut self, word: u32, mut left: u64, readers: &[usize]) -> Result<()> {
         let candidates = self.candidates;
-        let chosen = readers.iter().filter(|at| self.result.chosen.contains(at));
-        for at in chosen.copied().collect::<Vec<_>>() {
-            left &= !self.noticed(word, left, &candidates[at].operands, &candidates[at].shown)?;
+        for at in readers {
+            if self.result.chosen.contains(at) {
+                let PoolComputation { operands, shown, .. } = &candidates[*at];
+                left &= !self.noticed(word, left, operands, shown)?;
+            }
         }
         let mut nearest: Vec<&[i64]> =
             readers.iter().map(|&at| candidates[at].operands.as_slice()).collect();
@@ -131,9 +133,12 @@ impl WordSearch<'_> {
         while left & !unnoticed != 0 {
             let bit = lowest(left & !unnoticed);
             let shown = self.run(&all, word, bit)?;
-            let pairs = readers.iter().zip(&shown);
-            let differs = pairs.filter(|(at, shown)| candidates[**at].shown != **shown);
-            let noticing: Vec<usize> = differs.map(|(at, _)| *at).collect();
+            let mut noticing: Vec<usize> = Vec::new();
+            for (&at, shown) in readers.iter().zip(&shown) {
+                if candidates[at].shown != *shown {
+                    noticing.push(at);
+                }
+            }
             let Some(&first) = noticing.first() else {
                 unnoticed |= bit;
                 continue;
@@ -174,8 +179,9 @@ impl WordSearch<'_> {
             } else {
                 // The same fault shows the same.
                 let shown = if probe == bit { shown } else { self.run(&operands, word, probe)? };
-                let shows = fault_free.iter().zip(&shown).map(|(right, it)| it.differs(right));
-                kept.extend(shows.zip(tried));
+                for (at, operands) in tried.into_iter().enumerate() {
+                    kept.push((shown[at].differs(&fault_free[at]), operands));
+                }
                 kept.sort_by_key(|(shows, _)| Reverse(*shows));
                 kept.truncate(KEPT);
                 round += 1;
@@ -199,13 +205,16 @@ impl WordSearch<'_> {
         operands: &[i64],
         right: &OutputTrace,
     ) -> Result<u64> {
-        let bits: Vec<u64> =
-            (0..u64::BITS).map(|bit| bits & 1 << bit).filter(|&bit| bit != 0).collect();
+        let mut single_bits: Vec<u64> = (0..u64::BITS).map(|bit| bits & 1 << bit).collect();
+        single_bits.retain(|&bit| bit != 0);
         let mut noticed = 0;
-        for faults in bits.chunks(LANES) {
+        for faults in single_bits.chunks(LANES) {
             let shown = self.device.run_with(&vec![operands; faults.len()], word, faults)?;
-            let pairs = faults.iter().zip(shown).filter(|(_, shown)| shown != right);
-            noticed |= pairs.fold(0, |bits, (bit, _)| bits | bit);
+            for (bit, shown) in faults.iter().zip(shown) {
+                if shown != *right {
+                    noticed |= bit;
+                }
+            }
         }
         Ok(noticed)
     }
@@ -217,35 +226,40 @@ impl WordSearch<'_> {
         let Self { points, random, .. } = self;
         let operands = points.operands();
         let control = operands.iter().filter(|operand| !operand.colour).count();
-        let mut moved = |lane: usize| {
-            let pairs = operands.iter().zip(&kept[lane % kept.len()].1).enumerate();
-            let values = pairs.map(|(at, (operand, &raw))| {
-                let (low, high) = if beyond && !operand.colour {
-                    (operand.format.min_raw() as i64, operand.format.max_raw() as i64)
-                } else {
-                    operand.domain
-                };
-                if operand.colour {
-                    return high - random.magnitude(high.abs_diff(low) / 8) as i64;
+        let mut all = Vec::with_capacity(LANES);
+        for lane in 0..LANES {
+            let mut values = kept[lane % kept.len()].1.clone();
+            for (at, (operand, value)) in operands.iter().zip(&mut values).enumerate() {
+                if points.length() != Some(at) {
+                    *value = moved(random, operand, *value, beyond);
                 }
-                if points.length() == Some(at) {
-                    return raw;
-                }
-                let off = random.magnitude(high.abs_diff(low)) as i64;
-                match random.below(8) {
-                    0 | 1 => raw.saturating_add(off).clamp(low, high),
-                    2 | 3 => raw.saturating_sub(off).clamp(low, high),
-                    4 if operand.format.frac <= 0 => random.within(low, high),
-                    _ => raw,
-                }
-            });
-            let mut values: Vec<i64> = values.collect();
+            }
             if lane.is_multiple_of(4) {
                 points.to_value(&mut values[..control], random.unit());
             }
-            values
-        };
-        (0..LANES).map(&mut moved).collect()
+            all.push(values);
+        }
+        all
+    }
+}
+
+/// Returns the value of a control operand as it is, or moved by a random magnitude within its domain, or drawn anew. If `beyond`, it
+/// moves within the format of the operand. A colour is lowered at random.
+fn moved(random: &mut Random, operand: &Operand, raw: i64, beyond: bool) -> i64 {
+    let (low, high) = if beyond && !operand.colour {
+        (operand.format.min_raw() as i64, operand.format.max_raw() as i64)
+    } else {
+        operand.domain
+    };
+    if operand.colour {
+        return high - random.magnitude(high.abs_diff(low) / 8) as i64;
+    }
+    let off = random.magnitude(high.abs_diff(low)) as i64;
+    match random.below(8) {
+        0 | 1 => raw.saturating_add(off).clamp(low, high),
+        2 | 3 => raw.saturating_sub(off).clamp(low, high),
+        4 if operand.format.frac <= 0 => random.within(low, high),
+        _ => raw,
     }
 }
 

@@ -58,7 +58,10 @@ fn range(item: &str) -> Option<(i64, i64, usize)> {
         return Some((value, value, 1));
     };
     let (last, step) = rest.split_once('/').unwrap_or((rest, "1"));
-    let step = step.parse().ok().filter(|&step: &usize| step > 0)?;
+    let step: usize = step.parse().ok()?;
+    if step == 0 {
+        return None;
+    }
     Some((first.parse().ok()?, last.parse().ok()?, step))
 }
 
@@ -69,9 +72,10 @@ fn range(item: &str) -> Option<(i64, i64, usize)> {
 /// Fails if an operand is no axis of the sweep, or if a value is outside the operand's domain.
 pub fn sweep(contract: &dyn Contract, others: &[AxisValues]) -> Result<Sweep> {
     let mut sweep = contract.sweep();
-    let twice =
-        (1..others.len()).find(|&at| others[..at].iter().any(|it| it.name == others[at].name));
-    ensure!(twice.is_none(), "`{}` is named twice", twice.map_or("", |at| &others[at].name));
+    for (at, AxisValues { name, .. }) in others.iter().enumerate() {
+        let is_named_before = others[..at].iter().any(|other| other.name == *name);
+        ensure!(!is_named_before, "`{name}` is named twice");
+    }
     for AxisValues { name, values } in others {
         let names: Vec<String> = sweep.axes.iter().map(|axis| axis.name.clone()).collect();
         let axis = sweep.axes.iter_mut().find(|axis| axis.name == *name);

@@ -148,14 +148,14 @@ impl<'a> Clocks<'a> {
     /// # Errors
     /// Fails if the design cannot be simulated, or does not settle.
     pub fn check(&self, blocks: Vec<u64>, progress: &(dyn Fn(u64) + Sync)) -> Result<Option<u64>> {
-        let check = |block| {
+        let found = blocks.into_par_iter().find_map_first(|block| {
             let places = self.of_block(block);
             let count = places.end - places.start;
             let found = self.first(places);
             progress(count);
             found.transpose()
-        };
-        blocks.into_par_iter().find_map_first(check).transpose()
+        });
+        found.transpose()
     }
 
     /// Returns the first of some places at which something differs, each lane with a run of them from power-up on.

@@ -179,19 +179,18 @@ impl<'a> Job<'a> {
 
     /// Returns the remaining work of each part: of `f`, of the colours, of the combinations.
     fn parts_remaining(&self, state: &ShardState) -> [u64; 3] {
-        let shard = state.shard;
-        let blocks = |done: u64, blocks| {
-            let count = shard.count(blocks);
-            (done.min(count)..count).map(move |at| shard.block(at))
+        // The blocks of a part that are left after the first `done` blocks of the shard.
+        let left = |done: u64, blocks: u64| {
+            let count = state.shard.count(blocks);
+            (done.min(count)..count).map(|at| state.shard.block(at))
         };
-        let part = |places: &Places<'_>, done| places.visits(blocks(done, places.blocks()));
-        let clocks =
-            |clocks: &Clocks<'_>| clocks.visits(blocks(state.clocks.done, clocks.blocks()));
-        [
-            part(&self.f, state.f.done),
-            part(&self.colours, state.colours.done),
-            self.clocks.as_ref().map_or(0, clocks),
-        ]
+        let f = self.f.visits(left(state.f.done, self.f.blocks()));
+        let colours = self.colours.visits(left(state.colours.done, self.colours.blocks()));
+        let clocks = match &self.clocks {
+            Some(clocks) => clocks.visits(left(state.clocks.done, clocks.blocks())),
+            None => 0,
+        };
+        [f, colours, clocks]
     }
 
     /// Checks that a state from a file can be a state of this job. Its numbers must be in range. The function computes the recorded
@@ -249,15 +248,16 @@ impl<'a> Job<'a> {
     /// Fails if the design cannot be simulated, or does not settle.
     pub fn estimate(&self, state: &ShardState, threads: usize) -> Result<Duration> {
         let [f, colours, clocks] = self.parts_remaining(state);
-        let seconds = |count: u64, pace: Duration| count as f64 * pace.as_secs_f64();
         let mut sum = 0.0;
         for (count, places) in [(f, &self.f), (colours, &self.colours)] {
             if count > 0 {
-                sum += seconds(count, places.pace());
+                sum += count as f64 * places.pace().as_secs_f64();
             }
         }
-        if let Some(own) = self.clocks.as_ref().filter(|_| clocks > 0) {
-            sum += seconds(clocks, own.pace()?);
+        if let Some(own) = &self.clocks
+            && clocks > 0
+        {
+            sum += clocks as f64 * own.pace()?.as_secs_f64();
         }
         Ok(Duration::from_secs_f64(sum / threads.max(1) as f64))
     }

@@ -74,19 +74,22 @@ impl<'a> Places<'a> {
     /// Numbers the combinations of every word `f` with every value of a colour operand. All colour operands are alike, so one is
     /// enough.
     pub fn of_colours(contract: &'a dyn Contract) -> Self {
-        let axis = |name: &str, values| Axis { name: name.to_owned(), values };
         let colour = contract.operands().iter().find(|operand| operand.colour);
-        let axes = match contract.highlight().zip(colour) {
+        let values = match contract.highlight().zip(colour) {
             Some((highlight, colour)) => {
                 let f = highlight.f_format();
                 vec![
-                    axis("f", Values::Range(f.min_raw() as i64, f.max_raw() as i64)),
-                    axis("colour", Values::Range(colour.domain.0, colour.domain.1)),
+                    ("f", Values::Range(f.min_raw() as i64, f.max_raw() as i64)),
+                    ("colour", Values::Range(colour.domain.0, colour.domain.1)),
                 ]
             }
             // Without colours there is no product, and no place.
-            None => vec![axis("f", Values::List(Vec::new()))],
+            None => vec![("f", Values::List(Vec::new()))],
         };
+        let mut axes = Vec::new();
+        for (name, values) in values {
+            axes.push(Axis { name: name.to_owned(), values });
+        }
         Self {
             contract,
             measure: PlaceMeasure::Colour,

@@ -66,24 +66,30 @@ impl Pipe {
         model: Box<dyn Model>,
         ports: &Ports,
     ) -> Result<(Self, Vec<NetId>, Vec<NetId>)> {
-        let is_result = |role: Role| matches!(role, Role::Result | Role::Status);
-        let outputs = design.ports.iter().filter(|port| is_result(port.role));
-        let results: Vec<NetId> = outputs.map(|port| port.net).collect();
         let in_ready = design.port(|role| role == Role::InReady).map(|port| port.net);
         let latency = pipeline.stages.len();
         let mut nets = vec![ports.valid];
-        nets.extend(in_ready);
-        nets.extend(ports.side_out);
-        let mut columns = vec![ComparedValue::OutValid];
-        columns.extend(in_ready.map(|_| ComparedValue::InReady));
-        columns.extend(ports.side_out.map(|_| ComparedValue::Side));
-        nets.extend(&results);
-        columns.extend((0..results.len()).map(ComparedValue::Result));
-        let mut columns: Vec<_> = columns.into_iter().map(|column| (column, latency)).collect();
+        let mut columns = vec![(ComparedValue::OutValid, latency)];
+        if let Some(in_ready) = in_ready {
+            nets.push(in_ready);
+            columns.push((ComparedValue::InReady, latency));
+        }
+        if let Some(side_out) = ports.side_out {
+            nets.push(side_out);
+            columns.push((ComparedValue::Side, latency));
+        }
+        let mut results: Vec<NetId> = Vec::new();
+        for port in &design.ports {
+            if matches!(port.role, Role::Result | Role::Status) {
+                nets.push(port.net);
+                columns.push((ComparedValue::Result(results.len()), latency));
+                results.push(port.net);
+            }
+        }
         for (at, checkpoint) in pipeline.checkpoints.iter().enumerate() {
+            let stage = pipeline.stage_of[checkpoint.net.index()];
             nets.push(checkpoint.net);
-            columns
-                .push((ComparedValue::Checkpoint(at), pipeline.stage_of[checkpoint.net.index()]));
+            columns.push((ComparedValue::Checkpoint(at), stage));
         }
         let pipe = Self {
             columns: Arc::new(columns),

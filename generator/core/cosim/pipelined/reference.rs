@@ -55,12 +55,12 @@ impl Reference {
         for (at, checkpoint) in checkpoints.iter().enumerate() {
             due[checkpoint.address].push((checkpoint.visit, at));
         }
-        let results = results.iter().map(|&net| signal(&design.net(net).name));
-        let registers = checkpoints.iter().map(|it| signal(&it.register));
+        let of_results = results.iter().map(|&net| signal(&design.net(net).name));
+        let of_registers = checkpoints.iter().map(|it| signal(&it.register));
         Ok(Self {
             address: signal("word_address")?,
-            results: results.collect::<Result<_>>()?,
-            registers: registers.collect::<Result<_>>()?,
+            results: of_results.collect::<Result<_>>()?,
+            registers: of_registers.collect::<Result<_>>()?,
             visits: vec![0; length],
             due,
             model: Driven::new(model, ports.operands.iter().map(|port| port.name.as_str()))?,

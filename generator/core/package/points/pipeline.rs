@@ -22,11 +22,14 @@ pub fn points_bench(design: &Design, limit: u32) -> Result<PointsBench> {
         let port = design.port(|it| it == role);
         port.with_context(|| format!("`{}` is no pipeline", design.name))
     };
-    let held = design.inputs().filter_map(|port| match port.role {
-        Role::OutReady => Some((port_name(port), "1'b1".to_owned())),
-        Role::SideIn => Some((port_name(port), literal(0, design.width(port.net)))),
-        _ => None,
-    });
+    let mut held = Vec::new();
+    for port in design.inputs() {
+        match port.role {
+            Role::OutReady => held.push((port_name(port), "1'b1".to_owned())),
+            Role::SideIn => held.push((port_name(port), literal(0, design.width(port.net)))),
+            _ => {}
+        }
+    }
     let ends = [of_role(Role::Reset)?.net, of_role(Role::Valid)?.net];
     let list = PointList::new(design, limit, |role| role == Role::Point, ends);
     let names = Variables::new(&mut Names::of_ports(design));
@@ -44,7 +47,7 @@ pub fn points_bench(design: &Design, limit: u32) -> Result<PointsBench> {
         names: Variables,
         in_valid: String = port_name(of_role(Role::InValid)?),
         // Inputs that never change, with their values.
-        held: Vec<(String, String)> = held.collect(),
+        held: Vec<(String, String)>,
     })?;
     Ok(list.bench(text))
 }

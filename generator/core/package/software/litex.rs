@@ -45,12 +45,11 @@ struct LitexStream<'a> {
 /// Fails if CSRs cannot drive the core and it has no stream.
 pub fn file(job: &EmitJob, tops: &[Top], files: &mut OutputFiles) -> Result<()> {
     let (name, design, is_line) = (job.name(), job.design, job.is_line());
-    let find = |face: fn(Face) -> bool| tops.iter().find(|top| face(top.face));
-    let stream = find(|face| face == Face::Stream).map(streamed);
+    let stream = tops.iter().find(|top| top.face == Face::Stream).map(streamed);
     let core = if is_line || design.pipeline.is_some() {
         None
     } else {
-        find(|face| face == Face::Core).map(|top| driven(design, top))
+        tops.iter().find(|top| top.face == Face::Core).map(|top| driven(design, top))
     };
     if core.is_none() && stream.is_none() {
         let what = if is_line { "walks lines" } else { "is a pipeline" };
@@ -82,27 +81,29 @@ pub fn file(job: &EmitJob, tops: &[Top], files: &mut OutputFiles) -> Result<()> 
 
 fn driven<'a>(design: &Design, top: &'a Top) -> LitexCore<'a> {
     let name = |port: &glint_rtl::netlist::Port| design.net(port.net).name.clone();
-    let operands: Vec<LitexOperand> = design
-        .inputs()
-        .filter_map(|port| match port.role {
-            Role::Operand { strobe } => Some(LitexOperand {
+    let (mut operands, mut result_names, mut start_names) = (Vec::new(), Vec::new(), Vec::new());
+    for port in &design.ports {
+        match port.role {
+            Role::Operand { strobe } => operands.push(LitexOperand {
                 name: name(port),
                 strobe: design.net(strobe).name.clone(),
                 width: design.width(port.net),
             }),
-            _ => None,
-        })
-        .collect();
-    let of_role = |role: Role| -> Vec<String> {
-        design.ports.iter().filter(|port| port.role == role).map(name).collect()
-    };
-    let (results, start) = (of_role(Role::Result), of_role(Role::Start));
-    let known = |port: &&TopPort| {
+            Role::Result => result_names.push(name(port)),
+            Role::Start => start_names.push(name(port)),
+            _ => {}
+        }
+    }
+    let (mut results, mut idle) = (Vec::new(), Vec::new());
+    for port in top.signals() {
         let driven = operands.iter().any(|it| it.name == port.name || it.strobe == port.name);
-        port.input && !driven && !start.contains(&port.name)
-    };
-    let idle = top.signals().filter(known).collect();
-    let results = top.signals().filter(|port| results.contains(&port.name)).collect();
+        if port.input && !driven && !start_names.contains(&port.name) {
+            idle.push(port);
+        }
+        if result_names.contains(&port.name) {
+            results.push(port);
+        }
+    }
     LitexCore { top, operands, results, idle }
 }
 
@@ -118,13 +119,14 @@ fn streamed(top: &Top) -> LitexStream<'_> {
 
 /// Returns the name of a class of Python, whatever the name: `CosinePower` for `cosine_power`.
 fn camel(name: &str) -> String {
-    let part = |part: &str| {
+    let mut joined = String::new();
+    for part in name.split('_') {
         let mut letters = part.chars();
-        letters.next().map_or_else(String::new, |first| {
-            first.to_ascii_uppercase().to_string() + letters.as_str()
-        })
-    };
-    let joined: String = name.split('_').map(part).collect();
+        if let Some(first) = letters.next() {
+            joined.push(first.to_ascii_uppercase());
+            joined += letters.as_str();
+        }
+    }
     if joined.starts_with(|first: char| first.is_ascii_alphabetic()) {
         joined
     } else {

@@ -122,14 +122,13 @@ pub fn files(job: &EmitJob, files: &mut OutputFiles) -> Result<Vec<RomId>> {
     let (name, inputs, line) = (job.name(), job.inputs, job.is_line());
     let design = inputs.sequential.as_ref().unwrap_or(job.design);
     let about = &design.about;
-    let operands = || {
-        design
-            .inputs()
-            .filter(|port| matches!(port.role, Role::Operand { .. }))
-            .map(|port| CField::new(design, port))
-            .collect::<Vec<_>>()
-    };
-    let results = || result_ports(design).map(|port| CField::new(design, port)).collect::<Vec<_>>();
+    let mut operands = Vec::new();
+    for port in design.inputs() {
+        if matches!(port.role, Role::Operand { .. }) {
+            operands.push(CField::new(design, port));
+        }
+    }
+    let results: Vec<CField> = result_ports(design).map(|port| CField::new(design, port)).collect();
     let names = table_names(design);
     let (body, read) = if line { of_line(design, &names) } else { of_point(design, &names) }
         .map_err(|error| {
@@ -137,24 +136,25 @@ pub fn files(job: &EmitJob, files: &mut OutputFiles) -> Result<Vec<RomId>> {
             KeyError::new("package.software", message, "remove it")
         })?;
     let regenerate = job.regenerate();
-    let outside_comments = |text: &str| ascii(text).replace("*/", "* /");
+    let [title, formula] =
+        [&about.title, &about.formula].map(|text| ascii(text).replace("*/", "* /"));
     let latency = job.design.pipeline.as_ref().map(|pipeline| pipeline.stages.len());
     let header = fill!("model.h" {
         name: &'a str,
         guard: String = format!("{}_MODEL_H", constant_name(name)),
-        title: String = outside_comments(&about.title),
-        formula: String = outside_comments(&about.formula),
+        title: &'a str = &title,
+        formula: String,
         regenerate: &'a str,
         // Only for a pipeline: the upper-case name of its latency, and the clocks.
         latency: Option<(String, usize)> =
             latency.map(|clocks| (format!("{}_LATENCY", constant_name(name)), clocks)),
-        operands: Vec<CField> = operands(),
-        results: Vec<CField> = results(),
+        operands: &'a [CField] = &operands,
+        results: &'a [CField] = &results,
         line: bool,
     })?;
     let source = fill!("model.c" {
         name: &'a str,
-        title: String = outside_comments(&about.title),
+        title: &'a str = &title,
         regenerate: &'a str,
         tables: Vec<String> = tables(design, &names, &read),
         body: Vec<String>,
@@ -166,8 +166,8 @@ pub fn files(job: &EmitJob, files: &mut OutputFiles) -> Result<Vec<RomId>> {
         let python = fill!("model.py" {
             name: &'a str,
             regenerate: &'a str,
-            operands: Vec<CField> = operands(),
-            results: Vec<CField> = results(),
+            operands: &'a [CField] = &operands,
+            results: &'a [CField] = &results,
             values: Vec<String> = example_values(design, example),
             line: bool,
         })?;
@@ -178,13 +178,15 @@ pub fn files(job: &EmitJob, files: &mut OutputFiles) -> Result<Vec<RomId>> {
 
 /// Returns the worked example's raw operands in the order of the ports, which need not be its own.
 fn example_values(design: &Design, example: &WorkedExample) -> Vec<String> {
-    let named = |port: &Port| {
-        let name = &design.net(port.net).name;
-        let quantity = example.operands.iter().find(|quantity| quantity.name == *name);
-        quantity.map_or_else(|| "0".to_owned(), |quantity| quantity.raw.to_string())
-    };
-    let ports = design.inputs().filter(|port| matches!(port.role, Role::Operand { .. }));
-    ports.map(named).collect()
+    let mut values = Vec::new();
+    for port in design.inputs() {
+        if matches!(port.role, Role::Operand { .. }) {
+            let name = &design.net(port.net).name;
+            let quantity = example.operands.iter().find(|quantity| quantity.name == *name);
+            values.push(quantity.map_or(0, |quantity| quantity.raw).to_string());
+        }
+    }
+    values
 }
 
 fn result_ports(design: &Design) -> impl Iterator<Item = &Port> {
@@ -225,8 +227,10 @@ fn results_of<'a>(
     design: &'a Design,
     of: &'a Unrolled,
 ) -> impl Iterator<Item = (&'a Port, NodeId)> {
-    let value = |port: &Port| of.results.iter().find(|(net, _)| *net == port.net).map(|it| it.1);
-    result_ports(design).filter_map(move |port| Some((port, value(port)?)))
+    result_ports(design).filter_map(|port| {
+        let (_, value) = of.results.iter().find(|(net, _)| *net == port.net)?;
+        Some((port, *value))
+    })
 }
 
 /// Returns the body of the function of a line, and the ROMs that it reads.
@@ -243,14 +247,16 @@ fn of_line(design: &Design, tables: &[String]) -> Result<(Vec<String>, Vec<RomId
     let results: Vec<(&Port, NodeId)> = results_of(design, &unrolled).collect();
 
     // Registers and memories that the results of some clock depend on.
-    let outputs = results.iter().map(|(_, value)| *value).chain([valid, done]);
-    let mut wanted: Vec<NodeId> = outputs.collect();
+    let mut wanted: Vec<NodeId> = results.iter().map(|(_, value)| *value).collect();
+    wanted.extend([valid, done]);
     let mut kept: Vec<StateValues> = Vec::new();
     loop {
         let needed = graph.cone(wanted.iter().copied());
-        let more = held.iter().filter(|it| needed.binary_search(&it.before).is_ok());
-        let is_state = |it: &StateValues| matches!(graph.node(it.before).cell, Cell::Unknown(_));
-        let now: Vec<StateValues> = more.copied().filter(is_state).collect();
+        let mut now = held.clone();
+        now.retain(|it| {
+            let is_state = matches!(graph.node(it.before).cell, Cell::Unknown(_));
+            is_state && needed.binary_search(&it.before).is_ok()
+        });
         if now.len() == kept.len() {
             break;
         }
@@ -259,8 +265,10 @@ fn of_line(design: &Design, tables: &[String]) -> Result<(Vec<String>, Vec<RomId
     }
 
     let mut names = taken();
-    let named = kept.iter().map(|it| (it.before, names.fresh(&design.net(it.net).name)));
-    let states: BTreeMap<NodeId, String> = named.collect();
+    let mut states: BTreeMap<NodeId, String> = BTreeMap::new();
+    for it in &kept {
+        states.insert(it.before, names.fresh(&design.net(it.net).name));
+    }
     let starts: Vec<NodeId> = kept.iter().map(|it| it.first).collect();
     let mut printer = Printer::new(design, &unrolled, tables, BTreeMap::new());
     let mut body = vec![format!("    {}", comment("the clock that takes start"))];
@@ -338,12 +346,13 @@ fn assigned(design: &Design, port: &Port, pattern: &str) -> String {
 }
 
 fn roms(graph: &Graph, wanted: &[NodeId]) -> Vec<RomId> {
-    let needed = graph.cone(wanted.iter().copied()).into_iter();
-    let rom = |id| match graph.node(id).cell {
-        Cell::Read { rom, .. } => Some(rom),
-        _ => None,
-    };
-    needed.filter_map(rom).collect()
+    let mut roms = Vec::new();
+    for id in graph.cone(wanted.iter().copied()) {
+        if let Cell::Read { rom, .. } = graph.node(id).cell {
+            roms.push(rom);
+        }
+    }
+    roms
 }
 
 /// Returns for each ROM the name of the C array with its words.

@@ -79,10 +79,13 @@ pub fn file(job: &EmitJob, read: &[RomId], files: &mut OutputFiles) -> Result<()
     let (operand, result) = (field(operand)?, field(result)?);
     let (naming, tables) = (Naming::new(design), table_names(design));
     let written = files.local_paths(&[FileKind::Memory]);
-    let memory = |id: &RomId| {
+    let mut memories = Vec::new();
+    for id in read {
         let (file, table) = (naming.files[id.index()].clone(), tables[id.index()].clone());
-        written.contains(&file).then(|| (file, table, design.rom(*id).words.len()))
-    };
+        if written.contains(&file) {
+            memories.push((file, table, design.rom(*id).words.len()));
+        }
+    }
     let program = fill!("recompute.c" {
         name: &'a str,
         title: String = ascii(&design.about.title).replace("*/", "* /"),
@@ -90,7 +93,7 @@ pub fn file(job: &EmitJob, read: &[RomId], files: &mut OutputFiles) -> Result<()
         text: &'a str,
         formula: Vec<String> = statement(4, &format!("return {};", formula.c())),
         values: usize = VALUES * (parts + 1),
-        memories: Vec<(String, String, usize)> = read.iter().filter_map(memory).collect(),
+        memories: Vec<(String, String, usize)>,
         without_memories: &'a str = match read.is_empty() {
             true => "the core reads no table.",
             false => "the words of the tables are in the Verilog itself, which this program does not read.",

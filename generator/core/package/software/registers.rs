@@ -81,18 +81,16 @@ impl OperandConversion {
 /// Fails if a template fails.
 pub fn files(job: &EmitJob, bus: &Bus, map: &Map, files: &mut OutputFiles) -> Result<()> {
     let (name, regenerate, bus) = (job.name(), job.regenerate(), bus.title);
-    let title = ascii(&job.design.about.title).replace("*/", "* /").replace('"', "'");
-    let title = title.as_str();
+    let title = &ascii(&job.design.about.title).replace("*/", "* /").replace('"', "'");
     let registers: Vec<Printed> = map.registers.iter().map(view).collect();
-    let operands: Vec<OperandConversion> = map
-        .operands
-        .iter()
-        .map(|operand| OperandConversion {
+    let mut operands: Vec<OperandConversion> = Vec::new();
+    for operand in &map.operands {
+        operands.push(OperandConversion {
             name: operand.name.clone(),
             constant: constant_name(&operand.name),
             format: operand.format,
-        })
-        .collect();
+        });
+    }
     let prefix = constant_name(name);
     let header = fill!("registers.h" {
         name: &'a str, title: &'a str, regenerate: &'a str,
@@ -114,10 +112,9 @@ pub fn files(job: &EmitJob, bus: &Bus, map: &Map, files: &mut OutputFiles) -> Re
 }
 
 fn view(register: &BusRegister) -> Printed<'_> {
-    let field = |bits| BitField { bits, constant: constant_name(&bits.name) };
-    Printed {
-        register,
-        constant: constant_name(&register.name),
-        fields: register.bits.iter().map(field).collect(),
-    }
+    let fields = register.bits.iter().map(|bits| {
+        let constant = constant_name(&bits.name);
+        BitField { bits, constant }
+    });
+    Printed { register, constant: constant_name(&register.name), fields: fields.collect() }
 }

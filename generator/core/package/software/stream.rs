@@ -35,12 +35,15 @@ impl TransferNumber {
     /// Returns the bit pattern of its bytes.
     fn joined(&self) -> String {
         let kind = self.unsigned();
-        let byte = |at: u32| match (at, self.size) {
-            (0, 1) => format!("transfer[{}]", self.first),
-            (0, _) => format!("({kind})transfer[{}]", self.first),
-            _ => format!("({kind})transfer[{}] << {}", self.first + at, 8 * at),
-        };
-        self.bytes().map(byte).collect::<Vec<_>>().join("\n        | ")
+        let mut bytes = Vec::new();
+        for at in self.bytes() {
+            bytes.push(match (at, self.size) {
+                (0, 1) => format!("transfer[{}]", self.first),
+                (0, _) => format!("({kind})transfer[{}]", self.first),
+                _ => format!("({kind})transfer[{}] << {}", self.first + at, 8 * at),
+            });
+        }
+        bytes.join("\n        | ")
     }
 
     /// Returns the number of the bit pattern `raw`, where that is another.
@@ -72,20 +75,19 @@ struct Bytes {
 impl Bytes {
     fn new(job: &EmitJob, transfer: &Transfer) -> Self {
         let design = job.design;
-        let number = |field: &crate::package::wrap::fields::StreamField| {
-            let port = design.ports.iter().find(|port| design.net(port.net).name == field.name)?;
-            Some(TransferNumber {
-                field: CField::new(design, port),
-                port: field.name.clone(),
-                first: field.low / 8,
-                size: field.padded() / 8,
-            })
-        };
-        Self {
-            bytes: transfer.bits / 8,
-            filled: transfer.filled() / 8,
-            numbers: transfer.fields.iter().filter_map(number).collect(),
+        let mut numbers = Vec::new();
+        for field in &transfer.fields {
+            let mut ports = design.ports.iter();
+            if let Some(port) = ports.find(|port| design.net(port.net).name == field.name) {
+                numbers.push(TransferNumber {
+                    field: CField::new(design, port),
+                    port: field.name.clone(),
+                    first: field.low / 8,
+                    size: field.padded() / 8,
+                });
+            }
         }
+        Self { bytes: transfer.bits / 8, filled: transfer.filled() / 8, numbers }
     }
 
     /// Returns the bytes above all numbers.

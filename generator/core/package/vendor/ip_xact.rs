@@ -112,10 +112,11 @@ pub fn files(job: &EmitJob, tops: &[Top], files: &mut OutputFiles) -> Result<()>
 fn buses(top: &Top) -> Vec<BusInterface> {
     let mut buses = Vec::new();
     for protocol in top.protocols {
-        let common = [("ACLK", &top.clock), ("ARESETN", &top.reset)];
-        let common = common.map(|(logical, port)| (logical.to_owned(), port.clone()));
-        let own = top.ports_of(protocol).into_iter();
-        let own = own.map(|(port, name)| (name.to_ascii_uppercase(), port.name.clone()));
+        let mut ports =
+            vec![("ACLK".to_owned(), top.clock.clone()), ("ARESETN".to_owned(), top.reset.clone())];
+        for (port, name) in top.ports_of(protocol) {
+            ports.push((name.to_ascii_uppercase(), port.name.clone()));
+        }
         buses.push(BusInterface {
             name: protocol.name,
             definition: AMBA,
@@ -123,7 +124,7 @@ fn buses(top: &Top) -> Vec<BusInterface> {
             version: protocol.version,
             is_slave: protocol.is_slave,
             mapped: top.interrupts(),
-            ports: common.into_iter().chain(own).collect(),
+            ports,
         });
     }
     buses.extend(top.interrupts().then(|| BusInterface {
@@ -145,9 +146,9 @@ fn escaped(text: &str) -> String {
 
 /// Returns a part of an XML comment. XML forbids two adjacent hyphens in a comment.
 fn comment(text: &str) -> String {
-    let mut text = text.to_owned();
-    while text.contains("--") {
-        text = text.replace("--", "- -");
+    let mut apart = text.to_owned();
+    while apart.contains("--") {
+        apart = apart.replace("--", "- -");
     }
-    text
+    apart
 }

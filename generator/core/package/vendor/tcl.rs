@@ -3,7 +3,6 @@
 use anyhow::Result;
 use glint_base::fill;
 
-use crate::package::bus::Protocol;
 use crate::package::emit_job::EmitJob;
 use crate::package::file_kind::FileKind;
 use crate::package::output_files::OutputFiles;
@@ -98,13 +97,13 @@ fn interfaces(top: &Top) -> Vec<PlatformInterface<'_>> {
         let ports = top.signals().map(|port| (port, port.name.clone())).collect();
         return vec![PlatformInterface { name: "signals", kind: "conduit", side: "end", ports }];
     }
-    let interface = |protocol: &'static Protocol| PlatformInterface {
+    let interfaces = top.protocols.iter().map(|protocol| PlatformInterface {
         name: protocol.name,
         kind: protocol.platform,
         side: if protocol.is_slave { "end" } else { "start" },
         ports: top.ports_of(protocol),
-    };
-    top.protocols.iter().map(interface).collect()
+    });
+    interfaces.collect()
 }
 
 /// Escapes a text for use between the quotation marks of a Tcl word.

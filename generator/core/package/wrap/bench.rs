@@ -10,7 +10,7 @@ use super::points::{points, received, sent};
 use crate::observation::Vectors;
 use crate::package::emit_job::EmitJob;
 use crate::package::file_kind::FileKind;
-use crate::package::map::{BusRegister, INTERRUPT_PENDING, Map, PortBits, PortPlacement};
+use crate::package::map::{Access, INTERRUPT_PENDING, Map, PortBits, PortPlacement};
 use crate::package::output_files::OutputFiles;
 use glint_base::fixed::mask;
 
@@ -115,28 +115,28 @@ fn address(place: u32) -> String {
 
 /// Returns the registers before the operands with their values after a reset, and the registers that cannot be written.
 fn fixed(map: &Map) -> (Vec<(String, String)>, Vec<String>) {
-    let value = |register: &BusRegister| {
-        let value = register.bits.iter().map(|bits| bits.reset << bits.low).sum::<u64>();
-        (address(register.place), format!("32'h{value:08x}"))
-    };
-    let own = |register: &&BusRegister| register.place <= INTERRUPT_PENDING;
-    let read_only = |register: &&BusRegister| {
-        use crate::package::map::Access::Read;
-        register.bits.iter().all(|bits| bits.access == Read)
-    };
-    (
-        map.registers.iter().filter(own).map(value).collect(),
-        map.registers.iter().filter(read_only).map(|it| address(it.place)).collect(),
-    )
+    let (mut own, mut read_only) = (Vec::new(), Vec::new());
+    for register in &map.registers {
+        if register.place <= INTERRUPT_PENDING {
+            let value: u64 = register.bits.iter().map(|bits| bits.reset << bits.low).sum();
+            own.push((address(register.place), format!("32'h{value:08x}")));
+        }
+        if register.bits.iter().all(|bits| bits.access == Access::Read) {
+            read_only.push(address(register.place));
+        }
+    }
+    (own, read_only)
 }
 
 /// Returns the registers of ports, each in the words of a point.
 fn accesses(ports: &[PortPlacement], fields: &[StreamField], net: &str) -> Vec<BenchRegister> {
-    let of_port = |(port, field)| {
-        let PortPlacement { parts, .. }: &PortPlacement = port;
-        parts.iter().map(move |part| access(part, field, net))
-    };
-    ports.iter().zip(fields).flat_map(of_port).collect()
+    let mut accesses = Vec::new();
+    for (port, field) in ports.iter().zip(fields) {
+        for part in &port.parts {
+            accesses.push(access(part, field, net));
+        }
+    }
+    accesses
 }
 
 fn access(part: &PortBits, field: &StreamField, net: &str) -> BenchRegister {

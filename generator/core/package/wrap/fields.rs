@@ -70,7 +70,8 @@ fn side_by_side<'a>(
     ports: impl Iterator<Item = (&'a Port, String)>,
 ) -> Vec<StreamField> {
     let mut low = 0;
-    let field = |(port, strobe): (&Port, String)| {
+    let mut fields = Vec::new();
+    for (port, strobe) in ports {
         let net = design.net(port.net);
         let field = StreamField {
             name: net.name.clone(),
@@ -81,9 +82,9 @@ fn side_by_side<'a>(
             strobe,
         };
         low += field.padded();
-        field
-    };
-    ports.map(field).collect()
+        fields.push(field);
+    }
+    fields
 }
 
 /// The layout of a transfer: its fields, and its total number of bits.
@@ -139,24 +140,33 @@ impl Transfer {
     /// Returns the parts of a Verilog concatenation that forms the whole transfer, from the top bits down. The last field is in the
     /// top bits; `prefix` is put before the name of each port.
     pub fn packed(&self, prefix: &str) -> Vec<String> {
+        let mut parts = Vec::new();
         let above = self.bits - self.filled();
-        let of_field = |field: &StreamField| field.packed(&format!("{prefix}{}", field.name));
-        let fields = self.fields.iter().rev().flat_map(of_field);
-        (above > 0).then(|| literal(0, above)).into_iter().chain(fields).collect()
+        if above > 0 {
+            parts.push(literal(0, above));
+        }
+        for field in self.fields.iter().rev() {
+            parts.extend(field.packed(&format!("{prefix}{}", field.name)));
+        }
+        parts
     }
 
     /// Returns the padding bits of a transfer, as part-selects of the net `net`.
     pub fn padding(&self, net: &str) -> Vec<String> {
-        let fields = self.fields.iter();
-        let of_fields = fields.map(|field| (field.high() + 1, field.low + field.padded()));
-        let ranges = of_fields.chain([(self.filled(), self.bits)]);
-        ranges
-            .filter(|(low, end)| low < end)
-            .map(|(low, end)| match end - low {
-                1 => format!("{net}[{low}]"),
-                _ => format!("{net}[{}:{low}]", end - 1),
-            })
-            .collect()
+        let mut ranges = Vec::new();
+        for field in &self.fields {
+            ranges.push((field.high() + 1, field.low + field.padded()));
+        }
+        ranges.push((self.filled(), self.bits));
+        let mut selects = Vec::new();
+        for (low, end) in ranges {
+            if end == low + 1 {
+                selects.push(format!("{net}[{low}]"));
+            } else if low < end {
+                selects.push(format!("{net}[{}:{low}]", end - 1));
+            }
+        }
+        selects
     }
 }
 

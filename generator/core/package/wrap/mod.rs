@@ -85,26 +85,30 @@ fn core_wire(design: &Design, port: &Port) -> String {
 
 /// Lets a solver choose the results of the stub, which replaces the core in a proof.
 fn stub_free(design: &Design) -> Vec<String> {
-    let is_free = |port: &&Port| matches!(port.role, Role::Result | Role::Status);
-    let free = design.ports.iter().filter(is_free).flat_map(|port| {
-        let net = design.net(port.net);
-        let any = format!("(* anyseq *) reg {} any_{};", range(net.format.width()), net.name);
-        [any.replace("  ", " "), format!("assign {0} = any_{0};", net.name)]
-    });
-    free.collect()
+    let mut lines = Vec::new();
+    for port in &design.ports {
+        if matches!(port.role, Role::Result | Role::Status) {
+            let net = design.net(port.net);
+            let any = format!("(* anyseq *) reg {} any_{};", range(net.format.width()), net.name);
+            lines.push(any.replace("  ", " "));
+            lines.push(format!("assign {0} = any_{0};", net.name));
+        }
+    }
+    lines
 }
 
 /// Returns the ports of the stub, which replaces the core in a proof, in the order of the core's ports.
 fn stub_ports(design: &Design) -> Vec<String> {
-    let port = |port: &Port| {
+    let mut ports = vec!["input wire clk".to_owned()];
+    for port in &design.ports {
         let net = design.net(port.net);
         let range = range(net.format.width());
         let sign = if net.format.signed { "signed " } else { "" };
         let direction = if port.role.is_input() { "input" } else { "output" };
-        format!("{direction} wire {sign}{range} {}", net.name).replace("  ", " ")
-    };
-    let clock = "input wire clk".to_owned();
-    separated(std::iter::once(clock).chain(design.ports.iter().map(port)).collect())
+        let declaration = format!("{direction} wire {sign}{range} {}", net.name);
+        ports.push(declaration.replace("  ", " "));
+    }
+    separated(ports)
 }
 
 /// Returns the declaration of a net inside the module that is proved, with its width.

@@ -6,7 +6,7 @@ use std::collections::VecDeque;
 
 use anyhow::{Context, Result};
 
-use super::fields::{StreamField, Transfer};
+use super::fields::Transfer;
 use crate::observation::Vectors;
 use crate::package::bench::packed;
 use glint_base::fixed::mask;
@@ -35,13 +35,16 @@ pub fn points(design: &Design, vectors: &Vectors) -> Result<Vec<BenchPoint>> {
         None => computed(design, rows),
     }
     .context("a list of points needs the handshake of a core")?;
+    let mut points = Vec::new();
     let mut results = 0;
-    let fits = |point: &BenchPoint| {
-        let fits = results + point.results.len() <= RESULTS;
-        results += if fits { point.results.len() } else { 0 };
-        fits
-    };
-    Ok(all.into_iter().filter(fits).collect())
+    for point in all {
+        let with_point = results + point.results.len();
+        if with_point <= RESULTS {
+            results = with_point;
+            points.push(point);
+        }
+    }
+    Ok(points)
 }
 
 /// The ports in a clock.
@@ -55,8 +58,13 @@ impl PortValues<'_> {
     /// Returns the ports of some roles with their values.
     fn all(&self, is: impl Fn(Role) -> bool) -> Vec<(&Port, u64)> {
         let inputs = self.design.inputs().zip(self.inputs);
-        let ports = inputs.chain(self.design.outputs().zip(self.outputs));
-        ports.filter(|(port, _)| is(port.role)).map(|(port, value)| (port, *value)).collect()
+        let mut ports = Vec::new();
+        for (port, value) in inputs.chain(self.design.outputs().zip(self.outputs)) {
+            if is(port.role) {
+                ports.push((port, *value));
+            }
+        }
+        ports
     }
 
     fn values(&self, is: impl Fn(Role) -> bool) -> Vec<u64> {
@@ -148,11 +156,16 @@ fn streamed<'a>(rows: impl Iterator<Item = PortValues<'a>>) -> Option<Vec<BenchP
 /// Returns the input file of the wrapper's bench: for each computation a word with all operands, each padded to whole bytes. Every
 /// other word has ones in the padding bits, because the wrapper must ignore them.
 pub fn sent(points: &[BenchPoint], operands: &Transfer) -> String {
-    let word = |(number, point): (usize, &BenchPoint)| {
-        let above = |field: &StreamField| if number % 2 == 1 { !mask(field.width) } else { 0 };
-        word(&point.operands, operands, above, number % 2 == 1, None)
-    };
-    points.iter().enumerate().map(word).collect()
+    let mut text = String::new();
+    for (number, point) in points.iter().enumerate() {
+        let ones = number % 2 == 1;
+        let mut values = Vec::new();
+        for (value, field) in point.operands.iter().zip(&operands.fields) {
+            values.push(if ones { value | !mask(field.width) } else { *value });
+        }
+        text += &word(values, operands, ones, None);
+    }
+    text
 }
 
 /// Returns the output file of the wrapper's bench: a line for each result, with all outputs padded to whole bytes. A signed output
@@ -163,36 +176,25 @@ pub fn received(points: &[BenchPoint], results: &Transfer, is_line: bool) -> Str
     for point in points {
         let last = point.results.len() - 1;
         for (number, result) in point.results.iter().enumerate() {
-            let signs: Vec<bool> = result
-                .iter()
-                .zip(&results.fields)
-                .map(|(value, field)| field.signed && value >> (field.width - 1) & 1 == 1)
-                .collect();
-            let mut signs = signs.into_iter();
-            let above = |field: &StreamField| match signs.next() {
-                Some(true) => !mask(field.width),
-                _ => 0,
-            };
+            let mut values = Vec::new();
+            for (value, field) in result.iter().zip(&results.fields) {
+                let is_negative = field.signed && value >> (field.width - 1) & 1 == 1;
+                values.push(if is_negative { value | !mask(field.width) } else { *value });
+            }
             let last = is_line.then_some(u64::from(number == last));
-            text += &word(result, results, above, false, last);
+            text += &word(values, results, false, last);
         }
     }
     text
 }
 
 /// Returns a line of a file for `$readmemh`; the bytes above all fields are filled with ones or zeros.
-fn word(
-    values: &[u64],
-    transfer: &Transfer,
-    mut above: impl FnMut(&StreamField) -> u64,
-    ones: bool,
-    top: Option<u64>,
-) -> String {
-    let fields = &transfer.fields;
-    let whole =
-        |(value, field): (&u64, &StreamField)| (value | above(field)) & mask(field.padded());
-    let mut row: Vec<u64> = values.iter().zip(fields).map(whole).collect();
-    let mut widths: Vec<u32> = fields.iter().map(StreamField::padded).collect();
+fn word(values: Vec<u64>, transfer: &Transfer, ones: bool, top: Option<u64>) -> String {
+    let (mut row, mut widths) = (Vec::new(), Vec::new());
+    for (value, field) in values.into_iter().zip(&transfer.fields) {
+        row.push(value & mask(field.padded()));
+        widths.push(field.padded());
+    }
     for _ in 0..(transfer.bits - transfer.filled()) / 8 {
         row.push(if ones { 0xff } else { 0 });
         widths.push(8);

@@ -13,7 +13,7 @@ use super::{add_proof, connected, core_wire, seen_inside, stub_free, stub_ports}
 use crate::package::bus::Bus;
 use crate::package::emit_job::EmitJob;
 use crate::package::file_kind::FileKind;
-use crate::package::map::{self, BusRegister, Map, PortBits, PortPlacement, RegisterBits};
+use crate::package::map::{self, BusRegister, Map, RegisterBits};
 use crate::package::output_files::OutputFiles;
 use glint_rtl::netlist::Role;
 use glint_rtl::verilog::text::{comment, literal, range, statement};
@@ -123,35 +123,37 @@ fn described(map: &Map) -> Vec<String> {
 
 /// Formats a text as lines of a comment, below the name of a register.
 fn indented(text: &str) -> Vec<String> {
-    let line = |line: String| line.replacen("//", "//          ", 1);
-    comment(12, text).into_iter().map(|text| line(text.trim_start().to_owned())).collect()
+    let lines = comment(12, text).into_iter();
+    lines.map(|line| line.trim_start().replacen("//", "//          ", 1)).collect()
 }
 
 fn operands(map: &Map) -> Vec<OperandWords> {
     let word_bits = map.address_bits() - 2;
-    let operand = |operand: &PortPlacement| {
+    let mut words = Vec::new();
+    for operand in &map.operands {
         let width = operand.format.width();
-        let lanes = operand.parts.iter().flat_map(|part| {
-            (0..part.width.div_ceil(8)).map(move |byte| {
+        let mut lanes = Vec::new();
+        for part in &operand.parts {
+            for byte in 0..part.width.div_ceil(8) {
                 let (low, high) = (8 * byte, (8 * byte + 8).min(part.width) - 1);
-                ByteLane {
+                lanes.push(ByteLane {
                     word: literal(part.place.into(), word_bits),
                     number: part.place,
                     byte,
                     bits: select(width, part.low + low, part.low + high),
                     data: select(32, low, high),
-                }
-            })
-        });
-        OperandWords {
+                });
+            }
+        }
+        words.push(OperandWords {
             name: operand.name.clone(),
             strobe: operand.strobe.clone(),
             range: range(width),
             zero: literal(0, width),
-            lanes: lanes.collect(),
-        }
-    };
-    map.operands.iter().map(operand).collect()
+            lanes,
+        });
+    }
+    words
 }
 
 /// Returns the word that a read of a register gives, according to the map alone: each field at its place, and 0 between the
@@ -193,9 +195,11 @@ fn source(map: &Map, register: &BusRegister, bits: &RegisterBits) -> String {
         _ => {
             let is_operand = register.place <= map.last_operand();
             let ports = if is_operand { &map.operands } else { &map.results };
-            let here = |part: &&PortBits| (part.place, part.at) == (register.place, bits.low);
-            let part = |port: &'_ PortPlacement| port.parts.iter().find(here).copied();
-            let found = ports.iter().find_map(|port| Some((port, part(port)?)));
+            let found = ports.iter().find_map(|port| {
+                let mut parts = port.parts.iter();
+                let part = parts.find(|it| (it.place, it.at) == (register.place, bits.low))?;
+                Some((port, *part))
+            });
             let Some((port, part)) = found else { return literal(0, bits.width) };
             let (width, high) = (port.format.width(), part.low + part.width - 1);
             let net = if is_operand { "dut.operand_" } else { "dut.core." };

@@ -193,8 +193,7 @@ fn line(job: &EmitJob, operands: &Transfer) -> Result<Option<LineStream>> {
     let Some(length) = length else {
         return Ok(None);
     };
-    let field = operands.field(length);
-    let field = field.with_context(|| format!("`{length}` is no operand"))?;
+    let field = operands.field(length).with_context(|| format!("`{length}` is no operand"))?;
     Ok(Some(LineStream {
         length: field.name.clone(),
         length_low: field.low,

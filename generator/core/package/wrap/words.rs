@@ -1,7 +1,7 @@
 //! Writes the Verilog that decodes a register address, and the word that a read of each bus register returns.
 
 use super::fields::{Transfer, results};
-use crate::package::map::{self, BusRegister, Map, PortBits, PortPlacement};
+use crate::package::map::{self, Map, PortBits, PortPlacement};
 use glint_rtl::netlist::Design;
 use glint_rtl::verilog::text::{literal, statement};
 
@@ -52,11 +52,12 @@ pub fn select(width: u32, low: u32, high: u32) -> String {
 
 /// Returns the values of the registers that never change, as Verilog literals.
 pub fn constants(map: &Map) -> Vec<String> {
-    let value = |register: &BusRegister| {
-        let value = register.bits.iter().map(|bits| bits.reset << bits.low).sum::<u64>();
-        format!("32'h{value:08x}")
-    };
-    map.registers[..map::CONSTANTS as usize].iter().map(value).collect()
+    let mut constants = Vec::new();
+    for register in &map.registers[..map::CONSTANTS as usize] {
+        let value: u64 = register.bits.iter().map(|bits| bits.reset << bits.low).sum();
+        constants.push(format!("32'h{value:08x}"));
+    }
+    constants
 }
 
 /// Returns the bus registers whose values can change, with the expressions that a read returns.
@@ -86,13 +87,13 @@ pub fn words(design: &Design, map: &Map) -> Vec<Word> {
         let all = Transfer { fields: results(design), bits: 32 };
         reads.push(format!("{{{}}}", all.packed("core_").join(", ")));
     }
-    let word = |(number, read): (u64, String)| Word {
-        number,
-        index: literal(number, word_bits),
-        read,
-        is_result: number > u64::from(map.last_operand()),
-    };
-    (u64::from(map::CONSTANTS)..).zip(reads).map(word).collect()
+    let mut words = Vec::new();
+    for (number, read) in (u64::from(map::CONSTANTS)..).zip(reads) {
+        let index = literal(number, word_bits);
+        let is_result = number > u64::from(map.last_operand());
+        words.push(Word { number, index, read, is_result });
+    }
+    words
 }
 
 /// Returns a part of a port in 32 bits. A result is extended with copies of its sign.

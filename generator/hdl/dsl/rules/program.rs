@@ -61,12 +61,14 @@ fn unpicked(design: &Design, picked: &HashSet<FieldId>) -> Vec<Diagnostic> {
 /// without having loaded the register before. The output does not show the result yet in that clock.
 fn early(design: &Design) -> Vec<Diagnostic> {
     let control = &design.control;
-    let valid = design.port(|role| role == Role::Valid).map(|port| port.net);
-    let raises = |at: usize| {
-        valid.is_some_and(|valid| setting_of(design, &control.microprogram[at], valid) == Some(1))
-    };
     let mut found = Vec::new();
-    for at in (0..control.microprogram.len()).filter(|&at| raises(at)) {
+    let Some(valid) = design.port(|role| role == Role::Valid).map(|port| port.net) else {
+        return found;
+    };
+    for at in 0..control.microprogram.len() {
+        if setting_of(design, &control.microprogram[at], valid) != Some(1) {
+            continue;
+        }
         for port in design.ports.iter().filter(|port| port.role == Role::Result) {
             let shown =
                 cone(design, at, port.net).into_iter().filter_map(|id| register(design, id));
@@ -145,27 +147,29 @@ fn endless(design: &Design) -> Vec<Diagnostic> {
         }
         // The microinstructions from which control comes back to this one.
         let within = controlled(control, to, |now| now != at);
-        let body: Vec<usize> = within
-            .iter()
-            .copied()
-            .filter(|&from| controlled(control, from, |now| within.contains(&now)).contains(&at))
-            .collect();
-        let waits =
-            |now: &usize| *now == 0 || control.microprogram[*now].sequence == Sequence::WaitStart;
-        let leaves = |now: &usize| {
-            *now != at && control.successors(*now).iter().any(|next| !body.contains(next))
-        };
-        if body.iter().any(|now| waits(now) || leaves(now)) {
+        let mut body: Vec<usize> = Vec::new();
+        for &from in &within {
+            if controlled(control, from, |now| within.contains(&now)).contains(&at) {
+                body.push(from);
+            }
+        }
+        let is_left = body.iter().any(|&now| {
+            let waits = now == 0 || control.microprogram[now].sequence == Sequence::WaitStart;
+            waits || now != at && control.successors(now).iter().any(|next| !body.contains(next))
+        });
+        if is_left {
             continue;
         }
         let cone = cone(design, at, condition);
         if cone.iter().any(|&id| changes(design, &body, id)) {
             continue;
         }
-        let mut held: Vec<&str> = cone
-            .iter()
-            .filter_map(|&id| register(design, id).map(|_| design.net(id).name.as_str()))
-            .collect();
+        let mut held: Vec<&str> = Vec::new();
+        for &id in &cone {
+            if register(design, id).is_some() {
+                held.push(&design.net(id).name);
+            }
+        }
         held.sort_unstable();
         let why = match held[..] {
             [] => "which is constant".to_owned(),

@@ -21,19 +21,24 @@ pub(in crate::dsl) fn warnings(design: &Design, partly_used: &HashSet<FieldId>) 
 /// Finds registers, memories and named cells that no output depends on. It leaves out cells that only such logic reads.
 fn dead(design: &Design) -> Vec<Diagnostic> {
     let used = used(design);
-    let is_logic =
-        |net: &Net| matches!(net.driver, Driver::Register(_) | Driver::Rom(_) | Driver::Op(_));
-    let described =
-        design.iter().filter(|(_, net)| net.named && net.partition == Partition::Datapath);
-    let dead: Vec<(NetId, &Net)> =
-        described.filter(|(id, net)| is_logic(net) && !used.contains(id)).collect();
+    let mut dead: Vec<(NetId, &Net)> = Vec::new();
+    for (id, net) in design.iter() {
+        let is_described = net.named && net.partition == Partition::Datapath;
+        let is_logic = matches!(net.driver, Driver::Register(_) | Driver::Rom(_) | Driver::Op(_));
+        if is_described && is_logic && !used.contains(&id) {
+            dead.push((id, net));
+        }
+    }
     let inputs = dead.iter().flat_map(|(id, _)| read_by(design, *id));
     let read = reached(inputs, |id| design.combinational_inputs(id));
-    let ends = dead
-        .into_iter()
-        .filter(|(id, net)| matches!(net.driver, Driver::Register(_)) || !read.contains(id));
-    let message = |net: &Net| format!("`{}` is not used: no output depends on it", net.name);
-    ends.map(|(_, net)| Diagnostic::new(codes::UNUSED, message(net), net.location)).collect()
+    let mut found = Vec::new();
+    for (id, net) in dead {
+        if matches!(net.driver, Driver::Register(_)) || !read.contains(&id) {
+            let message = format!("`{}` is not used: no output depends on it", net.name);
+            found.push(Diagnostic::new(codes::UNUSED, message, net.location));
+        }
+    }
+    found
 }
 
 /// Finds muxes that are selected by a constant, or whose inputs are all the same.
@@ -64,11 +69,14 @@ fn unmade(design: &Design, partly_used: &HashSet<FieldId>) -> Vec<Diagnostic> {
         if partly_used.contains(&FieldId(at as u32)) {
             continue;
         }
-        let made = |choice: u64| control.microprogram.iter().any(|it| it.values[at] == choice);
-        let unmade = (0..).zip(choices).filter(|(number, _)| !made(*number));
-        let names: Vec<&str> = unmade.map(|(_, name)| name.as_str()).collect();
-        if !names.is_empty() {
-            let names = names.join("`, `");
+        let mut unmade: Vec<&str> = Vec::new();
+        for (number, name) in (0..).zip(choices) {
+            if control.microprogram.iter().all(|it| it.values[at] != number) {
+                unmade.push(name);
+            }
+        }
+        if !unmade.is_empty() {
+            let names = unmade.join("`, `");
             let message = format!("no microinstruction selects `{names}` by `{}`", field.name);
             let location = design.net(field.net).location;
             found.push(Diagnostic::new(codes::UNUSED_CONTROL, message, location));

@@ -49,19 +49,24 @@ pub fn any_cycle(design: &Design) -> Cycle {
     let outputs = design.outputs().map(|port| (port.net, clock.value(port.net))).collect();
     let after = clock.edge();
     executor.unrolled.results = outputs;
-    let registers = design.registers.iter().enumerate().map(|(at, register)| StateValues {
-        net: register.q,
-        first: first.registers[at],
-        before: running.registers[at],
-        after: after.registers[at],
-    });
-    let roms = design.roms.iter().enumerate().filter(|(_, rom)| rom.synchronous);
-    let roms = roms.map(|(at, rom)| StateValues {
-        net: rom.data,
-        first: running.roms[at],
-        before: running.roms[at],
-        after: after.roms[at],
-    });
-    let held = registers.chain(roms).collect();
+    let mut held = Vec::new();
+    for (at, register) in design.registers.iter().enumerate() {
+        held.push(StateValues {
+            net: register.q,
+            first: first.registers[at],
+            before: running.registers[at],
+            after: after.registers[at],
+        });
+    }
+    for (at, rom) in design.roms.iter().enumerate() {
+        if rom.synchronous {
+            held.push(StateValues {
+                net: rom.data,
+                first: running.roms[at],
+                before: running.roms[at],
+                after: after.roms[at],
+            });
+        }
+    }
     Cycle { unrolled: executor.unrolled, held }
 }

@@ -81,23 +81,21 @@ impl LineUnroller<'_> {
         };
         self.in_order(*first, &writes)?;
         let (begun, gone) = (self.edge(&any, *first), self.edge(&any, *other));
-        let held = |state: &State| -> Vec<NodeId> {
-            walk.iter().map(|&number| state.registers[number]).collect()
-        };
+        let [at_first, before, next] =
+            [&begun, &any, &gone].map(|state| walk_registers(state, &walk));
         for &at in more {
-            if held(&self.edge(&any, at)) != held(&gone) {
+            if walk_registers(&self.edge(&any, at), &walk) != next {
                 return Err(self.cannot(at, "walks on in another way than a point before"));
             }
         }
         for at in 0..design.control.microprogram.len() {
-            if !writes.contains(&at) && held(&self.edge(&any, at)) != held(&any) {
+            if !writes.contains(&at) && walk_registers(&self.edge(&any, at), &walk) != before {
                 return Err(self.cannot(at, "moves the walk between points"));
             }
         }
         // The others are made of the walk and of operands alone.
-        let before = held(&any);
-        for &next in &held(&gone) {
-            if self.unknowns(next).iter().any(|id| !before.contains(id)) {
+        for &value in &next {
+            if self.unknowns(value).iter().any(|id| !before.contains(id)) {
                 return Err(self.cannot(*other, "walks on by what is not of the walk"));
             }
         }
@@ -108,10 +106,12 @@ impl LineUnroller<'_> {
         let results = self.shown(&from_first, &successors(design, *first), delay - 1)?;
         self.executor.determined(&results, "cannot be a pipeline")?;
         self.executor.unrolled.results = results;
-        let walk = held(&begun).into_iter().zip(before).zip(held(&gone));
-        let walk =
-            walk.map(|((first, before), next)| WalkRegister { first, before, next }).collect();
-        Ok(UnrolledLine { unrolled: self.executor.unrolled, walk })
+        let mut registers = Vec::new();
+        for at in 0..walk.len() {
+            let (first, before, next) = (at_first[at], before[at], next[at]);
+            registers.push(WalkRegister { first, before, next });
+        }
+        Ok(UnrolledLine { unrolled: self.executor.unrolled, walk: registers })
     }
 
     /// Finds after how many clocks `valid` follows from the microinstruction alone, and the microinstructions that set it.
@@ -174,8 +174,9 @@ impl LineUnroller<'_> {
     fn walk_of(&self, any: &State, shown: &[(NetId, NodeId)]) -> Result<Vec<usize>, Diagnostic> {
         let mut walk = Vec::new();
         for id in shown.iter().flat_map(|&(_, node)| self.unknowns(node)) {
-            let number = any.registers.iter().position(|&register| register == id);
-            let number = number.ok_or_else(|| self.cannot(0, "shows what a memory held before"))?;
+            let Some(number) = any.registers.iter().position(|&register| register == id) else {
+                return Err(self.cannot(0, "shows what a memory held before"));
+            };
             if !walk.contains(&number) {
                 walk.push(number);
             }
@@ -186,10 +187,12 @@ impl LineUnroller<'_> {
     /// Checks that the first point comes before all others, and once.
     fn in_order(&self, first: usize, writes: &[usize]) -> Result<(), Diagnostic> {
         let design = self.executor.design;
-        let is_write = |at: usize| writes.contains(&at);
         // The search does not go on behind microinstructions that write points.
-        let until_a_write = |at| if is_write(at) { Vec::new() } else { successors(design, at) };
-        if reached([0], until_a_write).into_iter().any(|at| is_write(at) && at != first) {
+        let until_a_write = reached([0], |at| match writes.contains(&at) {
+            true => Vec::new(),
+            false => successors(design, at),
+        });
+        if until_a_write.into_iter().any(|at| writes.contains(&at) && at != first) {
             return Err(self.cannot(first, "is not the first point on every way"));
         }
         if reached(successors(design, first), |at| successors(design, at)).contains(&first) {
@@ -210,18 +213,19 @@ impl LineUnroller<'_> {
         ask: impl Fn(&mut Clock<'_, '_>) -> T,
     ) -> T {
         let (last, before) = path.split_last().expect("a way has a microinstruction");
-        let mut state = state.clone();
+        let mut now = state.clone();
         for &address in before {
-            state = self.edge(&state, address);
+            now = self.edge(&now, address);
         }
-        ask(&mut Clock::new(&mut self.executor, &state, Some(*last), false))
+        ask(&mut Clock::new(&mut self.executor, &now, Some(*last), false))
     }
 
     /// Returns the values on which one depends and that nothing has determined.
     fn unknowns(&self, id: NodeId) -> Vec<NodeId> {
         let graph = &self.executor.unrolled.graph;
-        let is_unknown = |id: &NodeId| matches!(graph.node(*id).cell, Cell::Unknown(_));
-        graph.cone([id]).into_iter().filter(is_unknown).collect()
+        let mut unknowns = graph.cone([id]);
+        unknowns.retain(|id| matches!(graph.node(*id).cell, Cell::Unknown(_)));
+        unknowns
     }
 
     fn cannot(&self, address: usize, why: &str) -> Diagnostic {
@@ -243,13 +247,21 @@ fn successors(design: &Design, at: usize) -> Vec<usize> {
 
 /// Returns every path of `clocks` steps that begins at one of the microinstructions `from`.
 fn paths(design: &Design, from: &[usize], clocks: usize) -> Vec<Vec<usize>> {
-    let begin: Vec<Vec<usize>> = from.iter().map(|&at| vec![at]).collect();
-    (0..clocks).fold(begin, |paths, _| {
-        let longer = |path: &Vec<usize>| {
-            let path = path.clone();
+    let mut paths: Vec<Vec<usize>> = from.iter().map(|&at| vec![at]).collect();
+    for _ in 0..clocks {
+        let mut longer = Vec::new();
+        for path in &paths {
             let last = path.last().copied().unwrap_or_default();
-            successors(design, last).into_iter().map(move |to| [&path[..], &[to]].concat())
-        };
-        paths.iter().flat_map(longer).collect()
-    })
+            for next in successors(design, last) {
+                longer.push([&path[..], &[next]].concat());
+            }
+        }
+        paths = longer;
+    }
+    paths
+}
+
+/// Returns the values of the registers of the walk in a state.
+fn walk_registers(state: &State, walk: &[usize]) -> Vec<NodeId> {
+    walk.iter().map(|&number| state.registers[number]).collect()
 }
