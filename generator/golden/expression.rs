@@ -14,7 +14,9 @@ use glint_base::fixed::{Format, exp2};
 use glint_config::Config;
 use glint_formula::{Enclosure, RBig};
 use glint_keys::expression::found;
-use glint_plan::{ExpressionPlan, NodeId, Operation, PlanStep, ProvedPlan, StatedWidth};
+use glint_plan::{
+    ExpressionPlan, NodeId, Operation, PlanStep, ProvedPlan, StatedOverflow, StatedWidth,
+};
 
 /// A plan with the places of its values in the state of the model.
 struct PlanModel {
@@ -187,9 +189,9 @@ impl Formula for ProvedFormulas {
         let mut values = Vec::with_capacity(self.found.statement.results.len());
         for result in &self.found.statement.results {
             let widest = exp2(-(result.fraction as i32)) * WIDEST_VALUE;
-            let value = match result.formula.enclose(&enclosed) {
+            let value = match result.target().enclose(&enclosed) {
                 Ok(value) if value.high - value.low <= widest => Ok(value),
-                _ => result.formula.evaluate_exactly(&self.rational(operands)),
+                _ => result.target().evaluate_exactly(&self.rational(operands)),
             };
             values.push(value.map_or(f64::NAN, Enclosure::middle));
         }
@@ -198,7 +200,9 @@ impl Formula for ProvedFormulas {
 
     fn right_values(&self, value: f64, output: usize) -> [f64; 2] {
         match &self.found.statement.results[output].width {
-            Some(StatedWidth { format, wraps: true }) => values_in_format(value, *format),
+            Some(StatedWidth { format, overflow: StatedOverflow::Wrap }) => {
+                values_in_format(value, *format)
+            }
             _ => [value; 2],
         }
     }
@@ -246,6 +250,6 @@ impl Formula for ProvedFormulas {
 
     fn expressions(&self) -> Vec<String> {
         let results = self.found.statement.results.iter();
-        results.map(|result| result.formula.python()).collect()
+        results.map(|result| result.target().python()).collect()
     }
 }

@@ -12,7 +12,9 @@ use glint_base::identifier;
 use glint_base::key_error::KeyError;
 use glint_config::{Config, Key, Problems, Schema, TableEntries, TableEntry, TextPattern, Value};
 use glint_formula::{Comparison, Expression, Fault, Kind, Operator, parse};
-use glint_plan::{ExpressionStatement, ProvedPlan, StatedOperand, StatedResult, StatedWidth, find};
+use glint_plan::{
+    ExpressionStatement, ProvedPlan, StatedOperand, StatedOverflow, StatedResult, StatedWidth, find,
+};
 
 use super::function::End;
 
@@ -312,19 +314,15 @@ fn result(
         None => None,
     };
     let error = record.number("error").unwrap_or(1.0);
-    let (formula, width) = match record.bits("bits") {
-        None => (formula, None),
-        Some(bits) => {
-            let format = stated_format(record, bits, fraction)?;
-            let overflow = record.text("overflow").unwrap_or("refuse");
-            let width = StatedWidth { format, wraps: overflow == "wrap" };
-            let formula = match overflow {
-                "saturate" => saturated(formula, format),
-                _ => formula,
-            };
-            (formula, Some(width))
-        }
-    };
+    let width = record.bits("bits").map(|bits| {
+        let format = stated_format(record, bits, fraction);
+        let overflow = match record.text("overflow") {
+            Some("saturate") => StatedOverflow::Saturate(limited(&formula, format)),
+            Some("wrap") => StatedOverflow::Wrap,
+            _ => StatedOverflow::Refuse,
+        };
+        StatedWidth { format, overflow }
+    });
     if width.is_none() {
         for field in ["signed", "overflow"] {
             if record.field(field).is_some() {
@@ -338,21 +336,21 @@ fn result(
 }
 
 /// Returns the format of a result with `bits` bits.
-fn stated_format(record: &TableEntry, bits: u32, fraction: u32) -> Result<Format, StatementError> {
+fn stated_format(record: &TableEntry, bits: u32, fraction: u32) -> Format {
     let signed = record.flag("signed");
     let frac = fraction as i32;
-    Ok(Format { signed, int: bits as i32 - i32::from(signed) - frac, frac })
+    Format { signed, int: bits as i32 - i32::from(signed) - frac, frac }
 }
 
 /// Returns the formula with its value limited to a format. For example, `x + y` in s0.7 is `min(max(x + y, -1), 127/128)`.
-fn saturated(formula: Expression, format: Format) -> Expression {
+fn limited(formula: &Expression, format: Format) -> Expression {
     let span = formula.span.clone();
     let (least, most) = format.range();
     let limit = |raw: i128| {
         let number = parse(&format!("{raw} / 2^{}", format.frac)).expect("a formula of a number");
         Box::new(Expression::new(number.kind, span.clone()))
     };
-    let not_below = Kind::Binary(Operator::Max, Box::new(formula), limit(least));
+    let not_below = Kind::Binary(Operator::Max, Box::new(formula.clone()), limit(least));
     let not_below = Box::new(Expression::new(not_below, span.clone()));
     Expression::new(Kind::Binary(Operator::Min, not_below, limit(most)), span.clone())
 }

@@ -20,7 +20,7 @@ const MOST_GUARD: i32 = 24;
 
 /// The divisions of the domain for an estimate of the error, in the order in which they are tried. Few divisions are faster. With
 /// more, a decision that rounding can make wrong is seen to be wrong for few operands.
-const DIVISIONS: [usize; 2] = [400, 4000];
+const DIVISIONS: [usize; 2] = [400, 1500];
 
 /// The fraction bits of a plan's parts with which every result keeps its error.
 pub(super) struct Allocation {

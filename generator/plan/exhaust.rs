@@ -81,7 +81,7 @@ fn add_errors(
             continue;
         }
         let unit = exp2(result.fraction as i32);
-        let exact = match result.formula.enclose(&operands) {
+        let exact = match result.target().enclose(&operands) {
             Ok(value) if (value.high - value.low) * unit <= WIDEST_VALUE => value,
             _ => evaluated_exactly(statement, number, raw)?,
         };
@@ -100,7 +100,7 @@ fn evaluated_exactly(
     result: usize,
     raw: &[i64],
 ) -> Result<Enclosure, PlanRefusal> {
-    let formula = &statement.results[result].formula;
+    let formula = statement.results[result].target();
     let operands = statement.exact_operands(raw);
     formula.evaluate_exactly(&operands).map_err(|fault| {
         let limits: Vec<(i64, i64)> = raw.iter().map(|raw| (*raw, *raw)).collect();

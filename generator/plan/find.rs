@@ -5,6 +5,7 @@ use std::collections::HashMap;
 use std::sync::{Arc, LazyLock, Mutex};
 
 use glint_approximate::{Piecewise, TargetFunction, Wish};
+use glint_base::fixed::MAX_WIDTH;
 
 use super::allocate::{Allocation, allocated, largest_excess};
 use super::boxes::ResultProof;
@@ -85,6 +86,10 @@ fn searched(statement: &ExpressionStatement) -> Result<ProvedPlan, PlanRefusal> 
         guards.add_bit(source);
         let estimate = lowered(statement, &guards, 0, &FoundPolynomials::default())?.0;
         plan = with_polynomials(statement, &guards, estimate)?;
+    }
+    let [first, second] = plan.multiplier_widths();
+    if first + second > MAX_WIDTH {
+        return Err(PlanRefusal::too_wide("product_of_factors", (first + second) as i32));
     }
     let mut bounds = enclosed_errors(statement, &plan, divisions.max(DIVISIONS))?;
     let mut proof = ProofKind::Enclosed;

@@ -47,7 +47,9 @@ pub use node::{Approximation, NodeId, Operation, PlanNode};
 pub use plan::ExpressionPlan;
 pub use refusal::PlanRefusal;
 pub use schedule::{PlanSchedule, PlanStep};
-pub use statement::{ExpressionStatement, StatedOperand, StatedResult, StatedWidth};
+pub use statement::{
+    ExpressionStatement, StatedOperand, StatedOverflow, StatedResult, StatedWidth,
+};
 
 #[cfg(test)]
 mod tests;

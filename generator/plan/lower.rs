@@ -21,7 +21,7 @@ use super::node::{Approximation, NodeId, Operation};
 use super::plan::ExpressionPlan;
 use super::range::{NoRange, range_of};
 use super::refusal::PlanRefusal;
-use super::statement::{ExpressionStatement, StatedResult, StatedWidth};
+use super::statement::{ExpressionStatement, StatedOverflow, StatedResult, StatedWidth};
 
 /// The widest operand of a table of polynomials, in bits. A wider one is shortened first.
 const WIDEST_OPERAND: u32 = 20;
@@ -124,7 +124,8 @@ pub(super) fn lowered(
     }
     for number in 0..statement.results.len() {
         let of_result = |refusal: PlanRefusal| refusal.of_result(number);
-        let proved = lowering.result(number).map_err(of_result)?;
+        let rounded = lowering.result(number).map_err(of_result)?;
+        let proved = lowering.saturated(number, rounded).map_err(of_result)?;
         let node = lowering.in_stated_width(number, proved).map_err(of_result)?;
         lowering.plan.proved.push(proved);
         lowering.plan.results.push(node);
@@ -161,10 +162,11 @@ impl<'s> Lowering<'s> {
     /// Returns the node of a result in its stated width, if it has one.
     fn in_stated_width(&mut self, number: usize, node: NodeId) -> Result<NodeId, PlanRefusal> {
         let StatedResult { name, width, .. } = &self.statement.results[number];
-        let Some(StatedWidth { format, wraps }) = *width else { return Ok(node) };
+        let Some(StatedWidth { format, overflow }) = width else { return Ok(node) };
         let own = self.plan.node(node).format;
         let (low, high) = own.range();
-        if !wraps && !(format.holds(low) && format.holds(high)) {
+        let is_refused = matches!(overflow, StatedOverflow::Refuse);
+        if is_refused && !(format.holds(low) && format.holds(high)) {
             let [low, high] = [low, high].map(|raw| own.to_f64(raw));
             let message = format!(
                 "`{name}` has {} bits, {format}, and its values need {own}, from {low} to {high}",
@@ -173,7 +175,20 @@ impl<'s> Lowering<'s> {
             let remedy = "give it more bits, or overflow = \"saturate\" or \"wrap\"";
             return Err(PlanRefusal::new(message, remedy));
         }
-        self.plan.narrow(&format!("{name}_in_width"), node, format, Rounding::Truncate)
+        self.plan.narrow(&format!("{name}_in_width"), node, *format, Rounding::Truncate)
+    }
+
+    /// Returns the node of a result that saturates, limited to its stated format; of any other result, the node itself.
+    fn saturated(&mut self, number: usize, node: NodeId) -> Result<NodeId, PlanRefusal> {
+        let StatedResult { name, width, .. } = &self.statement.results[number];
+        let Some(StatedWidth { format, overflow: StatedOverflow::Saturate(_) }) = width else {
+            return Ok(node);
+        };
+        let (low, high) = format.range();
+        let least = self.plan.constant(&format!("{name}_least"), low, format.frac)?;
+        let not_below = self.plan.maximum(&format!("{name}_not_below"), node, least)?;
+        let most = self.plan.constant(&format!("{name}_most"), high, format.frac)?;
+        self.plan.minimum(&format!("{name}_limited"), not_below, most)
     }
 
     /// Returns limits of the values of a part where something is promised.

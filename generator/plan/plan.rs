@@ -42,6 +42,34 @@ impl ExpressionPlan {
         needed
     }
 
+    /// Returns the widths of the two inputs of one multiplier that can compute all products of the plan, those of polynomials too.
+    /// Both inputs have a sign if any factor has one.
+    pub(super) fn multiplier_widths(&self) -> [u32; 2] {
+        let mut factors: Vec<[Format; 2]> = Vec::new();
+        for node in &self.nodes {
+            match &node.operation {
+                Operation::Multiply(a, b) => {
+                    factors.push([self.node(*a).format, self.node(*b).format]);
+                }
+                Operation::Polynomial(a, approximation) => {
+                    let Some(found) = &approximation.polynomials else { continue };
+                    let operand = Format { signed: true, ..self.node(*a).format };
+                    factors.extend(found.sums.iter().skip(1).map(|sum| [*sum, operand]));
+                }
+                _ => {}
+            }
+        }
+        let is_signed = factors.iter().flatten().any(|factor| factor.signed);
+        let mut widths = [0; 2];
+        for pair in factors {
+            for (width, factor) in widths.iter_mut().zip(pair) {
+                let with_sign = factor.width() + u32::from(is_signed && !factor.signed);
+                *width = with_sign.max(*width);
+            }
+        }
+        widths
+    }
+
     /// Returns for each node the number of operations that read it.
     pub fn readers(&self) -> Vec<usize> {
         let mut readers = vec![0; self.nodes.len()];

@@ -42,13 +42,24 @@ pub struct StatedResult {
 }
 
 /// The whole format of a result, with what happens to values beyond it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug)]
 pub struct StatedWidth {
     /// The format.
     pub format: Format,
-    /// Whether a value beyond the format loses its high bits, so that it is right modulo the range of the format. For example, an
-    /// angle of 1 half turn is −1 then. Otherwise a formula with such values is refused.
-    pub wraps: bool,
+    /// What happens to a value beyond the format.
+    pub overflow: StatedOverflow,
+}
+
+/// What happens to a value beyond the stated format of a result.
+#[derive(Clone, Debug)]
+pub enum StatedOverflow {
+    /// A formula with such values is refused.
+    Refuse,
+    /// The nearest value of the format. The formula here is the one of the result, limited to the format.
+    Saturate(Expression),
+    /// The high bits are dropped, so that the value is right modulo the range of the format. For example, an angle of 1 half turn
+    /// is −1.
+    Wrap,
 }
 
 impl ExpressionStatement {
@@ -102,6 +113,15 @@ impl ExpressionStatement {
 }
 
 impl StatedResult {
+    /// Returns the formula that the error is measured against: [`StatedResult::formula`], limited to the format if the result
+    /// saturates.
+    pub fn target(&self) -> &Expression {
+        match &self.width {
+            Some(StatedWidth { overflow: StatedOverflow::Saturate(limited), .. }) => limited,
+            _ => &self.formula,
+        }
+    }
+
     /// Returns whether the error is promised for all operands within intervals. Returns `None` if it is promised for some of
     /// them, or if that is undecided.
     pub fn is_promised(&self, operands: &[(&str, Enclosure)]) -> Option<bool> {

@@ -6,7 +6,8 @@ use glint_formula::{Comparison, Enclosure, Expression, Kind, parse};
 use super::exhaust::largest_errors;
 use super::find::{DIVISIONS, enclosed_errors};
 use super::{
-    ExpressionStatement, Operation, ProofKind, StatedOperand, StatedResult, StatedWidth, find,
+    ExpressionStatement, Operation, ProofKind, StatedOperand, StatedOverflow, StatedResult,
+    StatedWidth, find,
 };
 
 /// Returns an operand with a whole format as its domain.
@@ -346,24 +347,29 @@ fn values_outside_the_domain_are_of_the_formats() {
 
 /// A result with a stated width is refused, limited, or right modulo the range of its format.
 #[test]
-fn stated_widths_refuse_or_wrap() {
+fn stated_widths_refuse_saturate_or_wrap() {
     let nibble = Format::signed(0, 3);
     let statement = |width: Option<StatedWidth>| ExpressionStatement {
         operands: vec![operand("x", nibble), operand("y", nibble)],
         results: vec![StatedResult { width, ..result("r", "x + y", 3) }],
     };
-    let narrow = |wraps: bool| Some(StatedWidth { format: nibble, wraps });
-    let refusal = find(&statement(narrow(false))).expect_err("values from -2 to 1.75");
+    let narrow = |overflow: StatedOverflow| Some(StatedWidth { format: nibble, overflow });
+    let refusal =
+        find(&statement(narrow(StatedOverflow::Refuse))).expect_err("values from -2 to 1.75");
     assert!(
         refusal.message.contains("`r` has 4 bits, s0.3, and its values need s1.3"),
         "{refusal:?}"
     );
     assert!(refusal.remedy.contains("wrap"), "{refusal:?}");
-    let found = find(&statement(narrow(true))).expect("a plan");
+    let found = find(&statement(narrow(StatedOverflow::Wrap))).expect("a plan");
     assert_eq!(found.bounds, [0.0]);
     // 7/8 + 2/8 is 9/8, which is −7/8 modulo 2.
     assert_eq!(found.plan.values(&[7, 2])[found.plan.results[0].0], -7);
-    let wide = Some(StatedWidth { format: Format::signed(4, 3), wraps: false });
+    let limited = parse("min(max(x + y, -1), 7/8)").expect("a formula");
+    let found = find(&statement(narrow(StatedOverflow::Saturate(limited)))).expect("a plan");
+    let sum = |x: i64, y: i64| found.plan.values(&[x, y])[found.plan.results[0].0];
+    assert_eq!([sum(7, 2), sum(-8, -1), sum(3, 2)], [7, -8, 5]);
+    let wide = Some(StatedWidth { format: Format::signed(4, 3), overflow: StatedOverflow::Refuse });
     let found = find(&statement(wide)).expect("a plan");
     assert_eq!(found.plan.node(found.plan.results[0]).format, Format::signed(4, 3));
 }

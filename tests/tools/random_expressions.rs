@@ -172,6 +172,8 @@ struct Configuration {
     fraction: u64,
     /// Whether results are promised only where the first operand is above 1/10.
     is_limited: bool,
+    /// The fields that state the width of each result, if one is stated.
+    width: String,
     architecture: String,
 }
 
@@ -201,7 +203,16 @@ impl Configuration {
             ),
         };
         let fraction = 2 + random.below(9);
-        Self { operands, results, fraction, is_limited: random.below(4) == 0, architecture }
+        let width = match random.below(4) {
+            0 => {
+                let bits = fraction + 1 + random.below(3);
+                let overflow = ["saturate", "wrap"][random.below(2) as usize];
+                format!(", bits = {bits}, signed = true, overflow = \"{overflow}\"")
+            }
+            _ => String::new(),
+        };
+        let is_limited = random.below(4) == 0;
+        Self { operands, results, fraction, is_limited, width, architecture }
     }
 
     fn toml(&self) -> String {
@@ -218,9 +229,9 @@ impl Configuration {
         };
         for (number, result) in self.results.iter().enumerate() {
             let formula = result.text();
-            let fraction = self.fraction;
+            let (fraction, width) = (self.fraction, &self.width);
             text += &format!(
-                "results.r{number} = {{ formula = \"{formula}\", fraction = {fraction}{promise} }}\n"
+                "results.r{number} = {{ formula = \"{formula}\", fraction = {fraction}{width}{promise} }}\n"
             );
         }
         text
