@@ -39,7 +39,7 @@
 //! ```
 
 use super::frame::{ClockedModel, Frame, FrameStep, idle};
-use super::{ANY_VALUE, Bound, Contract, Model, Operand, Output, Sweep, Term};
+use super::{ANY_VALUE, Bound, ComputedPart, Contract, Model, Operand, Output, Sweep, Term};
 
 /// The largest number of clocks that a computation may take.
 const LONGEST: u32 = 1 << 20;
@@ -144,6 +144,11 @@ pub trait Formula: Send + Sync {
 
     /// Returns the contributions to the error of an output, each a proven upper limit; nothing if the bound is not known yet.
     fn terms(&self) -> Vec<Term> {
+        Vec::new()
+    }
+
+    /// Returns the parts of the computation, as [`Contract::parts`] does.
+    fn parts(&self) -> Vec<ComputedPart> {
         Vec::new()
     }
 
@@ -311,6 +316,10 @@ impl<F: Formula> Contract for OfModel<F> {
 
     fn sweep_error(&self, place: &[i64]) -> f64 {
         self.formula.sweep_error(place).unwrap_or_else(|| self.largest_error(place))
+    }
+
+    fn parts(&self) -> Vec<ComputedPart> {
+        self.formula.parts()
     }
 
     fn remarks(&self) -> Vec<String> {

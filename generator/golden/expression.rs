@@ -9,7 +9,7 @@ use std::sync::Arc;
 use super::device::{self, Formula};
 use super::frame::{Frame, FrameStep, Slot, State, idle, step_by};
 use super::polynomial::Polynomial;
-use super::{Contract, Model, Term};
+use super::{ComputedPart, Contract, Model, Term};
 use glint_base::fixed::{Format, exp2};
 use glint_config::Config;
 use glint_formula::{Enclosure, RBig};
@@ -238,6 +238,29 @@ impl Formula for ProvedFormulas {
                 units: bound - rounding,
             },
         ]
+    }
+
+    /// Returns the operations of the plan, without operands and exact constants.
+    fn parts(&self) -> Vec<ComputedPart> {
+        let plan = &self.found.plan;
+        let mut parts = Vec::new();
+        for (at, node) in plan.nodes.iter().enumerate() {
+            let is_given = match node.operation {
+                Operation::Operand(_) => true,
+                Operation::Constant { .. } => node.source.is_none(),
+                _ => false,
+            };
+            if is_given {
+                continue;
+            }
+            parts.push(ComputedPart {
+                name: node.name.clone(),
+                words: plan.words(NodeId(at)),
+                format: node.format,
+                shares: self.found.shares.iter().map(|of_result| of_result[at]).collect(),
+            });
+        }
+        parts
     }
 
     fn output_bound(&self, output: usize) -> Option<f64> {

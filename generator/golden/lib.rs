@@ -240,6 +240,11 @@ pub trait Contract: Send + Sync {
         largest
     }
 
+    /// Returns the parts of the computation, in the order in which they are computed; nothing if the contract does not know them.
+    fn parts(&self) -> Vec<ComputedPart> {
+        Vec::new()
+    }
+
     /// Returns remarks about the formula of this configuration for a user, with numbers. For example, a remark may say that
     /// another configuration of the device comes closer to the function that it approximates.
     fn remarks(&self) -> Vec<String> {
@@ -363,6 +368,19 @@ pub struct Bound {
     pub limit: f64,
     /// The contributions, in units of the output, each with the configuration key that governs it. Their sum is `units`.
     pub terms: Vec<Term>,
+}
+
+/// A part of a core that computes an expression, for pages that people read.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ComputedPart {
+    /// The name of the part's net.
+    pub name: String,
+    /// What it computes. For example, `x · y`.
+    pub words: String,
+    /// Its format.
+    pub format: Format,
+    /// The part's share in the error of each output, in units of the output's last bit; 0 for a part that is exact.
+    pub shares: Vec<f64>,
 }
 
 /// One contribution to a [`Bound`]. For example, `output.rounding` contributes 0.5 units to the bound of `rough`, for the

@@ -21,6 +21,9 @@ pub(super) const DIVISIONS: usize = 4000;
 /// Every combination of operands is computed if there are at most 2 to this power.
 const MOST_COMBINATIONS: u32 = 20;
 
+/// A number that no source has.
+const NO_SOURCE: usize = usize::MAX;
+
 /// The bits of a table that a look-up table of four inputs holds.
 const BITS_OF_A_CELL: f64 = 16.0;
 
@@ -55,6 +58,10 @@ pub struct ProvedPlan {
     pub plan: ExpressionPlan,
     /// The proven error bound of each result, in units of the result's last place.
     pub bounds: Vec<f64>,
+    /// The share that each node has in the error of each result, in units of the result's last place, by result and node. It is what
+    /// the rounding of this node alone adds to the error, in the box of operands with the largest error; 0 for a node that is
+    /// exact.
+    pub shares: Vec<Vec<f64>>,
     /// The method by which the bounds were proved.
     pub proof: ProofKind,
 }
@@ -99,7 +106,8 @@ fn searched(statement: &ExpressionStatement) -> Result<ProvedPlan, PlanRefusal> 
             *bound = bound.min(largest);
         }
     }
-    Ok(ProvedPlan { statement: statement.clone(), plan, bounds, proof })
+    let shares = error_shares(statement, &plan, divisions);
+    Ok(ProvedPlan { statement: statement.clone(), plan, bounds, shares, proof })
 }
 
 /// Returns the plan with polynomials for all of its functions.
@@ -147,6 +155,31 @@ fn cheapest_polynomials(function: &TargetFunction) -> Result<Arc<Piecewise>, Pla
     }
     glint_approximate::find(function, Wish::default())
         .map_err(|refusal| PlanRefusal::new(refusal.message, refusal.remedy))
+}
+
+/// Returns the share that each node has in the error of each result.
+fn error_shares(
+    statement: &ExpressionStatement,
+    plan: &ExpressionPlan,
+    divisions: usize,
+) -> Vec<Vec<f64>> {
+    let mut shares = Vec::new();
+    for result in 0..statement.results.len() {
+        let proof = ResultProof::new(statement, plan, result);
+        let mut of_result = vec![0.0; plan.nodes.len()];
+        if let Some(worst) = proof.worst(0.0, divisions) {
+            // The rounding of the result itself has no source, and is in every share.
+            let own = proof.share(&worst.limits, NO_SOURCE);
+            for (node, share) in plan.nodes.iter().zip(&mut of_result) {
+                if let Some(source) = node.source {
+                    *share = (proof.share(&worst.limits, source) - own).max(0.0);
+                }
+            }
+            of_result[plan.proved[result].0] += own;
+        }
+        shares.push(of_result);
+    }
+    shares
 }
 
 /// Returns a proved bound of the error of each result, after so many divisions of the domain.

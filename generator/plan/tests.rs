@@ -373,3 +373,28 @@ fn stated_widths_refuse_saturate_or_wrap() {
     let found = find(&statement(wide)).expect("a plan");
     assert_eq!(found.plan.node(found.plan.results[0]).format, Format::signed(4, 3));
 }
+
+/// The rounding of a result has at most half a unit of its error, an exact operation nothing, and a table something.
+#[test]
+fn shares_are_of_the_parts_that_round() {
+    for statement in statements(6) {
+        let Ok(found) = find(&statement) else { continue };
+        for (result, shares) in found.shares.iter().enumerate() {
+            let mut largest_table: f64 = 0.0;
+            let needed = found.plan.needed_for(result);
+            let has_table = found.plan.nodes.iter().zip(&needed).any(|(node, needed)| {
+                *needed && matches!(node.operation, Operation::Polynomial(..))
+            });
+            for (node, share) in found.plan.nodes.iter().zip(shares) {
+                match node.operation {
+                    Operation::Polynomial(..) => largest_table = largest_table.max(*share),
+                    Operation::Narrow(..) => {}
+                    _ if node.source.is_none() => assert_eq!(*share, 0.0, "{}", node.name),
+                    _ => {}
+                }
+            }
+            assert!(shares[found.plan.proved[result].0] <= 0.5 + ROUNDING);
+            assert_eq!(has_table, largest_table > 0.0, "{}", statement.results[result].name);
+        }
+    }
+}

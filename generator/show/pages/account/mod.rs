@@ -318,6 +318,28 @@ pub fn terms(bound: &Bound) -> TextTable {
     table
 }
 
+/// Returns a table of the parts of the computation, with the share of each in the error of each output; `None` if the contract does
+/// not know the parts.
+pub fn parts(contract: &dyn Contract) -> Option<TextTable> {
+    let parts = contract.parts();
+    if parts.is_empty() {
+        return None;
+    }
+    let mut headings = "part | computes | format".to_owned();
+    for output in contract.outputs() {
+        headings += &format!(" | share in `{}`:", output.name);
+    }
+    let mut table = TextTable::of(&headings);
+    for part in parts {
+        let mut row = vec![code(&part.name), part.words, format_text(part.format)];
+        for share in part.shares {
+            row.push(if share == 0.0 { String::new() } else { rounded_up(share, 3) });
+        }
+        table.row(row);
+    }
+    Some(table)
+}
+
 /// Returns a table of the operands, with the values for which the contract holds.
 pub fn domain(design: &Design, contract: &dyn Contract) -> TextTable {
     let mut table = TextTable::of("operand | format | from: | to: | what it is");

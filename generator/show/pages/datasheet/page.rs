@@ -48,6 +48,7 @@ struct Page<'a> {
     wavedrom_link: String,
     accuracy: String,
     terms: TableView,
+    parts: Option<TableView>,
     limit: String,
     sweep: String,
     proof: Option<ProofView>,
@@ -169,6 +170,8 @@ pub fn page(subject: &Subject, measured: &DatasheetResults) -> Result<String> {
         wavedrom,
         accuracy: html(&account::accuracy(contract, &subject.backing)),
         terms: TableView::new("Terms of the bound", &account::terms(&bound)),
+        parts: account::parts(contract)
+            .map(|table| TableView::new("Parts of the computation", &table)),
         limit: html(&account::limit(&inputs)),
         sweep: html(&account::proof(&inputs)),
         proof: subject.proof.as_ref().map(|proof| ProofView {
