@@ -88,8 +88,8 @@ keys! {
         software: bool = Key::flag("package.software", false,
             "Write software/<name>/: a bit-accurate model of the core in C."),
         recomputation: bool = Key::flag("package.recomputation", false,
-            "Write software/<name>/<name>_recompute.c: a program with MPFR that recomputes every operand from formula and memories, and \
-             prints the largest error. Of devices whose contract is a formula of one operand.")
+            "Write software/<name>/<name>_recompute.c: a program with MPFR that computes every combination of operands from formulas and \
+             memories, and prints the largest errors. For the devices function and expression, and up to 2^32 combinations.")
             .only_when("package.software", "true"),
         memories: String = Key::choice("package.memories", "files", &["files", "inline", "case"],
             "Whether ROM contents are .mem files, or stand in the Verilog, for flows that do not find files: as initial values, or as \

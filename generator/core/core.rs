@@ -62,7 +62,7 @@ impl Core {
     /// - A result depends on an earlier computation, or is never shown.
     /// - The constraints ask for a faster clock than the pipeline is made for.
     /// - The configuration sets `package.rom_style`, and no ROM of the core can have such an attribute.
-    /// - The configuration asks for a program that recomputes results, and the contract has no formula of one operand.
+    /// - The configuration asks for a program that recomputes results, and [`Core::recomputation`] fails.
     /// - The golden model cannot model the output registers or the operand buffers.
     pub fn new(device: Device, config: Config) -> Result<Self> {
         let design = device.design(&config);
@@ -278,11 +278,12 @@ impl Core {
         Ok(Vectors { word_stride: directed.word_stride, ..vectors? })
     }
 
-    /// Returns the C program that recomputes the result of every operand, with the C model that it includes and the contents of
-    /// the ROMs.
+    /// Returns the C program that recomputes the results of every combination of operands, with the C model that it includes and
+    /// the contents of the ROMs.
     ///
     /// # Errors
-    /// Fails if the contract is no formula of one operand.
+    /// Fails if the contract is neither a formula of one operand nor a list of formulas with conditions, or if there are more than
+    /// 2^32 combinations of operands.
     pub fn recomputation(&self) -> Result<OutputFiles> {
         let asked = Surroundings { software: true, recomputation: true, ..Surroundings::default() };
         let inputs = EmitInputs {

@@ -3,6 +3,7 @@
 //! They are worked examples, computations with their results, the clocks of a line, and the vectors of a test bench. Manifests
 //! and pages print them.
 
+use glint_formula::Comparison;
 use glint_golden::Contract;
 
 /// One computation with the values of all operands and outputs.
@@ -68,8 +69,12 @@ pub struct ContractFacts {
     /// Python expressions of the correct values: the values of `f` for a highlight, or one value for each output of another
     /// device.
     pub f: Vec<String>,
+    /// For each output the comparison under which the error is promised, as [`Contract::conditions`] states them.
+    pub conditions: Option<Vec<Option<Comparison>>>,
     /// The largest error of an output, in units of its last place.
     pub bound: f64,
+    /// The largest error of each output, in units of its last place.
+    pub bounds: Vec<f64>,
 }
 
 impl ContractFacts {
@@ -96,7 +101,9 @@ impl ContractFacts {
                 Some(highlight) => highlight.expressions(),
                 None => contract.expressions(),
             },
+            conditions: contract.conditions(),
             bound: contract.bound().units,
+            bounds: (0..contract.outputs().len()).map(|at| contract.output_bound(at)).collect(),
         }
     }
 }

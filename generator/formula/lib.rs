@@ -21,6 +21,7 @@ pub use dashu_ratio::RBig;
 pub use enclosure::Enclosure;
 pub use literal::Literal;
 pub use parse::{FUNCTIONS, parse};
+pub use print::CArithmetic;
 
 /// A formula, or a part of one, as a tree. Two are equal if their kinds are equal, wherever they come from.
 #[derive(Clone, Debug)]

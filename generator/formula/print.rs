@@ -1,6 +1,6 @@
 //! Prints a formula as an expression of Python or of C.
 
-use super::{Comparison, Expression, Function, Kind, Operator};
+use super::{Comparison, Expression, Function, Kind, Literal, Operator};
 
 /// The precedence of a part: sums, products, signs, powers, and parts that need no parentheses.
 const SUM: u8 = 0;
@@ -17,44 +17,123 @@ impl Expression {
     }
 }
 
+/// The arithmetic of the C functions that evaluate a formula.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum CArithmetic {
+    /// Intervals of MPFR numbers: the functions in `templates/recompute_limits.c`. For example, `add(x, number("1.0"))`.
+    Limits,
+    /// Doubles with a margin: the functions in `templates/recompute_near.c`. For example, `near_add(x, near_exactly(1.0))`.
+    Near,
+}
+
+impl CArithmetic {
+    /// Returns the start of the names of all functions.
+    fn prefix(self) -> &'static str {
+        match self {
+            Self::Limits => "",
+            Self::Near => "near_",
+        }
+    }
+
+    fn number(self, literal: &Literal) -> String {
+        match self {
+            Self::Limits => format!("number(\"{}\")", literal.digits()),
+            Self::Near if literal.is_exact() => format!("near_exactly({:?})", literal.nearest()),
+            Self::Near => format!("near_rounded({:?})", literal.nearest()),
+        }
+    }
+
+    /// Returns a named constant; `below` is the largest `f64` below its value.
+    fn constant(self, name: &str, below: f64) -> String {
+        match (self, name) {
+            (Self::Limits, "pi") => "constant(mpfr_const_pi)".to_owned(),
+            (Self::Limits, _) => "rising(mpfr_exp, number(\"1\"))".to_owned(),
+            (Self::Near, _) => format!("near_rounded({below:?})"),
+        }
+    }
+
+    /// Returns the function of the library for a function of a formula. For example, the sine is `mpfr_sin`, or `sin`.
+    fn library_function(self, function: Function) -> String {
+        match self {
+            Self::Limits => format!("mpfr_{}", function.name()),
+            Self::Near => function.name().to_owned(),
+        }
+    }
+}
+
 impl Expression {
-    /// Returns the formula as C: calls of the interval functions in `templates/recompute.c`.
-    pub fn c(&self) -> String {
-        let call = |name: &str, parts: &[&Self]| {
-            let parts: Vec<String> = parts.iter().map(|it| it.c()).collect();
-            format!("{name}({})", parts.join(", "))
-        };
+    /// Returns the formula as C: calls of the functions of an arithmetic.
+    pub fn c(&self, arithmetic: CArithmetic) -> String {
         match &self.kind {
-            Kind::Number(literal) => format!("number(\"{}\")", literal.digits()),
-            Kind::Constant("pi", _) => "constant(mpfr_const_pi)".to_owned(),
-            Kind::Constant(..) => "rising(mpfr_exp, number(\"1\"))".to_owned(),
+            Kind::Number(literal) => arithmetic.number(literal),
+            Kind::Constant(name, below) => arithmetic.constant(name, *below),
             Kind::Operand(name) | Kind::Word(name, _) => name.clone(),
-            Kind::Unary(Function::Negate, a) => call("negate", &[a]),
-            Kind::Unary(Function::Abs, a) => call("absolute", &[a]),
-            Kind::Unary(Function::Tan, a) => call("tangent", &[a]),
-            Kind::Unary(function @ (Function::Sin | Function::Cos), a) => {
-                format!("wave(mpfr_{}, {})", function.name(), a.c())
+            Kind::Unary(function, a) => c_of_unary(arithmetic, *function, a),
+            Kind::Binary(Operator::Power, a, b) if arithmetic == CArithmetic::Near && is_two(b) => {
+                c_call(arithmetic, "square", &[a], "")
             }
-            Kind::Unary(function, a) => format!("rising(mpfr_{}, {})", function.name(), a.c()),
-            Kind::Binary(operator, a, b) => {
-                let name = match operator {
-                    Operator::Add => "add",
-                    Operator::Sub => "subtract",
-                    Operator::Mul => "multiply",
-                    Operator::Div => "divide",
-                    Operator::Mod => "remainder_of",
-                    Operator::Power => "power",
-                    Operator::Min => "minimum",
-                    Operator::Max => "maximum",
-                    Operator::Atan2 => "direction",
-                };
-                call(name, &[a, b])
-            }
-            Kind::If(Comparison { left, right, or_equal }, yes, no) => {
-                let [left, right] = [left.c(), right.c()];
-                format!("choose({left}, {right}, {}, {}, {})", u8::from(*or_equal), yes.c(), no.c())
+            Kind::Binary(operator, a, b) => c_call(arithmetic, c_operator(*operator), &[a, b], ""),
+            Kind::If(comparison, yes, no) => {
+                let Comparison { left, right, or_equal } = comparison;
+                let (or_equal, yes, no) =
+                    (u8::from(*or_equal), yes.c(arithmetic), no.c(arithmetic));
+                let more = format!(", {or_equal}, {yes}, {no}");
+                c_call(arithmetic, "choose", &[left, right], &more)
             }
         }
+    }
+}
+
+impl Comparison {
+    /// Returns the comparison as C: a call that tells whether it holds. For example, `exceeds(x, number("0.0"), 1)` for `x >= 0`.
+    pub fn c(&self, arithmetic: CArithmetic) -> String {
+        let or_equal = format!(", {}", u8::from(self.or_equal));
+        c_call(arithmetic, "exceeds", &[&self.left, &self.right], &or_equal)
+    }
+
+    /// Returns the comparison as Python. For example, `x >= 0.0`.
+    pub fn python(&self) -> String {
+        let sign = if self.or_equal { ">=" } else { ">" };
+        format!("{} {sign} {}", self.left.python(), self.right.python())
+    }
+}
+
+/// Returns whether a formula is the number 2. A square in doubles is a product, which the C compiler makes faster than a power.
+fn is_two(formula: &Expression) -> bool {
+    matches!(&formula.kind, Kind::Number(literal) if literal.is_exact() && literal.nearest() == 2.0)
+}
+
+/// Returns the C call of a function with formulas as arguments, and `more` behind them.
+fn c_call(arithmetic: CArithmetic, name: &str, parts: &[&Expression], more: &str) -> String {
+    let parts: Vec<String> = parts.iter().map(|part| part.c(arithmetic)).collect();
+    format!("{}{name}({}{more})", arithmetic.prefix(), parts.join(", "))
+}
+
+fn c_of_unary(arithmetic: CArithmetic, function: Function, a: &Expression) -> String {
+    match function {
+        Function::Negate => c_call(arithmetic, "negate", &[a], ""),
+        Function::Abs => c_call(arithmetic, "absolute", &[a], ""),
+        Function::Tan => c_call(arithmetic, "tangent", &[a], ""),
+        _ => {
+            let is_wave = matches!(function, Function::Sin | Function::Cos);
+            let name = if is_wave { "wave" } else { "rising" };
+            let library = arithmetic.library_function(function);
+            format!("{}{name}({library}, {})", arithmetic.prefix(), a.c(arithmetic))
+        }
+    }
+}
+
+fn c_operator(operator: Operator) -> &'static str {
+    match operator {
+        Operator::Add => "add",
+        Operator::Sub => "subtract",
+        Operator::Mul => "multiply",
+        Operator::Div => "divide",
+        Operator::Mod => "remainder_of",
+        Operator::Power => "power",
+        Operator::Min => "minimum",
+        Operator::Max => "maximum",
+        Operator::Atan2 => "direction",
     }
 }
 
@@ -92,9 +171,8 @@ fn python(formula: &Expression) -> (String, u8) {
                 Operator::Atan2 => call("atan2", &[a, b]),
             }
         }
-        Kind::If(Comparison { left, right, or_equal }, yes, no) => {
-            let sign = if *or_equal { ">=" } else { ">" };
-            let test = format!("{} {sign} {}", part(left, SUM), part(right, SUM));
+        Kind::If(comparison, yes, no) => {
+            let test = comparison.python();
             (format!("({} if {test} else {})", part(yes, SUM), part(no, SUM)), ATOM)
         }
     }

@@ -1,6 +1,6 @@
 //! Tests that formulas are parsed, evaluated and printed.
 
-use super::{Enclosure, RBig, parse};
+use super::{CArithmetic, Enclosure, RBig, parse};
 
 fn value(text: &str, x: f64) -> Enclosure {
     let formula = parse(text).unwrap_or_else(|fault| panic!("{}", fault.under(text)));
@@ -331,4 +331,29 @@ fn signs_of_other_alphabets_are_named() {
     let nested = format!("{}x{}", "silu(".repeat(24), ")".repeat(24));
     assert!(parse(&nested).unwrap_err().message.contains("more than 4096 parts"));
     assert!(parse("1e401").is_err() && parse("2e").is_err() && parse(".").is_err());
+}
+
+#[test]
+fn c_calls_the_functions_of_an_arithmetic() {
+    for (text, limits, near) in [
+        (
+            "x^2 + 0.1",
+            "add(power(x, number(\"2.0\")), number(\"0.1\"))",
+            "near_add(near_square(x), near_rounded(0.1))",
+        ),
+        (
+            "if(x >= 0.5, sin(x), sqrt(-x))",
+            "choose(x, number(\"0.5\"), 1, wave(mpfr_sin, x), rising(mpfr_sqrt, negate(x)))",
+            "near_choose(x, near_exactly(0.5), 1, near_wave(sin, x), near_rising(sqrt, near_negate(x)))",
+        ),
+        (
+            "x^3 % pi",
+            "remainder_of(power(x, number(\"3.0\")), constant(mpfr_const_pi))",
+            "near_remainder_of(near_power(x, near_exactly(3.0)), near_rounded(3.141592653589793))",
+        ),
+    ] {
+        let formula = parse(text).unwrap();
+        assert_eq!(formula.c(CArithmetic::Limits), limits);
+        assert_eq!(formula.c(CArithmetic::Near), near);
+    }
 }

@@ -39,6 +39,8 @@
 //! ```
 
 use super::frame::{ClockedModel, Frame, FrameStep, idle};
+use glint_formula::Comparison;
+
 use super::{ANY_VALUE, Bound, ComputedPart, Contract, Model, Operand, Output, Sweep, Term};
 
 /// The largest number of clocks that a computation may take.
@@ -166,6 +168,11 @@ pub trait Formula: Send + Sync {
     /// Returns the formula of each output as a Python expression, as [`Contract::expressions`] does.
     fn expressions(&self) -> Vec<String> {
         Vec::new()
+    }
+
+    /// Returns the comparisons under which errors are promised, as [`Contract::conditions`] does.
+    fn conditions(&self) -> Option<Vec<Option<Comparison>>> {
+        None
     }
 
     /// Returns operands at which an error is likely to show, as [`Contract::hint`] does.
@@ -304,6 +311,10 @@ impl<F: Formula> Contract for OfModel<F> {
 
     fn expressions(&self) -> Vec<String> {
         self.formula.expressions()
+    }
+
+    fn conditions(&self) -> Option<Vec<Option<Comparison>>> {
+        self.formula.conditions()
     }
 
     fn hint(&self, unit: &mut dyn FnMut() -> f64) -> Option<Vec<i64>> {

@@ -12,7 +12,7 @@ use super::polynomial::Polynomial;
 use super::{ComputedPart, Contract, Model, Term};
 use glint_base::fixed::{Format, exp2};
 use glint_config::Config;
-use glint_formula::{Enclosure, RBig};
+use glint_formula::{Comparison, Enclosure, RBig};
 use glint_keys::expression::found;
 use glint_plan::{
     ExpressionPlan, NodeId, Operation, PlanStep, ProvedPlan, StatedOverflow, StatedWidth,
@@ -274,5 +274,19 @@ impl Formula for ProvedFormulas {
     fn expressions(&self) -> Vec<String> {
         let results = self.found.statement.results.iter();
         results.map(|result| result.target().python()).collect()
+    }
+
+    /// Returns the comparison of each result; `None` if a result wraps, because its formula alone does not say then which values
+    /// are right.
+    fn conditions(&self) -> Option<Vec<Option<Comparison>>> {
+        let mut conditions = Vec::new();
+        for result in &self.found.statement.results {
+            let wraps = |width: &StatedWidth| matches!(width.overflow, StatedOverflow::Wrap);
+            if result.width.as_ref().is_some_and(wraps) {
+                return None;
+            }
+            conditions.push(result.promise.clone());
+        }
+        Some(conditions)
     }
 }

@@ -45,6 +45,7 @@ pub use highlight::Highlight;
 
 use glint_base::fixed::{Format, exp2};
 use glint_base::text;
+use glint_formula::Comparison;
 
 /// A golden model of a device, which predicts every register and output clock by clock.
 ///
@@ -184,6 +185,12 @@ pub trait Contract: Send + Sync {
     /// nothing if nobody has written them. A [`Highlight`] has its own.
     fn expressions(&self) -> Vec<String> {
         Vec::new()
+    }
+
+    /// Returns for each output the comparison under which the error is promised, or `None` for an output whose error is promised
+    /// for the whole domain. Returns `None` if the device does not state its promises as comparisons.
+    fn conditions(&self) -> Option<Vec<Option<Comparison>>> {
+        None
     }
 
     /// Returns the contract as a [`Highlight`] if the device multiplies colours by a reflectance f.

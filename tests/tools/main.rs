@@ -30,6 +30,7 @@ mod random_configurations;
 mod random_expressions;
 mod random_netlists;
 mod recompute;
+mod recompute_expressions;
 mod schema;
 mod shipped_bench;
 mod slurm;

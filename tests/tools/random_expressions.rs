@@ -1,17 +1,21 @@
-//! Tests random formulas of up to three operands. Glint proves a bound for a formula and makes a core, which then agrees with its
-//! golden model and passes its bench in Icarus; or Glint refuses the formula, and this test finds a reason by an evaluation of its
-//! own. For a few formulas there is no reason but the limits of the planner: it encloses errors by intervals, and has no numbers
-//! of more than 64 bits.
+//! Tests random formulas of up to three operands.
+//!
+//! Glint proves a bound for a formula and makes a core. The core then agrees with its golden model and passes its bench in Icarus,
+//! and a program in C confirms the bound with MPFR. Or Glint refuses the formula, and this test finds a reason by an evaluation of
+//! its own. For a few formulas there is no reason but the limits of the planner: it encloses errors by intervals, and has no
+//! numbers of more than 64 bits.
 
 use crate::common::bench::Bench;
 use crate::common::cores::{Emitted, assert_agrees, device};
 use crate::common::netlist::POINTS;
 use crate::common::sample::sampled;
+use crate::common::tools::{EFFORT, finding};
 use glint::config;
 use glint::core::Core;
 use glint::cosim::Random;
 use glint::registry::Registry;
 use glint::tools::VerilogSimulator;
+use glint::verify::CheckVerdict;
 
 /// The random configurations.
 const CONFIGURATIONS: u64 = 400;
@@ -19,7 +23,7 @@ const CONFIGURATIONS: u64 = 400;
 /// The configurations that run by default.
 const SAMPLE: usize = 40;
 
-/// Every so many configurations run in Icarus, too.
+/// Every so many configurations run in Icarus, too, and as many are recomputed by the program in C.
 const EVERY: u64 = 4;
 
 /// The most refusals, in percent of the formulas. Many random formulas have a pole, or values of very different sizes.
@@ -345,6 +349,10 @@ fn random_formulas_agree_or_are_refused_with_reason() {
             let emitted = Emitted::new(&core, POINTS, seed);
             Bench::build(VerilogSimulator::Icarus, &emitted.simulated(), &emitted.bench())
                 .assert_passes();
+        }
+        if seed % EVERY == 1 {
+            let found = finding(&core, "recomputation", EFFORT);
+            assert_eq!(found.verdict, CheckVerdict::Proved, "{found:?}\n{what}");
         }
     }
     println!("{agreed} agree, {refused} are refused, {unproved} of them by limits of the planner");

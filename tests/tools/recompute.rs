@@ -39,20 +39,21 @@ fn core((formula, from, to, operand, result): (&str, &str, &str, u32, u32), more
     parsed("f.toml", &text)
 }
 
-/// Writes the program with what it reads, and compiles it without a warning.
-fn compiled(core: &Core) -> Directory {
+/// Writes the program with the files that it reads, and compiles it without a warning.
+pub fn compiled(core: &Core) -> Directory {
     let dir = Directory::new().expect("a directory");
-    for file in core.recomputation().expect("a formula of one operand") {
+    for file in core.recomputation().expect("a program") {
         put(dir.path().join(&file.path), &file.contents);
     }
     compile(dir.path());
     dir
 }
 
-fn compile(dir: &Path) {
+/// Compiles the program of the core `f` without a warning.
+pub fn compile(dir: &Path) {
     let source = "software/f/f_recompute.c";
     let flags = ["-std=c99", "-O2", "-Wall", "-Wextra", "-Wpedantic", "-Werror", "-o", "recompute"];
-    ran("cc", flags.into_iter().chain([source, "-lmpfr", "-lgmp"]), dir);
+    ran("cc", flags.into_iter().chain([source, "-lmpfr", "-lgmp", "-lm"]), dir);
 }
 
 /// Runs the program: whether it accepts, and its last line.

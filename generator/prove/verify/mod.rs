@@ -7,6 +7,7 @@
 mod inside;
 mod outside;
 pub mod page;
+mod recomputation;
 
 #[cfg(test)]
 mod tests;
@@ -206,7 +207,7 @@ pub const CHECKS: [&Check; 16] = [
     &inside::CONTRACT,
     &inside::MUTATION,
     &outside::CERTIFICATE,
-    &outside::RECOMPUTATION,
+    &recomputation::RECOMPUTATION,
     &outside::EQUALITY,
     &outside::TEXT,
     &outside::LINT,

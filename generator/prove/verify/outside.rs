@@ -5,14 +5,13 @@ use std::path::Path;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Duration;
 
-use anyhow::{Context, Result, ensure};
+use anyhow::{Context, Result};
 use rayon::prelude::*;
 
 use super::{Check, CheckSubject, CheckVerdict, Finding};
 use crate::certify::{self, ProofOutcome, statements};
 use crate::equality;
 use glint_base::input;
-use glint_base::key_error::KeyError;
 use glint_base::program::Program;
 use glint_base::target::{FAMILIES, Family};
 use glint_base::text::{counted, grouped};
@@ -22,18 +21,13 @@ use glint_tools::gates;
 use glint_tools::gates::cells::{LIBERTY, Start};
 use glint_tools::synthesis::synthesise;
 use glint_tools::transient::Directory;
-use glint_tools::{
-    Limits, PROOF_LIMITS, Tool, VerilogSimulator, elaborate, lint, prove, run_bench,
-};
+use glint_tools::{Limits, PROOF_LIMITS, VerilogSimulator, elaborate, lint, prove, run_bench};
 
 /// Results of a bench, and with full effort.
 const POINTS: [u64; 2] = [200, 20_000];
 
 /// How long it may take to write the statements for Gappa, and to prove one, but with full effort.
 const STATEMENT: Duration = Duration::from_secs(10);
-
-/// Operands that are recomputed but with full effort.
-const RECOMPUTED: u64 = 1 << 20;
 
 /// How long the solver may take to prove a pipeline equal to its sequential core, but with full effort.
 const EQUAL: Duration = Duration::from_secs(300);
@@ -102,80 +96,6 @@ pub const CERTIFICATE: Check = Check {
             ),
         )
         .open("The words of tables are taken as they are."))
-    },
-};
-
-/// The exit code of the program that recomputes every operand if it decides all but some.
-const SOME_UNDECIDED: i32 = 3;
-
-/// Checks the error bound by a generated C program that recomputes every operand, and shares nothing with Glint but the formula.
-pub const RECOMPUTATION: Check = Check {
-    id: "recomputation",
-    title: "Every operand recomputed with MPFR",
-    question: "Does a program outside Glint find no larger error than the bound, with the formula in MPFR and the memories as they are?",
-    reads: "the memory files, the model in C, and the program that `package.recomputation` writes",
-    tools: &["cc"],
-    steps: |_| 1,
-    run: |subject, tools, _| {
-        let files = match subject.core.recomputation() {
-            Ok(files) => files,
-            Err(error) if error.is::<KeyError>() => {
-                let why = "It is asked of contracts that are a formula of one operand.";
-                return Ok(Finding::without(CheckVerdict::NotApplicable, why));
-            }
-            Err(error) => return Err(error),
-        };
-        let (dir, limit) = (directory_of(&files)?, subject.effort.time_limit);
-        let program = files.of(&[FileKind::Recomputation]);
-        let program = program.first().context("no program that recomputes every operand")?;
-        let (first, last) = subject.core.contract.operands()[0].domain;
-        if last.abs_diff(first) >= RECOMPUTED && !subject.effort.full {
-            let why = format!(
-                "{} operands take minutes or more: `--full` has them, as far as `--time-limit` goes.",
-                grouped(last.abs_diff(first) + 1)
-            );
-            return Ok(Finding::without(CheckVerdict::LeftOut, why));
-        }
-        let compile = |source| {
-            let arguments = ["-std=c99", "-O2", "-o", "recompute", source, "-lmpfr", "-lgmp"];
-            tools[0].run(arguments, dir.path(), limit)
-        };
-        // Whether the library is there is asked of a program that needs nothing else.
-        fs::write(dir.path().join("probe.c"), "#include <mpfr.h>\nint main(void) { return 0; }\n")
-            .context("cannot write a program for the C compiler")?;
-        if !compile("probe.c")?.status.success() {
-            let why = "MPFR is not installed for the C compiler: package libmpfr-dev, say";
-            return Ok(Finding::without(CheckVerdict::NotRun, why));
-        }
-        let compiled = compile(&program.path)?;
-        ensure!(compiled.status.success(), "`{}`: {}", program.path, compiled.output.trim());
-        let recompute = Tool::find_in("recompute", dir.path().as_os_str())?;
-        // A program that has no memory to check takes no argument.
-        let mut arguments = Vec::new();
-        if program.contents.contains("check_memory(argv") {
-            let name = &subject.core.config.name;
-            arguments.push(format!("{}/{name}", FileKind::Memory.folder()));
-        }
-        let run = recompute.run(arguments, dir.path(), limit)?;
-        if run.status.code() == Some(SOME_UNDECIDED) {
-            let said = run.output.lines().rev().take(2).collect::<Vec<_>>();
-            let why = format!(
-                "{}: MPFR does not tell on which side of a jump they are.",
-                said.join("; ")
-            );
-            return Ok(Finding::without(CheckVerdict::Unconfirmed, &why));
-        }
-        let said = run.output.lines().last().unwrap_or_default().to_owned();
-        let holds = run.status.success() && said.ends_with(" holds");
-        let failures = if holds { Vec::new() } else { vec![said.clone()] };
-        let operand = &subject.core.contract.operands()[0];
-        let domain = format!(
-            "every operand: {} = {} to {}",
-            operand.name, operand.domain.0, operand.domain.1
-        );
-        Ok(Finding::new(CheckVerdict::Proved, domain, format!("{said}.")).failures(failures).open(
-            "The model in C is made of the netlist, which other checks compare with the Verilog.",
-        ))
     },
 };
 
@@ -476,7 +396,10 @@ fn written(subject: &CheckSubject<'_>) -> Result<Directory> {
     directory_of(subject.files()?.iter().chain([&package::driver()]))
 }
 
-fn directory_of<'f>(files: impl IntoIterator<Item = &'f OutputFile>) -> Result<Directory> {
+/// Writes files into a directory of their own.
+pub(super) fn directory_of<'f>(
+    files: impl IntoIterator<Item = &'f OutputFile>,
+) -> Result<Directory> {
     let dir = Directory::new().context("cannot make a directory for what is emitted")?;
     for file in files {
         let path = dir.path().join(&file.path);

@@ -1,7 +1,8 @@
-//! Writes a C program that computes the result for every value of a core's only operand, and compares it with the formula.
+//! Writes a C program that computes the results of a core for every combination of operands, and compares them with the formulas.
 //!
-//! The program evaluates the formula with the multiple-precision library MPFR. It is therefore evidence for the error bound that
-//! does not depend on Glint's own arithmetic.
+//! The program evaluates the formulas with the multiple-precision library MPFR. It is therefore evidence for the error bounds that
+//! does not depend on Glint's own arithmetic. A core of one operand gets a program that uses MPFR for every operand. A core of the
+//! device `expression` has up to 2^32 combinations, so that its program evaluates the formulas in double first.
 
 use anyhow::Result;
 
@@ -11,14 +12,26 @@ use crate::package::emit_job::EmitJob;
 use crate::package::file_kind::FileKind;
 use crate::package::output_files::OutputFiles;
 use glint_base::fill;
+use glint_base::fixed::exp2;
 use glint_base::key_error::KeyError;
-use glint_formula::parse;
-use glint_rtl::netlist::RomId;
+use glint_formula::{CArithmetic, Comparison, Expression, parse};
+use glint_rtl::netlist::{Design, RomId};
 use glint_rtl::verilog::naming::Naming;
 use glint_rtl::verilog::text::{ascii, statement};
 
 /// The most values that the program may make for a part of a formula.
 const VALUES: usize = 8;
+
+/// The most combinations of operands that a program computes.
+pub const MOST_COMBINATIONS: u128 = 1 << 32;
+
+/// The contract of a core, as far as a program can recompute it.
+enum RecomputedContract<'f> {
+    /// A formula of one operand, which is promised for the whole domain.
+    Function(RecomputedFormula<'f>),
+    /// Formulas of several operands, each with the comparison under which its error is promised.
+    Expression(&'f [Option<Comparison>]),
+}
 
 /// The parts of a contract that the program needs: one operand with its domain, one result, and its formula.
 struct RecomputedFormula<'f> {
@@ -28,18 +41,38 @@ struct RecomputedFormula<'f> {
     formula: &'f str,
 }
 
-impl<'f> RecomputedFormula<'f> {
+impl<'f> RecomputedContract<'f> {
     fn new(name: &str, facts: &'f ContractFacts) -> Result<Self, KeyError> {
+        if let Some(conditions) = &facts.conditions {
+            let combinations = combinations(facts);
+            if combinations > MOST_COMBINATIONS {
+                let why = format!(
+                    "its operands have {combinations} combinations, more than the 2^32 that a program computes in minutes"
+                );
+                return Err(recomputation_error(name, &why));
+            }
+            return Ok(Self::Expression(conditions));
+        }
         match (&facts.domain[..], &facts.outputs[..], &facts.f[..]) {
             ([(operand, domain)], [(result, None)], [formula]) => {
-                Ok(Self { operand, domain: *domain, result, formula })
+                let domain = *domain;
+                Ok(Self::Function(RecomputedFormula { operand, domain, result, formula }))
             }
             _ => Err(recomputation_error(
                 name,
-                "its contract is no formula of one operand, with a bound",
+                "its contract is no list of formulas with bounds, as those of `function` and `expression` are, or a result wraps",
             )),
         }
     }
+}
+
+/// Returns the number of combinations of operands, or the largest number there is.
+fn combinations(facts: &ContractFacts) -> u128 {
+    let mut count: u128 = 1;
+    for (_, (first, last)) in &facts.domain {
+        count = count.saturating_mul(u128::from(last.abs_diff(*first)) + 1);
+    }
+    count
 }
 
 /// Returns the error of the key that asks for the program.
@@ -51,9 +84,10 @@ fn recomputation_error(name: &str, why: &str) -> KeyError {
 /// Checks that the program can be written for a core.
 ///
 /// # Errors
-/// Fails if the core has several operands or results, or if its contract states no formula.
+/// Fails if the contract has no formulas with bounds, if only the device `expression` could have so many operands or results, or
+/// if there are more than 2^32 combinations of operands.
 pub fn check(name: &str, facts: &ContractFacts) -> Result<(), KeyError> {
-    RecomputedFormula::new(name, facts).map(drop)
+    RecomputedContract::new(name, facts).map(drop)
 }
 
 /// Adds the C program that recomputes all results to `files`. `read` are the ROMs that the C model reads.
@@ -65,47 +99,217 @@ pub fn file(job: &EmitJob, read: &[RomId], files: &mut OutputFiles) -> Result<()
     let design = inputs.sequential.as_ref().unwrap_or(job.design);
     let facts =
         inputs.accuracy.as_ref().ok_or_else(|| recomputation_error(name, "it has no contract"))?;
-    let RecomputedFormula { operand, domain: (first, last), result, formula: text } =
-        RecomputedFormula::new(name, facts)?;
-    let formula = parse(text)?;
-    let mut parts = 0;
-    formula.walk(&mut |_| parts += 1);
-    let field = |name: &str| {
-        let mut ports = design.ports.iter();
-        let port = ports.find(|port| design.net(port.net).name == name);
-        port.map(|port| CField::new(design, port))
-            .ok_or_else(|| recomputation_error(name, "its contract names no port"))
-    };
-    let (operand, result) = (field(operand)?, field(result)?);
-    let (naming, tables) = (Naming::new(design), table_names(design));
-    let written = files.local_paths(&[FileKind::Memory]);
-    let mut memories = Vec::new();
-    for id in read {
-        let (file, table) = (naming.files[id.index()].clone(), tables[id.index()].clone());
-        if written.contains(&file) {
-            memories.push((file, table, design.rom(*id).words.len()));
+    let memories = CheckedMemories::new(design, read, files);
+    let program = match RecomputedContract::new(name, facts)? {
+        RecomputedContract::Function(formula) => {
+            function_program(job, design, facts.bound, formula, memories)?
         }
+        RecomputedContract::Expression(conditions) => {
+            expression_program(job, design, facts, conditions, memories)?
+        }
+    };
+    files.add(FileKind::Recomputation, format!("{name}_recompute.c"), program);
+    Ok(())
+}
+
+/// The memory files that the program compares with the tables of the C model.
+struct CheckedMemories {
+    /// For each memory file its name, the name of the table, and the number of words.
+    files: Vec<(String, String, usize)>,
+    /// The reason why there are no memory files, as a sentence.
+    why_none: &'static str,
+}
+
+impl CheckedMemories {
+    fn new(design: &Design, read: &[RomId], written: &OutputFiles) -> Self {
+        let (naming, tables) = (Naming::new(design), table_names(design));
+        let paths = written.local_paths(&[FileKind::Memory]);
+        let mut files = Vec::new();
+        for id in read {
+            let file = naming.files[id.index()].clone();
+            if paths.contains(&file) {
+                files.push((file, tables[id.index()].clone(), design.rom(*id).words.len()));
+            }
+        }
+        let why_none = match read.is_empty() {
+            true => "the core reads no table.",
+            false => {
+                "the words of the tables are in the Verilog itself, which this program does not read."
+            }
+        };
+        Self { files, why_none }
     }
-    let program = fill!("recompute.c" {
+}
+
+/// Returns a port as a member of the model's structures.
+fn field(name: &str, design: &Design, port: &str) -> Result<CField, KeyError> {
+    let mut ports = design.ports.iter();
+    let found = ports.find(|found| design.net(found.net).name == port);
+    found
+        .map(|found| CField::new(design, found))
+        .ok_or_else(|| recomputation_error(name, "its contract names no port"))
+}
+
+/// Returns the number of parts of a formula.
+fn part_count(formula: &Expression) -> usize {
+    formula.count(&|_| true)
+}
+
+/// Returns a text that ends no comment of C.
+fn in_comment(text: &str) -> String {
+    ascii(text).replace("*/", "* /")
+}
+
+/// Returns the program for a formula of one operand.
+fn function_program(
+    job: &EmitJob,
+    design: &Design,
+    bound: f64,
+    recomputed: RecomputedFormula<'_>,
+    memories: CheckedMemories,
+) -> Result<String> {
+    let RecomputedFormula { operand, domain: (first, last), result, formula: text } = recomputed;
+    let name = job.name();
+    let formula = parse(text)?;
+    let (operand, result) = (field(name, design, operand)?, field(name, design, result)?);
+    fill!("recompute.c" {
         name: &'a str,
-        title: String = ascii(&design.about.title).replace("*/", "* /"),
+        title: String = in_comment(&design.about.title),
         regenerate: &'a str = job.regenerate(),
         text: &'a str,
-        formula: Vec<String> = statement(4, &format!("return {};", formula.c())),
-        values: usize = VALUES * (parts + 1),
-        memories: Vec<(String, String, usize)>,
-        without_memories: &'a str = match read.is_empty() {
-            true => "the core reads no table.",
-            false => "the words of the tables are in the Verilog itself, which this program does not read.",
-        },
+        formula: Vec<String> = statement(4, &format!("return {};", formula.c(CArithmetic::Limits))),
+        values: usize = VALUES * (part_count(&formula) + 1),
+        memories: Vec<(String, String, usize)> = memories.files,
+        without_memories: &'a str = memories.why_none,
         operand_exponent: i32 = -operand.format.frac,
         operand: String = operand.name,
         result_exponent: i32 = -result.format.frac,
         result: String = result.name,
         first: i64,
         last: i64,
-        bound: String = format!("{:?}", facts.bound),
-    })?;
-    files.add(FileKind::Recomputation, format!("{name}_recompute.c"), program);
-    Ok(())
+        bound: String = format!("{bound:?}"),
+    })
+}
+
+/// An operand in the program for an expression.
+struct ProgramOperand {
+    field: CField,
+    first: i64,
+    last: i64,
+    /// The weight of the last place is two to the power of this.
+    exponent: i32,
+    /// The weight of the last place, as a C double.
+    unit: String,
+}
+
+/// A result in the program for an expression.
+struct ProgramResult {
+    field: CField,
+    exponent: i32,
+    unit: String,
+    /// The proved bound of the error as a C double, in units of the last place.
+    bound: String,
+    formula: ProgramFormula,
+    /// The comparison under which the error is promised.
+    condition: Option<ProgramFormula>,
+}
+
+/// The bodies of the C functions that evaluate a formula or a comparison.
+struct ProgramFormula {
+    /// The formula for a comment.
+    text: String,
+    /// The lines of the function that uses MPFR.
+    limits: Vec<String>,
+    /// The lines of the function that uses doubles.
+    near: Vec<String>,
+}
+
+impl ProgramFormula {
+    fn new(text: &str, limits: &str, near: &str) -> Self {
+        Self { text: in_comment(text), limits: c_return(limits), near: c_return(near) }
+    }
+}
+
+/// Returns the lines of a C function that returns a value, which may depend on the operands x.
+fn c_return(value: &str) -> Vec<String> {
+    let mut lines = Vec::new();
+    if !value.contains("x[") {
+        // A compiler would warn of the unused parameter.
+        lines.push("    (void)x;".to_owned());
+    }
+    lines.extend(statement(4, &format!("return {value};")));
+    lines
+}
+
+/// Returns the formula with x[0], x[1] and so on for the operands.
+fn with_numbered_operands(formula: &Expression, facts: &ContractFacts) -> Expression {
+    formula.with_operands(&|name| {
+        let number = facts.domain.iter().position(|(operand, _)| operand == name)?;
+        Some(Expression::operand(&format!("x[{number}]")))
+    })
+}
+
+/// Returns the program for formulas of several operands.
+fn expression_program(
+    job: &EmitJob,
+    design: &Design,
+    facts: &ContractFacts,
+    conditions: &[Option<Comparison>],
+    memories: CheckedMemories,
+) -> Result<String> {
+    let name = job.name();
+    let mut operands = Vec::new();
+    let mut operand_list = Vec::new();
+    for (number, (operand, (first, last))) in facts.domain.iter().enumerate() {
+        let field = field(name, design, operand)?;
+        let exponent = -field.format.frac;
+        let unit = format!("{:?}", exp2(exponent));
+        operands.push(ProgramOperand { field, first: *first, last: *last, exponent, unit });
+        operand_list.push(format!("x[{number}] for {operand}"));
+    }
+    let mut results = Vec::new();
+    let mut most_parts = 0;
+    for (number, (output, _)) in facts.outputs.iter().enumerate() {
+        let field = field(name, design, output)?;
+        let exponent = -field.format.frac;
+        let text = &facts.f[number];
+        let formula = with_numbered_operands(&parse(text)?, facts);
+        let mut parts = part_count(&formula);
+        let mut condition = None;
+        if let Some(stated) = &conditions[number] {
+            let [left, right] = [&stated.left, &stated.right]
+                .map(|side| Box::new(with_numbered_operands(side, facts)));
+            parts += part_count(&left) + part_count(&right) + 1;
+            let comparison = Comparison { left, right, or_equal: stated.or_equal };
+            let [limits, near] =
+                [CArithmetic::Limits, CArithmetic::Near].map(|it| comparison.c(it));
+            condition = Some(ProgramFormula::new(&stated.python(), &limits, &near));
+        }
+        most_parts = most_parts.max(parts);
+        let [limits, near] = [CArithmetic::Limits, CArithmetic::Near].map(|it| formula.c(it));
+        results.push(ProgramResult {
+            field,
+            exponent,
+            unit: format!("{:?}", exp2(exponent)),
+            bound: format!("{:?}", facts.bounds[number]),
+            formula: ProgramFormula::new(&format!("{output} = {text}"), &limits, &near),
+            condition,
+        });
+    }
+    let memory_argument = match memories.files.is_empty() {
+        true => String::new(),
+        false => format!(" ../../rtl_out/{name}"),
+    };
+    fill!("recompute_expression.c" {
+        name: &'a str,
+        title: String = in_comment(&design.about.title),
+        regenerate: &'a str = job.regenerate(),
+        memory_argument: String,
+        memories: Vec<(String, String, usize)> = memories.files,
+        without_memories: &'a str = memories.why_none,
+        values: usize = VALUES * (most_parts + 1) + operands.len(),
+        operands: Vec<ProgramOperand>,
+        operand_list: String = operand_list.join(", "),
+        results: Vec<ProgramResult>,
+    })
 }

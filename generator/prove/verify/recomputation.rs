@@ -1,0 +1,159 @@
+//! Checks the error bounds by a generated C program that computes every combination of operands, and shares nothing with Glint but
+//! the formulas.
+//!
+//! For example, the program for `hypot` compares 2^24 results of operands of 12 bits with MPFR in about a second.
+
+use std::fs;
+use std::path::Path;
+
+use anyhow::{Context, Result, ensure};
+
+use super::outside::directory_of;
+use super::{Check, CheckSubject, CheckVerdict, Finding};
+use glint_base::input;
+use glint_base::key_error::KeyError;
+use glint_base::program::Program;
+use glint_base::text::grouped;
+use glint_core::package::{FileKind, OutputFile};
+use glint_golden::Operand;
+use glint_tools::Tool;
+
+/// The most operands of a function that are recomputed without full effort. MPFR computes each of them.
+const MOST_OPERANDS: u128 = 1 << 20;
+
+/// The most combinations of an expression's operands that are recomputed without full effort. Doubles decide most of them.
+const MOST_COMBINATIONS: u128 = 1 << 24;
+
+/// The exit code of the program if it decides all combinations but some.
+const SOME_UNDECIDED: i32 = 3;
+
+/// Recomputes the results of every combination of operands.
+pub const RECOMPUTATION: Check = Check {
+    id: "recomputation",
+    title: "Every combination of operands recomputed with MPFR",
+    question: "Does a program outside Glint find no larger error than the bound, with the formula in MPFR and the memories as they are?",
+    reads: "the memory files, the model in C, and the program that `package.recomputation` writes",
+    tools: &["cc"],
+    steps: |_| 1,
+    run: |subject, tools, _| {
+        let files = match subject.core.recomputation() {
+            Ok(files) => files,
+            Err(error) => {
+                let KeyError { message, .. } = error.downcast()?;
+                let why = format!("The program is not written: {message}.");
+                return Ok(Finding::without(CheckVerdict::NotApplicable, why));
+            }
+        };
+        if let Some(left_out) = left_out(subject) {
+            return Ok(left_out);
+        }
+        let dir = directory_of(&files)?;
+        let programs = files.of(&[FileKind::Recomputation]);
+        let program = programs.first().context("no program that recomputes every operand")?;
+        let compiler = ProgramCompiler { tool: &tools[0], dir: dir.path(), subject };
+        if !compiler.has_mpfr()? {
+            let why = "MPFR is not installed for the C compiler: package libmpfr-dev, say";
+            return Ok(Finding::without(CheckVerdict::NotRun, why));
+        }
+        compiler.compile_program(&program.path)?;
+        run(subject, program, dir.path())
+    },
+};
+
+/// Returns the finding if the operands have more combinations than this effort allows.
+fn left_out(subject: &CheckSubject<'_>) -> Option<Finding> {
+    let contract = &subject.core.contract;
+    let most = if contract.conditions().is_some() { MOST_COMBINATIONS } else { MOST_OPERANDS };
+    let count = combinations(contract.operands());
+    if subject.effort.full || count <= most {
+        return None;
+    }
+    let why = format!(
+        "{} combinations of operands take minutes or more: `--full` computes them within the limit of `--time-limit`.",
+        grouped(count as u64)
+    );
+    let complete_with = format!("{Program} verify {} --full", input::label(subject.path));
+    Some(Finding {
+        complete_with: Some(complete_with),
+        ..Finding::without(CheckVerdict::LeftOut, why)
+    })
+}
+
+/// Returns the number of combinations of operands.
+fn combinations(operands: &[Operand]) -> u128 {
+    let mut count: u128 = 1;
+    for operand in operands {
+        let (first, last) = operand.domain;
+        count = count.saturating_mul(u128::from(last.abs_diff(first)) + 1);
+    }
+    count
+}
+
+/// The C compiler, in a directory with the program and the files that it includes.
+struct ProgramCompiler<'a> {
+    tool: &'a Tool,
+    dir: &'a Path,
+    subject: &'a CheckSubject<'a>,
+}
+
+impl ProgramCompiler<'_> {
+    /// Compiles a source. Returns whether the compiler accepts it, and what the compiler prints.
+    fn compile(&self, source: &str) -> Result<(bool, String)> {
+        let arguments = ["-std=c99", "-O2", "-o", "recompute", source, "-lmpfr", "-lgmp", "-lm"];
+        let run = self.tool.run(arguments, self.dir, self.subject.effort.time_limit)?;
+        Ok((run.status.success(), run.output))
+    }
+
+    /// Returns whether a program that needs nothing but MPFR compiles.
+    fn has_mpfr(&self) -> Result<bool> {
+        let probe = "#include <mpfr.h>\nint main(void) { return 0; }\n";
+        fs::write(self.dir.join("probe.c"), probe)
+            .context("cannot write a program for the C compiler")?;
+        Ok(self.compile("probe.c")?.0)
+    }
+
+    fn compile_program(&self, source: &str) -> Result<()> {
+        let (is_accepted, output) = self.compile(source)?;
+        ensure!(is_accepted, "`{source}`: {}", output.trim());
+        Ok(())
+    }
+}
+
+/// Runs the compiled program, and returns the finding from its exit code and its last lines.
+fn run(subject: &CheckSubject<'_>, program: &OutputFile, dir: &Path) -> Result<Finding> {
+    let recompute = Tool::find_in("recompute", dir.as_os_str())?;
+    // A program that has no memory to check takes no argument.
+    let mut arguments = Vec::new();
+    if program.contents.contains("check_memories(argv") {
+        let name = &subject.core.config.name;
+        arguments.push(format!("{}/{name}", FileKind::Memory.folder()));
+    }
+    let run = recompute.run(arguments, dir, subject.effort.time_limit)?;
+    let lines: Vec<&str> = run.output.lines().filter(|line| !is_about_memories(line)).collect();
+    let said = lines.join("; ");
+    if run.status.code() == Some(SOME_UNDECIDED) {
+        let why = format!("{said}: MPFR does not tell on which side of a jump they are.");
+        return Ok(Finding::without(CheckVerdict::Unconfirmed, &why));
+    }
+    let failures = if run.status.success() { Vec::new() } else { vec![said.clone()] };
+    let domain = domain(subject.core.contract.operands());
+    Ok(Finding::new(CheckVerdict::Proved, domain, format!("{said}.")).failures(failures).open(
+        "The model in C is made of the netlist, which other checks compare with the Verilog.",
+    ))
+}
+
+/// Returns whether a line of the program says that there are no memory files.
+fn is_about_memories(line: &str) -> bool {
+    line.starts_with("no memory is checked")
+}
+
+/// Returns the raw values of the operands as text. For example, `every operand: x = 0 to 255`.
+fn domain(operands: &[Operand]) -> String {
+    let mut ranges = Vec::new();
+    for operand in operands {
+        let (first, last) = operand.domain;
+        ranges.push(format!("{} = {first} to {last}", operand.name));
+    }
+    let what = if operands.len() == 1 { "operand" } else { "combination of operands" };
+    format!("every {what}: {}", ranges.join(", "))
+}
