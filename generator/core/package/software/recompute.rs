@@ -241,7 +241,7 @@ fn c_return(value: &str) -> Vec<String> {
     lines
 }
 
-/// Returns the formula with x[0], x[1] and so on for the operands.
+/// Returns the formula with `x[0]`, `x[1]` and so on for the operands.
 fn with_numbered_operands(formula: &Expression, facts: &ContractFacts) -> Expression {
     formula.with_operands(&|name| {
         let number = facts.domain.iter().position(|(operand, _)| operand == name)?;
