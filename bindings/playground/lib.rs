@@ -10,7 +10,7 @@ use anyhow::{Context, Result};
 use base64::Engine as _;
 use base64::prelude::BASE64_STANDARD;
 use serde::Deserialize;
-use serde_json::{Map, Value, json};
+use serde_json::{Value, json};
 
 use glint_config::{self as config, Key, KeyKind, Problems};
 use glint_core::core::Core;
@@ -39,9 +39,9 @@ thread_local! {
 #[derive(Deserialize)]
 #[serde(tag = "ask", rename_all = "lowercase")]
 enum Question {
-    /// The devices and the presets of `function`.
+    /// The devices, and the presets of `function` and `expression`.
     Devices,
-    /// The keys of a preset.
+    /// The configuration of a preset, as TOML.
     Preset { name: String },
     /// Describes a core: keys, bound, clocks, estimates, schedule, diagram.
     Core { toml: String },
@@ -102,14 +102,20 @@ fn answered(request: &[u8]) -> Result<Value> {
                 .iter()
                 .map(|it| json!({ "name": it.name, "summary": it.summary }))
                 .collect();
-            let presets: Vec<&str> = presets::names_of_functions().collect();
-            Ok(json!({ "ok": true, "devices": devices, "presets": presets }))
+            let functions: Vec<&str> = presets::names_of_functions().collect();
+            let expressions: Vec<&str> = presets::names_of_expressions().collect();
+            Ok(
+                json!({ "ok": true, "devices": devices, "functions": functions, "expressions": expressions }),
+            )
         }
         Question::Preset { name } => {
             let preset = presets::find(&name).context("no such preset")?;
-            let values: Map<String, Value> =
-                preset.values.into_iter().map(|(key, value)| (key, plain(&value))).collect();
-            Ok(json!({ "ok": true, "values": values }))
+            let module = name.replace('-', "_");
+            let mut toml = format!("device = \"{}\"\nname = \"{module}\"\n", preset.device);
+            for (key, value) in &preset.values {
+                toml += &format!("{key} = {}\n", value.toml());
+            }
+            Ok(json!({ "ok": true, "toml": toml }))
         }
         Question::Core { toml } => of(&toml, described),
         Question::Picture { toml, exponent, side } => {
@@ -177,7 +183,7 @@ fn key(core: &Core, key: &Key) -> Value {
         KeyKind::Flag => json!({ "is": "flag" }),
         KeyKind::Text(_) => json!({ "is": "text" }),
         KeyKind::Integers { .. } => json!({ "is": "integers" }),
-        KeyKind::Table { .. } => json!({ "is": "records" }),
+        KeyKind::Table { .. } => json!({ "is": "entries" }),
     };
     json!({
         "name": key.name,

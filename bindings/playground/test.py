@@ -112,7 +112,9 @@ def every_choice_has_its_views(page):
     for choice in page.locator("#device option").evaluate_all("all => all.map(it => it.value)"):
         page.locator("#device").select_option(choice)
         page.wait_for_function(
-            "(choice) => document.getElementById('toml').value.includes(choice.split(' ').pop())", arg=choice, timeout=LIMIT
+            "(choice) => document.getElementById('toml').value.includes(choice.split(' ').pop().replace('-', '_'))",
+            arg=choice.replace("-", "_") if " " in choice else choice,
+            timeout=LIMIT,
         )
         settled(page)
         expect(page.locator("#problems li")).to_have_count(0)
@@ -121,9 +123,36 @@ def every_choice_has_its_views(page):
             expect(page.locator(f"#{tab}")).to_be_visible()
             if tab == "waves":
                 expect(page.locator("#waves img")).to_have_attribute("alt", re.compile("simulated"), timeout=LIMIT)
-        if choice.startswith("function"):
+        if choice.startswith(("function", "expression")):
             expect(page.locator("#exponent-row")).to_be_hidden()
         assert page.locator("#schedule tr").count() > 2 and page.locator("#facts dd").count() == 6
+
+
+def entries_are_edited(page):
+    """The operands and results of an expression are edited in the form; a wrong field has its message at its entry."""
+    page.locator("#toml").fill('device = "expression"\nname = "own"\n')
+    settled(page)
+    fields = page.locator("[id='key-results.r']")
+    expect(fields).to_have_value('formula = "sqrt(x^2 + y^2)", fraction = 11, error = 1')
+    fields.fill('formula = "x / (2 + y)", fraction = 9')
+    fields.press("Enter")
+    expect(page.locator("#toml")).to_have_value(
+        'device = "expression"\nname = "own"\nresults.r = { formula = "x / (2 + y)", fraction = 9 }\n', timeout=LIMIT
+    )
+    settled(page)
+    expect(page.locator("#problems li")).to_have_count(0)
+    page.locator("[id='key-results'] button[aria-label='add an entry to results']").click()
+    settled(page)
+    expect(page.locator("#problems li")).to_have_count(0)
+    expect(page.locator("[id='key-results.r2']")).to_have_value('formula = "x / (2 + y)", fraction = 9')
+    fields.fill('formula = "x / y", fraction = 9')
+    fields.press("Enter")
+    expect(page.locator(".key:has([id='key-results.r']) .wrong")).to_contain_text("not finite", timeout=LIMIT)
+    page.locator("button[aria-label='remove r2']").click()
+    fields.fill('formula = "x * y", fraction = 9')
+    fields.press("Enter")
+    settled(page)
+    expect(page.locator("#problems li")).to_have_count(0)
 
 
 def old_results_are_dimmed(page):
@@ -204,11 +233,13 @@ def main():
         for text in [
             'device = "cosine-power"\n',
             'device = "rough"\narchitecture = "pipelined"\n\n[pipeline]\ninterval = 3\n',
+            'device = "expression"\nname = "own"\nresults.r = { formula = "x * y", fraction = 11 }\n',
             'device = "function"\nname = "own"\n\n[function]\nformula = "exp(-x)"\nfrom = 0\nto = 1\n',
         ]:
             files_are_those_of_the_native_program(page, glint, text)
         a_wrong_key_gets_the_message_of_the_command_line(page, glint)
         every_choice_has_its_views(page)
+        entries_are_edited(page)
         old_results_are_dimmed(page)
         a_download_can_be_cancelled(page)
         a_drawing_enlarges_by_keyboard(page)

@@ -129,7 +129,12 @@ const EXPRESSIONS: [ExpressionPreset; 10] = [
 
 /// Returns the names of all presets.
 pub fn names() -> impl Iterator<Item = &'static str> {
-    names_of_functions().chain(EXPRESSIONS.iter().map(|preset| preset.name))
+    names_of_functions().chain(names_of_expressions())
+}
+
+/// Returns the names of the presets for the device `expression`.
+pub fn names_of_expressions() -> impl Iterator<Item = &'static str> {
+    EXPRESSIONS.iter().map(|preset| preset.name)
 }
 
 /// Returns the names of the presets for the device `function`.

@@ -9,7 +9,7 @@ impl ExpressionPlan {
     /// Returns what a node computes, in terms of the names of other nodes. For example, `|x|`, `a · b`, or `1 / x for x =
     /// mantissa, by 16 polynomials of degree 2 and 39 bits`.
     pub fn words(&self, id: NodeId) -> String {
-        let name = |id: &NodeId| self.node(*id).name.as_str();
+        let name = |id: &NodeId| self.reference(*id);
         match &self.node(id).operation {
             Operation::Operand(_) => "an operand".to_owned(),
             Operation::Constant { .. } => "a constant".to_owned(),
@@ -38,7 +38,16 @@ impl ExpressionPlan {
             Operation::Places(normalised) => format!("the leading zeros of {}", name(normalised)),
             Operation::ShiftLeft(a, places) => format!("{} · 2^{}", name(a), name(places)),
             Operation::ShiftRight(a, places) => format!("{} / 2^{}", name(a), name(places)),
-            Operation::Polynomial(a, approximation) => table_words(approximation, name(a)),
+            Operation::Polynomial(a, approximation) => table_words(approximation, &name(a)),
+        }
+    }
+
+    /// Returns how other nodes name a node: a constant by its value, any other node by its name.
+    fn reference(&self, id: NodeId) -> String {
+        let node = self.node(id);
+        match node.operation {
+            Operation::Constant { raw, .. } => node.format.to_f64(raw).to_string(),
+            _ => node.name.clone(),
         }
     }
 }

@@ -185,10 +185,17 @@ impl<'s> Lowering<'s> {
             return Ok(node);
         };
         let (low, high) = format.range();
-        let least = self.plan.constant(&format!("{name}_least"), low, format.frac)?;
-        let not_below = self.plan.maximum(&format!("{name}_not_below"), node, least)?;
-        let most = self.plan.constant(&format!("{name}_most"), high, format.frac)?;
-        self.plan.minimum(&format!("{name}_limited"), not_below, most)
+        let range = self.plan.node(node).range;
+        let mut limited = node;
+        if range.0 < low {
+            let least = self.plan.constant(&format!("{name}_least"), low, format.frac)?;
+            limited = self.plan.maximum(&format!("{name}_not_below"), limited, least)?;
+        }
+        if range.1 > high {
+            let most = self.plan.constant(&format!("{name}_most"), high, format.frac)?;
+            limited = self.plan.minimum(&format!("{name}_limited"), limited, most)?;
+        }
+        Ok(limited)
     }
 
     /// Returns limits of the values of a part where something is promised.

@@ -261,12 +261,6 @@ impl ExpressionPlan {
         b: NodeId,
     ) -> Result<NodeId, PlanRefusal> {
         let (first, second, frac) = self.aligned(a, b);
-        if first.1 <= second.0 {
-            return Ok(a);
-        }
-        if second.1 <= first.0 {
-            return Ok(b);
-        }
         let range = (first.0.min(second.0), first.1.min(second.1));
         self.exact(name, Operation::Minimum(a, b), range, frac)
     }
@@ -278,12 +272,6 @@ impl ExpressionPlan {
         b: NodeId,
     ) -> Result<NodeId, PlanRefusal> {
         let (first, second, frac) = self.aligned(a, b);
-        if first.1 <= second.0 {
-            return Ok(b);
-        }
-        if second.1 <= first.0 {
-            return Ok(a);
-        }
         let range = (first.0.max(second.0), first.1.max(second.1));
         self.exact(name, Operation::Maximum(a, b), range, frac)
     }

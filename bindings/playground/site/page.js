@@ -1,6 +1,6 @@
 // The page: controls on the left, what the core is and does on the right.
 
-import { toml } from "./toml.js";
+import { fields, toml } from "./toml.js";
 import { zip } from "./zip.js";
 
 const $ = (id) => document.getElementById(id);
@@ -63,11 +63,44 @@ function prose(text) {
   return text.split("`").map((part, at) => (at % 2 === 1 ? element("code", { textContent: part }) : part));
 }
 
-const MORE = ["interface", "package", "operands", "output.registered", "strict", "domain"];
+const MORE = ["interface", "package", "operands.buffered", "operands.logic", "output.registered", "strict", "domain"];
 const SLIDER = 64;
+
+// The entries of a table, such as the operands of an expression: for each a name, and its fields as in TOML.
+function entries(key) {
+  const list = element("div", { id: `key-${key.name}`, className: "entries" });
+  const read = () => {
+    const rows = [...list.querySelectorAll(".entry")];
+    change(key, Object.fromEntries(rows.map((row) => [...row.querySelectorAll("input")].map((it) => it.value))));
+  };
+  const row = ([name, entry]) => {
+    const id = `key-${key.name}.${name}`;
+    const own = element("input", { type: "text", value: name, size: 6, spellcheck: false, ariaLabel: `name of an entry of ${key.name}`, onchange: read });
+    const given = element("input", { id, type: "text", value: fields(entry), spellcheck: false, ariaLabel: `fields of ${name}`, onchange: read });
+    const remove = element("button", { type: "button", textContent: "−", ariaLabel: `remove ${name}` });
+    remove.onclick = () => {
+      remove.closest(".entry").remove();
+      read();
+    };
+    return element("div", { className: "entry" }, own, given, remove);
+  };
+  const all = Object.entries(key.value);
+  const add = element("button", { type: "button", textContent: "+", ariaLabel: `add an entry to ${key.name}` });
+  add.onclick = () => {
+    const [, last] = all.at(-1) ?? ["", 'formula = "x"'];
+    const used = (name) => all.some(([other]) => other === name);
+    let number = all.length + 1;
+    while (used(`${key.name[0]}${number}`)) number += 1;
+    add.before(row([`${key.name[0]}${number}`, last]));
+    read();
+  };
+  list.append(...all.map(row), add);
+  return [list];
+}
 
 function control(key) {
   const { is, min, max, options } = key.kind;
+  if (is === "entries") return entries(key);
   const id = `key-${key.name}`;
   const value = key.value;
   const changed = (read) => (event) => change(key, read(event.target));
@@ -99,10 +132,12 @@ function control(key) {
 // Writes the form again where keys or devices have come or gone, and otherwise its values alone, so that a slider that is held stays.
 function showForm() {
   const applied = core.keys.filter((it) => it.applies);
-  const signature = JSON.stringify([core.device, applied.map((it) => [it.name, it.kind])]);
+  const entriesOf = (key) => (key.kind.is === "entries" ? key.value : null);
+  const signature = JSON.stringify([core.device, applied.map((it) => [it.name, it.kind, entriesOf(it)])]);
   const is = (key, name) => key.name === name || key.name.startsWith(`${name}.`);
   if ($("form").dataset.signature !== signature) {
     $("form").dataset.signature = signature;
+    const focused = document.activeElement?.id;
     const row = (key) => {
       const label = element("label", { htmlFor: `key-${key.name}`, textContent: key.name });
       return element("div", { className: "key" }, label, element("div", {}, ...control(key)), element("small", { className: "quiet" }, ...prose(key.doc)));
@@ -110,12 +145,14 @@ function showForm() {
     const [more, first] = [true, false].map((wanted) => applied.filter((key) => MORE.some((it) => is(key, it)) === wanted));
     $("form").replaceChildren(...first.map(row));
     $("form-more").replaceChildren(...more.map(row));
+    if (focused && document.activeElement?.id !== focused) $(focused)?.focus();
   }
   for (const key of applied) {
     const input = $(`key-${key.name}`);
     const value = Array.isArray(key.value) ? key.value.join(", ") : key.value;
+    const isEntries = key.kind.is === "entries";
     input.closest(".key").classList.toggle("set", JSON.stringify(key.value) !== JSON.stringify(key.default));
-    if (document.activeElement === input) continue;
+    if (isEntries || document.activeElement === input) continue;
     if (input.type === "checkbox") input.checked = value;
     else input.value = value;
     const shown = input.nextElementSibling;
@@ -156,7 +193,8 @@ function showAtFields(problems) {
   for (const old of document.querySelectorAll(".key .wrong")) old.remove();
   for (const invalid of document.querySelectorAll(".key [aria-invalid]")) invalid.removeAttribute("aria-invalid");
   for (const { key, message, remedy } of problems) {
-    const input = key && $(`key-${key}`);
+    // A field of an entry has its problems at the entry.
+    const input = key && ($(`key-${key}`) ?? $(`key-${key.slice(0, key.lastIndexOf("."))}`));
     if (!input) continue;
     input.setAttribute("aria-invalid", "true");
     input.closest(".key").append(element("p", { className: "wrong" }, ...prose(remedy ? `${message}; ${remedy}` : message)));
@@ -405,9 +443,8 @@ $("device").onchange = ({ target: { value } }) => {
     $("toml").value = `device = "${device}"\n`;
     return refresh();
   }
-  ask({ ask: "preset", name: preset }, ({ values }) => {
-    const lines = Object.entries(values).map(([key, it]) => `${key} = ${JSON.stringify(it)}\n`);
-    $("toml").value = `device = "function"\nname = "${preset}"\n${lines.join("")}`;
+  ask({ ask: "preset", name: preset }, (answer) => {
+    $("toml").value = answer.toml;
     refresh();
   });
 };
@@ -430,10 +467,16 @@ function fromLink() {
   refresh();
 }
 
-ask({ ask: "devices" }, ({ devices, presets }) => {
+ask({ ask: "devices" }, ({ devices, functions, expressions }) => {
   const option = (value, name, title) => element("option", { value, textContent: name, title });
-  const known = devices.filter(({ name }) => name !== "function").map(({ name, summary }) => option(name, name, summary));
-  const functions = [option("function", "a formula of your own"), ...presets.map((it) => option(`function ${it}`, it))];
-  $("device").append(element("optgroup", { label: "Devices" }, ...known), element("optgroup", { label: "Functions" }, ...functions));
+  const own = ["function", "expression"];
+  const known = devices.filter(({ name }) => !own.includes(name)).map(({ name, summary }) => option(name, name, summary));
+  const group = (label, device, mine, presets) =>
+    element("optgroup", { label }, option(device, mine), ...presets.map((it) => option(`${device} ${it}`, it)));
+  $("device").append(
+    element("optgroup", { label: "Devices" }, ...known),
+    group("Functions", "function", "a formula of your own", functions),
+    group("Expressions of several operands", "expression", "formulas of your own", expressions),
+  );
   fromLink();
 });

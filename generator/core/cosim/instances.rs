@@ -30,7 +30,7 @@ impl<const LANES: usize> Instances<LANES> {
         Ok(Self { simulator, ports })
     }
 
-    /// Offers a computation to some lanes in the next clock. The raw operands of a lane are in the order of the contract.
+    /// Offers a computation to some lanes in the next clock. The raw operands of a lane are in the order of `Contract::operands`.
     pub(super) fn offer(&mut self, computations: [Option<&[i64]>; LANES]) {
         let taking = computations.map(|raw| u64::from(raw.is_some()));
         for port in &self.ports.operands {
@@ -49,7 +49,7 @@ impl<const LANES: usize> Instances<LANES> {
         }
     }
 
-    /// Returns the raw results in a lane, in the order of the contract.
+    /// Returns the raw results in a lane, in the order of `Contract::outputs`.
     pub(super) fn results(&self, lane: usize) -> impl Iterator<Item = i64> {
         let results = self.ports.results.iter();
         results.map(move |&(net, format)| format.raw(self.simulator.lane(net, lane)) as i64)

@@ -169,9 +169,9 @@ impl<'a> Lockstep<'a> {
             .collect()
     }
 
-    /// Records the vectors of a test bench: the inputs of every clock, and the outputs just before the clock's edge. A random
-    /// stream of `points` results comes first, and then the given `computations`, whose raw operands are in the order of the
-    /// contract.
+    /// Records the vectors of a test bench: the inputs of every clock, and the outputs just before the clock's edge. First come
+    /// random computations with `points` results in all, and then the given `computations`. Each of these is a list of raw
+    /// operands, in the order of `Contract::operands`.
     ///
     /// # Errors
     /// Fails if golden model and simulation differ, or if the design cannot be simulated or does not settle.

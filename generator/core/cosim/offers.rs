@@ -53,7 +53,7 @@ impl Offers {
         }
     }
 
-    /// Offers the given points next, with raw operands in the order of the contract, and no points after them.
+    /// Offers the given points next, with raw operands in the order of `Contract::operands`, and no points after them.
     pub(super) fn follow(&mut self, points: &[Vec<i64>]) {
         self.listed = Some(points.iter().cloned().collect());
     }

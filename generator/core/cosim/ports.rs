@@ -27,7 +27,7 @@ pub(super) struct Ports {
     /// Whether the core takes a `start` in the clock in which `done` is high.
     pub(super) overlaps: bool,
     pub(super) side_out: Option<NetId>,
-    /// The result outputs, in the order of the contract.
+    /// The result outputs, in the order of `Contract::outputs`.
     pub(super) results: Vec<(NetId, Format)>,
 }
 
@@ -44,7 +44,7 @@ pub(super) struct OperandPort {
 }
 
 impl OperandPort {
-    /// Returns the bit pattern for this port from raw operands in the order of the contract.
+    /// Returns the bit pattern for this port from raw operands in the order of `Contract::operands`.
     #[inline]
     pub(super) fn pattern(&self, raw: &[i64]) -> u64 {
         raw[self.at] as u64 & mask(self.format.width())

@@ -35,7 +35,7 @@ const BATCH: u64 = 1 << 10;
 pub struct Reached {
     /// The error in output units. It is infinite if the formula has no value there.
     pub units: f64,
-    /// The raw operands, in the order of the contract.
+    /// The raw operands, in the order of `Contract::operands`.
     pub operands: Vec<i64>,
     /// The index of the output in the contract.
     pub output: usize,

@@ -65,7 +65,7 @@ impl Stimulus {
         }
     }
 
-    /// Returns the raw operands of the latest computation that the core took, in the order of the contract.
+    /// Returns the raw operands of the latest computation that the core took, in the order of `Contract::operands`.
     pub(super) fn accepted(&self) -> &[i64] {
         self.taken.as_ref().unwrap_or(&self.written)
     }

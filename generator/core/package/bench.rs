@@ -172,8 +172,8 @@ fn vector_file(design: &Design, title: &str, ports: &[&Port], rows: &[Vec<u64>])
     Ok(lines.join("\n") + "\n")
 }
 
-/// Concatenates the values of a row, the first in the highest bits, and returns hexadecimal digits. For example, 1 in one bit and
-/// 5 in three bits give `d`.
+/// Concatenates a row of port values, for a line of a file that a test bench reads. The first value is in the highest bits; the
+/// result is in hexadecimal digits. `widths` are the widths in bits. For example, 1 in one bit and 5 in three bits give `d`.
 pub(super) fn packed(row: &[u64], widths: &[u32]) -> String {
     let total: u32 = widths.iter().sum();
     let mut digits = vec![0u8; total.div_ceil(4) as usize];

@@ -5,7 +5,7 @@
 use anyhow::Result;
 use glint_base::fill;
 
-/// A bus on which the registers of a core can be.
+/// A bus, such as AXI4-Lite, on which software can reach the registers of a core.
 #[derive(Debug)]
 pub struct Bus {
     /// The value of the key `interface.registers` that selects this bus.
@@ -16,8 +16,8 @@ pub struct Bus {
     pub suffix: &'static str,
     /// The level, 0 or 1, of the reset port while the bus is in reset.
     pub reset_level: u8,
-    /// The ports as text, clock and reset first. Each has a direction, a name, the width of a vector and, if LiteX connects the
-    /// port, the name of its LiteX signal. `#` denotes the number of bits of an address.
+    /// The ports of the bus module as text, clock and reset first. Each has a direction, a name, the width of a vector and, if
+    /// LiteX connects the port, the name of its LiteX signal. `#` denotes the number of bits of an address.
     pub ports: &'static str,
     /// The standard interface that tools recognise by the names of its ports; empty if no such standard exists.
     pub protocol: &'static [Protocol],
@@ -37,7 +37,7 @@ impl PartialEq for Bus {
 /// A standard interface, which tools recognise by the names of its ports.
 #[derive(Debug)]
 pub struct Protocol {
-    /// The prefix of the port names.
+    /// The prefix of the names of the ports that belong to the interface, such as `s_axis`.
     pub name: &'static str,
     /// The name of the interface in ARM's definitions for IP-XACT.
     pub amba: &'static str,

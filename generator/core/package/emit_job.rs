@@ -15,17 +15,17 @@ pub struct EmitJob<'a> {
     pub design: &'a Design,
     pub inputs: &'a EmitInputs,
     pub naming: &'a Naming,
-    /// The bus that the configuration asks for, and the registers on it.
+    /// The bus that the configuration asks for, and the map of the core's registers on it; `None` without a bus.
     pub registers: Option<(&'static Bus, Map)>,
 }
 
 impl<'a> EmitJob<'a> {
-    /// Returns the name of the core.
+    /// Returns the name of the core, which is the name of its top module.
     pub fn name(&self) -> &'a str {
         &self.design.name
     }
 
-    /// Returns the command that generates the files again, which their heads quote.
+    /// Returns the command that generates the core's files again. The comments at the heads of the files quote it.
     pub fn regenerate(&self) -> &'a str {
         &self.inputs.regenerate
     }

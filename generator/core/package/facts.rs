@@ -7,8 +7,8 @@ use serde::{Serialize, Serializer, ser::SerializeMap};
 use glint_rtl::netlist::{self, Design, FieldKind, NetId, Role, RomId};
 use glint_rtl::verilog::naming::{Naming, is_control_rom};
 
-/// A port of the top module. For example, `cos_gamma` of `rough` is an operand of 21 bits in `u1.20`, and `cos_gamma_write`
-/// writes it.
+/// The facts about a port of the top module, for files and pages. For example, `cos_gamma` of `rough` is an operand of 21 bits in
+/// `u1.20`, and `cos_gamma_write` writes it.
 #[derive(Default, Serialize)]
 pub struct PortFacts<'a> {
     /// The name of the port.
@@ -29,7 +29,7 @@ pub struct PortFacts<'a> {
     /// The name of the write strobe of the port, if the port is an operand.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub strobe: Option<&'a str>,
-    /// The number of the port's block in the source's figure.
+    /// The number of the port's block in the block diagram of the document that describes the device.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub block: Option<u16>,
     /// A description of the port in one line.
@@ -37,8 +37,8 @@ pub struct PortFacts<'a> {
     pub doc: &'a str,
 }
 
-/// A field of the control word. For example, `operand_select` of `rough` has 2 bits from bit 7 on, and the choices `cosines`,
-/// `sines`, `half_n` and `square`.
+/// The facts about a field of the control word, for files and pages. For example, `operand_select` of `rough` has 2 bits from bit 7
+/// on, and the choices `cosines`, `sines`, `half_n` and `square`.
 #[derive(Serialize)]
 pub struct FieldFacts<'a> {
     /// The name of the field.
@@ -52,19 +52,20 @@ pub struct FieldFacts<'a> {
     /// The names of a select field's choices, from the value 0 on.
     #[serde(skip_serializing_if = "<[_]>::is_empty")]
     pub choices: &'a [String],
-    /// The numbers of the field's control lines in the source's figure.
+    /// The numbers of the field's control lines in the block diagram of the document that describes the device.
     #[serde(skip_serializing_if = "<[_]>::is_empty")]
     pub lines: &'a [u16],
 }
 
-/// A microinstruction with its fields. For example, microinstruction 3 of `rough` is named `12 <- sin gamma * sin dgamma`.
+/// The facts about a microinstruction, for files and pages. For example, microinstruction 3 of `rough` is named `12 <- sin gamma *
+/// sin dgamma`.
 #[derive(Serialize)]
 pub struct MicroinstructionFacts<'a> {
     /// The address of the microinstruction in the control ROM.
     pub address: usize,
     /// The name of the microinstruction in the device's description.
     pub name: &'a str,
-    /// The value of each field, in the order of the fields.
+    /// The name and the value of each field of the control word, in the order of the fields.
     #[serde(serialize_with = "as_map")]
     pub fields: Vec<(&'a str, u64)>,
     /// The rule for the microinstruction that follows.
@@ -95,7 +96,8 @@ pub enum SequenceFacts<'a> {
     },
 }
 
-/// A ROM. For example, `sine` of `rough` has 584 words of 35 bits, which are 20440 bits in all.
+/// The facts about a ROM of a core, for files and pages. For example, `sine` of `rough` has 584 words of 35 bits, which are 20440
+/// bits in all.
 #[derive(Serialize)]
 pub struct RomFacts<'a> {
     /// The name of the ROM in the device's description.
@@ -122,7 +124,7 @@ pub struct RomFacts<'a> {
     words: Option<&'a [u64]>,
     /// The meaning of a word of the ROM, in one or more lines.
     pub doc: &'a [String],
-    /// The number of the ROM in the source's figure.
+    /// The number of the ROM in the block diagram of the document that describes the device.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub block: Option<u16>,
 }

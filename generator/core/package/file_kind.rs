@@ -9,7 +9,8 @@ use FileKind::{
     WrapperProofScript,
 };
 
-/// The purpose of a file. Files are listed in the order of their kinds here, except as `listed_with` says.
+/// The purpose of an emitted file, such as Verilog of the core. Lists of a core's files follow the order of the kinds here, except
+/// as `listed_with` says.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum FileKind {
     /// Verilog of the core, the top module first. For example, `rough.v`, `rough_control.v` and `rough_datapath.v`.

@@ -73,12 +73,13 @@ pub(super) struct Script<'a> {
     pub(super) name: &'a str,
     /// The cells whose ROMs the proof replaces by free values, as a selection of Yosys.
     pub(super) within: &'a str,
-    /// Whether registers have initial values.
+    /// Whether the registers of the core have initial values in the proof.
     pub(super) initial: bool,
 }
 
 impl Script<'_> {
-    /// Adds the wrapper, the script, and the task of SymbiYosys.
+    /// Adds the files of a formal proof: the Verilog `wrapper`, the script for Yosys, and the task for SymbiYosys. `depth` is the
+    /// depth of the induction in clocks.
     pub(super) fn files(
         &self,
         wrapper: String,
@@ -198,7 +199,8 @@ pub fn files(job: &EmitJob, files: &mut OutputFiles) -> Result<()> {
     script.files(wrapper, depth, if unroll { "smtbmc --unroll z3" } else { "smtbmc z3" }, files)
 }
 
-/// Returns the ports of a wrapper for the clock and the inputs of a design. A solver chooses the values of these ports.
+/// Returns the Verilog ports of a formal wrapper for the clock and the inputs of a design. A solver chooses the values of these
+/// ports.
 pub(super) fn inputs_of(design: &Design) -> Vec<String> {
     let mut inputs = vec!["input  wire clk".to_owned()];
     for port in design.inputs() {
@@ -210,7 +212,7 @@ pub(super) fn inputs_of(design: &Design) -> Vec<String> {
     inputs
 }
 
-/// Returns the wires of a wrapper for the outputs of a design.
+/// Returns the Verilog wires of a formal wrapper for the outputs of a design.
 pub(super) fn outputs_of(design: &Design) -> Vec<String> {
     let mut rows = Vec::new();
     for port in design.outputs() {

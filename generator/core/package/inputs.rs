@@ -6,7 +6,7 @@ use crate::observation::{Computation, ContractFacts, Vectors, WorkedExample};
 use glint_rtl::netlist::{Design, HandshakeTiming};
 use glint_rtl::verilog::header::Origin;
 
-/// The data that emission needs in addition to the netlist.
+/// The data that Glint needs in addition to the netlist to generate the files of a core.
 #[derive(Clone, Debug, Default)]
 pub struct EmitInputs {
     /// The command that generates the files again. It names the configuration by its [`glint_base::input::label`].
@@ -17,15 +17,15 @@ pub struct EmitInputs {
     pub timing: HandshakeTiming,
     /// A computation with the values of all operands and outputs, for the manifest.
     pub example: Option<WorkedExample>,
-    /// The accuracy contract, for the manifest.
+    /// The accuracy contract, the promised bound of the error, for the manifest.
     pub accuracy: Option<ContractFacts>,
-    /// Computations with their results and clocks, for the manifest.
+    /// Example computations with their results and numbers of clocks, for the manifest.
     pub computations: Vec<Computation>,
     /// The vectors of the test bench. Without vectors, no test bench is emitted.
     pub vectors: Option<Vectors>,
     /// The wrappers and packages that the configuration asks for.
     pub around: Surroundings,
-    /// For a pipeline, the netlist with a microprogram from which it was made. The model in C is generated from it.
+    /// For a pipeline, the sequential design from which Glint made it. Glint generates the model in C from that design.
     pub sequential: Option<Design>,
 }
 

@@ -17,7 +17,7 @@ use glint_rtl::verilog::text::ascii;
 /// Bits of a register.
 const WORD: u32 = 32;
 
-/// The number of constant registers. They are the first of the map.
+/// The number of bus registers with constant contents. They have the lowest addresses of a core's register map.
 pub const CONSTANTS: u32 = 4;
 
 /// The word address of the control register, the first that software can write. [`INTERRUPT_ENABLE`] and [`INTERRUPT_PENDING`]
@@ -47,7 +47,7 @@ pub enum Access {
     Clear,
 }
 
-/// A field of a bus register: some of its bits with a meaning of their own.
+/// A field of a bus register of a core: some of its bits with a meaning of their own.
 #[derive(Clone, Debug, Deserialize)]
 pub struct RegisterBits {
     /// The name of the field, in plain lower-case words.
@@ -66,7 +66,7 @@ pub struct RegisterBits {
     pub doc: String,
 }
 
-/// A bus register of 32 bits.
+/// A register of 32 bits of a core, which software reads or writes over a bus.
 #[derive(Clone, Debug, Deserialize)]
 pub struct BusRegister {
     /// The name of the register, in plain lower-case words.
@@ -87,15 +87,15 @@ impl BusRegister {
     }
 }
 
-/// The bus registers that hold a port of the core, the lowest bits first. For example, an operand of 40 bits takes two registers,
-/// the first with 32 bits and the second with 8.
+/// The placement of a port of the core (an operand or a result) in bus registers, the lowest bits first. For example, an operand of
+/// 40 bits takes two registers, the first with 32 bits and the second with 8.
 #[derive(Clone, Debug)]
 pub struct PortPlacement {
     /// The name of the port.
     pub name: String,
     /// The number format of the port.
     pub format: Format,
-    /// For an operand, the name of the port that writes it.
+    /// For an operand, the name of the strobe, the input port that writes it.
     pub strobe: String,
     /// The parts of the port, one in each register.
     pub parts: Vec<PortBits>,
@@ -114,7 +114,7 @@ pub struct PortBits {
     pub width: u32,
 }
 
-/// The register map of a core.
+/// The register map of a core: the registers that software reads and writes over a bus, with their addresses.
 #[derive(Clone, Debug)]
 pub struct Map {
     /// All bus registers, in the order of their addresses, which have no gaps.
@@ -126,7 +126,7 @@ pub struct Map {
 }
 
 impl Map {
-    /// Assigns registers to the operands, results and status bits of a core.
+    /// Makes the register map of a core: assigns bus registers to its operands, results and status bits.
     ///
     /// # Errors
     /// Fails if the core is no single computation of operands to results, or if names collide in the map.
@@ -186,7 +186,8 @@ impl Map {
         last_place(&self.results)
     }
 
-    /// Returns the number of bits of a byte address. For example, a map whose last register has word address 15 needs 6 bits.
+    /// Returns the number of bits that a byte address in the register map needs. For example, a map whose last register has word
+    /// address 15 needs 6 bits.
     pub fn address_bits(&self) -> u32 {
         (4 * self.last()).ilog2() + 1
     }

@@ -8,7 +8,7 @@ use std::vec::IntoIter;
 use super::file_kind::FileKind;
 use super::output_file::OutputFile;
 
-/// The files of a configuration, in the order of their kinds. Files that are listed together are in the order in which they
+/// The emitted files of a configuration, in the order of their kinds. Files that are listed together are in the order in which they
 /// were made.
 #[derive(Clone, Debug)]
 pub struct OutputFiles {

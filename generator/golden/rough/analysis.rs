@@ -62,7 +62,8 @@ impl Errors {
 /// The weight n·b: the factor by which an error of cos(γ ± dγ) changes f. Here n is the exponent and b the base of the square in
 /// the formula. The weight belongs to bins of γ and dγ that are a certain number of bins apart.
 pub struct Weight {
-    /// The largest weight n·b for these bins, where b is the base of the square.
+    /// The largest factor n·b by which an error of cos(γ ± dγ) changes f = b², for any n of the domain and any angles in the pairs
+    /// of bins (intervals of γ and of dγ) to which this weight belongs. b = n/2·(cos(γ ± dγ) − 1) + 1 is the base of the square.
     pub linear: f64,
     /// The largest n for which the square is not constant.
     exponent: f64,

@@ -10,13 +10,13 @@ use glint_base::fixed::{Format, Overflow, Rounding};
 /// The numbers that the figure of the device's source gives to the blocks of one colour.
 #[derive(Clone, Copy, Debug)]
 pub struct ChannelBlocks {
-    /// The block numbers of the data input and of the write strobe of the colour operand.
+    /// The numbers of the data input and of the write strobe of the colour operand in the figure of the source.
     pub inputs: (u16, u16),
-    /// The block number of the operand register.
+    /// The number of the operand register in the figure of the source.
     pub register: u16,
-    /// The block number of the multiplier that computes the colour output.
+    /// The number of the multiplier that computes the colour output in the figure of the source.
     pub multiplier: u16,
-    /// The block number of the colour output.
+    /// The number of the colour output in the figure of the source.
     pub output: u16,
 }
 

@@ -11,9 +11,9 @@ use glint_base::fixed::Format;
 /// The numbers of an operand in the figure of the source: of its data input, its write strobe and its register.
 #[derive(Clone, Copy, Debug)]
 pub struct OperandBlocks {
-    /// The block numbers of the operand's data input and of its write strobe.
+    /// The numbers of the operand's data input and of its write strobe in the figure of the source.
     pub inputs: (u16, u16),
-    /// The block number of the operand's register.
+    /// The number of the operand's register in the figure of the source.
     pub register: u16,
 }
 
@@ -26,13 +26,13 @@ pub struct LineBlocks {
     pub start: OperandBlocks,
     /// The data input and the write strobe of the operand `length`, the number of intervals.
     pub length_inputs: (u16, u16),
-    /// The block number of the counter of intervals.
+    /// The number of the counter of intervals in the figure of the source.
     pub counter: u16,
-    /// The block number of the adder, which adds `delta_zeta` to the angle.
+    /// The number in the figure of the source of the adder, which adds `delta_zeta` to the angle.
     pub adder: u16,
-    /// The block number of the mux in front of the register `angle`.
+    /// The number of the mux in front of the register `angle` in the figure of the source.
     pub mux: u16,
-    /// The block number of the register `angle`.
+    /// The number of the register `angle` in the figure of the source.
     pub register: u16,
     /// The number of the control line `count`, which makes the counter of intervals count.
     pub count: u16,

@@ -62,8 +62,8 @@ pub enum Op<N = NetId> {
 }
 
 impl<N> Op<N> {
-    /// Returns the same cell with other operands. `of` gives the new operand for each one, in the order in which the cell states
-    /// them.
+    /// Returns the same kind of cell with other operands, such as `x + y` for `a + b`. `of` gives the new operand for each one, in
+    /// the order in which the cell states them.
     pub fn map<M>(&self, mut of: impl FnMut(&N) -> M) -> Op<M> {
         match self {
             Self::Relabel(a) => Op::Relabel(of(a)),
@@ -99,7 +99,7 @@ impl<N> Op<N> {
         operands
     }
 
-    /// Returns the short name of the cell in dumps and diagrams.
+    /// Returns the short name of the cell in netlist dumps and block diagrams, such as `add`.
     pub fn mnemonic(&self) -> &'static str {
         match self {
             Self::Relabel(_) => "relabel",

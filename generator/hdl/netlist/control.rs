@@ -3,7 +3,7 @@
 use super::{Design, NetId, RegId, RomId};
 use glint_base::diagnostic::SourceLocation;
 
-/// The control unit: an address counter, a run flag and a ROM of microinstructions.
+/// The control unit of a device: an address counter, a run flag and a ROM of microinstructions.
 ///
 /// An idle device has the address 0 and the run flag 0. `start` sets the flag. From then on the device executes one
 /// microinstruction a clock, and [`Sequence`] says which comes next.
@@ -17,24 +17,24 @@ pub struct Control {
     pub rom: RomId,
     /// The counter that addresses the control ROM.
     pub address: RegId,
-    /// The run flag, which is 1 during a computation.
+    /// The register with the run flag, which is 1 during a computation.
     pub run: RegId,
-    /// Whether the device accepts `start` in the last clock of a computation too, because it has operand buffers.
+    /// Whether the device accepts `start` in the last clock of a computation too. It does if the operand registers have buffers.
     pub overlaps: bool,
 }
 
-/// A field of the control word, which controls one thing. For example, `rough` has the field `operand_select` of two bits, which
-/// chooses among four pairs of factors.
+/// A field of the control word: bits of a microinstruction that control one thing in the device. For example, `rough` has the field
+/// `operand_select` of two bits, which chooses among four pairs of factors.
 #[derive(Clone, Debug)]
 pub struct Field {
-    /// The name, which must be a legal Verilog identifier.
+    /// The name of this field of the control word, such as `operand_select`. It must be a legal Verilog identifier.
     pub name: String,
     /// The net that the field drives.
     pub net: NetId,
     /// The kind of thing that the field controls.
     pub kind: FieldKind,
-    /// The numbers of the field's lines in the figure of the device's source, the most significant first. It is empty if the figure
-    /// does not show them.
+    /// The numbers of the field's lines in the block diagram of the document that describes the device, the most significant first.
+    /// It is empty if the diagram does not show them.
     pub lines: Vec<u16>,
 }
 
@@ -54,7 +54,7 @@ pub enum FieldKind {
 /// A microinstruction: the values of all fields of the control word for one clock, and the rule for the next microinstruction.
 #[derive(Clone, Debug)]
 pub struct Microinstruction {
-    /// The name that the description gives to the microinstruction.
+    /// The name that the device's description gives to the microinstruction.
     pub name: String,
     /// The value of each field, in the order of [`Control::fields`].
     pub values: Vec<u64>,
@@ -67,7 +67,7 @@ pub struct Microinstruction {
 /// The rule that determines which microinstruction follows.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Sequence {
-    /// The next microinstruction follows.
+    /// The microinstruction at the next address follows.
     Next,
     /// The same microinstruction follows until `start` is high, and then the next one. The device is not busy here.
     WaitStart,

@@ -9,7 +9,8 @@ use std::collections::HashSet;
 use super::{Design, Driver, NetId, Role, Sequence};
 use glint_base::cone;
 
-/// Returns the numbers of the microinstructions whose successor depends on an operand.
+/// Returns the addresses of the microinstructions whose successor depends on an operand, for example by a loop that runs until a
+/// value is small.
 pub fn decided_by_data(design: &Design) -> Vec<usize> {
     let microprogram = design.control.microprogram.iter().enumerate();
     let decided = microprogram.filter(|(_, microinstruction)| match microinstruction.sequence {
@@ -21,8 +22,8 @@ pub fn decided_by_data(design: &Design) -> Vec<usize> {
     decided.map(|(at, _)| at).collect()
 }
 
-/// Returns the smallest number of registers on a path from the control word to `valid`. Returns `None` if an operand affects
-/// `valid`, or if the design has no `valid`.
+/// Returns the smallest number of registers on a path from the control word (the output of the control ROM) to the output `valid`.
+/// Returns `None` if an operand affects `valid`, or if the design has no `valid`.
 pub fn delay_of_valid(design: &Design) -> Option<u32> {
     let valid = design.port(|role| role == Role::Valid)?;
     registers_from_control(design, valid.net)

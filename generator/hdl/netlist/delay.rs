@@ -5,8 +5,8 @@ use std::collections::BTreeMap;
 
 use super::{Design, Driver, NetId, Op, Pipeline, RegId};
 
-/// A delay line: registers that carry values from one stage to a later one, with no reader in between. All its values travel
-/// between the same two stages.
+/// A delay line of a pipeline: registers that carry values from one stage to a later one, with no reader in between. All its values
+/// travel between the same two stages.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct DelayLine {
     /// The number of the stage that computes the values.
@@ -15,11 +15,11 @@ pub struct DelayLine {
     pub to: usize,
     /// The net that says when the values move to the next stage; `None` if they always move.
     pub enable: Option<NetId>,
-    /// The values, in the order of their registers.
+    /// The values that travel through this delay line, in the order of their registers.
     pub values: Vec<Delayed>,
 }
 
-/// A value that travels through the registers of several stages.
+/// A value of a pipeline that travels through the registers of several stages.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Delayed {
     /// The net with the value that enters the delay line, the data input of its first register.
@@ -29,20 +29,20 @@ pub struct Delayed {
 }
 
 impl DelayLine {
-    /// Returns the number of words of a memory that replaces the registers. One more register behind the memory holds its output.
-    /// For example, five registers become a memory of four words.
+    /// Returns the number of words of a memory that replaces the registers of the delay line. One more register behind the memory
+    /// holds its output. For example, five registers become a memory of four words.
     pub fn words(&self) -> usize {
         self.values[0].passed().len()
     }
 }
 
 impl Delayed {
-    /// Returns the registers that a memory replaces: all except the last one, from which the value is read.
+    /// Returns the registers that a memory replaces: all that the value passes except the last one, from which the value is read.
     pub fn passed(&self) -> &[RegId] {
         &self.registers[..self.registers.len() - 1]
     }
 
-    /// Returns the last register, from which the value is read.
+    /// Returns the last register that the value passes, from which the value is read.
     pub fn last(&self) -> RegId {
         self.registers[self.registers.len() - 1]
     }

@@ -20,8 +20,8 @@ fn signed(width: u32) -> impl Fn(u64) -> i64 {
     move |bits| (bits << drop) as i64 >> drop
 }
 
-/// Returns the result of a cell `width` bits wide as [`Op`] documents it, for `N` independent sets of operands. `format`
-/// gives the format of an operand, `of` its bit patterns.
+/// Returns the bit patterns of a cell's result, `width` bits wide, for `N` independent sets of operands. [`Op`] documents each
+/// cell. `format` gives the format of an operand, `of` its bit patterns.
 pub fn cell<'a, Operand: Copy, const N: usize>(
     op: &Op<Operand>,
     width: u32,
@@ -85,7 +85,7 @@ pub fn cell<'a, Operand: Copy, const N: usize>(
     }
 }
 
-/// A design with the state of its registers and ROMs, evaluated net by net.
+/// A simple simulator of a design: it holds the state of registers and ROMs, and evaluates net by net.
 pub struct Interpreter<'a> {
     design: &'a Design,
     order: Vec<NetId>,
@@ -93,7 +93,7 @@ pub struct Interpreter<'a> {
 }
 
 impl<'a> Interpreter<'a> {
-    /// Makes an interpreter at power-up: inputs, registers and the outputs of synchronous ROMs are 0.
+    /// Makes a simulator of the design at power-up: inputs, registers and the outputs of synchronous ROMs are 0.
     ///
     /// # Errors
     /// Fails if there is a combinational loop. The error is the nets along the loop.
@@ -125,7 +125,7 @@ impl<'a> Interpreter<'a> {
         }
     }
 
-    /// Performs the rising edge after [`Interpreter::settle`]: registers and synchronous ROMs take their new values.
+    /// Performs the rising edge of the clock after [`Interpreter::settle`]: registers and synchronous ROMs take their new values.
     pub fn edge(&mut self) {
         let design = self.design;
         let reset_port = design.port(|role| role == super::Role::Reset);

@@ -4,7 +4,7 @@ use anyhow::{Context, Result};
 
 use super::{Design, NetId, Role};
 
-/// The handshake ports of a design.
+/// The nets of the handshake ports that every device with a microprogram has.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Handshake {
     /// The net of the reset input `rst_n`.
@@ -27,7 +27,7 @@ impl Role {
 }
 
 impl Design {
-    /// Returns the position of a net among the input ports.
+    /// Returns the position of a net among the input ports of the design.
     ///
     /// # Errors
     /// Fails if the net is no input.
@@ -36,7 +36,7 @@ impl Design {
         at.with_context(|| format!("`{}` is no input of `{}`", self.net(net).name, self.name))
     }
 
-    /// Returns the handshake ports of the design.
+    /// Returns the nets of the handshake ports: `rst_n`, `start`, `valid`, `busy` and `done`.
     ///
     /// # Errors
     /// Fails if the design lacks one of these ports.

@@ -5,9 +5,9 @@ use super::Op;
 use glint_base::fixed::{Format, mask};
 use glint_base::interval::{Interval, hull, product, wrap};
 
-/// Returns the interval of a cell in `format` as [`Op`] documents it. If nothing closer is known, it is the range of
-/// the format. `of` gives the interval of an operand, `format_of` its format. Two operands that are one net are a
-/// square.
+/// Returns the interval of raw values that a cell with the result `format` can produce. If nothing closer is known, it is the range
+/// of the format. `of` gives the interval of an operand, `format_of` its format. A product of a net with itself is a square, which
+/// is not negative.
 pub fn of_cell<N: Copy + PartialEq>(
     op: &Op<N>,
     format: Format,

@@ -91,26 +91,26 @@ pub enum Partition {
 /// A wire of the design, with its format, its interval and its one driver.
 #[derive(Clone, Debug)]
 pub struct Net {
-    /// The name, which must be a legal Verilog identifier and distinct in the design.
+    /// The name of the net, which must be a legal Verilog identifier and distinct in the design.
     pub name: String,
-    /// The format: the place of the binary point, and whether the top bit is a sign.
+    /// The fixed-point format of the net: the place of the binary point, and whether the top bit is a sign.
     pub format: Format,
     /// The interval of raw values that the net can carry: the smallest and the largest. For example, (0, 255) for `u8.0`.
     pub range: Interval,
     /// The one thing that drives the net, such as an input port, a register or a cell.
     pub driver: Driver,
-    /// The number of the block that drives this net, in the figure of the device's source.
+    /// The number of the block that drives this net, in the block diagram of the document that describes the device.
     pub block: Option<u16>,
-    /// A comment of one line for the Verilog, or an empty text.
+    /// A comment of one line on the net, which the Verilog shows, or an empty text.
     pub doc: String,
-    /// The topic of the comment `doc`. A pipeline shows only comments on the device itself.
+    /// The topic of the net's comment `doc`. A pipeline shows only comments on the device itself.
     pub doc_topic: Topic,
     /// Whether the author of the description named the net, so that waveforms and Verilog show it. All other nets are wiring that
     /// the description language adds (extensions, slices, rounding); they are named after the signal that they serve.
     pub named: bool,
     /// The Verilog module to which the net belongs.
     pub partition: Partition,
-    /// The place in the Rust source of the description.
+    /// The place in the Rust source where the device's description makes the net.
     pub location: SourceLocation,
 }
 
@@ -168,28 +168,29 @@ pub enum RegisterKind {
 /// A read-only memory of a design, with its address, its data net and its words.
 #[derive(Clone, Debug)]
 pub struct NetlistRom {
-    /// The name, which must be a legal Verilog identifier. The contents go to `<design>_<name>.mem`. For example, the ROM
-    /// `sine` of `rough` is in `rough_sine.mem`.
+    /// The name of the ROM, which must be a legal Verilog identifier. The contents go to `<design>_<name>.mem`. For example, the
+    /// ROM `sine` of `rough` is in `rough_sine.mem`.
     pub name: String,
-    /// The net with the index of the word. Its interval must lie within the number of words.
+    /// The net with the address of the word to read. Its interval must lie within the number of words.
     pub address: NetId,
     /// The net with the word that was read. It must be wide enough for every word.
     pub data: NetId,
     /// Whether the ROM is read at the rising edge (block RAM) rather than without a clock (logic).
     pub synchronous: bool,
-    /// The read enable, one bit. A synchronous ROM keeps its output while it is 0; without it, the ROM reads at every edge.
+    /// The read enable of a synchronous ROM, one bit. The ROM keeps its output while it is 0; without it, the ROM reads at every
+    /// edge.
     pub enable: Option<NetId>,
     /// A ROM with the same words, if this ROM is the second read port of its memory.
     pub shares: Option<RomId>,
     /// The contents of the ROM: its words as bit patterns, from address 0.
     pub words: Vec<u64>,
-    /// The meaning of a word of the ROM, in one or more lines.
+    /// A comment on the meaning of a word of the ROM, in one or more lines.
     pub doc: Vec<String>,
-    /// A comment for each word, or an empty list.
+    /// A comment for each word of the ROM, or an empty list.
     pub comments: Vec<String>,
-    /// The number of the ROM in the figure of the device's source.
+    /// The number of the ROM in the block diagram of the document that describes the device.
     pub block: Option<u16>,
-    /// The place in the Rust source of the description.
+    /// The place in the Rust source where the device's description makes the ROM.
     pub location: SourceLocation,
 }
 
@@ -211,7 +212,7 @@ pub enum Role {
     Start,
     /// Input for the data of an operand register.
     Operand {
-        /// The write strobe of the operand register, an input of one bit.
+        /// The net of the write strobe, an input of one bit that loads the operand register.
         strobe: NetId,
     },
     /// Input, the write strobe of an operand register. For example, `cos_gamma_write` writes `cos_gamma_reg`.
@@ -236,7 +237,7 @@ pub enum Role {
     Done,
     /// Output that carries a result of the computation.
     Result,
-    /// Output that shows any other signal of the control unit.
+    /// Output that shows a signal of the control unit for which no other role exists.
     Status,
 }
 
@@ -266,14 +267,14 @@ pub struct About {
     pub title: String,
     /// The formula that the device computes, as text.
     pub formula: String,
-    /// The document that describes the device, and the part of it.
+    /// The document that describes the device, and the part of it, as text for people; empty without one.
     pub source: String,
-    /// Paragraphs about the device: how the source was interpreted, its formats and its limits.
+    /// Paragraphs about the device: how its description interprets the source document, its formats and its limits.
     pub notes: Vec<Note>,
 }
 
 impl About {
-    /// Returns the texts of the notes.
+    /// Returns the texts of the paragraphs about the device.
     pub fn paragraphs(&self) -> impl Iterator<Item = &str> {
         self.notes.iter().map(|note| note.text.as_str())
     }
@@ -282,13 +283,14 @@ impl About {
 /// A paragraph about a device, for pages and for the header of the Verilog.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Note {
-    /// The topic of the paragraph. A pipeline shows only the paragraphs on the device itself.
+    /// The topic of the paragraph. A pipeline shows only paragraphs on the device itself.
     pub topic: Topic,
     /// The text of the paragraph.
     pub text: String,
 }
 
-/// The topic of a note. The notes of a pipeline are about the device only.
+/// The topic of a paragraph or comment about a device. A pipeline shows only texts on the device itself, because the rest is true
+/// only of the sequential design.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Topic {
     /// The paragraph is about the device itself, whatever its architecture.
@@ -302,7 +304,7 @@ pub enum Topic {
 }
 
 impl Topic {
-    /// Makes a note on this topic.
+    /// Makes a paragraph about a device that has this topic.
     pub fn note(self, text: impl Into<String>) -> Note {
         Note { topic: self, text: text.into() }
     }
@@ -327,7 +329,7 @@ pub struct Design {
     pub registers: Vec<NetlistRegister>,
     /// All ROMs, the control ROM among them.
     pub roms: Vec<NetlistRom>,
-    /// Inputs, then outputs, in order of declaration.
+    /// The ports of the design: inputs, then outputs, in the order of declaration.
     pub ports: Vec<Port>,
     /// The control unit; for a pipeline it is [`Control::none`].
     pub control: Control,
@@ -393,14 +395,13 @@ impl Design {
         self.ports.iter().filter(|port| !port.role.is_input())
     }
 
-    /// Returns the first port with a role that `wanted` accepts.
+    /// Returns the first port of the design for whose role `wanted` returns true, or `None`.
     pub fn port(&self, wanted: impl Fn(Role) -> bool) -> Option<&Port> {
         self.ports.iter().find(|port| wanted(port.role))
     }
 
-    /// Returns the nets that `id` depends on within one clock: operands of its cell, the address of an
-    /// asynchronous ROM, the control ROM behind a field. Nothing for inputs, constants, registers and
-    /// synchronous ROMs.
+    /// Returns the nets on which net `id` depends within one clock: operands of its cell, the address of an asynchronous ROM, the
+    /// control ROM behind a field. Nothing for inputs, constants, registers and synchronous ROMs.
     pub fn combinational_inputs(&self, id: NetId) -> Vec<NetId> {
         match &self.net(id).driver {
             Driver::Op(op) => op.operands(),
@@ -414,7 +415,7 @@ impl Design {
         }
     }
 
-    /// Returns an order of all nets in which each follows the nets that it depends on within one clock.
+    /// Returns all nets of the design in an order in which each follows the nets that it depends on within one clock.
     ///
     /// # Errors
     /// Fails if there is a combinational loop. The error is the nets along the loop.
@@ -461,7 +462,7 @@ impl Design {
         Ok(order)
     }
 
-    /// Returns the number of bits in all ROMs.
+    /// Returns the number of bits in all ROMs of the design together.
     pub fn rom_bits(&self) -> u64 {
         self.roms.iter().map(|rom| rom.words.len() as u64 * u64::from(self.width(rom.data))).sum()
     }

@@ -1,14 +1,14 @@
-//! Finds the first clock of a computation in which the value of each net is used. The module `held` inserts registers before nets
-//! that are used later than in the first microinstruction.
+//! Finds, for each net, the first clock of a computation in which its value is used. Logic of operands alone that is first used
+//! after the first microinstruction may take several clocks; the module `held` puts registers there, which cost no clock.
 
 use std::collections::{HashSet, VecDeque};
 
 use super::{Design, Driver, Microinstruction, NetId, Op};
 use glint_base::fixed::mask;
 
-/// Returns for each net the clock in which its value is first used: it reaches an output, the sequencer, or a
-/// register that is loaded. Clocks are counted from the clock of the first microinstruction of a computation. The
-/// result is `usize::MAX` for a net that is never used.
+/// Returns for each net of the design the clock in which its value is first used: it reaches an output, the sequencer, or a
+/// register that is loaded. Clocks are counted from the clock of the first microinstruction of a computation. The result is
+/// `usize::MAX` for a net that is never used.
 ///
 /// If a microinstruction controls a mux, it needs only the chosen input.
 pub fn needed(design: &Design) -> Vec<usize> {
@@ -41,8 +41,8 @@ pub fn needed(design: &Design) -> Vec<usize> {
     walk.needed
 }
 
-/// Returns the value of a control line in a microinstruction. Returns `None` if the line depends on anything but fields of the
-/// control word.
+/// Returns the value of a control line, such as the select of a mux, while a microinstruction is executed. Returns `None` if the
+/// line depends on anything but fields of the control word.
 pub fn setting_of(
     design: &Design,
     microinstruction: &Microinstruction,

@@ -1,5 +1,6 @@
-//! Defines the facts about a pipeline that its netlist alone does not state: stages, handshake, shared multipliers and
-//! checkpoints.
+//! Defines the facts about a pipeline that its netlist alone does not state: stages, handshake, shared multipliers, and
+//! checkpoints. A checkpoint is a value that a register of the sequential design also holds, so that checks can compare both
+//! designs there.
 
 use std::collections::BTreeMap;
 
@@ -9,7 +10,7 @@ use glint_base::target::DelayMemory;
 /// The facts about a pipeline, a design that accepts a point (a set of operands) every clock or every few clocks.
 #[derive(Clone, Debug, Default)]
 pub struct Pipeline {
-    /// The name of the target whose delays the schedule assumed. For example, `ecp5`.
+    /// The name of the FPGA target whose delays Glint assumed when it divided the computation into stages. For example, `ecp5`.
     pub target: String,
     /// The clock frequency that the stages reach, in MHz.
     pub clock_mhz: f64,
@@ -19,7 +20,7 @@ pub struct Pipeline {
     /// pipeline accepts a point in slot 0, and a point is in stage s while the slot is s modulo the interval. For example, with
     /// an interval of 4 a point is in stage 6 while the slot is 2.
     pub interval: usize,
-    /// The counter of slots. It counts one further whenever the points move to the next stage; `None` if the interval is 1.
+    /// The counter of slots, if the interval is longer than 1. It counts one further whenever the points move to the next stage.
     pub slot: Option<NetId>,
     /// For each slot in which registers load a value that they must keep for a whole interval, the net that enables these
     /// registers.
@@ -30,14 +31,15 @@ pub struct Pipeline {
     pub stall: bool,
     /// The number of bits of the side channel, which carries data of the user along with each point.
     pub side: u32,
-    /// The kind of memory with which the Verilog replaces delay lines; `None` if their registers stay.
+    /// The kind of memory with which the Verilog replaces delay lines (chains of registers that only carry a value to a later
+    /// stage); `None` if the registers stay.
     pub delay_memory: Option<DelayMemory>,
     /// The stages, from the operands on. The results are in the registers behind the last stage, so there are as many stages as
     /// clocks from a point to its results. For example, `rough_pipelined` has 18 stages.
     pub stages: Vec<Stage>,
-    /// The stage of each net. A register in stage k holds a value that stage k − 1 computed.
+    /// The number of the stage for each net. A register in stage k holds a value that stage k − 1 computed.
     pub stage_of: Vec<usize>,
-    /// The name of the value of each net. It is the same in every stage through which the value travels.
+    /// For each net, the name of the value that it carries. The name is the same in every stage through which the value travels.
     pub value_of: Vec<String>,
     /// The nets of the handshake, which say which stages have a point and when points move.
     pub handshake: Vec<NetId>,
@@ -45,7 +47,7 @@ pub struct Pipeline {
     pub valid: Vec<NetId>,
     /// For each stage from 1 on, the net that carries the side channel's data. It is empty if there is no side channel.
     pub side_values: Vec<NetId>,
-    /// The registers that become output registers of multipliers, inside a DSP block.
+    /// The registers that become output registers of multipliers, inside a DSP block of the FPGA.
     pub registered: Vec<RegId>,
     /// The checkpoints: values of the pipeline that a register of the sequential design also holds at some time. Checks compare
     /// both designs there.
@@ -56,25 +58,25 @@ pub struct Pipeline {
 /// product in each slot.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Unit {
-    /// The name of the multiplier and of the register behind it.
+    /// The name of the multiplier in the Verilog, and of the register behind it.
     pub name: String,
-    /// The nets of its muxes, its operand registers and its product, followed by the net of the register behind it.
+    /// The nets of the multiplier's muxes, its operand registers and its product, followed by the net of the register behind it.
     pub nets: Vec<NetId>,
-    /// For each slot, the name of the value that the multiplier computes in it.
+    /// For each slot (clock modulo the interval), the name of the product that the multiplier computes in it.
     pub serves: Vec<Option<String>>,
 }
 
-/// The logic between two rows of registers. For example, the first stage of `rough_pipelined` has 4.4 ns of logic and 86
-/// register bits.
+/// A stage of a pipeline: the logic between two rows of registers. For example, the first stage of `rough_pipelined` has 4.4 ns of
+/// logic and 86 register bits.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Stage {
     /// The microinstructions of the sequential design that compute the values of this stage.
     pub microinstructions: Vec<String>,
     /// The delay of the longest path through the logic of the stage, in nanoseconds.
     pub logic_ns: f64,
-    /// The nanoseconds of the clock that remain after the logic and the registers.
+    /// The part of the clock period, in nanoseconds, that remains after the delays of the logic and the registers.
     pub slack_ns: f64,
-    /// The number of bits in the registers at the end of the stage.
+    /// The number of bits in the pipeline registers at the end of the stage.
     pub register_bits: u32,
     /// The number of bits that memories hold in place of registers at the end of the stage.
     pub delayed_bits: u32,
@@ -86,7 +88,7 @@ pub struct Stage {
 pub struct Checkpoint {
     /// The name of the register in the sequential design.
     pub register: String,
-    /// The number of the microinstruction in which the register holds the value.
+    /// The address of the microinstruction in which the sequential design's register holds the value.
     pub address: usize,
     /// The number of earlier executions of this microinstruction in the same computation.
     pub visit: usize,
@@ -95,8 +97,8 @@ pub struct Checkpoint {
 }
 
 impl Pipeline {
-    /// Returns the first clock in which a net has the value of a point. The pipeline accepts the point in clock 0, so this is the
-    /// stage of the net.
+    /// Returns the first clock in which a net of the pipeline has its value for a point. The pipeline accepts the point in clock 0,
+    /// so this is the stage of the net.
     pub fn clock_of(&self, net: NetId) -> usize {
         self.stage_of[net.index()]
     }
@@ -106,8 +108,8 @@ impl Pipeline {
         self.units.iter().any(|unit| unit.nets.contains(&net))
     }
 
-    /// Returns the named nets whose logic is in `stage`, with the names of their values, in the order of the design. It leaves
-    /// out nets of the handshake.
+    /// Returns the named nets whose logic is in stage number `stage` of the pipeline, with the names of their values, in the order
+    /// of the design. It leaves out nets of the handshake.
     pub fn computed<'a>(
         &'a self,
         design: &'a Design,
@@ -130,17 +132,17 @@ impl Pipeline {
     }
 }
 
-/// A multiplier with an output register.
+/// A multiplier of a pipeline together with its output register, which is inside the same DSP block.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Multiplier {
-    /// The product that the register loads.
+    /// The net of the product that the output register loads.
     pub product: NetId,
-    /// The nets of the two factors.
+    /// The nets of the product's two factors.
     pub factors: [NetId; 2],
 }
 
 impl Design {
-    /// Returns the multiplier to which a register belongs as its output register, or `None`.
+    /// Returns the multiplier whose output register is this register, or `None` for any other register.
     pub fn multiplier(&self, register: RegId) -> Option<Multiplier> {
         self.pipeline.as_ref().filter(|it| it.registered.contains(&register))?;
         let product = self.register(register).data?;

@@ -12,12 +12,12 @@ use glint_base::cone;
 pub struct Left {
     /// The number of clocks that do not depend on a counter.
     pub clocks: u64,
-    /// The counter that decides how often the microinstruction repeats itself. Its current value must be added to `clocks`. `None`
-    /// if the microinstruction does not repeat itself.
+    /// The counter register that decides how often the microinstruction repeats itself. Its current value must be added to
+    /// `clocks`. `None` if the microinstruction does not repeat itself.
     pub counter: Option<RegId>,
 }
 
-/// Returns for each microinstruction an upper limit of the clocks from its execution to `done`.
+/// Returns for each microinstruction of a design an upper limit of the clocks from its execution to `done`.
 ///
 /// Returns `None` if a microinstruction waits for `start`, if a loop has several microinstructions, or if anything but a counter
 /// decides about a loop.
@@ -48,8 +48,8 @@ pub fn remaining(design: &Design) -> Option<Vec<Left>> {
     Some(left)
 }
 
-/// Returns the number of the latest clock in which `done` can be high, counted from the clock that accepts `start`. Returns `None`
-/// if the microprogram has no such limit.
+/// Returns the number of the latest clock in which the output `done` can be high, counted from the clock that accepts `start`.
+/// Returns `None` if the microprogram has no such limit.
 pub fn latest_done(design: &Design) -> Option<u32> {
     // Microinstruction 0 is executed in clock 1.
     let first = *remaining(design)?.first()?;

@@ -2,7 +2,8 @@
 
 use serde::Serialize;
 
-/// Clocks between the events of the handshake; `None` if they depend on the data.
+/// The numbers of clocks between the events of a device's handshake, such as from `start` to `valid`; `None` if they depend on the
+/// data.
 ///
 /// The clock in which `start` is taken is number 0. For example, `rough` has `valid` in clock 9 and `done` in clock 10, and may
 /// take the next `start` in clock 11.

@@ -14,7 +14,8 @@ use glint_base::fixed::{MAX_WIDTH, mask};
 use glint_base::identifier;
 
 impl Design {
-    /// Returns every mistake in the names and the structure. If there are none, it returns the mistakes in the microprogram.
+    /// Returns every mistake in the design's names and structure, such as a net with two drivers. If there are none, it returns the
+    /// mistakes in the microprogram.
     pub fn verify(&self) -> Vec<Diagnostic> {
         let mut found = self.verify_structure();
         self.names(&mut found);

@@ -25,13 +25,14 @@ fn tables(timing: &Timing, inputs: u32) -> f64 {
     timing.logic * f64::from(bits.div_ceil(2))
 }
 
-/// Returns the delay of a mux among `values` values, in nanoseconds.
+/// Returns the delay of a multiplexer with `values` inputs on the FPGA target, in nanoseconds.
 pub fn of_choice(timing: &Timing, values: usize) -> f64 {
     let select = usize::BITS - values.saturating_sub(1).leading_zeros();
     delay_of(timing, &Op::Mux { select: 0, inputs: vec![0; values] }, &|_| select)
 }
 
-/// Returns the delay from the operands of a node to its value, in nanoseconds.
+/// Returns the delay from the operands of a node of the computation's graph to the node's value, in nanoseconds. For an operand of
+/// the design, it is the time that the environment takes to deliver the operand.
 pub fn node_delay(timing: &Timing, graph: &Graph, id: NodeId) -> f64 {
     match &graph.node(id).cell {
         Cell::Operand(_) => timing.input,
@@ -48,10 +49,11 @@ pub fn node_delay(timing: &Timing, graph: &Graph, id: NodeId) -> f64 {
     }
 }
 
-/// Returns the nanoseconds by which the setup of a register behind a node exceeds the setup of any other register.
+/// Returns the additional setup time, in nanoseconds, of the register behind a node of the computation's graph. It is 0 unless the
+/// node is a mux with a constant input and more than one bit.
 ///
-/// Synthesis turns a mux with a constant input into the set or the reset of the register behind it. The select of the
-/// mux then passes through a look-up table with the clock enable, and takes a longer path after that.
+/// Synthesis turns such a mux into the set or the reset of the register. The select of the mux then passes through a look-up table
+/// with the clock enable, and takes a longer path after that.
 pub fn setup(timing: &Timing, graph: &Graph, id: NodeId) -> f64 {
     let Cell::Op(Op::Mux { inputs, .. }) = &graph.node(id).cell else { return 0.0 };
     let has_constant = inputs.iter().any(|input| graph.constant_of(*input).is_some());
@@ -66,7 +68,8 @@ pub fn reset_by(graph: &Graph, id: NodeId) -> Option<NodeId> {
     (graph.width(id) > 1 && inputs.len() == 2 && constants == 1).then_some(*select)
 }
 
-/// Returns whether a node is a read of a block memory, which takes a clock.
+/// Returns whether a node of the computation's graph reads a ROM that synthesis puts into a block memory. Such a ROM has at least
+/// `block_bits` bits, and its word comes a clock after the address.
 pub fn is_block(timing: &Timing, graph: &Graph, id: NodeId) -> bool {
     match graph.node(id).cell {
         Cell::Read { address, .. } => {

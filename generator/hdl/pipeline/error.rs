@@ -6,7 +6,7 @@ use crate::netlist::Design;
 use glint_base::codes;
 use glint_base::diagnostic::{Diagnostic, SourceLocation};
 
-/// The reason why a design has no pipeline with the given [`Options`](super::Options).
+/// The reason why Glint cannot turn a sequential design into a pipeline with the clock, stages or interval that the user requested.
 ///
 /// A variant states the nearest possible value. For example, a request for 900 MHz may fail with `Clock { nearest: 130.0, .. }`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -35,7 +35,7 @@ pub enum PipelineErrorKind {
         /// The largest interval, in clocks.
         most: usize,
     },
-    /// The request has a rate but a number of stages instead of a clock frequency.
+    /// The user requested a rate in points per second together with a number of stages. A rate needs a clock frequency instead.
     RateWithoutClock,
     /// The rate exceeds one point a clock.
     Rate {
@@ -47,31 +47,33 @@ pub enum PipelineErrorKind {
         /// The smallest number of multipliers that is possible.
         fewest: usize,
     },
-    /// The solver found no schedule although one exists, which is a bug of Glint.
+    /// The solver that assigns operations to stages found no solution although one exists, which is a bug of Glint.
     Unsolved,
 }
 
-/// The error for a pipeline that cannot be made as requested.
+/// The error for a pipeline that Glint cannot make as the user requested.
 #[derive(Clone, Debug)]
 pub struct PipelineError {
     /// The reason why the pipeline cannot be made, with the nearest possible value.
     pub kind: PipelineErrorKind,
-    /// The reason as a message, with the line of the Rust source.
+    /// The reason as a message for the user, with the line of the Rust source that it concerns.
     pub diagnostic: Diagnostic,
 }
 
 impl PipelineError {
-    /// Makes the error of a microprogram that cannot be unrolled.
+    /// Makes the error for a microprogram (the program in a device's control ROM) that Glint cannot unroll into a computation
+    /// without loops.
     pub(super) fn of_microprogram(diagnostic: Diagnostic) -> Self {
         Self { kind: PipelineErrorKind::Microprogram, diagnostic }
     }
 
-    /// Makes the error of an option that concerns the design as a whole.
+    /// Makes the error for an option of the pipeline that the design as a whole cannot satisfy, such as a rate.
     pub(super) fn of_design(design: &Design, kind: PipelineErrorKind, message: String) -> Self {
         Self::at(design.nets[0].location, kind, message)
     }
 
-    /// Makes the error of an option that concerns the operation at a line of the Rust source.
+    /// Makes the error for an option of the pipeline that one operation cannot satisfy. `location` is the line of the Rust source
+    /// with the operation.
     pub(super) fn at(location: SourceLocation, kind: PipelineErrorKind, message: String) -> Self {
         Self { kind, diagnostic: Diagnostic::new(codes::SCHEDULE, message, location) }
     }

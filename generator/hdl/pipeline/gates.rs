@@ -9,7 +9,8 @@ use super::rebuild::rebuilt;
 use super::unroll::Unrolled;
 use glint_base::fixed::Format;
 
-/// Returns the computation with gates in place of every two-input mux that has an input with constant bits.
+/// Returns a copy of the computation with gates in place of every mux of two inputs that has an input with constant bits. For
+/// example, `s ? 0 : x` becomes `x & ~s`, bit by bit.
 pub fn gated(unrolled: &Unrolled) -> Unrolled {
     rebuilt(unrolled, |graph, op, node| match op {
         NodeOp::Mux { select, inputs } => {

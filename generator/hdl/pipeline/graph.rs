@@ -12,17 +12,17 @@ use glint_base::fixed::{Format, mask};
 use glint_base::interval::{self, Interval};
 
 netlist::id!(
-    /// A node of a [`Graph`].
+    /// The number of a node in a [`Graph`], the graph of all values of a computation.
     NodeId
 );
 
-/// A combinational cell whose operands are nodes.
+/// A combinational cell, such as a sum or a mux, whose operands are nodes of a [`Graph`].
 pub type NodeOp = netlist::Op<NodeId>;
 
-/// The operation that computes a node.
+/// The operation that computes the value of a node of a [`Graph`].
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub enum Cell {
-    /// The operand with this position among the operands of the design.
+    /// An operand of the design. The number is its position among all operands.
     Operand(usize),
     /// An unknown value: the content of the named register before its first load.
     Unknown(String),
@@ -39,18 +39,20 @@ pub enum Cell {
     Op(NodeOp),
 }
 
-/// The name, block number and comment of a value.
+/// What people need to read a value in Verilog and in diagrams: its name, its comment, and the number that its block has in the
+/// block diagram of the device's source, if any.
 #[derive(Clone, Debug)]
 pub struct Label {
     /// The name of the net or register in the sequential design that has the value. For example, `product`.
     pub name: String,
     /// A comment of one line, taken from the sequential design.
     pub doc: String,
-    /// The number of the block that computes the value, in the figure of the device's source.
+    /// The number of the block that computes the value, in the block diagram of the document that describes the device; `None`
+    /// without a number.
     pub block: Option<u16>,
-    /// Whether the author of the description gave the name.
+    /// Whether the author of the device's description chose the name. Glint generates all other names.
     pub named: bool,
-    /// The name of the whole value, if the node is a part of it.
+    /// The name of the whole value, if the node is a part of it. For example, the part `base_low` has `base` here.
     pub part_of: Option<String>,
     /// The line of the Rust source that describes the value.
     pub location: &'static Location<'static>,
@@ -62,8 +64,9 @@ impl Label {
         Self { name, doc: String::new(), block: None, named: true, part_of: None, location }
     }
 
-    /// Returns the label of a part of the value. A part of a part is named after the whole value, so that names stay short. For
-    /// example, the part `low` of `base` is named `base_low`, and the part `high` of that part `base_high`.
+    /// Returns the label of a part of the labelled value, such as its low bits. A part of a part is named after the whole value, so
+    /// that names stay short. For example, the part `low` of `base` is named `base_low`, and the part `high` of that part
+    /// `base_high`.
     pub fn part(&self, name: &str) -> Self {
         let whole = self.part_of.as_ref().unwrap_or(&self.name);
         let part_of = Some(whole.clone());
@@ -82,7 +85,7 @@ pub struct Node {
     pub range: Interval,
     /// The name, the comment and the source line of the value.
     pub label: Label,
-    /// The first microinstruction that needs the value, as a position in [`super::unroll::Unrolled::steps`].
+    /// The first executed microinstruction that needs the value, as a position in [`super::unroll::Unrolled::steps`].
     pub step: usize,
     /// Whether a register of the sequential design loads the value.
     pub held: bool,
@@ -110,7 +113,7 @@ impl Graph {
         self.node(id).format.width()
     }
 
-    /// Returns the bit pattern of a node that is a constant, otherwise `None`.
+    /// Returns the bit pattern of the constant if node `id` is a constant, otherwise `None`.
     pub fn constant_of(&self, id: NodeId) -> Option<u64> {
         match self.node(id).cell {
             Cell::Constant(bits) => Some(bits),
@@ -118,14 +121,15 @@ impl Graph {
         }
     }
 
-    /// Returns all nodes on which `roots` depend, including the roots, in order.
+    /// Returns all nodes on which the values of `roots` depend, including the roots. Each node follows its operands.
     pub fn cone(&self, roots: impl IntoIterator<Item = NodeId>) -> Vec<NodeId> {
         let operands = |at: usize| self.nodes[at].cell.operands().into_iter().map(NodeId::index);
         let live = cone::needed(self.nodes.len(), roots.into_iter().map(NodeId::index), operands);
         (0..live.len()).filter(|&at| live[at]).map(|at| NodeId(at as u32)).collect()
     }
 
-    /// Narrows the interval of a node to its intersection with `range`.
+    /// Narrows the interval of node `id`, its smallest and largest raw value, to the intersection with `range`. It keeps the
+    /// interval if the intersection is empty. Returns `id`.
     pub fn refine(&mut self, id: NodeId, range: Interval) -> NodeId {
         let node = &mut self.nodes[id.index()];
         // On a path that is never taken, the intersection can be empty.
@@ -133,7 +137,8 @@ impl Graph {
         id
     }
 
-    /// Gives a value the name of the register that loads it.
+    /// Gives node `id` the label of the register that loads its value. A constant, and a node that another register has already
+    /// named, keep their labels.
     pub fn name_after(&mut self, id: NodeId, register: &Label) {
         let node = &mut self.nodes[id.index()];
         if !matches!(node.cell, Cell::Constant(_)) && !node.held {
@@ -142,14 +147,15 @@ impl Graph {
         }
     }
 
-    /// Returns the node of a constant with the bit pattern `bits`. An equal constant is the same node.
+    /// Returns the node of a constant with the bit pattern `bits`, and adds it to the graph unless it has an equal constant.
     pub fn constant(&mut self, bits: u64, format: Format, label: &Label) -> NodeId {
         let bits = bits & mask(format.width());
         let raw = format.raw(bits);
         self.insert(Cell::Constant(bits), format, (raw, raw), label)
     }
 
-    /// Returns the node of a word of a ROM with the contents `words`.
+    /// Returns the node for the word that a ROM with the contents `words` has at `address`, and adds it to the graph unless it is
+    /// there.
     pub fn read(
         &mut self,
         rom: RomId,
@@ -170,7 +176,8 @@ impl Graph {
         self.insert(Cell::Read { rom, address }, format, range, label)
     }
 
-    /// Returns the node of a cell. If an equal node exists, its interval is limited to `range` too, and it is returned.
+    /// Returns the node for the operation `cell`, and adds it unless the graph has an equal node. The interval of an equal node
+    /// narrows to `range`.
     pub fn insert(&mut self, cell: Cell, format: Format, range: Interval, label: &Label) -> NodeId {
         let key = (cell.clone(), format.width(), format.signed);
         if let Some(&id) = self.known.get(&key) {
@@ -187,7 +194,8 @@ impl Graph {
         id
     }
 
-    /// Returns a node with the low `width` bits of `id`, read as a signed number if `signed`.
+    /// Returns a node with the low `width` bits of node `id`, or with its bits extended to `width`. The result is signed if
+    /// `signed`.
     pub fn resize(&mut self, id: NodeId, width: u32, signed: bool) -> NodeId {
         let node = self.node(id);
         let (format, label) = (node.format, Label { named: false, ..node.label.clone() });
@@ -200,7 +208,8 @@ impl Graph {
         }
     }
 
-    /// Returns the node of a cell, after folding constants and wiring.
+    /// Returns a node with the value of the combinational cell `op`. It may be an existing or a simpler node. For example, a sum of
+    /// two constants becomes a constant.
     pub fn op(&mut self, op: NodeOp, format: Format, label: &Label) -> NodeId {
         if let Some(id) = self.fold(&op, format, label) {
             let node = &mut self.nodes[id.index()];
@@ -448,7 +457,7 @@ impl Graph {
 }
 
 impl Cell {
-    /// Returns the operands of the node.
+    /// Returns the nodes that the operation reads, such as the two factors of a product.
     pub fn operands(&self) -> Vec<NodeId> {
         match self {
             Self::Op(op) => op.operands(),
@@ -457,7 +466,8 @@ impl Cell {
         }
     }
 
-    /// Returns whether the node is mere wiring, which needs no hardware: the bits of another node under another name.
+    /// Returns whether the operation needs no logic: it is a constant, or it renames, extends, slices or concatenates the bits of
+    /// other nodes.
     pub fn is_wiring(&self) -> bool {
         matches!(
             self,

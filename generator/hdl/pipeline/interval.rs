@@ -20,8 +20,8 @@ pub enum IntervalGoal {
     Multipliers(usize),
 }
 
-/// Returns the interval that reaches the user's goal, in clocks. `most` is the number of clocks in which the sequential core
-/// computes a point.
+/// Returns the interval of a pipeline, the number of clocks from one point to the next, that reaches the goal in `options`. `most`
+/// is the number of clocks in which the sequential core computes a point. `problems` makes the scheduling problem for an interval.
 ///
 /// # Errors
 /// Fails if the interval is longer than the sequential core's, or if no interval reaches the rate. Fails if a rate is wanted

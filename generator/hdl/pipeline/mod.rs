@@ -40,16 +40,16 @@ pub use unroll::{
     unroll_in_powers, unroll_line,
 };
 
-/// The goal of the schedule: a clock frequency or a number of stages.
+/// The goal when Glint divides a computation into pipeline stages: a clock frequency or a number of stages.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Goal {
-    /// The schedule must reach this clock frequency in MHz, with the fewest register bits.
+    /// The pipeline must reach this clock frequency in MHz, with as few register bits as possible.
     ClockMhz(f64),
-    /// The schedule must have this number of stages, with the highest clock frequency.
+    /// The pipeline must have this number of stages, with as high a clock frequency as possible.
     Stages(usize),
 }
 
-/// How values are stored that nothing reads for several stages.
+/// The way in which a pipeline stores a value that no stage reads for several stages.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Delays {
     /// A waiting value is stored in a small memory, if the target has one.
@@ -63,11 +63,11 @@ pub enum Delays {
 pub struct Options {
     /// The FPGA target whose delays and multipliers the schedule assumes.
     pub target: &'static Timing,
-    /// Whether the schedule aims at a clock frequency or at a number of stages.
+    /// Whether Glint divides the computation into stages for a clock frequency or for a number of stages.
     pub goal: Goal,
     /// How Glint chooses the interval, the number of clocks from one point to the next.
     pub interval: IntervalGoal,
-    /// Whether products use the output registers of multipliers, if the target states a delay for them.
+    /// Whether products use the output registers inside the multipliers, if the target states a delay for them.
     pub registered: bool,
     /// Whether the environment can stall the pipeline by setting `out_ready` to 0.
     pub stall: bool,
@@ -78,11 +78,11 @@ pub struct Options {
     pub delays: Delays,
 }
 
-/// Returns the pipeline of a sequential design.
+/// Turns a sequential design, which executes a microprogram, into a pipeline with the same results, and returns it.
 ///
 /// # Errors
-/// Fails if the microprogram cannot be unrolled; the error has its source line. Fails if a clock or a number of
-/// stages cannot be reached; the error has the nearest value that can.
+/// Fails if the microprogram cannot be unrolled; the error has its source line. Fails if a clock or a number of stages cannot be
+/// reached; the error has the nearest value that can.
 pub fn pipeline(sequential: &Design, options: &Options) -> Result<Design, PipelineError> {
     let unrolled =
         unroll::unroll_for_pipeline(sequential).map_err(PipelineError::of_microprogram)?;

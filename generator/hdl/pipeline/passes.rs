@@ -10,17 +10,18 @@ use super::split::split;
 use super::unroll::Unrolled;
 use glint_base::target::Timing;
 
-/// A pass: a rewriting of an unrolled computation that keeps all values, such as the split of wide products.
+/// A pass: a rewriting of a computation before Glint schedules it as a pipeline. For example, it splits wide products. Results stay
+/// the same.
 pub struct Pass {
-    /// The name of the pass, and of the directory of its tests.
+    /// The name of the pass, and of the directory with the files that test it. For example, `split`.
     pub name: &'static str,
     /// Returns whether a pipeline with these options uses the pass.
     pub applies: fn(&Options) -> bool,
-    /// Runs the pass on a computation, and returns the rewritten computation.
+    /// Returns the computation as the pass rewrites it for an FPGA target.
     pub run: fn(&Unrolled, &Timing) -> Unrolled,
 }
 
-/// All passes, in the order in which they run.
+/// All passes that may rewrite a computation before Glint schedules it, in the order in which they run.
 pub static PASSES: [Pass; 2] = [
     // Products no wider than the multipliers of the target, and sums as short as they can be.
     Pass { name: "split", applies: |_| true, run: split },
@@ -28,7 +29,7 @@ pub static PASSES: [Pass; 2] = [
     Pass { name: "gates", applies: |options| options.registered, run: |it, _| gated(it) },
 ];
 
-/// Runs the passes that the options ask for, and returns the rewritten computation.
+/// Runs the passes that apply to a pipeline with these options, and returns the rewritten computation.
 pub fn applied(unrolled: Unrolled, options: &Options) -> Unrolled {
     let passes = PASSES.iter().filter(|pass| (pass.applies)(options));
     passes.fold(unrolled, |unrolled, pass| (pass.run)(&unrolled, options.target))

@@ -3,8 +3,8 @@
 use super::graph::{Cell, Graph, Node, NodeId, NodeOp};
 use super::unroll::Unrolled;
 
-/// Returns a copy of a computation in which other nodes may replace cells. `replace` gets each cell, with its
-/// operands in the new graph, and returns the replacement. If it returns `None`, the cell is copied.
+/// Returns a copy of a computation in which `replace` may substitute nodes. `replace` gets the new graph, a combinational cell with
+/// its operands in the new graph, and the original node. It returns the substitute, or `None` to copy the cell.
 pub fn rebuilt(
     unrolled: &Unrolled,
     mut replace: impl FnMut(&mut Graph, &NodeOp, &Node) -> Option<NodeId>,

@@ -10,7 +10,7 @@ use super::unroll::Unrolled;
 use super::{Goal, Options};
 use crate::netlist::{Design, decided_by_data, latest_done};
 
-/// A computation, and the options of the pipeline that is requested for it.
+/// A user's request for a pipeline: the computation, and the options with its clock, stages and interval.
 pub struct Request<'a> {
     sequential: &'a Design,
     unrolled: &'a Unrolled,
@@ -19,7 +19,7 @@ pub struct Request<'a> {
 }
 
 impl<'a> Request<'a> {
-    /// Makes a request for a pipeline of the computation `unrolled`.
+    /// Makes the request for a pipeline of the computation `unrolled`, which Glint has unrolled from the design `sequential`.
     pub fn new(sequential: &'a Design, unrolled: &'a Unrolled, options: &'a Options) -> Self {
         let results = unrolled.results.iter().map(|&(_, value)| value).collect();
         Self { sequential, unrolled, options, results }
@@ -51,7 +51,7 @@ impl<'a> Request<'a> {
         })
     }
 
-    /// Returns the schedule that reaches the requested clock frequency or number of stages.
+    /// Returns the assignment of operations to stages that reaches the requested clock frequency or number of stages.
     ///
     /// # Errors
     /// Fails if a clock or a number of stages cannot be reached. The error has the nearest value that can.

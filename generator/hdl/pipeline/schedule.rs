@@ -19,10 +19,10 @@ use super::graph::{Cell, Graph, Node, NodeId, NodeOp};
 use super::sharing::{self, MultiplierUnit, ProductGroup};
 use glint_base::target::{Registered, Timing};
 
-/// A schedule: the stage of every node, and the clock that the stages reach.
+/// A schedule for a pipeline: the stage of every node of the computation's graph, and the clock period that the stages reach.
 #[derive(Clone, Debug)]
 pub struct Schedule {
-    /// The stage of each node. It is meaningless for constants and for nodes that nothing needs.
+    /// The stage of each node of the computation's graph. It is meaningless for constants and for nodes that no result needs.
     pub stage: Vec<usize>,
     /// The number of register rows from the operands to the results, which is the latency in clocks.
     pub latency: usize,
@@ -32,25 +32,26 @@ pub struct Schedule {
     pub logic: Vec<f64>,
 }
 
-/// The reason why there is no schedule.
+/// The reason why the scheduler found no assignment of a computation's nodes to pipeline stages.
 #[derive(Clone, Debug)]
 pub enum ScheduleRefusal {
-    /// The clock period is too short for an operation.
+    /// The requested clock period is too short for an operation.
     Unreachable(Unreachable),
     /// The solver failed, or its solution violates a constraint. The fields are the reason, and the node with the wrong stage.
     Unsolved(String, Option<NodeId>),
 }
 
-/// The reason why a clock period cannot be reached.
+/// The operation that makes a requested clock period of a pipeline impossible.
 #[derive(Clone, Debug)]
 pub struct Unreachable {
-    /// The slowest node, which limits the clock period.
+    /// The slowest node of the computation's graph, which limits the clock period.
     pub limiting: NodeId,
-    /// The shortest period that this node allows, in nanoseconds.
+    /// The shortest clock period that this node allows, in nanoseconds.
     pub period: f64,
 }
 
-/// The scheduling problem: the nodes, edges and delays that a schedule must respect.
+/// The problem that the scheduler solves: assign the nodes of a computation to pipeline stages, given their dependences and their
+/// delays on an FPGA target.
 pub struct ScheduleProblem<'a> {
     graph: &'a Graph,
     target: &'a Timing,
@@ -85,8 +86,8 @@ struct ClockedNode {
     apart: usize,
 }
 
-/// Returns the frequency of a `period` in nanoseconds, in MHz to one decimal. It is rounded down, so that the stated clock can
-/// be reached. For example, 7 ns give 142.8 MHz.
+/// Returns the clock frequency for a `period` in nanoseconds, in MHz to one decimal. It is rounded down, so that the stated clock
+/// can be reached. For example, 7 ns give 142.8 MHz.
 pub fn megahertz(period: f64) -> f64 {
     (10_000.0 / period).floor() / 10.0
 }
@@ -173,7 +174,8 @@ fn node_timing(
 }
 
 impl<'a> ScheduleProblem<'a> {
-    /// Returns the scheduling problem for the nodes that `results` need.
+    /// Makes the scheduling problem for the nodes of `graph` that `results` need. `interval` is the number of clocks from one point
+    /// to the next. `registered` is `None` if products do not use the output registers of multipliers.
     pub fn new(
         graph: &'a Graph,
         target: &'a Timing,
@@ -236,7 +238,7 @@ impl<'a> ScheduleProblem<'a> {
         }
     }
 
-    /// Returns the number of multipliers of the target that the products take.
+    /// Returns the number of multipliers of the FPGA target that the products of the computation take together.
     pub fn multipliers(&self) -> usize {
         let mut multipliers = sharing::products(self.graph, self.target, &self.live).len();
         for kind in &self.kinds {
@@ -245,8 +247,8 @@ impl<'a> ScheduleProblem<'a> {
         multipliers
     }
 
-    /// Returns the shortest period that one operation alone allows, and the operation. The time that the environment
-    /// takes for an operand never makes a period unreachable.
+    /// Returns the operation that limits the clock period most, with the shortest period that it allows. The time that the
+    /// environment takes for an operand never makes a period unreachable.
     pub fn fastest(&self) -> Option<Unreachable> {
         let mut limiting: Option<(NodeId, f64)> = None;
         for &id in &self.live {
@@ -277,8 +279,8 @@ impl<'a> ScheduleProblem<'a> {
         }
     }
 
-    /// Returns the schedule with the fewest register bits for a period in nanoseconds, in as few stages as it
-    /// can be.
+    /// Returns the schedule that reaches a clock period in nanoseconds. It has as few stages as possible, and then the fewest
+    /// register bits.
     ///
     /// # Errors
     /// Fails if an operation takes longer than the period, or if the solver fails.
@@ -291,8 +293,8 @@ impl<'a> ScheduleProblem<'a> {
         self.solve(period, 0)
     }
 
-    /// Returns the schedule with this number of stages and the shortest period. If there are more stages than useful,
-    /// the slowest operation decides the period.
+    /// Returns the schedule with this number of stages and the shortest clock period. If there are more stages than useful, the
+    /// slowest operation decides the period.
     ///
     /// # Errors
     /// Fails if the solver fails.
@@ -316,7 +318,8 @@ impl<'a> ScheduleProblem<'a> {
         self.solve(high, stages)
     }
 
-    /// Returns the largest number of stages that still shortens the clock period.
+    /// Returns the largest useful number of stages. With more stages, the clock period cannot become shorter, because the slowest
+    /// operation limits it.
     pub fn most_stages(&self) -> usize {
         self.least_stages(self.fastest_period())
     }
@@ -335,8 +338,8 @@ impl<'a> ScheduleProblem<'a> {
         self.latency(&differences, &self.taken(&differences))
     }
 
-    /// Returns the number of register rows that must lie between the operands of `user` and `user` itself. For example, a block
-    /// memory needs one row.
+    /// Returns the number of rows of pipeline registers that must lie between the operands of node `user` and its value. For
+    /// example, the word of a block memory needs one row.
     pub fn apart(&self, user: NodeId) -> usize {
         match self.clocked[user.index()] {
             Some(clocked) => clocked.apart,
@@ -645,17 +648,18 @@ impl<'a> ScheduleProblem<'a> {
         longest
     }
 
-    /// Returns the part of the clock period that registers take, in nanoseconds: from the rising edge to the output, and the setup.
+    /// Returns the part of the clock period that pipeline registers take, in nanoseconds: clock-to-output delay plus setup.
     pub fn register_ns(&self) -> f64 {
         self.target.register
     }
 
-    /// Returns the nodes that need a stage: the nodes on which a result depends.
+    /// Returns the nodes on which a result of the computation depends. The schedule must assign a stage to each.
     pub fn live(&self) -> &[NodeId] {
         &self.live
     }
 
-    /// Returns for each node the number of the last stage that reads it. Registers must hold the node up to that stage.
+    /// Returns for each node of the computation's graph the last stage that reads it. Registers must hold the value up to that
+    /// stage.
     pub fn last_use(&self, schedule: &Schedule) -> Vec<usize> {
         let mut last = schedule.stage.clone();
         for &id in &self.live {
@@ -670,8 +674,8 @@ impl<'a> ScheduleProblem<'a> {
         last
     }
 
-    /// Returns the multipliers that serve several products, with the product of each slot. A slot is the clock's number modulo the
-    /// interval.
+    /// Returns the multipliers that serve several products under this schedule, with the product that each computes in each slot. A
+    /// slot is the number of a clock modulo the interval, the number of clocks between points.
     pub fn units(&self, schedule: &Schedule) -> Vec<MultiplierUnit> {
         let mut units = Vec::new();
         for kind in &self.kinds {
@@ -681,7 +685,8 @@ impl<'a> ScheduleProblem<'a> {
         units
     }
 
-    /// Returns whether a rising edge computes a node: the word of a block memory, or a product with an output register.
+    /// Returns whether a node gets its value at a rising edge. Such a node is the word of a block memory, or a product in the
+    /// output register of a multiplier.
     pub fn is_clocked(&self, id: NodeId) -> bool {
         self.clocked[id.index()].is_some()
     }

@@ -6,7 +6,8 @@
 use super::graph::{Cell, Graph, Label, NodeId, NodeOp};
 use glint_base::fixed::Format;
 
-/// Returns the merged choice for a node that chooses between a constant and another such choice. Otherwise it returns the node.
+/// Merges a choice between a constant and a value with an earlier such choice inside the value, and returns the new node. Returns
+/// `id` if the node is no choice of this kind.
 pub fn settled(graph: &mut Graph, id: NodeId) -> NodeId {
     let node = graph.node(id).clone();
     let Some((over, rest, most)) = limit(graph, id) else { return id };

@@ -10,7 +10,7 @@ use std::cmp::Reverse;
 use super::graph::{Cell, Graph, NodeId, NodeOp};
 use glint_base::target::{FAMILIES, Timing};
 
-/// A group of products that can share multipliers.
+/// A group of a pipeline's products that can share multipliers, each product in its own slot (clock modulo the interval).
 #[derive(Clone, Debug)]
 pub struct ProductGroup {
     /// The products of the group, in the order of the computation.
@@ -22,15 +22,15 @@ pub struct ProductGroup {
     signed: bool,
 }
 
-/// A multiplier, with the products that it serves.
+/// A multiplier of a pipeline, with the products that it computes in turn.
 #[derive(Clone, Debug)]
 pub struct MultiplierUnit {
     /// The widths of the multiplier's two factors, in bits.
     pub widths: [u32; 2],
     /// Whether the multiplier takes signed factors.
     pub signed: bool,
-    /// For each slot, the product that the multiplier computes in it, and the factors of this product in the order of
-    /// the multiplier's operands.
+    /// For each slot (clock modulo the interval), the product that the multiplier computes in it, and the factors of this product
+    /// in the order of the multiplier's operands.
     pub serves: Vec<Option<(NodeId, [NodeId; 2])>>,
 }
 
@@ -58,9 +58,9 @@ pub fn products(graph: &Graph, target: &Timing, live: &[NodeId]) -> Vec<NodeId> 
     products
 }
 
-/// Returns the products of a computation that share multipliers; empty with an interval of 1. Products without a sign are
-/// treated as products with one if the multiplier has a bit to spare and this saves multipliers. For example, six products with
-/// an interval of 4 need two multipliers.
+/// Returns groups of the products of a computation that can share multipliers; none with an interval of 1. Products without a sign
+/// join the signed products if the multiplier has a bit to spare and this saves multipliers. For example, six products with an
+/// interval of 4 need two multipliers.
 pub fn kinds(
     graph: &Graph,
     target: &Timing,
@@ -105,8 +105,8 @@ fn group(signed: Vec<NodeId>, unsigned: Vec<NodeId>, interval: usize) -> [Produc
     })
 }
 
-/// Returns the units that serve the products of a `kind` in these stages. Among the units that are free in its slot,
-/// a product takes the unit whose muxes and registers grow the least.
+/// Assigns the products of the group `kind` to multipliers, and returns the multipliers. `stage` has the pipeline stage of each
+/// node. Among the multipliers that are free in its slot, a product takes the multiplier whose muxes and registers grow the least.
 pub fn units(
     graph: &Graph,
     target: &Timing,

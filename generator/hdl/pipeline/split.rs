@@ -18,7 +18,8 @@ use glint_base::target::Timing;
 /// The most bits of an operand that become rows in look-up tables.
 const MOST_ROWS: u32 = 4;
 
-/// Returns the computation with products that fit the multipliers of the target.
+/// Returns a copy of the computation in which products that are too wide for the target's multipliers are sums of narrower
+/// products.
 pub fn split(unrolled: &Unrolled, target: &Timing) -> Unrolled {
     rebuilt(unrolled, |graph, op, node| {
         Some(match op {

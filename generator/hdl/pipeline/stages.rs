@@ -14,7 +14,7 @@ use crate::netlist::{
 };
 use glint_base::fixed::Format;
 
-/// Builds the pipelined design from a schedule: the logic of every stage, the registers between stages, and the handshake.
+/// Builds the netlist of a pipeline from a schedule: the logic of every stage, the registers between stages, and the handshake.
 pub fn assemble(
     sequential: &Design,
     unrolled: &Unrolled,

@@ -9,7 +9,8 @@ use crate::netlist::interval::of_cell;
 use glint_base::fixed::Format;
 use glint_base::interval::Interval;
 
-/// Inserts a cell. The carry chain of a sum or a difference gets no more bits than it needs.
+/// Inserts a node for the combinational cell `op` into the graph, and returns it. For a sum or a difference, low bits that need no
+/// carry bypass the adder, so that its carry chain is short.
 pub fn shortened(
     graph: &mut Graph,
     op: NodeOp,

@@ -14,7 +14,8 @@ use super::unroll::Unrolled;
 use crate::netlist::{NetId, eval};
 use glint_base::fixed::{Format, mask};
 
-/// Returns the text of all nodes that the results need.
+/// Returns the text notation of a computation, for tests: one line for each node that the results need, such as `sum u6.0 = add a
+/// b`.
 pub fn printed(unrolled: &Unrolled) -> String {
     let graph = &unrolled.graph;
     let results = unrolled.results.iter().map(|it| it.1);
@@ -49,7 +50,7 @@ pub fn printed(unrolled: &Unrolled) -> String {
     text
 }
 
-/// Parses a computation. For example, `sum u6.0 = sub a b` is the difference of two operands.
+/// Parses a computation from its text notation, for tests. For example, `sum u6.0 = sub a b` is the difference of two operands.
 ///
 /// # Errors
 /// Fails if a line is not understood. The error is the line.
@@ -137,8 +138,8 @@ pub fn parsed(text: &str) -> Result<Unrolled, String> {
     Ok(unrolled)
 }
 
-/// Returns the results for one combination of operands as bit patterns, and the number of all combinations. `combination` numbers
-/// the combinations of operand values, each within its interval.
+/// Evaluates a computation for one combination of operand values. Returns the bit patterns of its results, and the number of all
+/// combinations. `combination` numbers the combinations of operand values, each within its interval.
 pub fn computed(unrolled: &Unrolled, combination: u64) -> (Vec<u64>, u64) {
     let graph = &unrolled.graph;
     let mut values: HashMap<NodeId, [u64; 1]> = HashMap::new();

@@ -27,14 +27,15 @@ use glint_base::fixed::Format;
 /// The number of clocks that a microprogram may take. A longer one is not worth a pipeline.
 const MOST_CLOCKS: usize = 4096;
 
-/// The values of one computation of a design, without loops: from the operands to the results.
+/// A computation that Glint has unrolled from the microprogram of a design: a graph without loops, from the operands to the
+/// results.
 #[derive(Debug)]
 pub struct Unrolled {
-    /// The graph with all values of the computation.
+    /// The graph with all values of the computation, each computed once.
     pub graph: Graph,
-    /// The operands, as input ports of the design.
+    /// The operands, as nets of the design's input ports.
     pub operands: Vec<NetId>,
-    /// The results: each output port, with the node of its value.
+    /// The results: the net of each output port, with the node of its value in the graph.
     pub results: Vec<(NetId, NodeId)>,
     /// The microinstructions in the order in which the computation executes them.
     pub steps: Vec<UnrolledStep>,
@@ -43,12 +44,12 @@ pub struct Unrolled {
 /// One executed microinstruction of the computation.
 #[derive(Clone, Debug)]
 pub struct UnrolledStep {
-    /// The address of the microinstruction in the microprogram.
+    /// The address of the executed microinstruction in the microprogram.
     pub address: usize,
     /// The number of earlier executions of the same microinstruction in this computation.
     pub visit: usize,
-    /// The values that the architectural registers (the registers that the golden model predicts) hold while the microinstruction
-    /// is executed. A register without a known value is left out.
+    /// The values of the architectural registers (the registers that the golden model predicts) while the microinstruction is
+    /// executed, each as a node of the computation's graph. A register without a known value is left out.
     pub registers: Vec<(RegId, NodeId)>,
 }
 
@@ -67,16 +68,18 @@ struct Executor<'a> {
     shown: Option<Vec<(NetId, NodeId)>>,
 }
 
-/// Executes the microprogram of a design symbolically. The description language must have accepted the design.
+/// Executes the microprogram of a design symbolically, and returns the computation from operands to results as a graph without
+/// loops. The description language must have accepted the design.
 ///
 /// # Errors
-/// Fails if the microprogram has no fixed bound, waits for `start` on the way or gives several results. Fails if a
-/// result depends on a value that an earlier computation has left.
+/// Fails if the microprogram has no fixed bound, waits for `start` on the way or gives several results. Fails if a result depends
+/// on a value that an earlier computation has left.
 pub fn unroll(design: &Design) -> Result<Unrolled, Diagnostics> {
     run(design, Iterations::OneByOne).map_err(|diagnostic| Diagnostics(vec![diagnostic]))
 }
 
-/// Unrolls a design as [`unroll`] does, but with fewer values if several iterations of a loop can be merged.
+/// Unrolls the microprogram of a design as [`unroll`] does, but with fewer values if several iterations of a loop can be merged. It
+/// merges iterations of a loop with a data-dependent trip count into blocks of 8, 4, 2 and 1.
 ///
 /// # Errors
 /// Fails if [`unroll`] would fail.
@@ -84,7 +87,7 @@ pub fn unroll_in_powers(design: &Design) -> Result<Unrolled, Diagnostics> {
     unroll_for_pipeline(design).map_err(|diagnostic| Diagnostics(vec![diagnostic]))
 }
 
-/// Unrolls as [`unroll_in_powers`] does. The error is the one mistake that it finds.
+/// Unrolls the microprogram of a design as [`unroll_in_powers`] does. It returns the one mistake that it finds as the error.
 pub(super) fn unroll_for_pipeline(design: &Design) -> Result<Unrolled, Diagnostic> {
     run(design, Iterations::InPowers)
 }

@@ -7,7 +7,7 @@
 use crate::netlist::NetId;
 use glint_base::fixed::mask;
 
-/// Adjacent bits with the same origin.
+/// A run of adjacent bits in a word of the Verilog that have the same origin: bits of a net, constant bits, or copies of one bit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum BitRun {
     /// `width` adjacent bits of a net, from bit `low` up.
@@ -19,9 +19,9 @@ pub enum BitRun {
         /// The number of bits.
         width: u32,
     },
-    /// Constant bits.
+    /// Adjacent bits of a constant.
     Constant {
-        /// The bit pattern of the constant.
+        /// The bit pattern of the constant bits.
         value: u64,
         /// The number of bits.
         width: u32,
@@ -38,7 +38,7 @@ pub enum BitRun {
 }
 
 impl BitRun {
-    /// Returns the number of bits of the piece.
+    /// Returns the number of bits in this run.
     pub fn width(self) -> u32 {
         match self {
             Self::Net { width, .. } | Self::Constant { width, .. } => width,
@@ -76,27 +76,28 @@ impl BitRun {
     }
 }
 
-/// A word as a list of pieces, the most significant first. For example, `{a[5:2], 1'b0}` has two pieces.
+/// The bits of a word as a list of runs, the most significant first. For example, `{a[5:2], 1'b0}` has two: four bits of net `a`,
+/// and a constant bit.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Bits(Vec<BitRun>);
 
 impl Bits {
-    /// Returns all bits of a net.
+    /// Returns the word that has all bits of a net, which is `width` bits wide.
     pub fn net(net: NetId, width: u32) -> Self {
         Self(vec![BitRun::Net { net, low: 0, width }])
     }
 
-    /// Returns the bits of a constant.
+    /// Returns the word for a constant of `width` bits with the bit pattern `value`.
     pub fn constant(value: u64, width: u32) -> Self {
         Self(vec![BitRun::Constant { value, width }])
     }
 
-    /// Returns the pieces, the most significant first.
+    /// Returns the runs of bits that form the word, the most significant first.
     pub fn pieces(&self) -> &[BitRun] {
         &self.0
     }
 
-    /// Returns the piece if there is exactly one, otherwise `None`.
+    /// Returns the run of bits if the word has exactly one, otherwise `None`.
     pub fn single(&self) -> Option<BitRun> {
         match self.0[..] {
             [piece] => Some(piece),
@@ -124,7 +125,7 @@ impl Bits {
         taken
     }
 
-    /// Returns the word with the bits `lower` appended below.
+    /// Returns a longer word: this word in the high bits, and the word `lower` below it.
     pub fn followed_by(mut self, lower: &Self) -> Self {
         for piece in &lower.0 {
             self.append(*piece);

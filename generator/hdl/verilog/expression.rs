@@ -23,11 +23,11 @@ pub struct Constant {
     pub bits: u64,
     /// The number of bits of the constant.
     pub width: u32,
-    /// The value as text, or an empty text if the bit pattern itself is the value.
+    /// The comment behind the localparam: the constant's value as text, or empty if the bit pattern itself is the value.
     pub note: String,
 }
 
-/// Writes the Verilog expressions of one module, and collects the constants that they use.
+/// A writer of the Verilog expressions for one module. It collects the constants that the expressions use.
 pub struct Expressions<'a> {
     plan: &'a Plan<'a>,
     names: Names,
@@ -47,7 +47,7 @@ impl<'a> Expressions<'a> {
         self.names.fresh(wish)
     }
 
-    /// Returns the right-hand side of the assignment that drives a net.
+    /// Returns the Verilog expression that drives a net, such as `a + b`: the right-hand side of its assignment.
     pub fn driver(&mut self, id: NetId) -> String {
         match &self.plan.design.net(id).driver {
             Driver::Op(op) => self.cell(id, op),
@@ -60,7 +60,7 @@ impl<'a> Expressions<'a> {
         }
     }
 
-    /// Returns the text of a net as a complete right-hand side, without parentheses around it.
+    /// Returns the Verilog text that reads a net, for use as a complete right-hand side, without parentheses around it.
     pub fn whole(&mut self, id: NetId) -> String {
         match self.inline(id) {
             Some(cell) => self.driver(cell),
@@ -68,7 +68,8 @@ impl<'a> Expressions<'a> {
         }
     }
 
-    /// Returns the text of a net as an operand: a name, a selection, a concatenation, or a cell in parentheses.
+    /// Returns the Verilog text that reads a net within a larger expression: a name, a selection, a concatenation, or a cell in
+    /// parentheses.
     pub fn operand(&mut self, id: NetId) -> String {
         if let Some(constant) = self.constant(id) {
             return constant;
@@ -136,7 +137,7 @@ impl<'a> Expressions<'a> {
         Some(name)
     }
 
-    /// Returns the address of a ROM, with exactly as many bits as its number of words needs.
+    /// Returns the Verilog text of a ROM's address, with exactly as many bits as the ROM's number of words needs.
     pub fn address(&mut self, rom: &NetlistRom) -> String {
         let width = super::plan::address_width(rom.words.len());
         let bits = &self.plan.bits[rom.address.index()];
@@ -155,7 +156,7 @@ impl<'a> Expressions<'a> {
         }
     }
 
-    /// Returns the Verilog text of wiring: a selection such as `a[5:2]`, or a concatenation of several.
+    /// Returns the Verilog text of bits that need no logic: a selection such as `a[5:2]`, or a concatenation of several.
     pub fn bits(&self, bits: &Bits) -> String {
         together(bits.pieces().iter().map(|piece| self.piece(*piece)).collect())
     }

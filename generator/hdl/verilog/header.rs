@@ -6,7 +6,7 @@ use super::text::comment;
 use crate::netlist::{Design, HandshakeTiming, NetId, Partition, Pipeline, Role, Sequence};
 use glint_base::fixed::Format;
 
-/// The facts in a file's header that the design itself does not state.
+/// The facts in the header comment of a Verilog file that the design itself does not state.
 #[derive(Clone, Copy)]
 pub struct Origin<'a> {
     /// The command that generates the file again, or an empty text.
@@ -15,7 +15,8 @@ pub struct Origin<'a> {
     pub timing: &'a HandshakeTiming,
 }
 
-/// Returns the header of the top module: the formula, and everything that a user of the module must know.
+/// Returns the header comment for the top module's Verilog file, as lines: the formula, and everything that a user of the module
+/// must know.
 pub fn top(design: &Design, origin: &Origin) -> Vec<String> {
     let about = &design.about;
     let mut lines = comment(0, &format!("{}: {}", design.name, about.title));
@@ -40,7 +41,7 @@ pub fn top(design: &Design, origin: &Origin) -> Vec<String> {
     lines
 }
 
-/// Returns the header of the control unit's or the datapath's module.
+/// Returns the header comment for the Verilog file of the control unit or of the datapath, as lines.
 pub fn partition(
     design: &Design,
     partition: Partition,
@@ -68,7 +69,7 @@ fn paragraph(text: &str) -> Vec<String> {
     lines
 }
 
-/// Returns the lines that name the command which generates the file.
+/// Returns the comment lines with the command that generates the Verilog file again.
 pub fn regenerated(origin: &Origin) -> Vec<String> {
     let again = match origin.regenerate {
         "" => String::new(),

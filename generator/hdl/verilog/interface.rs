@@ -4,7 +4,7 @@ use super::plan::{NetForm, Plan};
 use crate::netlist::{Driver, NetId, Partition, RomId};
 use glint_base::fixed::mask;
 
-/// The signals that connect one of the two modules, control unit and datapath, with the outside.
+/// The ports and ROMs of one of the two Verilog modules below the top module: the control unit or the datapath.
 pub struct Interface {
     /// Whether anything in the module changes on the clock.
     pub clocked: bool,
@@ -12,12 +12,12 @@ pub struct Interface {
     pub inputs: Vec<NetId>,
     /// The outputs: ports of the top module in their order, followed by nets for the other module.
     pub outputs: Vec<NetId>,
-    /// The ROMs that are written in the module.
+    /// The ROMs that the Verilog of this module contains.
     pub roms: Vec<RomId>,
 }
 
 impl Interface {
-    /// Returns the interface of one of the two modules.
+    /// Finds the ports and ROMs of one of the two modules below the top module, control unit or datapath.
     pub fn new(plan: &Plan, partition: Partition) -> Self {
         let design = plan.design;
         let other = match partition {

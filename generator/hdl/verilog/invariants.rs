@@ -5,8 +5,8 @@ use super::naming::Naming;
 use super::text::literal;
 use crate::netlist::{Design, Partition, RegisterKind};
 
-/// Returns the assertions for one module as lines of Verilog. The caller must put them between `` `ifdef FORMAL `` and `` `endif
-/// ``, so that only formal tools read them.
+/// Returns assertions about the control unit or the datapath as lines of Verilog. The caller must put them between `` `ifdef FORMAL
+/// `` and `` `endif ``, so that only formal tools read them.
 pub fn invariants(design: &Design, naming: &Naming, partition: Partition) -> Vec<String> {
     let mut names = naming.names.clone();
     let lines = match partition {

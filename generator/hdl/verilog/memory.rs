@@ -8,7 +8,7 @@ use super::words::{in_fields, in_hex, word_note};
 use crate::netlist::{Design, RomId};
 use glint_base::fixed::mask;
 
-/// Returns the `.mem` file of a ROM.
+/// Returns the text of the memory file of a ROM, which `$readmemh` or `$readmemb` loads.
 ///
 /// # Errors
 /// Fails if the words of the control ROM are not exactly as wide as all fields, or if a word is wider than its ROM.

@@ -28,7 +28,7 @@ use interface::Interface;
 use naming::Naming;
 use plan::Plan;
 
-/// Returns the files of a design with their names: the modules, and the contents of ROMs for `$readmem`.
+/// Returns the files for a design as pairs of name and text: the Verilog modules (`.v`), and the contents of ROMs for `$readmem`.
 ///
 /// # Errors
 /// Fails with the mistakes that [`Design::verify_structure`] finds, or if [`memories`] fails.
@@ -45,14 +45,14 @@ pub fn files(design: &Design) -> Result<Vec<(String, String)>> {
 
 /// The text of one Verilog file, with the names of the modules that it defines.
 pub struct ModuleFile {
-    /// The names of the modules, the main one first.
+    /// The names of the Verilog modules in the file, the main one first.
     pub modules: Vec<String>,
     /// The whole text of the Verilog file.
     pub text: String,
 }
 
-/// Returns the Verilog files, the top module first. A pipeline has one file, with the module of its delay lines in it. Any other
-/// design has three files: the top module, the control unit and the datapath.
+/// Returns the Verilog files of a design, the top module first. A pipeline has one file, with the module of its delay lines in it.
+/// Any other design has three files: the top module, the control unit and the datapath.
 pub fn modules(plan: &Plan, naming: &Naming, origin: &Origin) -> Vec<ModuleFile> {
     if let Some(pipeline) = &plan.design.pipeline {
         let mut modules = vec![plan.design.name.clone()];
@@ -76,7 +76,7 @@ pub fn modules(plan: &Plan, naming: &Naming, origin: &Origin) -> Vec<ModuleFile>
     files
 }
 
-/// Returns the contents of the ROMs that have memory files, with the names of these files.
+/// Returns the memory files for the ROMs of a design as pairs of file name and text. `$readmemh` or `$readmemb` loads them.
 ///
 /// # Errors
 /// Fails if the words of the control ROM are not exactly as wide as all fields, or if a word is wider than its ROM.

@@ -16,7 +16,7 @@ use crate::netlist::{
     Design, Driver, Multiplier, NetId, NetlistRegister, Op, Partition, RegId, RomId,
 };
 
-/// Writes the sections of one module.
+/// A writer of the Verilog for one module: the control unit, the datapath or a pipeline.
 pub struct Builder<'a> {
     pub(super) plan: &'a Plan<'a>,
     naming: &'a Naming,
@@ -30,7 +30,7 @@ pub struct Builder<'a> {
 }
 
 impl<'a> Builder<'a> {
-    /// Makes the writer of one module.
+    /// Makes the writer of the module `partition`, control unit or datapath, with the ports of `interface`.
     pub fn new(
         plan: &'a Plan<'a>,
         naming: &'a Naming,
@@ -48,7 +48,7 @@ impl<'a> Builder<'a> {
         }
     }
 
-    /// Returns the text of the module.
+    /// Returns the complete Verilog text of the module, with its header comment.
     pub fn module(mut self, origin: &Origin) -> String {
         // Statements first: they tell which constants and choices are to be declared.
         let items = self.items(&|_| true);
@@ -116,7 +116,8 @@ impl<'a> Builder<'a> {
         written.map(|(_, register)| register.q)
     }
 
-    /// Returns the declarations of the `wanted` registers and words of synchronous ROMs, except ports.
+    /// Returns the Verilog declarations of registers and of synchronous ROMs' output words. It declares the nets for which `wanted`
+    /// returns true and that are no output ports.
     pub(super) fn state(&self, wanted: &dyn Fn(NetId) -> bool) -> Vec<Row> {
         let mut nets: Vec<NetId> = self.registers().collect();
         for rom in &self.plan.design.roms {
@@ -159,7 +160,8 @@ impl<'a> Builder<'a> {
         lines
     }
 
-    /// Returns the lines of each cell and memory whose net is wanted.
+    /// Returns the Verilog lines for each declared cell and each memory of the module that drives a net for which `wanted` returns
+    /// true.
     pub(super) fn items(&mut self, wanted: &dyn Fn(NetId) -> bool) -> Vec<Vec<String>> {
         let design = self.plan.design;
         let mut items = Vec::new();
@@ -369,7 +371,8 @@ impl<'a> Builder<'a> {
         lines
     }
 
-    /// Writes the blocks of registers. Registers with the same enable and the same reset behaviour share a block.
+    /// Returns the bodies of the module's `always` blocks, for the registers for whose output net `wanted` returns true. Registers
+    /// with the same enable and the same reset behaviour share a block.
     pub(super) fn groups(&mut self, wanted: &dyn Fn(NetId) -> bool) -> Vec<Vec<String>> {
         /// The enable, and whether reset sets the registers.
         type ResetGroup = (Option<NetId>, bool);
@@ -418,7 +421,8 @@ impl<'a> Builder<'a> {
         takes
     }
 
-    /// Returns the blocks of the wanted registers of a pipeline: one block for all registers with the same enable.
+    /// Returns the `always` blocks for the registers of a pipeline for whose output net `wanted` returns true: one block for all
+    /// registers with the same enable.
     pub(super) fn stage(&mut self, wanted: &dyn Fn(NetId) -> bool) -> Vec<String> {
         let mut groups: BTreeMap<Option<NetId>, Vec<RegId>> = BTreeMap::new();
         for id in self.written(wanted) {
@@ -478,7 +482,8 @@ impl<'a> Builder<'a> {
         lines
     }
 
-    /// Returns the section of the net that takes the bits that nobody reads; empty without any.
+    /// Returns the Verilog lines of the net that reads all bits which nothing else in the module reads, so that linters do not
+    /// complain. Returns no lines if there are no such bits.
     pub(super) fn unused(&self) -> Vec<String> {
         let ranges = unread(self.plan, self.partition, self.interface);
         if ranges.is_empty() {
@@ -519,7 +524,8 @@ fn words(
     lines
 }
 
-/// Returns the parameters with the file names of ROMs, with commas. It is empty if the words are written in the Verilog.
+/// Returns the declarations of the Verilog parameters that hold the names of the ROMs' memory files, with commas. It is empty if
+/// the Verilog itself contains the words.
 pub fn parameters(naming: &Naming, roms: &[RomId]) -> Vec<String> {
     let mut texts = Vec::new();
     for rom in roms {

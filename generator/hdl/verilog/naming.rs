@@ -6,48 +6,49 @@ use crate::netlist::{
     Control, Design, Driver, FieldKind, Net, NetId, NetlistRom, Op, Partition, RomId,
 };
 
-/// The names of modules, instances, memories, files and parameters in the Verilog of a design.
+/// The names that the Verilog of a design has in addition to the names of nets: modules, instances, memories, files and parameters.
 pub struct Naming {
     /// The name of the control unit's instance in the top module.
     pub control_instance: String,
     /// The name of the datapath's instance in the top module.
     pub datapath_instance: String,
-    /// The name of each ROM's memory. For example, `control_rom`.
+    /// For each ROM, the name of its memory in the Verilog. For example, `control_rom`.
     pub memories: Vec<String>,
-    /// The name of the parameter with each ROM's file name. For example, `SINE_FILE`.
+    /// For each ROM, the name of the Verilog parameter with the name of its memory file. For example, `SINE_FILE`.
     pub parameters: Vec<String>,
-    /// The file name of each ROM.
+    /// For each ROM, the name of the memory file with its words. For example, `rough_sine.mem`.
     pub files: Vec<String>,
-    /// The style in which memories and registers are written.
+    /// The style in which the Verilog writes memories and registers.
     pub style: Style,
     /// The ROMs that are the second read port of another ROM's memory.
     pub second: Vec<RomId>,
-    /// The names of the localparams for each field's choices. For example, `OPERAND_SELECT_COSINES` is 0.
+    /// For each field of the control word, the names of the localparams for the values that it can have. For example,
+    /// `OPERAND_SELECT_COSINES` is 0.
     pub choices: Vec<Vec<String>>,
     /// The name of the net that reads all unread bits. Linters accept an unread net if its name contains `unused`.
     pub unused: String,
     /// The name of the shift register that says which stages of a pipeline hold points.
     pub valid: String,
-    /// The identifiers of the design so far. A module may add identifiers of its own.
+    /// The identifiers that the design uses already. A module may add identifiers of its own.
     pub names: Names,
     design: String,
 }
 
-/// The style in which memories and registers are written.
+/// The style in which the Verilog writes memories and registers.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Style {
-    /// Whether the words of ROMs are written in the Verilog, so that there are no memory files.
+    /// Whether the Verilog itself contains the words of ROMs, so that there are no memory files.
     pub inline: bool,
-    /// Whether the words of ROMs are written as a case statement in a function.
+    /// Whether the Verilog writes the words of a ROM as a case statement in a function.
     pub case: bool,
-    /// The Verilog attribute of ROMs that are read at the rising edge, if any.
+    /// The Verilog attribute before the memories of synchronous ROMs, if any.
     pub rom_style: Option<&'static str>,
-    /// Whether registers have the initial value 0.
+    /// Whether the Verilog gives registers the initial value 0.
     pub initial: bool,
 }
 
 impl Naming {
-    /// Chooses names for everything that the Verilog adds to the description. None of them is the name of a net.
+    /// Chooses names for everything that the Verilog of a design has in addition to its nets. None of them is the name of a net.
     pub fn new(design: &Design) -> Self {
         let mut names = Names::new(design.nets.iter().map(|net| net.name.as_str()));
         names.fresh("clk");
@@ -85,7 +86,7 @@ impl Naming {
         }
     }
 
-    /// Returns the names with another style of memories and registers.
+    /// Returns the same names with another style of memories and registers.
     pub fn styled(self, style: Style) -> Self {
         Self { style, ..self }
     }
@@ -138,7 +139,8 @@ pub fn is_control_rom(design: &Design, rom: RomId) -> bool {
     design.control.rom == rom
 }
 
-/// Returns the comment behind the declaration of a net. For example, `mux 8, s1.20: first operand`.
+/// Returns the Verilog comment behind the declaration of a net: its block number, format and description, as far as it has them.
+/// For example, `mux 8, s1.20: first operand`.
 pub fn remark(design: &Design, id: NetId) -> String {
     let net = design.net(id);
     // The width already says all of an unsigned integer.
@@ -170,7 +172,8 @@ pub fn remark(design: &Design, id: NetId) -> String {
     }
 }
 
-/// Returns the name of a ROM for comments: `ROM 18`, or `ROM sine` if the figure of the source has no number for it.
+/// Returns the name of a ROM for comments: `ROM 18`, or `ROM sine` if the block diagram of the device's source has no number for
+/// it.
 pub fn rom_label(rom: &NetlistRom) -> String {
     match rom.block {
         Some(number) => format!("ROM {number}"),

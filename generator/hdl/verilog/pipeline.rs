@@ -14,7 +14,7 @@ use crate::netlist::{Design, Driver, NetId, Partition, Pipeline, Role, Unit};
 /// The module of delay lines, under the name `delay`.
 const DELAY: &str = include_str!("delay.v");
 
-/// Returns the Verilog of a pipeline: its module, and the module of its delay lines.
+/// Returns the text of the Verilog file for a pipeline: its module, and the module of its delay lines.
 pub fn module(plan: &Plan, naming: &Naming, pipeline: &Pipeline, origin: &Origin) -> String {
     let design = plan.design;
     let interface = Interface::new(plan, Partition::Datapath);

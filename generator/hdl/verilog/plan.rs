@@ -14,7 +14,7 @@ use crate::netlist::{DelayLine, Design, Driver, NetId, Op, Partition, RegId, Rol
 use glint_base::diagnostic::Diagnostics;
 use glint_base::fixed::mask;
 
-/// How a net appears in the Verilog.
+/// The way in which a net of the design appears in the Verilog.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum NetForm {
     /// The net is wiring: its [`Bits`] are written wherever it is used.
@@ -27,41 +27,46 @@ pub enum NetForm {
     Inside,
 }
 
-/// Something in the Verilog that reads nets.
+/// Something in the Verilog that reads nets, such as a register, which reads its data and its enable.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Reader {
-    /// The right-hand side of a net that is declared, or of a net that is written within another expression.
+    /// A cell or a field of the control word that drives this net. Its right-hand side reads the nets.
     Cell(NetId),
-    /// A register, which reads its data, enable and reset.
+    /// A register, which reads its data and its enable.
     Register(RegId),
     /// A ROM, which reads its address.
     Rom(RomId),
 }
 
-/// The decisions on how a design appears in the Verilog.
+/// The decisions on how the nets of a design appear in the Verilog: declared under a name, within the expression that uses them, or
+/// as wiring.
 pub struct Plan<'a> {
     /// The design that is written as Verilog.
     pub design: &'a Design,
-    /// For each net, how it appears in the Verilog.
+    /// For each net of the design, how it appears in the Verilog.
     pub forms: Vec<NetForm>,
-    /// The bits of each net, as it is written where it is used.
+    /// For each net of the design, the bits that the Verilog writes where the net is used. For example, `a[5:2]` for a slice of
+    /// `a`.
     pub bits: Vec<Bits>,
-    /// The bits of each net, traced through declared wiring too, back to cells, registers, ROMs and inputs.
+    /// For each net of the design, the origin of its bits. Bits are traced through declared wiring too, back to cells, registers,
+    /// ROMs and inputs.
     pub roots: Vec<Bits>,
-    /// The nets whose cells are written at all, operands before their readers.
+    /// The nets of the design whose cells the Verilog writes, operands before their readers.
     pub live: Vec<NetId>,
-    /// A mask of the bits of each net that each module reads.
+    /// For each net of the design and each Verilog module, control unit or datapath, a mask of the bits of the net that the module
+    /// reads.
     pub reads: BTreeMap<(Partition, NetId), u64>,
-    /// The reset port, if any register has a reset.
+    /// The net of the reset input, if any register has a reset.
     pub reset: Option<NetId>,
-    /// The delay lines that are written as memories.
+    /// The delay lines of a pipeline that the Verilog writes as memories.
     pub delays: Vec<DelayLine>,
     /// The nets that repeat a value of an earlier stage; only the first declaration of the value gets the comment.
     repeats: HashSet<NetId>,
 }
 
 impl<'a> Plan<'a> {
-    /// Decides how the nets of a design appear.
+    /// Decides for each net whether the Verilog declares it, writes its expression where it is used, writes it as wiring, or
+    /// omits it.
     ///
     /// # Errors
     /// Fails with the mistakes that [`Design::verify_structure`] finds.
@@ -93,7 +98,8 @@ impl<'a> Plan<'a> {
         Ok(plan)
     }
 
-    /// Returns the module that declares a net. Fields belong to the control unit, whatever they control.
+    /// Returns the Verilog module, control unit or datapath, that declares a net. Fields of the control word belong to the control
+    /// unit, whatever they control.
     pub fn partition(&self, net: NetId) -> Partition {
         match self.design.net(net).driver {
             Driver::Field(_) => Partition::Control,
@@ -119,7 +125,7 @@ impl<'a> Plan<'a> {
         Some(value.last() == register)
     }
 
-    /// Returns the module, control unit or datapath, in which a reader of nets is written.
+    /// Returns the Verilog module, control unit or datapath, that contains a reader of nets, such as a register.
     pub fn home(&self, reader: Reader) -> Partition {
         match reader {
             Reader::Cell(net) => self.partition(net),
@@ -128,7 +134,7 @@ impl<'a> Plan<'a> {
         }
     }
 
-    /// Returns the nets that appear in the text of a reader.
+    /// Returns the nets that a reader, such as a cell or a register, reads in the Verilog.
     pub fn operands(&self, reader: Reader) -> Vec<NetId> {
         match reader {
             Reader::Cell(net) => match &self.design.net(net).driver {
@@ -152,8 +158,8 @@ impl<'a> Plan<'a> {
         }
     }
 
-    /// Returns the bits of the operand that a reader uses. These are all bits, unless the reader is a slice, a field or the
-    /// address of a ROM.
+    /// Returns the bits of the net `operand` that a reader uses in the Verilog. These are all bits, unless the reader is a slice, a
+    /// field of the control word or the address of a ROM.
     pub fn operand_bits(&self, reader: Reader, operand: NetId) -> Bits {
         let bits = &self.bits[operand.index()];
         match reader {
@@ -173,8 +179,8 @@ impl<'a> Plan<'a> {
         }
     }
 
-    /// Returns the result of a comparison if the formats alone decide it, such as `a < 0` for an unsigned `a`. Linters reject
-    /// such comparisons.
+    /// Returns the value of the comparison `a < b` if constants or the range of the format decide it, such as `a < 0` for an
+    /// unsigned `a`. Linters reject such comparisons.
     pub fn constant_comparison(&self, a: NetId, b: NetId) -> Option<u64> {
         let format = self.design.net(a).format;
         let constants = [a, b].map(|id| match self.roots[id.index()].single() {
@@ -189,7 +195,7 @@ impl<'a> Plan<'a> {
         }
     }
 
-    /// Returns all readers of nets that appear in the Verilog, such as cells, registers and output ports.
+    /// Returns everything in the Verilog that reads nets: cells, fields of the control word, registers and ROMs.
     pub fn readers(&self) -> Vec<Reader> {
         let mut readers = Vec::new();
         for &net in &self.live {
@@ -228,7 +234,7 @@ impl<'a> Plan<'a> {
         }
     }
 
-    /// Returns the bits of a declared net if the net is wiring.
+    /// Returns the bits of other nets and constants that form a net, if it needs no logic, otherwise `None`.
     pub fn wiring(&self, id: NetId) -> Option<Bits> {
         self.wired(id, &self.bits)
     }
@@ -391,7 +397,8 @@ impl<'a> Plan<'a> {
         self.repeats = repeats;
     }
 
-    /// Returns the comment that the Verilog shows at the declaration of a net.
+    /// Returns the comment that the Verilog shows at the declaration of a net, or an empty text if the net only repeats a value of
+    /// an earlier pipeline stage.
     pub fn remark(&self, id: NetId) -> String {
         if self.repeats.contains(&id) { String::new() } else { remark(self.design, id) }
     }

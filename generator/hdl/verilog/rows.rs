@@ -32,7 +32,7 @@ pub fn variables(design: &Design, with_signs: bool) -> Vec<String> {
     Row::declarations(&rows)
 }
 
-/// One declaration of a net or port. Its parts are aligned in columns with the declarations around it.
+/// The Verilog declaration of one net or port. Its parts are aligned in columns with the declarations around it.
 pub struct Row {
     head: String,
     range: String,
@@ -41,7 +41,8 @@ pub struct Row {
 }
 
 impl Row {
-    /// Makes the declaration of a net. `direction` is empty if the net is no port.
+    /// Makes the Verilog declaration of a net. `direction` is `input` or `output` for a port, otherwise empty; `kind` is `wire` or
+    /// `reg`.
     pub fn net(plan: &Plan, direction: &str, kind: &str, id: NetId) -> Self {
         let net = plan.design.net(id);
         let format = net.format;
@@ -49,7 +50,8 @@ impl Row {
         Self::port(direction, kind, format.width(), format.signed, &net.name, &note)
     }
 
-    /// Makes a declaration from its parts.
+    /// Makes a Verilog declaration from its parts: direction, kind (`wire` or `reg`), width in bits, sign, name, and the comment
+    /// behind it.
     pub fn port(
         direction: &str,
         kind: &str,
@@ -78,7 +80,7 @@ impl Row {
         self
     }
 
-    /// Merges declarations that differ only in their names and have no comment.
+    /// Merges Verilog declarations without a comment that differ only in their names into one, such as `wire [7:0] a, b;`.
     pub fn together(rows: Vec<Self>) -> Vec<Self> {
         let (mut all, plain): (Vec<_>, Vec<_>) =
             rows.into_iter().partition(|row| !row.note.is_empty());
@@ -100,12 +102,12 @@ impl Row {
         all
     }
 
-    /// Returns the rows as the lines of a port list, with commas between ports.
+    /// Returns the Verilog lines of a port list of these nets, aligned in columns, with commas between the ports.
     pub fn ports(rows: &[Self]) -> Vec<String> {
         Self::set(rows, |at| if at + 1 < rows.len() { "," } else { "" })
     }
 
-    /// Returns the rows as the lines of declarations, each with a semicolon.
+    /// Returns the Verilog lines that declare these nets, aligned in columns, with a semicolon behind each declaration.
     pub fn declarations(rows: &[Self]) -> Vec<String> {
         Self::set(rows, |_| ";")
     }

@@ -94,7 +94,7 @@ pub fn literal(value: u64, width: u32) -> String {
     }
 }
 
-/// Returns one word, or the concatenation of several. For example, `a` and `b` give `{a, b}`.
+/// Returns the only one of the Verilog texts, or the concatenation of several. For example, `a` and `b` give `{a, b}`.
 pub fn together(words: Vec<String>) -> String {
     match &words[..] {
         [only] => only.clone(),
@@ -102,7 +102,7 @@ pub fn together(words: Vec<String>) -> String {
     }
 }
 
-/// Returns the range of a declaration, such as `[7:0]`, or nothing for one bit.
+/// Returns the range of a Verilog declaration of `width` bits, such as `[7:0]`, or nothing for one bit.
 pub fn range(width: u32) -> String {
     match width {
         1 => String::new(),
@@ -110,12 +110,12 @@ pub fn range(width: u32) -> String {
     }
 }
 
-/// Returns the lines of a statement, which is broken at spaces if it exceeds [`COLUMNS`].
+/// Returns the lines of a Verilog statement with `indent` spaces before it. It is broken at spaces if it exceeds [`COLUMNS`].
 pub fn statement(indent: usize, text: &str) -> Vec<String> {
     broken(&" ".repeat(indent), &" ".repeat(indent + 8), text)
 }
 
-/// Returns the lines of a comment, or none for an empty text.
+/// Returns `text` as the lines of a Verilog comment with `indent` spaces before it, or no lines for an empty text.
 pub fn comment(indent: usize, text: &str) -> Vec<String> {
     // Tools take a comment that begins with their name for an order.
     let text = ascii(text).replace("verilator", "Verilator").replace("synopsys", "Synopsys");
@@ -126,7 +126,7 @@ pub fn comment(indent: usize, text: &str) -> Vec<String> {
     broken(&margin, &margin, &text)
 }
 
-/// Returns a declaration with a comment behind it, or above it if the line would be too long.
+/// Returns the lines of a Verilog declaration with the comment `note` behind it, or above it if the line would be too long.
 pub fn annotated(code: &str, indent: usize, note: &str) -> Vec<String> {
     let code = format!("{}{code}", " ".repeat(indent));
     let note = ascii(note);
@@ -162,24 +162,24 @@ fn broken(first: &str, further: &str, text: &str) -> Vec<String> {
     lines
 }
 
-/// The identifiers that one module uses.
+/// The identifiers that one Verilog module uses already.
 #[derive(Clone, Debug, Default)]
 pub struct Names(HashSet<String>);
 
 impl Names {
-    /// Makes the set with the names that are already taken.
+    /// Makes the set of a module's identifiers, with the names that are already taken.
     pub fn new<'a>(taken: impl IntoIterator<Item = &'a str>) -> Self {
         Self(taken.into_iter().map(str::to_owned).collect())
     }
 
-    /// Makes the set with the names of a design's ports and its clock.
+    /// Makes the set of a module's identifiers, with the names of a design's ports and its clock.
     pub fn of_ports(design: &Design) -> Self {
         let ports = design.ports.iter().map(|port| design.net(port.net).name.as_str());
         Self::new(ports.chain(["clk"]))
     }
 
-    /// Returns `wish`, or `wish_2`, `wish_3` and so on if it is taken, and adds the name to the set. For example, if `control` is
-    /// taken, the next names are `control_2` and `control_3`.
+    /// Returns a name that the module does not use yet, and adds it to the set: `wish`, or `wish_2`, `wish_3` and so on if it is
+    /// taken. For example, if `control` is taken, the next names are `control_2` and `control_3`.
     pub fn fresh(&mut self, wish: &str) -> String {
         let mut name = wish.to_owned();
         let mut number = 1;

@@ -10,7 +10,8 @@ use super::rows::{Row, separated};
 use super::writer;
 use crate::netlist::Partition;
 
-/// Returns the text of the top module.
+/// Returns the Verilog text of a device's top module: an instance of the control unit, an instance of the datapath, and their
+/// wires.
 pub fn module(
     plan: &Plan,
     naming: &Naming,

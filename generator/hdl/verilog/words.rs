@@ -5,7 +5,7 @@ use super::text::ascii;
 use crate::netlist::{Design, RomId};
 use glint_base::fixed::mask;
 
-/// Returns the comment on the word at `address` of a ROM, or `None` if the word has no comment.
+/// Returns the comment for the word at `address` of a ROM, for the Verilog or the memory file, or `None` if the word has none.
 pub fn word_note(design: &Design, id: RomId, address: usize) -> Option<String> {
     if let Some(comment) = design.rom(id).comments.get(address) {
         return Some(ascii(comment));
@@ -17,7 +17,7 @@ pub fn word_note(design: &Design, id: RomId, address: usize) -> Option<String> {
     Some(ascii(&executed.name))
 }
 
-/// Returns a control word in binary, with `_` between its fields. For example, word 3 of `rough` is `01_1_0_0_1_0_0_1`.
+/// Returns a word of the control ROM in binary, with `_` between its fields. For example, word 3 of `rough` is `01_1_0_0_1_0_0_1`.
 pub fn in_fields(design: &Design, word: u64) -> String {
     let positions = design.field_positions();
     let digits = design.control.fields.iter().zip(positions).map(|(field, low)| {
@@ -27,7 +27,7 @@ pub fn in_fields(design: &Design, word: u64) -> String {
     digits.collect::<Vec<_>>().join("_")
 }
 
-/// Returns a word in hexadecimal, with as many digits as the width needs. For example, a word of 35 bits has 9 digits.
+/// Returns a word of a ROM in hexadecimal, with as many digits as `width` bits need. For example, a word of 35 bits has 9 digits.
 pub fn in_hex(word: u64, width: u32) -> String {
     format!("{word:0digits$x}", digits = width.div_ceil(4) as usize)
 }

@@ -1,6 +1,7 @@
 //! Writes the frames of Verilog modules, instances and blocks around lines of text.
 
-/// Returns the text of a file with one module, between its parts and an empty line the text of another one, if any.
+/// Returns the text of a Verilog file with the module `name`. The text `other`, such as a second module, follows the module, and
+/// may be empty.
 pub fn module(
     header: Vec<String>,
     name: &str,
@@ -15,7 +16,7 @@ pub fn module(
     format!("{}\nendmodule\n{other}\n`default_nettype wire\n", lines.join("\n"))
 }
 
-/// Returns an instance. Its ports and parameters must have their commas.
+/// Returns the Verilog lines of an instance `name` of a module. The texts of its ports and parameters must have their commas.
 pub fn instance(
     module: &str,
     parameters: &[String],
@@ -49,13 +50,13 @@ fn head(
     lines
 }
 
-/// Returns the lines under a title with an empty line above, or nothing if there are no lines.
+/// Returns Verilog lines under a comment with the title, with an empty line above. Returns nothing if there are no lines.
 pub fn section(title: &str, lines: Vec<String>) -> Vec<String> {
     let title = format!("    // {title}");
     if lines.is_empty() { lines } else { [vec![String::new(), title], lines].concat() }
 }
 
-/// Returns the lines between `begin` and `end` with an empty line above, or nothing if there are no lines.
+/// Returns Verilog lines between the lines `begin` and `end`, with an empty line above. Returns nothing if there are no lines.
 pub fn block(begin: &str, lines: Vec<String>, end: &str) -> Vec<String> {
     match lines.is_empty() {
         true => lines,

@@ -1,7 +1,9 @@
-//! Rewrites a quotient a / b as operations of a plan: a product with a reciprocal.
+//! Rewrites a quotient a / b as a product with a reciprocal from a table, so that no divider is needed. The operations are added
+//! to the plan: the list of integer operations from which the hardware, the golden model and the proof are made.
 //!
-//! The divisor is normalised: b = m · 2^−k with m from 1/2 to below 1. A table gives 1/m, and the dividend is shifted by the same
-//! k bits, so that a / b = (a · 2^k) · (1/m).
+//! A divisor with few bits whose largest size is less than four times its smallest has a table of 1/b itself. Any other divisor is
+//! normalised: b = m · 2^−k with m from 1/2 to below 1. A table gives 1/m, and the dividend is shifted by the same k bits, so that
+//! a / b = (a · 2^k) · (1/m).
 
 use glint_base::fixed::{Format, Rounding, exp2};
 use glint_formula::{Enclosure, Expression};

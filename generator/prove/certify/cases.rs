@@ -15,7 +15,7 @@ use glint_rtl::pipeline::{Cell, Graph, NodeId, NodeOp};
 /// The most ways that are looked at, including ways that turn out to be impossible.
 const MOST: usize = 4096;
 
-/// Intervals of raw values of some nodes, which narrow the intervals that follow from the operands.
+/// Intervals of raw values for some nodes of a computation's graph. They narrow the intervals that follow from the operands alone.
 pub type NodeIntervals = BTreeMap<NodeId, Interval>;
 
 /// A case of a computation: one combination of outcomes of its conditions. For example, one case of a saturation is that the value

@@ -11,8 +11,8 @@ use glint_base::fixed::exp2;
 use glint_formula::{Comparison, Expression, Function, Kind, Literal, Operator};
 use glint_golden::Operand;
 
-/// A branch of a formula: a term, and the conditions under which it is the formula's value. The terms `at_least` must not be
-/// negative, and the terms `at_most` must not be positive.
+/// A branch of a contract's formula, which a condition such as `x < 0` splits: a term, and the conditions under which it is the
+/// formula's value. The terms `at_least` must not be negative, and the terms `at_most` must not be positive.
 #[derive(Clone, Debug, Default)]
 pub struct Branch {
     /// Conditions of the branch: terms that must be at least 0 for the branch to apply.
@@ -85,13 +85,13 @@ impl Branch {
     }
 }
 
-/// The variables, ranges and ROM words with which formulas are translated.
+/// The variables, ranges and ROM words with which Glint translates a contract's formula to a Gappa script.
 pub struct FormulaContext<'a> {
     /// For each operand, the name of its variable in the script, and the power of two by which the variable is divided.
     pub variables: &'a HashMap<String, (String, i32)>,
     /// The smallest and the largest value of each operand in this case.
     pub ranges: &'a HashMap<String, (f64, f64)>,
-    /// The values of the words of each ROM, by the name of the ROM.
+    /// For each ROM, by its name, the values of its words.
     pub words: &'a HashMap<String, Vec<f64>>,
     /// The operands of the contract.
     pub operands: &'a [Operand],
@@ -140,12 +140,12 @@ fn power_of_two(value: f64) -> Option<i32> {
     (0..=30).find(|&power| exp2(power) == value)
 }
 
-/// Returns the error message for a function that Gappa does not have.
+/// Returns the error message for a function in a contract's formula that the prover Gappa does not have.
 pub fn untranslated(function: Function) -> String {
     format!("the function `{}` has no translation", function.name())
 }
 
-/// Returns all branches of a formula.
+/// Returns all branches of a contract's formula, as terms for a Gappa script.
 ///
 /// # Errors
 /// Fails if the formula has a part without a translation.

@@ -11,7 +11,7 @@ use glint_base::interval::{Interval, wrap};
 use glint_rtl::netlist::RomId;
 use glint_rtl::pipeline::{Cell, Graph, Node, NodeId, NodeOp};
 
-/// The raw value of a node, as a term or a constant.
+/// The raw value of a node of the computation's graph in one case: a constant, or a term in a Gappa script.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum NodeValue {
     /// The node has only this raw value in the case.
@@ -28,7 +28,7 @@ pub enum NodeValue {
 /// The operands as variables of the script: for each, its name and its number of fraction bits.
 pub type Variables = Vec<(String, i32)>;
 
-/// Translates the nodes of one case to real terms.
+/// A translator from the nodes of one case of the hardware's computation to terms in a Gappa script.
 #[derive(Clone)]
 pub struct Hardware<'a> {
     graph: &'a Graph,

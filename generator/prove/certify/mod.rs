@@ -34,12 +34,12 @@ pub use statement::Statement;
 use statement::Statements;
 use task::Task;
 
-/// Returns the statements that together prove the error bound of a sequential design's contract. For example, an output that may
-/// saturate has one statement for each of the two cases.
+/// Returns the statements for the prover Gappa that together prove the error bound of a sequential design's contract. For example,
+/// an output that may saturate has one statement for each of the two cases.
 ///
 /// # Errors
-/// Fails if a step has no translation, if the contract states no bound, or if it takes longer than `limit` to write
-/// all statements. The error says so in words.
+/// Fails if a step has no translation, if the contract states no bound, or if it takes longer than `limit` to write all statements.
+/// The error says so in words.
 pub fn statements(
     design: &Design,
     contract: &dyn Contract,
@@ -145,8 +145,8 @@ fn formulas(contract: &dyn Contract) -> Result<Vec<Expression>, String> {
     parsed.collect()
 }
 
-/// Returns the SHA-256 of all scripts of some statements, in their order. Two certificates with the same digest prove the same
-/// statements.
+/// Returns the SHA-256 of the scripts for the prover Gappa of all statements, in their order. Two certificates with the same digest
+/// prove the same statements.
 pub fn digest(statements: &[Statement]) -> String {
     let scripts = statements.iter().flat_map(|statement| &statement.scripts);
     let text: Vec<&str> = scripts.map(String::as_str).collect();

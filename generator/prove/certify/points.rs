@@ -48,7 +48,8 @@ impl Task<'_> {
         words
     }
 
-    /// Adds the statements of one case: one for each output.
+    /// Adds the Gappa statements for one case of the computation: for each output, that it differs from the formula by at most the
+    /// bound.
     pub(super) fn state(&self, case: &Case, statements: &mut Statements) -> Result<(), String> {
         let variables = self.variables();
         let mut ranges = HashMap::new();

@@ -10,7 +10,7 @@ use super::witness;
 use glint_tools::transient::Directory;
 use glint_tools::{LimitReached, Tool};
 
-/// The subject of a proved statement.
+/// Whether the hypotheses of a statement that Gappa proved can hold. If they cannot, the statement is true but says nothing.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum ProofSubject {
     /// The statement says something: there is a point at which all its hypotheses hold, for example `x = -0.5, y = 3`.
@@ -21,7 +21,7 @@ pub enum ProofSubject {
     Unknown,
 }
 
-/// The outcome of a statement's proof.
+/// The outcome when Gappa tries to prove a statement about an error bound.
 pub enum ProofOutcome {
     /// A tool accepted the proof. The fields are the index of the accepted script and the subject of the statement.
     Proved(usize, ProofSubject),

@@ -114,7 +114,7 @@ fn is_left(graph: &Graph, id: NodeId, step: &DivisionStep) -> bool {
     graph.node(of).cell == Cell::Op(left) && graph.width(id) >= graph.width(step.divisor)
 }
 
-/// Returns the node that this node extends by zeros, or the node itself.
+/// Returns the node of the computation's graph that node `id` extends by zeros, or `id` itself.
 pub fn widened(graph: &Graph, id: NodeId) -> NodeId {
     match &graph.node(id).cell {
         Cell::Op(NodeOp::Extend(of)) if !graph.node(*of).format.signed => *of,

@@ -15,7 +15,7 @@ use glint_base::fixed::exp2;
 const SAMPLES: usize = 24;
 const TRIES: usize = 2_000;
 
-/// The common part of the scripts of one case.
+/// The parts that all Gappa scripts of one case have in common.
 pub struct GappaScript<'a> {
     /// The terms of hardware and formula.
     pub terms: &'a RealTerms,
@@ -46,7 +46,8 @@ impl GappaScript<'_> {
         self.statement(terms, difference, &goal, &[])
     }
 
-    /// Returns the script of a statement about a term. `hints` are added to the hints that follow from hardware and formula.
+    /// Returns the Gappa script that states `goal` about a term. `hints` are added to the hints that follow from hardware and
+    /// formula.
     pub fn statement(
         &self,
         mut terms: RealTerms,

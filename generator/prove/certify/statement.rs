@@ -8,7 +8,7 @@ use super::terms::number;
 /// The end of a script's goal that asks for a bound.
 pub(super) const ASKED: &str = "| in ? }";
 
-/// A statement for Gappa to prove.
+/// A statement for the prover Gappa, such as that an output differs from the formula by at most the error bound.
 #[derive(Clone, Debug)]
 pub struct Statement {
     /// The name of the output, or of the intermediate value, that the statement is about.
@@ -33,7 +33,7 @@ impl Statement {
     }
 }
 
-/// A collection of statements in which equal statements occur only once.
+/// A collection of Gappa statements in which equal statements occur only once.
 #[derive(Default)]
 pub(super) struct Statements {
     pub(super) list: Vec<Statement>,

@@ -16,7 +16,7 @@ const SPLIT: i64 = 1024;
 /// A table of at most this number of different words, one after the other, is gone through word by word.
 const RUNS: usize = 16;
 
-/// The subject of a proof: a design, its contract, and the unrolled computation as a graph.
+/// The subject of a proof by Gappa: a design, its contract with the error bound, and the unrolled computation as a graph.
 pub(super) struct Task<'a> {
     pub(super) design: &'a Design,
     pub(super) contract: &'a dyn Contract,
@@ -35,7 +35,8 @@ impl Task<'_> {
         &self.unrolled.graph
     }
 
-    /// Calls [`cases::learn`] with the ranges that nodes have before any way is followed.
+    /// Narrows the interval of a node to `range`, as [`cases::learn`] does, from the intervals that the nodes of the graph have
+    /// before any case is distinguished.
     pub(super) fn learn(
         &self,
         known: &mut NodeIntervals,

@@ -17,10 +17,10 @@ pub enum RoundingDirection {
     Nearest,
 }
 
-/// A real expression, whose operands are other terms.
+/// An expression over the real numbers for a Gappa script, whose operands are other such terms.
 #[derive(Clone, Debug, PartialEq)]
 pub enum RealTerm {
-    /// An operand.
+    /// A variable of the script, by its name.
     Variable(String),
     /// A constant.
     Number(f64),
@@ -174,12 +174,12 @@ impl RealTerms {
         values
     }
 
-    /// Returns for each term whether one of `roots` depends on it, including the roots.
+    /// Returns for each term of the collection whether one of `roots` depends on it, including the roots.
     pub fn needed(&self, roots: &[RealTermId]) -> Vec<bool> {
         cone::needed(self.terms.len(), roots.iter().copied(), |id| self.operands(id))
     }
 
-    /// Returns the number of the same expression without its roundings. `known` caches the results of earlier calls.
+    /// Returns the number of the term for the same expression without its roundings. `known` caches the results of earlier calls.
     pub fn unrounded(
         &mut self,
         id: RealTermId,
@@ -210,8 +210,8 @@ impl RealTerms {
         self.insert(make(a, b), "unrounded")
     }
 
-    /// Returns the definitions of the terms marked in `needed`, in order. For example, a sum and its rounding to 4 fraction bits
-    /// are `sum_2 = 0.5 + x;` and `cut_3 = fixed<-4,dn>(sum_2);`.
+    /// Returns the lines of a Gappa script that define the terms marked in `needed`, in order. For example, a sum and its rounding
+    /// to 4 fraction bits are `sum_2 = 0.5 + x;` and `cut_3 = fixed<-4,dn>(sum_2);`.
     pub fn definitions(&self, needed: &[bool]) -> String {
         let mut text = String::new();
         for (id, (term, name)) in self.terms.iter().enumerate() {

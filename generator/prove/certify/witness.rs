@@ -142,8 +142,8 @@ impl Hypotheses {
     }
 }
 
-/// Returns a point at which all hypotheses of a script hold, as text, or `None` if the search finds no point. For example, `x =
-/// -0.5`.
+/// Returns a point at which all hypotheses of a Gappa script hold, as text, or `None` if the search finds no point. For example, `x
+/// = -0.5`.
 pub fn witness(script: &str) -> Option<String> {
     if !script.contains(IMPLIES) {
         return Some("every point".to_owned());

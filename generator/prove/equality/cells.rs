@@ -7,7 +7,7 @@ use anyhow::{Context, Result, bail, ensure};
 use super::term::{ADDRESS, VectorTerm, VectorTermId, VectorTerms};
 use glint_base::fixed::MAX_WIDTH;
 
-/// A bit of a cell's connection: a wire or a constant.
+/// A bit that is connected to a cell in a netlist from Yosys: a wire or a constant.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Bit {
     Wire(usize),
@@ -17,7 +17,7 @@ pub enum Bit {
 
 pub type Connection = Vec<Bit>;
 
-/// The value of every wire of a module: a bit of a term.
+/// The symbolic value of every wire of a Verilog module in one clock: a bit of a term.
 pub struct WireValues(Vec<Option<(VectorTermId, u32)>>);
 
 impl WireValues {
@@ -36,7 +36,7 @@ impl WireValues {
         }
     }
 
-    /// Returns the values of some bits as terms of at most 64 bits each, the lowest bits first.
+    /// Returns the symbolic values of some wires as terms of at most 64 bits each, the lowest bits first.
     pub fn columns(&self, terms: &mut VectorTerms, bits: &Connection) -> Vec<VectorTermId> {
         let mut columns = Vec::new();
         for column in bits.chunks(MAX_WIDTH as usize) {
@@ -122,7 +122,8 @@ impl WireValues {
         terms.choice(inside, word, beyond)
     }
 
-    /// Returns the result of a cell with the inputs A, B and S. The result has `width` bits.
+    /// Returns the symbolic result of a Yosys cell of the kind `kind`, such as `$add`, with the inputs A, B and S. The result has
+    /// `width` bits.
     ///
     /// # Errors
     /// Fails if the cell is not known here, or wider than terms are.

@@ -23,7 +23,7 @@ enum What {
     Read(Read),
 }
 
-/// A read port of a memory.
+/// A read port of a memory in a flat Verilog module.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Read {
     pub memory: usize,
@@ -41,7 +41,7 @@ struct ModuleRegister {
     output: Connection,
 }
 
-/// A memory that the module writes.
+/// A memory that a flat Verilog module writes, such as the memory of a delay line.
 pub struct Memory {
     /// The read ports of the memory.
     pub reads: Vec<Read>,
@@ -67,7 +67,8 @@ pub struct Module {
     wires: usize,
 }
 
-/// The values of all registers. Each register has a list of terms of at most 64 bits, the lowest bits first.
+/// The symbolic values of all registers of a flat Verilog module. Each register has a list of terms of at most 64 bits, the lowest
+/// bits first.
 pub type RegisterContents = Vec<Vec<VectorTermId>>;
 
 fn bits(value: &Value) -> Result<Connection> {
@@ -346,7 +347,7 @@ impl Module {
         self.registers.iter().map(|it| values.columns(terms, &it.data)).collect()
     }
 
-    /// Returns the values of the outputs, by name.
+    /// Returns the symbolic values of the module's outputs, by the names of the ports.
     pub fn shown(
         &self,
         terms: &mut VectorTerms,

@@ -43,7 +43,8 @@ impl<'a> Solver<'a> {
         Ok(Self { tool, end: Instant::now() + limit, dir, asked: 0 })
     }
 
-    /// Returns whether terms of one bit can all be 1, given facts about the products.
+    /// Asks the SMT solver whether all `wanted` terms, of one bit each, can be 1 at once. The question contains arithmetic facts
+    /// about the products.
     ///
     /// # Errors
     /// Fails if the solver does not do its work.

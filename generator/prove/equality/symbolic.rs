@@ -15,7 +15,7 @@ pub struct Product {
     pub ranges: [Interval; 2],
 }
 
-/// The terms in registers and synchronous memories between two clocks.
+/// The symbolic contents of a design's registers and synchronous ROM outputs between two clocks, as terms.
 #[derive(Clone)]
 pub struct SymbolicState {
     pub registers: Vec<VectorTermId>,

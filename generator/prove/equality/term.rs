@@ -8,7 +8,8 @@ use std::collections::HashMap;
 use glint_base::cone;
 use glint_base::fixed::{MAX_WIDTH, mask};
 
-/// The number of a term in a [`VectorTerms`].
+/// The number by which a [`VectorTerms`] identifies one of its terms. A term is a bit-vector expression: the value of a net when
+/// the operands are unknown.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct VectorTermId(u32);
 

@@ -28,7 +28,7 @@ pub(super) struct TestPlace {
     operands: Vec<u64>,
 }
 
-/// For each word of each ROM, the first positions in a test at which it is read.
+/// For each word of each ROM, the first positions in a test at which the simulated hardware reads it.
 pub(super) struct Coverage {
     places: Vec<Vec<Vec<TestPlace>>>,
     /// The operand registers.
@@ -105,7 +105,7 @@ impl Coverage {
         &self.places[rom.index()][word]
     }
 
-    /// Returns the operands of a computation that reads a word, at each place.
+    /// Returns for each position at which the test reads a ROM word the operands of the computation that reads it.
     pub(super) fn operands(
         &self,
         design: &Design,

@@ -21,7 +21,7 @@ const SAMPLE: usize = 200;
 const SAMPLED_BITS: usize = 200;
 const NEIGHBOURS: usize = 256;
 
-/// A change of a bit: stuck at 0, stuck at 1, or inverted.
+/// A fault of one bit in a netlist: stuck at 0, stuck at 1, or inverted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum BitChange {
     /// The bit is always 0.
@@ -115,7 +115,7 @@ impl Faults {
         });
     }
 
-    /// Returns the faults in an order that stays the same.
+    /// Returns the faults one after another, in an order that is the same in every run.
     pub fn iter(&self) -> impl Iterator<Item = &NetlistFault> {
         self.0.iter()
     }

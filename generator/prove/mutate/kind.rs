@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 /// The kinds in their order, each with its name in tables.
 macro_rules! kinds {
     ($($(#[$doc:meta])* $kind:ident = $name:literal,)*) => {
-        /// The kind of a fault, by which tables count the faults.
+        /// The kind of a planted fault, such as a stuck bit. Tables of mutation tests count the faults by kind.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
         #[serde(rename_all = "kebab-case")]
         pub enum FaultKind {

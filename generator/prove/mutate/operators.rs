@@ -3,7 +3,8 @@
 use super::kind::FaultKind;
 use glint_rtl::netlist::{Design, Driver, NetId, Op};
 
-/// Returns the wrong cells in the place of the one that drives `id`, each with a name and a kind.
+/// Returns faulty cells that can replace the cell `op`, the driver of net `id`: another operator, swapped operands, and so on. Each
+/// has a name and a kind of fault.
 pub(super) fn of(design: &Design, id: NetId, op: &Op) -> Vec<(String, FaultKind, Op)> {
     let width = design.width(id);
     match op {

@@ -39,7 +39,8 @@ pub(super) fn addressing(core: &Core, rom: RomId, word: usize) -> Option<Operand
     Some(vec![(operand_of(design, register)?.to_owned(), word as i64)])
 }
 
-/// Simulates a mutant with some operands held and the others drawn at random, and returns the first difference.
+/// Compares a mutant with the golden model for random points, in which the operands `held` keep their values. Returns the first
+/// difference.
 ///
 /// # Errors
 /// Fails if the mutant cannot be simulated.
@@ -53,7 +54,8 @@ pub(super) fn drawn(
     Ok(mismatch.map(|mismatch| SignalDifference { held, mismatch }))
 }
 
-/// Simulates a mutant for a few points at which all operands are held.
+/// Compares a mutant with the golden model for a few points in which the operands `held` keep their values. Returns the first
+/// difference.
 ///
 /// # Errors
 /// Fails if the mutant cannot be simulated.
@@ -67,17 +69,18 @@ pub(super) fn alone(
     Ok(mismatch.map(|mismatch| SignalDifference { held, mismatch }))
 }
 
-/// The result of trying all values of the operands that determine `f` and are not held.
+/// The result of comparing a mutant with the golden model for all values of the operands that determine `f` and are not held.
 pub(super) enum Tried {
     /// Nothing was tried: the operands have too many values, or the device computes lines.
     Nothing,
-    /// All of them, and no register and no output differs on any clock.
+    /// The mutant was tried with all values, and no register and no output differs on any clock.
     All,
-    /// With these operands something does.
+    /// The mutant differs from the golden model in a register or an output for these operands.
     Differs(OperandValues),
 }
 
-/// Tries all values of the operands that determine `f` while these are held, if they have at most `most_bits` bits.
+/// Compares a mutant with the golden model for all values of the operands that determine `f`, if these have at most `most_bits`
+/// bits. The operands `held` keep their values.
 ///
 /// # Errors
 /// Fails if the mutant cannot be simulated.

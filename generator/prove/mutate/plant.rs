@@ -7,10 +7,10 @@ use glint_rtl::netlist::microcode;
 use glint_rtl::netlist::{Design, Driver, Net, NetId, Op, RegId, RomId};
 
 impl NetlistFault {
-    /// Returns a copy of the design with this fault.
+    /// Returns a copy of the design in which this fault is planted.
     ///
-    /// The copy can be simulated and emitted. Its nets keep the intervals of the fault-free design, which their values in the
-    /// copy may leave.
+    /// The copy can be simulated and emitted. Its nets keep the intervals of the fault-free design, which their values in the copy
+    /// may leave.
     pub fn planted(&self, design: &Design) -> Design {
         let mut mutant = design.clone();
         match &self.site {
@@ -25,7 +25,7 @@ impl NetlistFault {
     }
 }
 
-/// Returns a design without the texts that only people read: it is cheaper to copy.
+/// Returns a copy of the design without the comments on nets and ROMs, which is cheaper to copy for each fault.
 pub(super) fn bare(design: &Design) -> Design {
     let mut bare = design.clone();
     for rom in &mut bare.roms {

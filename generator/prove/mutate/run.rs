@@ -1,4 +1,5 @@
-//! Runs all checks on every fault of a configuration, and gives each fault its verdict.
+//! Plants the faults of mutation testing one at a time in the netlist of a core, and finds the verdict on each: caught by a check,
+//! proved equivalent, or undecided. The checks and proofs of a fault end with the first that decides.
 
 use std::sync::OnceLock;
 

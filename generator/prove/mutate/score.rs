@@ -19,7 +19,7 @@ pub const GOAL_TEXT: f64 = 0.98;
 /// the bits whose inversion some check notices. Words that are never read are not counted.
 pub const GOAL_MEMORY: f64 = 0.95;
 
-/// A share of some faults, such as "98 of 100 noticed".
+/// The share of some planted faults that a check notices, such as "98 of 100 noticed".
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Share {
     /// The number of faults that are noticed.

@@ -224,7 +224,7 @@ impl VerilogText {
         &self.files
     }
 
-    /// Returns all files of the configuration, one of them with the fault.
+    /// Returns all files of the configuration, with the fault planted in one of the Verilog files.
     pub fn planted(&self, fault: &TextFault) -> Vec<OutputFile> {
         let mut text = String::new();
         for (number, line) in self.files[fault.file].contents.lines().enumerate() {

@@ -30,7 +30,7 @@ use glint_tools::Tool;
 use glint_tools::gates::cells::MAPPING;
 use glint_tools::synthesis::synthesise;
 
-/// A target, with the tools that measure a core for it.
+/// A target for synthesis, such as ECP5, with the outside tools that measure the area and frequency of a core for it.
 pub struct Flow {
     target: Target,
     yosys: Tool,
@@ -40,7 +40,7 @@ pub struct Flow {
     versions: Vec<String>,
 }
 
-/// The core to be measured, and the settings of the measurement.
+/// The core whose area and frequency are measured, and the settings of the measurement.
 pub struct SynthesisSubject<'a> {
     /// The netlist of the core.
     pub design: &'a Design,

@@ -118,8 +118,9 @@ fn part_of_top<'j>(json: &'j Value, name: &str) -> Result<&'j Map<String, Value>
     part.with_context(|| format!("the netlist of `yosys` has no {name} of `{TOP}`"))
 }
 
-/// Returns a path, from pairs of a name and the time in nanoseconds at which it settles. Each name is there once in a
-/// row, at its last time. For example, `a` at 1.0, `a` at 1.5 and `b` at 2.0 are two steps: `a` at 1.5 and `b` at 2.0.
+/// Returns the steps of a timing path, from pairs of a name and the time in nanoseconds at which it settles. Steps in a row with
+/// one name become one, at the last time. For example, `a` at 1.0, `a` at 1.5 and `b` at 2.0 are two steps: `a` at 1.5 and `b` at
+/// 2.0.
 pub fn path(points: impl IntoIterator<Item = (String, f64)>) -> Vec<PathPoint> {
     let mut steps: Vec<PathPoint> = Vec::new();
     for (name, ns) in points {

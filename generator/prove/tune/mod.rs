@@ -25,7 +25,7 @@ use space::SearchSpace;
 
 use crate::synth::Target;
 
-/// The unit of an error.
+/// The unit in which the user of `glint tune` states the largest error.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, ValueEnum)]
 #[serde(rename_all = "lowercase")]
 pub enum ErrorUnit {
@@ -36,7 +36,7 @@ pub enum ErrorUnit {
 }
 
 impl ErrorUnit {
-    /// Returns an error bound in this unit.
+    /// Returns a configuration's error bound in this unit.
     pub fn of(self, bound: &Bound) -> f64 {
         match self {
             Self::F => bound.f,
@@ -54,20 +54,20 @@ impl fmt::Display for ErrorUnit {
     }
 }
 
-/// The cost that the search minimises.
+/// The cost of a core that `glint tune` minimises.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Objective {
-    /// Look-up tables; a DSP block or a block RAM counts for as many as the chip has of them.
+    /// The area: look-up tables, where a DSP block or a block RAM counts for as many look-up tables as the chip has for each.
     Area,
     /// Look-up tables.
     Luts,
-    /// DSP blocks, then area.
+    /// The number of DSP blocks, and among equal numbers the area.
     Dsps,
-    /// Bits of the ROMs, then area.
+    /// The number of bits in the ROMs, and among equal numbers the area.
     Memory,
 }
 
-/// The limits that the user states, and the cost that the search minimises.
+/// The goal of `glint tune`: the limits that the user states, and the cost that the search minimises.
 #[derive(Clone, Debug)]
 pub struct TuningGoal {
     /// The largest error bound that a configuration may have.
@@ -96,7 +96,8 @@ const ARCHITECTURE: [&str; 2] = ["architecture", "pipeline.interval"];
 ///
 /// `base` has the keys that are part of the user's question. The search changes the other keys, except those in `fixed`. It also
 /// tries pipelines if a rate is wanted or DSP blocks are limited, and `fixed` does not contain the architecture. Such a pipeline
-/// takes a point as seldom as the goal allows. `progress` is called with the number of configurations that were evaluated.
+/// accepts a point (a set of operands) as seldom as the goal allows, so that several products can share a multiplier. `progress`
+/// is called with the number of configurations that were evaluated.
 ///
 /// # Errors
 /// Fails if no configuration meets the goal. The message says which term of the bound, or the clock, is in the way.

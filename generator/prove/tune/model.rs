@@ -29,7 +29,7 @@ pub struct Features {
     pub product: f64,
 }
 
-/// The estimated cost of a configuration on a target.
+/// The estimated cost of a configuration on an FPGA target, without synthesis.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Cost {
     /// The estimated number of look-up tables.

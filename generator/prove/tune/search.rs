@@ -18,7 +18,7 @@ use glint_show::evidence::comparison::clocks_per_point;
 /// The exponent at which the clocks of a point are counted if they depend on it.
 const EXPONENT: f64 = 35.0;
 
-/// A configuration that the search has evaluated, with its bound, cost and rate.
+/// A configuration that `glint tune` has evaluated, with its error bound, its cost and its rate.
 #[derive(Clone, Debug)]
 pub struct Candidate {
     /// The configuration that was evaluated.
@@ -38,7 +38,7 @@ impl Candidate {
     }
 }
 
-/// The result of a search: the best configuration, and the alternatives.
+/// The result of `glint tune`: the best configuration that it found, and the alternatives.
 #[derive(Clone, Debug)]
 pub struct Answer {
     /// The smallest configuration that was found.
@@ -46,7 +46,7 @@ pub struct Answer {
     /// The Pareto front: the configurations for which no other has both a smaller error and a smaller cost, by rising error. It
     /// covers only configurations that the search has evaluated.
     pub front: Vec<Candidate>,
-    /// The keys that the search may change.
+    /// The keys of the configuration (parameters such as bit widths) that the search of `glint tune` may change.
     pub free: Vec<&'static str>,
     /// The number of configurations that the search evaluated.
     pub looked_at: usize,
@@ -327,7 +327,8 @@ impl TuningGoal {
         }
     }
 
-    /// Returns the costs, the most important first: fit to the chip, objective, area, error, and bits of ROM.
+    /// Returns numbers by which candidates are compared, the most important first: fit to the chip, objective, area, error bound,
+    /// and bits of ROM. Less is better.
     pub(super) fn order(&self, candidate: &Candidate) -> [f64; 5] {
         let (cost, target) = (&candidate.cost, self.target);
         let excess = if cost.excess(target).is_empty() { 0.0 } else { 1.0 };

@@ -21,7 +21,8 @@ const STATEMENT: [&str; 2] = ["domain", "function"];
 /// the formula is neither 0 nor flat.
 const POINTS: u32 = 600;
 
-/// The keys of a device that a search may change.
+/// The configuration keys of a device that `glint tune` may change when it searches for better configurations: the core keeps its
+/// ports and its formula with every value of these keys.
 pub struct SearchSpace {
     schema: Schema,
     free: Vec<&'static str>,
@@ -82,17 +83,17 @@ impl SearchSpace {
             && own.has_formula(contract)
     }
 
-    /// Returns the names of the keys that may be changed.
+    /// Returns the names of the configuration's keys (parameters such as bit widths) that `glint tune` may change.
     pub fn free(&self) -> &[&'static str] {
         &self.free
     }
 
-    /// Returns the schema of the device.
+    /// Returns the schema of the device, which lists the keys of its configurations and their possible values.
     pub fn schema(&self) -> &Schema {
         &self.schema
     }
 
-    /// Returns the possible steps from a configuration: each changes one key to a neighbouring value.
+    /// Returns the possible steps of the search from a configuration: each changes one key of it to a neighbouring value.
     pub fn moves(&self, config: &Config) -> Vec<(&'static str, Value)> {
         let mut moves = Vec::new();
         for key in &self.schema.keys {

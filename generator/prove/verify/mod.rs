@@ -25,7 +25,7 @@ use glint_core::core::Core;
 use glint_core::package::{self, FileKind, OutputFiles};
 use glint_tools::{LimitReached, Tool};
 
-/// A configuration to be verified, with the settings of the verification.
+/// A configuration that `glint verify` checks, with the settings of the verification.
 pub struct CheckSubject<'a> {
     /// The path of the configuration file on the command line.
     pub path: &'a str,
@@ -68,7 +68,7 @@ pub struct FileDigest {
     pub sha256: String,
 }
 
-/// How much work a verification may do.
+/// How much work a run of `glint verify` may do.
 #[derive(Clone, Copy, Debug)]
 pub struct Effort {
     /// Whether to do all the work, however long it takes.
@@ -79,7 +79,7 @@ pub struct Effort {
     pub time_limit: Duration,
 }
 
-/// The verdict of a check, from "proved" to "not applicable".
+/// The verdict of one check of `glint verify`, from "proved" to "not applicable".
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum CheckVerdict {
@@ -134,7 +134,7 @@ impl CheckVerdict {
     }
 }
 
-/// The answer of a check: the verdict, and its reasons.
+/// The answer of one check of `glint verify`: its verdict, and the reasons.
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct Finding {
     /// The verdict of the check.
@@ -190,7 +190,7 @@ pub struct Check {
     /// The question that the check answers, for example "Is no output further from the formula in f64 than the stated bound, for
     /// any operands?".
     pub question: &'static str,
-    /// The files or structures that it reads.
+    /// The files or structures that the check reads, in words.
     pub reads: &'static str,
     /// The tools outside Glint that it runs.
     tools: &'static [&'static str],
@@ -199,7 +199,7 @@ pub struct Check {
     run: CheckFunction,
 }
 
-/// All checks. The checks that need nothing but Glint come first.
+/// All checks of `glint verify`. The checks that need nothing but Glint come first.
 pub const CHECKS: [&Check; 16] = [
     &inside::DESIGN,
     &inside::LOCKSTEP,
@@ -287,7 +287,7 @@ impl Check {
     }
 }
 
-/// A check, with its finding and the time that it took.
+/// A check of `glint verify`, with its finding and the time that it took.
 #[derive(Clone, Debug, Serialize)]
 pub struct CheckAnswer {
     /// The name of the check for scripts: [`Check::id`].
@@ -317,7 +317,7 @@ pub struct CheckTime {
     pub seconds: f64,
 }
 
-/// The conclusion of all checks; the worst of their verdicts decides.
+/// The conclusion of `glint verify` from all checks of a configuration; the worst of their verdicts decides.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Conclusion {
@@ -350,7 +350,7 @@ impl Conclusion {
     }
 }
 
-/// The record of one configuration, written to `<name>.json`.
+/// The record of `glint verify` for one configuration, written to `<name>.json`.
 #[derive(Clone, Debug, Serialize)]
 pub struct VerificationRecord {
     /// The version of Glint that wrote the record.

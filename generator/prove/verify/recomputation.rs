@@ -27,7 +27,8 @@ const MOST_COMBINATIONS: u128 = 1 << 24;
 /// The exit code of the program if it decides all combinations but some.
 const SOME_UNDECIDED: i32 = 3;
 
-/// Recomputes the results of every combination of operands.
+/// Checks the error bound with a generated C program, which computes every combination of operands and compares the results with
+/// the formula in MPFR.
 pub const RECOMPUTATION: Check = Check {
     id: "recomputation",
     title: "Every combination of operands recomputed with MPFR",

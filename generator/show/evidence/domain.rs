@@ -11,8 +11,8 @@ const PLACES: i64 = 160;
 const OPERANDS: i64 = 256;
 
 /// Returns the charts of a device with one operand and one output: the function and its error over the domain. If the domain has
-/// fewer than 160 values, the charts show each value. Returns no charts for a highlight, or for a device with more operands or
-/// outputs.
+/// fewer than 160 values, the charts show each value. Returns no charts for a device that multiplies colours by a reflectance,
+/// has more operands or outputs, or has an operand that sets the number of results of a computation.
 pub fn charts(contract: &dyn Contract) -> Vec<Chart> {
     let ([operand], [output]) = (contract.operands(), contract.outputs()) else {
         return Vec::new();

@@ -57,7 +57,7 @@ pub struct ComputationCache(Mutex<HashMap<String, Arc<Mutex<Option<Computations>
 /// The computations that were chosen for a test bench.
 #[derive(Clone, Default)]
 pub struct Computations {
-    /// The raw operands of each computation, in the order of the contract.
+    /// The raw operands of each computation, in the order of `Contract::operands`.
     pub operands: Vec<Vec<i64>>,
     /// The spacing of the ROM words that have a computation which detects an inverted bit: every word if this is 1, every second
     /// word if it is 2, and so on.

@@ -7,15 +7,16 @@ use crate::netlist::{self, Driver, Net, NetId, RegId, RegisterKind, Role, RomId,
 use crate::pipeline::graph::{Cell, Graph, Label, NodeId, NodeOp};
 use glint_base::fixed::Format;
 
-/// The state between two clocks.
+/// The symbolic contents of a design's registers and synchronous ROM outputs between two clocks, as nodes of the computation's
+/// graph.
 #[derive(Clone)]
 pub(super) struct State {
     pub(super) registers: Vec<NodeId>,
-    /// Words of synchronous ROMs; of others nothing that is used.
+    /// The output word of each ROM. The entry of a ROM without a clock is unused.
     pub(super) roms: Vec<NodeId>,
 }
 
-/// The nets of one clock.
+/// One clock of the symbolic execution of a design: it finds the node of each net's value in this clock.
 pub(super) struct Clock<'e, 'a> {
     executor: &'e mut Executor<'a>,
     state: &'e State,
@@ -36,7 +37,7 @@ impl<'e, 'a> Clock<'e, 'a> {
         Self { executor, state, address, first, values: HashMap::new() }
     }
 
-    /// Returns the value of a net.
+    /// Returns the value of a net in this clock, as a node of the computation's graph.
     pub(super) fn value(&mut self, id: NetId) -> NodeId {
         if let Some(&value) = self.values.get(&id) {
             return value;
@@ -136,7 +137,7 @@ impl<'e, 'a> Clock<'e, 'a> {
         self.graph().read(rom, address, words, net.format, &label(net))
     }
 
-    /// Performs the rising edge: returns the contents of registers and synchronous ROMs after it.
+    /// Performs the rising edge at the end of this clock: returns the contents of registers and synchronous ROM outputs after it.
     pub(super) fn edge(&mut self) -> State {
         let design = self.executor.design;
         let mut after = self.state.clone();

@@ -7,30 +7,33 @@ use crate::netlist::{Design, NetId};
 use crate::pipeline::graph::NodeId;
 use glint_base::fixed::Format;
 
-/// One clock of a running design, as a graph of values.
+/// One arbitrary clock of a running design, executed symbolically: a graph that computes outputs and next register contents from
+/// unknown register contents.
 #[derive(Debug)]
 pub struct Cycle {
-    /// The values of an arbitrary clock, and of the clock that accepts `start`. The results are all outputs.
+    /// The graph with the values of an arbitrary clock, and of the clock that accepts `start`. Its results are all outputs of the
+    /// design.
     pub unrolled: Unrolled,
-    /// The contents of the registers and of the synchronous ROMs.
+    /// For each register and synchronous ROM of the design, its output value before and after the clock.
     pub held: Vec<StateValues>,
 }
 
-/// The content of a register or a synchronous ROM before and after a clock, as nodes.
+/// The output value of a register or a synchronous ROM before and after a clock, as nodes of the graph in [`Cycle::unrolled`].
 #[derive(Clone, Copy, Debug)]
 pub struct StateValues {
     /// The net that the register or ROM drives.
     pub net: NetId,
-    /// The content after the clock that accepts `start` and all operands. For a ROM it is the word before any clock, which no
-    /// result shows.
+    /// The register's value after the clock that accepts `start` and all operands. For a ROM it is the word before any clock, which
+    /// no result shows.
     pub first: NodeId,
-    /// The content before an arbitrary clock.
+    /// The output value before an arbitrary clock.
     pub before: NodeId,
-    /// The content after that clock, as a function of the contents `before` it.
+    /// The output value after that clock, as a function of the values `before` it.
     pub after: NodeId,
 }
 
-/// Executes a clock in which any microinstruction may be executed.
+/// Executes one clock of a design symbolically. Any microinstruction may be executed in it, because the register contents are
+/// unknown.
 pub fn any_cycle(design: &Design) -> Cycle {
     let mut executor = Executor::new(design, Iterations::OneByOne);
     let mut running = executor.power_up();

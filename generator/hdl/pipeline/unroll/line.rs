@@ -23,28 +23,31 @@ use glint_base::diagnostic::{Diagnostic, Diagnostics};
 /// The number of clocks that may lie between a point and its results.
 const MOST_DELAY: usize = 12;
 
-/// The values of a computation with several results, such as the points of a scan line.
+/// A computation with several results, such as the points of a scan line, as a graph that computes the first point, and the
+/// registers from which each later point is computed.
 #[derive(Debug)]
 pub struct UnrolledLine {
-    /// The values of the first point. Later points differ only in the registers of the walk, which carry state from point to point.
+    /// The graph that computes the first point. Later points differ only in the registers of the walk, which carry state from point
+    /// to point.
     pub unrolled: Unrolled,
     /// The registers of the walk, which carry state from point to point.
     pub walk: Vec<WalkRegister>,
 }
 
-/// A register of the walk, as values. The walk consists of the registers that carry state from point to point.
+/// The values of one register of the walk, as nodes of the graph. The walk consists of the registers that carry state from point to
+/// point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct WalkRegister {
-    /// The value that the first point loads.
+    /// The value that the first point loads into the register.
     pub first: NodeId,
     /// The value that the register holds before a later point is loaded.
     pub before: NodeId,
-    /// The value that a later point loads, as a function of the values `before`.
+    /// The value that a later point loads into the register, as a function of the `before` values of all registers of the walk.
     pub next: NodeId,
 }
 
-/// Unrolls the points of a line, a computation with several results. Returns the values of the first point, and the function by
-/// which each later point follows from the point before.
+/// Unrolls a computation with several results, such as the points of a scan line. Returns the graph of the first point, and the
+/// function by which each later point follows from the point before.
 ///
 /// # Errors
 /// Fails if the points are not computed alike, as the head of this module describes.

@@ -9,8 +9,9 @@ use glint_rtl::netlist::{Design, Driver, NetId};
 /// Vertices of the flow: each net is divided in two, and the flow into it goes through its bits.
 type Vertex = (NetId, bool);
 
-/// Returns the nets with the fewest bits that together determine the nets `wanted`. No net of `affected` may be in the cut.
-/// Returns `None` if the cut has more than `most` bits, or if a net of `affected` is driven by something else than a cell.
+/// Returns a minimum cut of the netlist: the nets with the fewest bits, as `bits` counts them, that together determine the nets
+/// `wanted`. No net of `affected` may be in the cut. Returns `None` if the cut has more than `most` bits, or if a net of `affected`
+/// is driven by something else than a cell.
 pub(super) fn smallest_cut(
     design: &Design,
     wanted: &BTreeSet<NetId>,

@@ -16,8 +16,8 @@ pub(super) fn trusted(design: &Design, register: &NetlistRegister) -> bool {
     register.kind != RegisterKind::Internal && low <= 0 && high >= 0
 }
 
-/// Returns the interval of each net, whatever the inputs are. If an operand comes after a net in the order, it may
-/// have any value of its format.
+/// Returns the interval of raw values that each net of the design can carry, whatever the inputs are. If an operand comes after a
+/// net in the order, it may have any value of its format.
 pub(super) fn of_all(design: &Design, order: &[NetId]) -> Vec<Interval> {
     let mut intervals: Vec<Option<Interval>> = vec![None; design.nets.len()];
     for &id in order {
@@ -28,7 +28,8 @@ pub(super) fn of_all(design: &Design, order: &[NetId]) -> Vec<Interval> {
     intervals.into_iter().map(|it| it.unwrap_or((0, 0))).collect()
 }
 
-/// Returns the interval of one net, from the intervals (`of`) and the bits (`known`) of its operands.
+/// Returns the interval of raw values that net `id` can carry, from the intervals (`of`) and the possible bits (`known`) of its
+/// operands.
 pub(super) fn of(
     design: &Design,
     id: NetId,

@@ -22,7 +22,7 @@ use super::verdict::How;
 use glint_base::fixed::mask;
 use glint_rtl::netlist::{Design, Driver, NetId, RegisterKind};
 
-/// Proves that faults of a design are equivalent.
+/// A prover for one design: it proves for a planted fault that no compared output or register ever changes.
 pub(super) struct Prover<'a> {
     order: Order<'a>,
     /// For each microinstruction, the values that each net of the fault-free design can have, whatever the inputs
@@ -36,7 +36,7 @@ pub(super) struct Prover<'a> {
 }
 
 impl<'a> Prover<'a> {
-    /// Prepares the proofs of a design. Returns `None` for a design with a combinational loop.
+    /// Prepares proofs about the faults of a design. Returns `None` for a design with a combinational loop.
     pub(super) fn new(design: &'a Design) -> Option<Self> {
         let length = count(design);
         let compared = compared_bits(design, length);
@@ -50,7 +50,8 @@ impl<'a> Prover<'a> {
         Some(Self { nets, order, following, compared, windows: Windows::of(design)? })
     }
 
-    /// Returns how the fault is proved equivalent, or `None` if no proof succeeds.
+    /// Tries to prove that the fault at `site` is equivalent: it changes no compared output or register. Returns the method that
+    /// succeeds, or `None`.
     pub(super) fn proves(&self, site: &Site) -> Option<How> {
         if self.by_induction(site) {
             Some(How::Induction)

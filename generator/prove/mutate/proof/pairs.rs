@@ -18,18 +18,19 @@ use glint_rtl::netlist::{Design, Driver, NetId, Op};
 pub(super) struct Pairs([u64; 4]);
 
 impl Pairs {
-    /// Makes the pairs of one pattern, in both.
+    /// Makes the pairs for a net that carries the constant `bits`, in the fault-free design and in the mutant.
     pub(super) fn constant(bits: u64, width: u32) -> Self {
         Self([!bits & mask(width), 0, 0, bits & mask(width)])
     }
 
-    /// Makes the pairs of any pattern, the same in both.
+    /// Makes the pairs for a net that may carry any value, the same in the fault-free design and in the mutant.
     pub(super) fn same(width: u32) -> Self {
         Self([mask(width), 0, 0, mask(width)])
     }
 
-    /// Makes the pairs of an interval: the bits that every value from `low` to `high` has, and any others, in both. For
-    /// example, the interval from 4 to 6 in 4 bits has bit 2 at 1 and bit 3 at 0. Bits 0 and 1 may have any value.
+    /// Makes the pairs for a net with an interval of values, the same in the fault-free design and in the mutant: the bits that
+    /// every value from `low` to `high` has, and any others. For example, the interval from 4 to 6 in 4 bits has bit 2 at 1 and bit
+    /// 3 at 0. Bits 0 and 1 may have any value.
     pub(super) fn of_interval((low, high): Interval, width: u32) -> Self {
         let (low, high) = (low as u64 & mask(width), high as u64 & mask(width));
         let differ = low ^ high;
@@ -38,34 +39,34 @@ impl Pairs {
         Self::constant(low, width).or(Self::same(width).cut(0, open))
     }
 
-    /// Returns the pairs of either.
+    /// Returns the union: for each bit, the pairs that are possible in `self` or in `other`.
     pub(super) fn or(self, other: Self) -> Self {
         Self(from_fn(|pair| self.0[pair] | other.0[pair]))
     }
 
-    /// Returns the pairs that both have.
+    /// Returns the intersection: for each bit, the pairs that are possible in both `self` and `other`.
     pub(super) fn and(self, other: Self) -> Self {
         Self(from_fn(|pair| self.0[pair] & other.0[pair]))
     }
 
-    /// Adds any pair for some bits.
+    /// Makes every pair possible for the bits that are 1 in the mask `bits`.
     pub(super) fn or_any(self, bits: u64) -> Self {
         Self(self.0.map(|pair| pair | bits))
     }
 
-    /// Pairs the fault-free bits of this with the mutant's of another, each with each.
+    /// Combines each fault-free bit that is possible in `self` with each mutant's bit that is possible in `mutant`.
     pub(super) fn across(self, mutant: Self) -> Self {
         let (sound, mutant) = (self.fault_free(), mutant.mutant());
         Self(from_fn(|pair| sound[pair & 1] & mutant[pair >> 1]))
     }
 
-    /// Keeps the pairs whose fault-free bit is possible in `sound`.
+    /// Keeps the pairs whose fault-free bit is possible in `sound`, and drops all others.
     pub(super) fn within(self, sound: Self) -> Self {
         let sound = sound.fault_free();
         Self(from_fn(|pair| self.0[pair] & sound[pair & 1]))
     }
 
-    /// Puts a bit of the mutant at fault.
+    /// Plants the fault `how` in bit number `bit`: the mutant's bit of each pair is stuck or inverted.
     pub(super) fn at_fault(self, bit: u32, how: BitChange) -> Self {
         let of_bit = self.cut(0, 1 << bit).0;
         let mut pairs = self.cut(0, !(1 << bit)).0;
@@ -75,7 +76,7 @@ impl Pairs {
         Self(pairs)
     }
 
-    /// Returns the bits that may differ.
+    /// Returns a mask of the bits that may differ between the fault-free design and the mutant.
     pub(super) fn differ(self) -> u64 {
         self.0[1] | self.0[2]
     }
@@ -90,7 +91,7 @@ impl Pairs {
         [self.0[0] | self.0[1], self.0[2] | self.0[3]]
     }
 
-    /// Returns whether the mutant can have this pattern.
+    /// Returns whether the net can carry the bit pattern `bits` in the mutant.
     pub(super) fn may_be(self, bits: u64) -> bool {
         let [zeros, ones] = self.mutant();
         bits & !ones == 0 && !bits & !zeros & (zeros | ones) == 0
@@ -259,7 +260,7 @@ pub(super) fn chosen(select: Pairs, lines: u32, inputs: &[(Pairs, NetId)]) -> Pa
     all
 }
 
-/// Returns the inputs that a mux of the mutant may take.
+/// Returns the inputs that a mux may select in the mutant, from the possible bits of its `select`.
 pub(super) fn choices(select: Pairs, lines: u32, inputs: &[NetId]) -> impl Iterator<Item = NetId> {
     let possible = (0..1 << lines).filter(move |&number| select.may_be(number));
     possible.map(|number: u64| inputs[(number as usize).min(inputs.len() - 1)])
@@ -312,12 +313,12 @@ fn trailing_zeros(pairs: Pairs, width: u32) -> u32 {
     ones.trailing_zeros().min(width)
 }
 
-/// Returns whether both are the same net, under whatever names.
+/// Returns whether `a` and `b` are one net under different names, so that their product is a square.
 pub(super) fn square(design: &Design, a: NetId, b: NetId) -> bool {
     named(design, a) == named(design, b)
 }
 
-/// Returns the net that this one is another name of, or itself.
+/// Follows cells that only rename a net, and returns the net with the original name, which may be `net` itself.
 pub(super) fn named(design: &Design, mut net: NetId) -> NetId {
     while let Driver::Op(Op::Relabel(of)) = design.net(net).driver {
         net = of;

@@ -9,10 +9,11 @@ use crate::mutate::fault::Site;
 use glint_base::interval::Interval;
 use glint_rtl::netlist::{Design, Driver, NetId, Op, RegId, RomId};
 
-/// The contents of registers and synchronous ROMs between two clocks.
+/// For each register and synchronous ROM of a design, the pairs (fault-free bit, mutant's bit) that its content can have between
+/// two clocks.
 pub(super) type PairState = Vec<Pairs>;
 
-/// A design as it is evaluated.
+/// A design, with the order in which its nets are evaluated for a proof about a fault.
 pub(super) struct Order<'a> {
     pub(super) design: &'a Design,
     /// An order of evaluation.
@@ -27,11 +28,11 @@ pub(super) struct Order<'a> {
     words: Vec<Pairs>,
 }
 
-/// A fault, and the values of every net of the fault-free design in the microinstruction.
+/// The place of a planted fault, and the pairs of every net of the fault-free design in the executed microinstruction.
 pub(super) type Injected<'s> = (&'s Site, &'s [Pairs]);
 
 impl<'a> Order<'a> {
-    /// Finds an order of evaluation. Returns `None` for a design with a combinational loop.
+    /// Finds an order in which the nets of the design can be evaluated. Returns `None` for a design with a combinational loop.
     pub(super) fn of(design: &'a Design) -> Option<Self> {
         let mut order = design.levelise().ok()?;
         let mut in_all_slots = Vec::new();
@@ -195,7 +196,7 @@ impl<'a> Order<'a> {
         sound_word.across(Pairs::same(width)).and(Pairs::same(width).or_any(differ))
     }
 
-    /// Returns the state after the clock.
+    /// Returns the contents of registers and synchronous ROMs after the rising edge, from the pairs of all nets before it.
     pub(super) fn next(&self, nets: &[Pairs], fault: Option<Injected>) -> PairState {
         let design = self.design;
         let one = Pairs::constant(1, 1);
@@ -282,8 +283,8 @@ pub(super) fn following(design: &Design, at: usize) -> Vec<usize> {
     following
 }
 
-/// Finds for each net the first with the same driver. For example, two nets that both add `a` and `b` at one width are
-/// the same.
+/// Finds for each net of the design the first net with the same driver. For example, two nets that both add `a` and `b` at one
+/// width are the same.
 pub(super) fn same(design: &Design, order: &[NetId]) -> Vec<NetId> {
     let mut same: Vec<NetId> = design.iter().map(|(id, _)| id).collect();
     let mut drivers: Vec<(Driver, u32, bool, NetId)> = Vec::new();

@@ -33,7 +33,7 @@ const BITS: u32 = 22;
 /// because neighbouring values tend to show the same.
 const STRIDE: u64 = 40_009;
 
-/// Windows of one design.
+/// A prover for one design that tries every combination of values in a window, a small part of the netlist around a fault.
 pub(super) struct Windows<'a> {
     design: Cow<'a, Design>,
     order: Vec<NetId>,
@@ -102,7 +102,8 @@ impl<'a> Windows<'a> {
         })
     }
 
-    /// Returns whether no combination of values in the window lets the fault change a value outside.
+    /// Proves a fault equivalent: returns whether no combination of values in the window around it lets the fault change a value
+    /// outside.
     pub(super) fn proves(&self, site: &Site) -> bool {
         match site {
             Site::Words(rom, words) if *rom != self.design.control.rom => {
