@@ -71,6 +71,8 @@ pub struct ContractFacts {
     pub f: Vec<String>,
     /// For each output the comparison under which the error is promised, as [`Contract::conditions`] states them.
     pub conditions: Option<Vec<Option<Comparison>>>,
+    /// Whether an output wraps, as [`Contract::wraps`] says.
+    pub wraps: bool,
     /// The largest error of an output, in units of its last place.
     pub bound: f64,
     /// The largest error of each output, in units of its last place.
@@ -102,6 +104,7 @@ impl ContractFacts {
                 None => contract.expressions(),
             },
             conditions: contract.conditions(),
+            wraps: contract.wraps(),
             bound: contract.bound().units,
             bounds: (0..contract.outputs().len()).map(|at| contract.output_bound(at)).collect(),
         }

@@ -170,6 +170,11 @@ pub trait Formula: Send + Sync {
         Vec::new()
     }
 
+    /// Returns whether an output wraps, as [`Contract::wraps`] does.
+    fn wraps(&self) -> bool {
+        false
+    }
+
     /// Returns the comparisons under which errors are promised, as [`Contract::conditions`] does.
     fn conditions(&self) -> Option<Vec<Option<Comparison>>> {
         None
@@ -311,6 +316,10 @@ impl<F: Formula> Contract for OfModel<F> {
 
     fn expressions(&self) -> Vec<String> {
         self.formula.expressions()
+    }
+
+    fn wraps(&self) -> bool {
+        self.formula.wraps()
     }
 
     fn conditions(&self) -> Option<Vec<Option<Comparison>>> {

@@ -276,17 +276,14 @@ impl Formula for ProvedFormulas {
         results.map(|result| result.target().python()).collect()
     }
 
-    /// Returns the comparison of each result; `None` if a result wraps, because its formula alone does not say then which values
-    /// are right.
     fn conditions(&self) -> Option<Vec<Option<Comparison>>> {
-        let mut conditions = Vec::new();
-        for result in &self.found.statement.results {
-            let wraps = |width: &StatedWidth| matches!(width.overflow, StatedOverflow::Wrap);
-            if result.width.as_ref().is_some_and(wraps) {
-                return None;
-            }
-            conditions.push(result.promise.clone());
-        }
-        Some(conditions)
+        let results = self.found.statement.results.iter();
+        Some(results.map(|result| result.promise.clone()).collect())
+    }
+
+    fn wraps(&self) -> bool {
+        let wraps = |width: &StatedWidth| matches!(width.overflow, StatedOverflow::Wrap);
+        let mut results = self.found.statement.results.iter();
+        results.any(|result| result.width.as_ref().is_some_and(wraps))
     }
 }

@@ -193,6 +193,12 @@ pub trait Contract: Send + Sync {
         None
     }
 
+    /// Returns whether an output wraps: a value beyond its format loses its high bits, so that the formula alone does not say which
+    /// value is right.
+    fn wraps(&self) -> bool {
+        false
+    }
+
     /// Returns the contract as a [`Highlight`] if the device multiplies colours by a reflectance f.
     fn highlight(&self) -> Option<&Highlight> {
         None

@@ -352,7 +352,12 @@ fn random_formulas_agree_or_are_refused_with_reason() {
         }
         if seed % EVERY == 1 {
             let found = finding(&core, "recomputation", EFFORT);
-            assert_eq!(found.verdict, CheckVerdict::Proved, "{found:?}\n{what}");
+            // The program does not follow results that wrap.
+            let verdict = match configuration.width.contains("wrap") {
+                true => CheckVerdict::NotApplicable,
+                false => CheckVerdict::Proved,
+            };
+            assert_eq!(found.verdict, verdict, "{found:?}\n{what}");
         }
     }
     println!("{agreed} agree, {refused} are refused, {unproved} of them by limits of the planner");

@@ -43,6 +43,12 @@ struct RecomputedFormula<'f> {
 
 impl<'f> RecomputedContract<'f> {
     fn new(name: &str, facts: &'f ContractFacts) -> Result<Self, KeyError> {
+        if facts.wraps {
+            return Err(recomputation_error(
+                name,
+                "a result wraps, which the program does not follow",
+            ));
+        }
         if let Some(conditions) = &facts.conditions {
             let combinations = combinations(facts);
             if combinations > MOST_COMBINATIONS {
@@ -60,7 +66,7 @@ impl<'f> RecomputedContract<'f> {
             }
             _ => Err(recomputation_error(
                 name,
-                "its contract is no list of formulas with bounds, as those of `function` and `expression` are, or a result wraps",
+                "its contract is no list of formulas with bounds, as those of `function` and `expression` are",
             )),
         }
     }
