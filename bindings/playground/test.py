@@ -130,14 +130,14 @@ def every_choice_has_its_views(page):
 
 def entries_are_edited(page):
     """The operands and results of an expression are edited in the form; a wrong field has its message at its entry."""
-    page.locator("#toml").fill('device = "expression"\nname = "own"\n')
+    page.locator("#toml").fill('device = "expression"\n')
     settled(page)
     fields = page.locator("[id='key-results.r']")
     expect(fields).to_have_value('formula = "sqrt(x^2 + y^2)", fraction = 11, error = 1')
     fields.fill('formula = "x / (2 + y)", fraction = 9')
     fields.press("Enter")
     expect(page.locator("#toml")).to_have_value(
-        'device = "expression"\nname = "own"\nresults.r = { formula = "x / (2 + y)", fraction = 9 }\n', timeout=LIMIT
+        'device = "expression"\nresults.r = { formula = "x / (2 + y)", fraction = 9 }\n', timeout=LIMIT
     )
     settled(page)
     expect(page.locator("#problems li")).to_have_count(0)
