@@ -46,3 +46,13 @@ pub fn wrap((low, high): Interval, format: Format) -> Option<i128> {
     let wrap = wrap * modulus;
     (low + wrap >= least && high + wrap <= most).then_some(wrap)
 }
+
+/// Returns the number of combinations of values from several ranges, each given by its first and its last value, or the largest
+/// `u128` if there are more. For example, the ranges 0 to 3 and −1 to 1 have 12 combinations.
+pub fn combinations(ranges: impl IntoIterator<Item = (i64, i64)>) -> u128 {
+    let mut count: u128 = 1;
+    for (first, last) in ranges {
+        count = count.saturating_mul(u128::from(last.abs_diff(first)) + 1);
+    }
+    count
+}

@@ -152,9 +152,6 @@ fn values_in_format(value: f64, format: Format) -> [f64; 2] {
     [inside, if is_in_upper_half { inside - range } else { inside + range }]
 }
 
-/// The widest interval of a formula's value, in units of the result's last place, whose middle measures the error well enough.
-const WIDEST_VALUE: f64 = 1e-6;
-
 /// The formulas with the bounds that were proved.
 struct ProvedFormulas {
     found: Arc<ProvedPlan>,
@@ -182,17 +179,12 @@ impl ProvedFormulas {
 }
 
 impl Formula for ProvedFormulas {
-    /// Returns the values of the formulas; no number where one has no value. A formula is evaluated in f64, and again with more
-    /// bits if f64 is not exact enough for the result's last place.
+    /// Returns the values of the formulas; no number where one has no value.
     fn exact(&self, operands: &[f64]) -> Vec<f64> {
         let enclosed = self.enclosed(operands);
         let mut values = Vec::with_capacity(self.found.statement.results.len());
         for result in &self.found.statement.results {
-            let widest = exp2(-(result.fraction as i32)) * WIDEST_VALUE;
-            let value = match result.target().enclose(&enclosed) {
-                Ok(value) if value.high - value.low <= widest => Ok(value),
-                _ => result.target().evaluate_exactly(&self.rational(operands)),
-            };
+            let value = result.value(&enclosed, || self.rational(operands));
             values.push(value.map_or(f64::NAN, Enclosure::middle));
         }
         values

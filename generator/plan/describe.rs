@@ -6,8 +6,8 @@ use glint_approximate::Curve;
 use glint_base::fixed::Rounding;
 
 impl ExpressionPlan {
-    /// Returns what a node computes, in terms of the names of other nodes. For example, `|x|`, `a · b`, or `1 / x for x =
-    /// mantissa, by 16 polynomials of degree 2 and 39 bits`.
+    /// Returns what a node computes, in terms of the names of other nodes. For example, `the size of x`, `a · b`, or `1 / x
+    /// for x = mantissa, by 16 polynomials of degree 2, 39 bits each`.
     pub fn words(&self, id: NodeId) -> String {
         let name = |id: &NodeId| self.reference(*id);
         match &self.node(id).operation {

@@ -2,16 +2,12 @@
 //! error if there are few combinations.
 
 use glint_base::fixed::exp2;
-use glint_formula::Enclosure;
+use glint_formula::Fault;
 use rayon::prelude::*;
 
 use super::plan::ExpressionPlan;
 use super::refusal::PlanRefusal;
 use super::statement::ExpressionStatement;
-
-/// The widest interval in which f64 gives the value of a formula, in units of the result's last place. Wider ones are computed
-/// anew with more bits.
-const WIDEST_VALUE: f64 = 1e-6;
 
 /// Returns the largest error of each result, in units of its last place, over every combination of operands for which the
 /// result is promised.
@@ -81,10 +77,9 @@ fn add_errors(
             continue;
         }
         let unit = exp2(result.fraction as i32);
-        let exact = match result.target().enclose(&operands) {
-            Ok(value) if (value.high - value.low) * unit <= WIDEST_VALUE => value,
-            _ => evaluated_exactly(statement, number, raw)?,
-        };
+        let exact = result
+            .value(&operands, || statement.exact_operands(raw))
+            .map_err(|fault| without_value(statement, number, raw, fault))?;
         let values = values.get_or_insert_with(|| plan.values(raw));
         let hardware = values[plan.proved[number].0] as f64;
         let off = (hardware - exact.low * unit).abs().max((hardware - exact.high * unit).abs());
@@ -95,17 +90,15 @@ fn add_errors(
     Ok(())
 }
 
-fn evaluated_exactly(
+/// Returns the refusal of a result whose formula has no value for a combination of raw operands.
+fn without_value(
     statement: &ExpressionStatement,
     result: usize,
     raw: &[i64],
-) -> Result<Enclosure, PlanRefusal> {
-    let formula = statement.results[result].target();
-    let operands = statement.exact_operands(raw);
-    formula.evaluate_exactly(&operands).map_err(|fault| {
-        let limits: Vec<(i64, i64)> = raw.iter().map(|raw| (*raw, *raw)).collect();
-        let message = format!("at {}: {}", statement.place(&limits), fault.message);
-        let remedy = "leave these operands out by `where`, for example where = \"y > 0\"";
-        PlanRefusal::new(message, remedy).at(&fault.span).of_result(result)
-    })
+    fault: Fault,
+) -> PlanRefusal {
+    let limits: Vec<(i64, i64)> = raw.iter().map(|raw| (*raw, *raw)).collect();
+    let message = format!("at {}: {}", statement.place(&limits), fault.message);
+    let remedy = "leave these operands out by `where`, for example where = \"y > 0\"";
+    PlanRefusal::new(message, remedy).at(&fault.span).of_result(result)
 }

@@ -42,8 +42,8 @@ impl ExpressionPlan {
         needed
     }
 
-    /// Returns the widths of the two inputs of one multiplier that can compute all products of the plan, those of polynomials too.
-    /// Both inputs have a sign if any factor has one.
+    /// Returns the widths of the two inputs of one multiplier that can compute all products of the plan, with the products in
+    /// polynomials. Both inputs have a sign if any factor has one.
     pub(super) fn multiplier_widths(&self) -> [u32; 2] {
         let mut factors: Vec<[Format; 2]> = Vec::new();
         for node in &self.nodes {

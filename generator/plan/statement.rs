@@ -1,8 +1,9 @@
 //! Defines the statement of an expression: the operands with their domains, and the results with their formulas and allowed
 //! errors.
 
-use glint_base::fixed::Format;
-use glint_formula::{Comparison, Enclosure, Expression, RBig};
+use glint_base::fixed::{Format, exp2};
+use glint_base::interval;
+use glint_formula::{Comparison, Enclosure, Expression, Fault, RBig};
 
 /// The formulas that a user asks for, as formulas of operands, each with its allowed error.
 #[derive(Clone, Debug)]
@@ -104,11 +105,7 @@ impl ExpressionStatement {
 
     /// Returns the number of combinations of operands in the domain.
     pub fn combinations(&self) -> u128 {
-        let mut count: u128 = 1;
-        for (low, high) in self.domain() {
-            count = count.saturating_mul(u128::from(high.abs_diff(low)) + 1);
-        }
-        count
+        interval::combinations(self.domain())
     }
 }
 
@@ -119,6 +116,24 @@ impl StatedResult {
         match &self.width {
             Some(StatedWidth { overflow: StatedOverflow::Saturate(limited), .. }) => limited,
             _ => &self.formula,
+        }
+    }
+
+    /// Returns limits of the value that the result approximates. The formula is evaluated in f64 for `operands`, and again with more
+    /// bits, for the operands that `exactly` returns, if f64 does not give it within a millionth of a unit.
+    ///
+    /// # Errors
+    /// Fails at the part of the formula that has no value.
+    pub fn value<'o>(
+        &self,
+        operands: &[(&str, Enclosure)],
+        exactly: impl FnOnce() -> Vec<(&'o str, RBig)>,
+    ) -> Result<Enclosure, Fault> {
+        const WIDEST: f64 = 1e-6;
+        let unit = exp2(self.fraction as i32);
+        match self.target().enclose(operands) {
+            Ok(value) if (value.high - value.low) * unit <= WIDEST => Ok(value),
+            _ => self.target().evaluate_exactly(&exactly()),
         }
     }
 

@@ -1,7 +1,8 @@
-//! Checks the error bounds by a generated C program that computes every combination of operands, and shares nothing with Glint but
-//! the formulas.
+//! Checks the error bounds by a generated C program that computes every combination of operands. The program evaluates the formulas
+//! with MPFR and with the C library, and not with Glint's arithmetic; the results are those that the C model of the core computes.
 //!
-//! For example, the program for `hypot` compares 2^24 results of operands of 12 bits with MPFR in about a second.
+//! For example, the program for `x / y` with operands of 12 bits compares 2^24 results with the formula in about a second: it takes
+//! MPFR only where doubles with a margin for their rounding leave the answer open.
 
 use std::fs;
 use std::path::Path;
@@ -11,6 +12,7 @@ use anyhow::{Context, Result, ensure};
 use super::outside::directory_of;
 use super::{Check, CheckSubject, CheckVerdict, Finding};
 use glint_base::input;
+use glint_base::interval;
 use glint_base::key_error::KeyError;
 use glint_base::program::Program;
 use glint_base::text::grouped;
@@ -65,7 +67,7 @@ pub const RECOMPUTATION: Check = Check {
 fn left_out(subject: &CheckSubject<'_>) -> Option<Finding> {
     let contract = &subject.core.contract;
     let most = if contract.conditions().is_some() { MOST_COMBINATIONS } else { MOST_OPERANDS };
-    let count = combinations(contract.operands());
+    let count = interval::combinations(contract.operands().iter().map(|operand| operand.domain));
     if subject.effort.full || count <= most {
         return None;
     }
@@ -78,16 +80,6 @@ fn left_out(subject: &CheckSubject<'_>) -> Option<Finding> {
         complete_with: Some(complete_with),
         ..Finding::without(CheckVerdict::LeftOut, why)
     })
-}
-
-/// Returns the number of combinations of operands.
-fn combinations(operands: &[Operand]) -> u128 {
-    let mut count: u128 = 1;
-    for operand in operands {
-        let (first, last) = operand.domain;
-        count = count.saturating_mul(u128::from(last.abs_diff(first)) + 1);
-    }
-    count
 }
 
 /// The C compiler, in a directory with the program and the files that it includes.

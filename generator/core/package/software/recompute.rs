@@ -13,6 +13,7 @@ use crate::package::file_kind::FileKind;
 use crate::package::output_files::OutputFiles;
 use glint_base::fill;
 use glint_base::fixed::exp2;
+use glint_base::interval;
 use glint_base::key_error::KeyError;
 use glint_formula::{CArithmetic, Comparison, Expression, parse};
 use glint_rtl::netlist::{Design, RomId};
@@ -50,7 +51,8 @@ impl<'f> RecomputedContract<'f> {
             ));
         }
         if let Some(conditions) = &facts.conditions {
-            let combinations = combinations(facts);
+            let combinations =
+                interval::combinations(facts.domain.iter().map(|(_, limits)| *limits));
             if combinations > MOST_COMBINATIONS {
                 let why = format!(
                     "its operands have {combinations} combinations, more than the 2^32 that a program computes in minutes"
@@ -72,15 +74,6 @@ impl<'f> RecomputedContract<'f> {
     }
 }
 
-/// Returns the number of combinations of operands, or the largest number there is.
-fn combinations(facts: &ContractFacts) -> u128 {
-    let mut count: u128 = 1;
-    for (_, (first, last)) in &facts.domain {
-        count = count.saturating_mul(u128::from(last.abs_diff(*first)) + 1);
-    }
-    count
-}
-
 /// Returns the error of the key that asks for the program.
 fn recomputation_error(name: &str, why: &str) -> KeyError {
     let message = format!("nothing recomputes `{name}`: {why}");
@@ -90,8 +83,8 @@ fn recomputation_error(name: &str, why: &str) -> KeyError {
 /// Checks that the program can be written for a core.
 ///
 /// # Errors
-/// Fails if the contract has no formulas with bounds, if only the device `expression` could have so many operands or results, or
-/// if there are more than 2^32 combinations of operands.
+/// Fails if a result wraps, if the contract is neither one formula of one operand nor the formulas of an expression, or if there
+/// are more than 2^32 combinations of operands.
 pub fn check(name: &str, facts: &ContractFacts) -> Result<(), KeyError> {
     RecomputedContract::new(name, facts).map(drop)
 }
