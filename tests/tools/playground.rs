@@ -7,6 +7,6 @@ use crate::common::tools::ran;
 fn the_page_does_what_the_program_does() {
     ran("bash", ["tools/playground", "--build"], root());
     let glint = env!("CARGO_BIN_EXE_glint");
-    let said = ran("python", ["bindings/playground/test.py", "target/playground", glint], root());
+    let said = ran("python", ["bindings/playground/test.py", "target/page", glint], root());
     assert!(said.contains("bytes gzipped"), "{said}");
 }
