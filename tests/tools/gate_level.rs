@@ -7,7 +7,7 @@ use crate::common::files::replaced;
 use crate::common::netlist::{self, POINTS, synthesise};
 use crate::common::sample::sampled;
 use crate::common::tools::{LIMIT, benched, tool};
-use glint::target::{ECP5, FAMILIES, Family};
+use glint::target::{COMPARED, ECP5, Family};
 use glint::tools::VerilogSimulator;
 use glint::tools::gates;
 use glint::tools::gates::cells::{self, Start};
@@ -15,7 +15,7 @@ use rayon::prelude::*;
 
 fn families() -> impl ParallelIterator<Item = &'static Family> {
     let simulated = |family: &&Family| gates::is_simulated(family);
-    FAMILIES.par_iter().filter(simulated)
+    COMPARED.par_iter().filter(simulated)
 }
 
 /// One bit of a block RAM's initial values: in ROM(n) of `quadratic`, the top bit of a(1), which is often

@@ -17,6 +17,7 @@ mod equality;
 mod example;
 mod expressions;
 mod external;
+mod families;
 mod faults;
 mod foreign;
 mod formal;

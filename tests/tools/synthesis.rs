@@ -17,7 +17,7 @@ use crate::common::netlist::{self, POINTS, synthesise};
 use crate::common::sample::sampled;
 use crate::common::tools::{LIMIT, tool};
 use glint::hdl::netlist::{Design, Driver, NetlistRom, Op};
-use glint::target::{ECP5, FAMILIES, Family, Kinds};
+use glint::target::{COMPARED, ECP5, Family, Kinds};
 use glint::tools::gates;
 use glint::tools::synthesis::{self, Usage};
 use rayon::prelude::*;
@@ -39,7 +39,7 @@ fn initial(family: &Family) -> (&'static [&'static str], usize) {
 #[test]
 fn configurations_are_synthesised_whole() {
     let configurations = configurations();
-    let pairs = configurations.iter().flat_map(|one| FAMILIES.iter().map(move |it| (one, it)));
+    let pairs = configurations.iter().flat_map(|one| COMPARED.iter().map(move |it| (one, it)));
     sampled("synthesis", pairs, PAIRS).into_par_iter().for_each(|((path, unit), family)| {
         let emitted = Emitted::new(unit, POINTS, 1);
         let netlist = synthesise(&emitted, family);
@@ -111,7 +111,7 @@ fn every_flow_takes_the_delay_lines_of_pipelines() {
 fn usage_is_that_of_the_netlist() {
     let unit = configuration("configs/schlick.toml");
     let emitted = Emitted::new(&unit, POINTS, 1);
-    FAMILIES.par_iter().for_each(|family| {
+    COMPARED.par_iter().for_each(|family| {
         let told =
             synthesis::synthesise(&tool("yosys"), &emitted.rtl(), &emitted.name, family, LIMIT)
                 .sure();

@@ -12,7 +12,7 @@ use rayon::prelude::*;
 
 use super::{load, yosys};
 use crate::{OutputOptions, TimeLimit, progress, wrong_usage};
-use glint_base::target::{FAMILIES, Family};
+use glint_base::target::{COMPARED, Family};
 use glint_config::{Config, Schema, Value};
 use glint_core::core::Core;
 use glint_core::registry::{Device, Registry};
@@ -128,7 +128,7 @@ pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) ->
         true => yosys("no LUTs, DSP blocks and block RAMs", &mut notes),
         false => None,
     };
-    let families = if yosys.is_some() { FAMILIES.len() } else { 0 };
+    let families = if yosys.is_some() { COMPARED.len() } else { 0 };
     let steps = cores.len() + missing * families;
     let bar = progress::bar(output, steps as u64, "devices weighed");
     let figures: Vec<ModelFigures> = cores
@@ -226,7 +226,7 @@ fn figures(core: &Core, n: f64) -> Result<ModelFigures> {
 fn recorded(record: Option<&SynthesisRecord>) -> Vec<Result<Usage, String>> {
     let Some(record) = record else { return Vec::new() };
     let mut usage = Vec::new();
-    for family in &FAMILIES {
+    for family in &COMPARED {
         let Some(of_family) = usage_of_family(record, family) else { return Vec::new() };
         usage.push(Ok(of_family));
     }
@@ -251,17 +251,17 @@ fn synthesise(
     for (label, core) in cores {
         files.push(core.verilog().with_context(|| format!("`{label}`"))?);
     }
-    let runs: Vec<Result<Usage, String>> = (0..cores.len() * FAMILIES.len())
+    let runs: Vec<Result<Usage, String>> = (0..cores.len() * COMPARED.len())
         .into_par_iter()
         .map(|at| {
-            let (one, family) = (at / FAMILIES.len(), &FAMILIES[at % FAMILIES.len()]);
+            let (one, family) = (at / COMPARED.len(), &COMPARED[at % COMPARED.len()]);
             let (label, core) = cores[one];
             let usage = synthesis::synthesise(yosys, &files[one], &core.config.name, family, limit);
             done();
             usage.map_err(|error| format!("{label}, {}: {error:#}", family.title))
         })
         .collect();
-    Ok(runs.chunks(FAMILIES.len()).map(<[_]>::to_vec).collect())
+    Ok(runs.chunks(COMPARED.len()).map(<[_]>::to_vec).collect())
 }
 
 /// Returns why a configuration has no errors to show. For example, `my_core.toml: n = 300 is not in its domain, n = 1

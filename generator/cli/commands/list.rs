@@ -4,13 +4,17 @@ use std::path::Path;
 
 use anyhow::Result;
 use clap::Args;
+use rayon::prelude::*;
 use serde_json::{Value, json};
 
 use super::{CONFIGS, paths};
 use crate::report::CommandReport;
 use crate::{OutputOptions, say, tables};
 use glint_base::program::Program;
+use glint_config::Config;
 use glint_core::registry::{Device, Registry};
+use glint_prove::synth::Target;
+use glint_prove::tune::architectures;
 
 /// List the devices, and the configurations in configs/
 #[derive(Args)]
@@ -37,6 +41,46 @@ struct Inventory<'a> {
     configs: Vec<String>,
 }
 
+impl Inventory<'_> {
+    /// Prints the devices whose pipeline with the longest interval has fewer DSP blocks and a higher rate than their sequential
+    /// core, by the estimate for ECP5.
+    fn print_longest_intervals(&self) {
+        let rows: Vec<Option<Vec<String>>> =
+            self.devices.par_iter().map(longest_interval).collect();
+        let rows: Vec<Vec<String>> = rows.into_iter().flatten().collect();
+        if rows.is_empty() {
+            return;
+        }
+        say!(
+            "\nA pipeline with the longest interval beats the sequential core of these (default keys, ECP5, estimated):"
+        );
+        tables::print(
+            "device | DSP, sequential: | M points/s, sequential: | interval: | DSP, pipeline: | M points/s, pipeline:",
+            rows,
+        );
+    }
+}
+
+/// Returns a device with the DSP blocks and rates of its sequential core and of its pipeline with the longest interval, if the
+/// pipeline is better in both.
+fn longest_interval(device: &Device) -> Option<Vec<String>> {
+    let schema = (device.schema)();
+    let config = Config::defaults(&schema, &schema.module());
+    let sequential = architectures::sequential(device, &config, Target::Ecp5).ok()?;
+    let pipeline = architectures::longest_interval(device, &config, Target::Ecp5).ok()??;
+    if !pipeline.dominates(&sequential) {
+        return None;
+    }
+    Some(vec![
+        device.name.to_owned(),
+        sequential.cost.dsps.to_string(),
+        format!("{:.1}", sequential.rate()),
+        pipeline.interval?.to_string(),
+        pipeline.cost.dsps.to_string(),
+        format!("{:.1}", pipeline.rate()),
+    ])
+}
+
 impl CommandReport for Inventory<'_> {
     fn json(&self) -> Result<Value> {
         let mut devices = Vec::new();
@@ -53,9 +97,10 @@ impl CommandReport for Inventory<'_> {
         }
         tables::print("device | what it computes", rows);
         say!(
-            "Most are sequential cores or, with architecture = \"pipelined\", pipelines that take a point every few clocks, at twice the rate from a multiplier or two, or one every clock; \
+            "Most are sequential cores or, with architecture = \"pipelined\", pipelines that take a point every clock or every few clocks; \
              `{Program} tune DEVICE --error E --rate R` chooses."
         );
+        self.print_longest_intervals();
         for config in &self.configs {
             tables::print_line(config);
         }

@@ -19,6 +19,7 @@ mod mismatch;
 pub mod mutate;
 pub mod new;
 pub mod new_device;
+mod plot_file;
 pub mod render;
 mod rows;
 pub mod schedule;

@@ -13,8 +13,10 @@ use crate::{OutputOptions, number, tables, wrong_usage};
 use glint_base::program::Program;
 use glint_base::target::TIMING_NAMES;
 use glint_config::{self as config, Config, Problem, Schema};
-use glint_core::registry::Registry;
+use glint_core::registry::{Device, Registry};
 use glint_keys::presets;
+use glint_prove::synth::Target;
+use glint_prove::tune::architectures;
 
 /// Print a configuration of a device, or of a function by its name
 ///
@@ -87,10 +89,31 @@ pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) ->
             "# A Glint configuration. Keys in comments have their defaults, which adjust to the keys that are set.\n\
              # `{Program} new {device} --all` explains every key; `{Program} generate FILE` writes the core.\n"
         );
-        head + &config::brief(&schema, &config, &given)
+        let hint = hint(found, &config, &given).unwrap_or_default();
+        head + &hint + &config::brief(&schema, &config, &given)
     };
     output.report(&NewConfiguration { device, name, text })?;
     Ok(true)
+}
+
+/// Returns a comment about the pipeline with the longest interval, if by the estimate this pipeline is better than the sequential
+/// core in both its DSP blocks and its rate. Returns `None` if it is not, or if the user has chosen an architecture.
+fn hint(device: &Device, config: &Config, given: &[String]) -> Option<String> {
+    if given.iter().any(|key| key == "architecture") {
+        return None;
+    }
+    let sequential = architectures::sequential(device, config, Target::Ecp5).ok()?;
+    let pipeline = architectures::longest_interval(device, config, Target::Ecp5).ok()??;
+    if !pipeline.dominates(&sequential) {
+        return None;
+    }
+    Some(format!(
+        "# Sequential, as below, it has {} (ECP5, estimated).\n\
+         # With {} it has {}.\n",
+        sequential.figures(),
+        pipeline.keys()?,
+        pipeline.figures()
+    ))
 }
 
 /// A new configuration, as TOML.

@@ -1,6 +1,7 @@
 //! `glint synth`: measures area and frequency of a core by synthesis, placement and routing.
 
 mod cache;
+mod front;
 mod show;
 
 use std::path::PathBuf;
@@ -15,7 +16,9 @@ use crate::own_file::OwnFile;
 use crate::{Configs, OutputOptions, TimeLimit, progress, say};
 use cache::Cache;
 use glint_core::registry::Registry;
-use glint_prove::synth::{Figures, Flow, Rate, SynthesisRecord, SynthesisSubject, TARGETS, Target};
+use glint_prove::synth::{
+    Figures, Flow, RECORDED_TARGETS, Rate, SynthesisRecord, SynthesisSubject, TARGETS, Target,
+};
 use glint_prove::tune::{Cost, Features};
 use glint_show::evidence::comparison;
 use glint_tools::gates::cells::LIBERTY;
@@ -26,9 +29,9 @@ const EXPONENT: f64 = 35.0;
 
 /// Measure area and frequency by synthesis, placement and routing
 ///
-/// iCE40 (UP5K) and ECP5 by Yosys and nextpnr over several seeds, Xilinx 7 by Yosys (area alone), 0.18 µm standard cells by
-/// Yosys and OpenSTA (before layout; a gate is a NAND2X1). Registers stand around the core, so that pins do not count; the
-/// delay of a DSP block always counts. Points a second are the median frequency divided by the clocks a
+/// iCE40 (UP5K), ECP5, Nexus and GateMate by Yosys and nextpnr over several seeds, Xilinx 7 and Gowin by Yosys (area alone, since no
+/// open tool times all of their cells), 0.18 µm standard cells by Yosys and OpenSTA (before layout; a gate is a NAND2X1). Registers
+/// stand around the core, so that pins do not count; the delay of a DSP block always counts. Points a second are the median frequency divided by the clocks a
 /// point. The critical path has the names of the description. Results are cached in `.glint/` beside the
 /// configuration, until the Verilog or the tools change.
 #[derive(Args)]
@@ -36,13 +39,15 @@ const EXPONENT: f64 = 35.0;
 Examples:
   glint synth my_core.toml                            every target whose tools are installed; of a pipeline its own
   glint synth my_core.toml --target ecp5 --seeds 11   one of them, more seeds
+  glint synth my_core.toml --target gowin             area on a Tang Nano 20K
+  glint synth my_core.toml --front --rate 30          sequential core and every interval; the smallest with the rate
   glint synth --json                                  everything in configs/, for scripts
   glint synth --out synthesis                         a record of each configuration in configs/")]
 pub struct Arguments {
     #[command(flatten)]
     configs: Configs,
-    /// The technology to measure for; may be repeated [default: the target of the pipelines, or every target whose tools are
-    /// installed]
+    /// The technology to measure for; may be repeated [default: the target of the pipelines, or all of iCE40, ECP5, Xilinx 7 and
+    /// standard cells whose tools are installed]
     #[arg(long = "target", value_name = "TARGET", value_enum)]
     targets: Vec<Target>,
     /// Runs of place and route, of which the median counts
@@ -57,6 +62,19 @@ pub struct Arguments {
     /// Write the figures of each configuration, `<name>.json`, into this directory
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
+    /// Measure one configuration in each architecture: the sequential core, and pipelines from the longest interval to a point
+    /// every clock
+    #[arg(long)]
+    front: bool,
+    /// With --front: mark the smallest architecture that has this rate, in million points a second
+    #[arg(long, value_name = "M", requires = "front", value_parser = crate::number)]
+    rate: Option<f64>,
+    /// With --front: plot area over rate as SVG into this file
+    #[arg(long, value_name = "FILE.svg", requires = "front")]
+    plot: Option<PathBuf>,
+    /// With --plot: replace a file that is there already
+    #[arg(long, requires = "plot")]
+    force: bool,
     /// The Liberty file of the standard cells
     #[arg(long, value_name = "FILE.lib", default_value = LIBERTY)]
     liberty: PathBuf,
@@ -85,6 +103,9 @@ struct FigureRecord<'a> {
 /// command checks nothing.
 pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) -> Result<bool> {
     let loaded = load(registry, &arguments.configs.paths)?;
+    if arguments.front {
+        return front::run(output, arguments, &loaded);
+    }
     let (flows, notes) = flows(arguments, &loaded)?;
     let mut records: Vec<Option<OwnFile>> = Vec::new();
     for one in &loaded {
@@ -156,7 +177,7 @@ fn flows(arguments: &Arguments, loaded: &[Loaded]) -> Result<(Vec<Flow>, Vec<Str
         return Ok((flows, Vec::new()));
     }
     let (mut flows, mut notes) = (Vec::new(), Vec::new());
-    for target in TARGETS {
+    for target in RECORDED_TARGETS {
         match find(target) {
             Ok(flow) => flows.push(flow),
             Err(error) if arguments.out.is_some() => return Err(error),

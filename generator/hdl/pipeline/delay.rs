@@ -41,8 +41,7 @@ pub fn node_delay(timing: &Timing, graph: &Graph, id: NodeId) -> f64 {
             if is_block(timing, graph, id) {
                 timing.block
             } else {
-                // Beyond four bits of address, a mux for each.
-                timing.logic * f64::from(graph.width(*address).max(5) - 3) * 0.8
+                timing.word_bit * f64::from(graph.width(*address).max(5) - 3)
             }
         }
         Cell::Op(op) => delay_of(timing, op, &|operand| graph.width(operand)),

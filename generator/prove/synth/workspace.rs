@@ -7,7 +7,7 @@ use super::netlist::Netlist;
 use super::{SynthesisSubject, Target};
 use glint_tools::Tool;
 use glint_tools::sources::YosysSources;
-use glint_tools::synthesis::{self, STATISTICS_COMMAND, Usage};
+use glint_tools::synthesis::{self, Usage};
 
 /// A directory with the Verilog of a core and of its harness.
 pub struct Workspace<'a> {
@@ -55,7 +55,7 @@ impl<'a> Workspace<'a> {
         let commands = [
             "design -save source".to_owned(),
             family.script(top),
-            STATISTICS_COMMAND.to_owned(),
+            synthesis::statistics_commands(family).to_owned(),
             "design -load source".to_owned(),
             format!("read_verilog {HARNESS}"),
             family.script(TOP),

@@ -5,6 +5,7 @@
 //! (`space`). It also changes keys that add microinstructions if the user states a rate that is enough, if DSP blocks are
 //! weighted heavily, or if nothing else fits the chip.
 
+pub mod architectures;
 pub mod model;
 mod search;
 mod space;
@@ -18,7 +19,7 @@ use serde::Serialize;
 use glint_config::{Config, Shared, Value};
 use glint_core::registry::Device;
 use glint_golden::Bound;
-pub use model::{Cost, Features};
+pub use model::{Cost, Features, area};
 use search::Search;
 pub use search::{Answer, Candidate};
 use space::SearchSpace;

@@ -25,7 +25,8 @@ pub struct Features {
     pub logic: f64,
     /// The number of bits of the ROMs that are made of look-up tables, divided by 16.
     pub rom: f64,
-    /// The number of bits that must be added up in products made of look-up tables.
+    /// The number of bits that must be added up in products made of look-up tables. For a family without DSP blocks, the number of
+    /// look-up tables that its products take.
     pub product: f64,
 }
 
@@ -63,7 +64,9 @@ impl Cost {
         }
         let mut dsps = 0;
         for net in &design.nets {
-            if let Driver::Op(Op::Mul(a, b)) = net.driver {
+            if let Driver::Op(Op::Mul(a, b)) = net.driver
+                && family.fabric_product.is_none()
+            {
                 dsps += dsps_of_product(design, family, a, b);
             }
         }
@@ -80,9 +83,7 @@ impl Cost {
     /// Returns the area in look-up tables. A DSP block or block RAM counts as many look-up tables as a chip of the family has for
     /// each such block. For example, iCE40 UP5K has 5280 look-up tables and 8 DSP blocks, so that a DSP block counts as 660.
     pub fn area(&self, target: Target) -> f64 {
-        let [luts, dsps, blocks] = family(target).chips[0].has.map(|has| has as f64);
-        let (dsp, block) = ((luts / dsps).round(), (luts / blocks).round());
-        self.luts + dsp * self.dsps as f64 + block * self.block_rams as f64
+        area(target, self.luts, self.dsps, self.block_rams)
     }
 
     /// Returns the resources that a usual chip of the target lacks, in words; empty if the core fits. For example, `it
@@ -102,6 +103,16 @@ impl Cost {
     }
 }
 
+/// Returns an area in look-up tables. A DSP block or block RAM counts as many look-up tables as a usual chip of the target has for
+/// each such block.
+pub fn area(target: Target, luts: f64, dsps: u64, block_rams: u64) -> f64 {
+    let [all_luts, all_dsps, all_blocks] = family(target).chips[0].has.map(|has| has as f64);
+    // A chip without DSP blocks needs none.
+    let dsp = if all_dsps == 0.0 { 0.0 } else { (all_luts / all_dsps).round() };
+    let block = (all_luts / all_blocks).round();
+    luts + dsp * dsps as f64 + block * block_rams as f64
+}
+
 impl Features {
     /// Counts the features of a design on a target.
     pub fn new(design: &Design, target: Target) -> Self {
@@ -118,6 +129,9 @@ impl Features {
                 Op::Any(a) | Op::All(a) => sum.logic += width(*a) / 3.0,
                 Op::Equal(a, _) => sum.logic += 2.0 * width(*a) / 3.0,
                 Op::Mux { inputs, .. } => sum.mux += width(id) * (inputs.len() - 1) as f64,
+                Op::Mul(a, b) if let Some((_, luts)) = family.fabric_product => {
+                    sum.product += luts(width(*a) as u64, width(*b) as u64) as f64;
+                }
                 Op::Mul(a, b) => {
                     let blocks = blocks(family, design.width(*a), design.width(*b));
                     sum.product += blocks.saturating_sub(1) as f64 * width(id) / 2.0;

@@ -16,7 +16,7 @@ use glint_golden::{Bound, Term};
 use glint_show::evidence::comparison::clocks_per_point;
 
 /// The exponent at which the clocks of a point are counted if they depend on it.
-const EXPONENT: f64 = 35.0;
+pub const EXPONENT: f64 = 35.0;
 
 /// A configuration that `glint tune` has evaluated, with its error bound, its cost and its rate.
 #[derive(Clone, Debug)]

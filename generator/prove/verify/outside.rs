@@ -13,7 +13,7 @@ use crate::certify::{self, ProofOutcome, statements};
 use crate::equality;
 use glint_base::input;
 use glint_base::program::Program;
-use glint_base::target::{FAMILIES, Family};
+use glint_base::target::{COMPARED, Family};
 use glint_base::text::{counted, grouped};
 use glint_core::core::{BENCH_SEED, Core};
 use glint_core::package::{self, FileKind, OutputFile};
@@ -291,10 +291,10 @@ pub const SYNTHESIS: Check = Check {
     question: "Is the emitted Verilog synthesised for each family of FPGAs, and what does it take?",
     reads: "the Verilog and memory files of the core",
     tools: &["yosys"],
-    steps: |_| FAMILIES.len() as u64,
+    steps: |_| COMPARED.len() as u64,
     run: |subject, tools, progress| {
         let (name, limit) = (&subject.core.config.name, subject.effort.time_limit);
-        let taken: Vec<String> = FAMILIES
+        let taken: Vec<String> = COMPARED
             .par_iter()
             .map(|family| {
                 let files = subject.sources(family.name())?;
@@ -477,5 +477,5 @@ pub const GATES: Check = Check {
 
 /// Returns the families whose netlists can be simulated.
 fn simulated() -> impl Iterator<Item = &'static Family> {
-    FAMILIES.iter().filter(|family| gates::is_simulated(family))
+    COMPARED.iter().filter(|family| gates::is_simulated(family))
 }

@@ -4,7 +4,7 @@ use anyhow::{Context, Result};
 use rayon::prelude::*;
 use serde::Serialize;
 
-use glint_base::target::{FAMILIES, Family, Usage};
+use glint_base::target::{COMPARED, Family, Usage};
 use glint_core::core::Core;
 
 /// A synthesis tool that counts the cells of a core.
@@ -45,7 +45,7 @@ pub fn usage(
     done: &(dyn Fn() + Sync),
 ) -> Result<Vec<FamilyUsage>> {
     let (files, top) = (core.verilog()?, &core.config.name);
-    let families = FAMILIES.par_iter().map(|family| {
+    let families = COMPARED.par_iter().map(|family| {
         let usage = synthesis.usage(&files, top, family);
         done();
         let usage = usage.with_context(|| format!("{top} for {}", family.title))?;

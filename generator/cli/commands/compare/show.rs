@@ -8,10 +8,10 @@ use super::{Arguments, ComparisonEntry};
 use crate::report::CommandReport;
 use crate::{failure, say, tables};
 use glint_base::program::Program;
-use glint_base::target::FAMILIES;
+use glint_base::target::COMPARED;
 use glint_base::text;
 use glint_golden::contract;
-use glint_prove::synth::{Frequency, Rate, TARGETS, Target, tools};
+use glint_prove::synth::{Frequency, RECORDED_TARGETS, Rate, Target, tools};
 use glint_show::evidence::comparison::{ANGLES, ANGLES_PER_DEGREE, Accuracy, MultiplierSize};
 use glint_tools::synthesis::Usage;
 
@@ -125,7 +125,7 @@ fn print_hardware(entries: &[ComparisonEntry]) {
     let synthesised = entries.iter().any(|entry| !entry.usage.is_empty());
     let mut headings = "device | clocks a point: | ROM bits: | multipliers;1".to_owned();
     if synthesised {
-        for family in &FAMILIES {
+        for family in &COMPARED {
             for resource in ["LUT", "DSP", "RAM"] {
                 headings += &format!(" | {} {resource}:", family.title);
             }
@@ -159,7 +159,7 @@ fn print_hardware(entries: &[ComparisonEntry]) {
 /// Returns the usage of all families, with `unknown` for a usage that is not known.
 fn taken(entry: &ComparisonEntry, unknown: &str) -> Vec<String> {
     let mut cells = Vec::new();
-    for at in 0..FAMILIES.len() {
+    for at in 0..COMPARED.len() {
         match entry.usage.get(at) {
             Some(Ok(usage)) => {
                 for (_, number) in numbers(usage) {
@@ -269,14 +269,14 @@ fn csv_heading(synthesised: bool, measured: bool) -> Vec<String> {
     heading
         .extend(["bound_units", "clocks_per_point", "rom_bits", "multipliers"].map(str::to_owned));
     if synthesised {
-        for family in &FAMILIES {
+        for family in &COMPARED {
             for resource in ["luts", "dsps", "block_rams"] {
                 heading.push(format!("{}_{resource}", family.name()));
             }
         }
     }
     if measured {
-        for target in TARGETS {
+        for target in RECORDED_TARGETS {
             heading.push(format!("{target}_mhz"));
             heading.push(format!("{target}_million_points_per_second"));
         }
@@ -307,7 +307,7 @@ fn csv_row(
     }
     if measured {
         let speeds = speeds(entry);
-        for target in TARGETS {
+        for target in RECORDED_TARGETS {
             match speeds.iter().find(|(measured_target, ..)| *measured_target == target) {
                 Some((_, frequency, rate)) => {
                     row.extend([frequency.median.to_string(), rate.points.to_string()]);
@@ -363,7 +363,7 @@ fn entry_json(entry: &ComparisonEntry) -> Value {
     });
     if !entry.usage.is_empty() {
         let mut synthesis = Map::new();
-        for (family, usage) in FAMILIES.iter().zip(&entry.usage) {
+        for (family, usage) in COMPARED.iter().zip(&entry.usage) {
             let taken = usage.as_ref().map_or(Value::Null, usage_json);
             synthesis.insert(family.name().to_owned(), taken);
         }

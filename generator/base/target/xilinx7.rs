@@ -1,0 +1,46 @@
+//! Data of the AMD 7 series. The delays are estimates. The weights of the cost were sought near a fit of `benches/tune/fit` to the
+//! 20 cores in `records/synthesis/`, for the least median error. The estimate of half of the cores is within 10 % of the look-up
+//! tables; the worst is `schlick_pipelined` (51 % too few: its adders divide, and the adders of other cores go into DSP blocks).
+
+use super::{Chip, Estimate, Family, Timing};
+
+/// Data of the family AMD 7 series, for speed grade −1.
+pub const XILINX7: Family = Family {
+    title: "Xilinx 7",
+    timing: Timing {
+        name: "xilinx7",
+        multiplier: (24, 17),
+        row_bits: 256,
+        register: 1.2,
+        input: 2.0,
+        logic: 0.8,
+        word_bit: 0.64,
+        carry: 1.0,
+        carry_bit: 0.03,
+        product: 3.9,
+        registered: None,
+        block: 2.5,
+        address: 0.5,
+        block_bits: 4096,
+        delay_memory: None,
+    },
+    library: "",
+    prepare: "",
+    // Not -abc9: Yosys 0.23 crashes in it.
+    command: "synth_xilinx -flatten",
+    least_yosys: (0, 23),
+    luts: &[("LUT1", 1), ("LUT2", 1), ("LUT3", 1), ("LUT4", 1), ("LUT5", 1), ("LUT6", 1)],
+    fabric_product: None,
+    dsps: &[("DSP48E1", 1)],
+    block_rams: &[("RAMB18E1", 1), ("RAMB36E1", 2)],
+    flip_flops: &[("FDRE", 1), ("FDSE", 1)],
+    chips: &[Chip { name: "XC7A35T", options: "", has: [20_800, 90, 100] }],
+    estimate: Estimate {
+        weights: [0.45, 0.29, 0.71, 2.55, 0.0, 21.57],
+        scale: 1.0,
+        sign: 1,
+        least_product: 9,
+        block: (18_432, 36),
+        least_block: 8192,
+    },
+};

@@ -1,0 +1,241 @@
+//! `glint synth --front`: measures a configuration in each of its architectures, from the sequential core to a point every clock.
+
+use anyhow::{Context, Result, bail};
+use serde_json::{Value, json};
+
+use super::{Arguments, Loaded, SynthesisSubject};
+use crate::commands::plot_file::svg_file;
+use crate::destination::Destination;
+use crate::report::CommandReport;
+use crate::{OutputOptions, progress, say, tables, wrong_usage};
+use glint_prove::synth::{Figures, Flow, Target};
+use glint_prove::tune;
+use glint_prove::tune::architectures::{self, Architecture};
+use glint_show::evidence::chart::{Chart, ChartAxis, Series};
+
+/// An architecture with its measured figures.
+struct MeasuredArchitecture {
+    architecture: Architecture,
+    figures: Figures,
+    /// Million points a second at the median frequency.
+    rate: f64,
+    /// The area in look-up tables, blocks counted in.
+    area: f64,
+}
+
+/// The architectures of a configuration, from the slowest to the fastest.
+struct ArchitectureFront<'a> {
+    path: &'a str,
+    target: Target,
+    measured: Vec<MeasuredArchitecture>,
+    /// The place of the architecture that was chosen.
+    chosen: usize,
+}
+
+/// Measures the configuration in each architecture, and reports them. The chosen one is the smallest that has the rate of `--rate`,
+/// or without `--rate` the architecture of the configuration itself. Returns true, because nothing is checked.
+///
+/// # Errors
+/// Fails if a tool fails, if the target is not timed, if the device cannot be a pipeline, or if no architecture has the rate.
+pub fn run(output: OutputOptions, arguments: &Arguments, loaded: &[Loaded]) -> Result<bool> {
+    let [one] = loaded else {
+        wrong_usage!("--front is for one configuration; name it");
+    };
+    if arguments.out.is_some() {
+        wrong_usage!("--front and --out cannot be used together: a record is of one architecture");
+    }
+    let target = target(arguments, one)?;
+    let drawing = match &arguments.plot {
+        Some(path) => Some(Destination::fresh(path, arguments.force)?),
+        None => None,
+    };
+    let search = std::env::var_os("PATH").unwrap_or_default();
+    let flow = Flow::find(target, &search, &arguments.liberty)?;
+    let made = architectures::all(&one.core.device, &one.core.config, target)?;
+    let steps = Flow::steps(target, arguments.seeds) * made.len() as u64;
+    let bar = progress::bar(output, steps, "synthesis");
+    bar.tick();
+    let mut measured = Vec::new();
+    for architecture in made {
+        let words = architecture.words();
+        let done = measure(architecture, &flow, arguments, &|| bar.inc(1));
+        let done = done.with_context(|| format!("`{}` as {words}", one.path))?;
+        if output.is_for_people() {
+            bar.suspend(|| say!("{words}: {}", super::show::in_a_line(&done.figures)));
+        }
+        measured.push(done);
+    }
+    bar.finish_and_clear();
+    let chosen = chosen(&measured, arguments.rate, one)?;
+    let front = ArchitectureFront { path: &one.path, target, measured, chosen };
+    if let Some(drawing) = drawing {
+        drawing.write(front.plot()?)?;
+    }
+    output.report(&front)?;
+    Ok(true)
+}
+
+/// Returns the target to measure for: the one that the user names, or the target of the pipeline, or ECP5.
+fn target(arguments: &Arguments, one: &Loaded) -> Result<Target> {
+    let target = match arguments.targets[..] {
+        [] => super::targets_of_pipelines(std::slice::from_ref(one)).first().copied(),
+        [target] => Some(target),
+        _ => wrong_usage!("--front measures for one target; name one"),
+    };
+    let target = target.unwrap_or(Target::Ecp5);
+    if !target.is_timed_fpga() {
+        wrong_usage!(
+            "--target {target}: --front compares rates, and there is no frequency of {}; take ice40, ecp5, nexus or gatemate",
+            target.title()
+        );
+    }
+    Ok(target)
+}
+
+fn measure(
+    architecture: Architecture,
+    flow: &Flow,
+    arguments: &Arguments,
+    done: &(dyn Fn() + Sync),
+) -> Result<MeasuredArchitecture> {
+    let core = &architecture.core;
+    let files = core.verilog_for(flow.target().name())?;
+    let subject = SynthesisSubject {
+        design: &core.design,
+        files: &files,
+        seeds: arguments.seeds,
+        limit: arguments.time_limit.get(),
+    };
+    let figures = flow.measure(&subject, done)?;
+    // A core that does not fit has no frequency, and so no rate.
+    let mhz = figures.frequency.map_or(0.0, |frequency| frequency.median);
+    let usage = figures.area.usage().context("an FPGA counts its cells")?;
+    let area = tune::area(flow.target(), usage.luts as f64, usage.dsps, usage.block_rams);
+    Ok(MeasuredArchitecture {
+        rate: mhz / architecture.clocks_per_point,
+        area,
+        architecture,
+        figures,
+    })
+}
+
+/// Returns the place of the architecture to mark.
+fn chosen(measured: &[MeasuredArchitecture], rate: Option<f64>, one: &Loaded) -> Result<usize> {
+    let Some(wanted) = rate else {
+        let own = one.core.design.pipeline.as_ref().map(|pipeline| pipeline.interval as u32);
+        let is_own = |it: &MeasuredArchitecture| it.architecture.interval == own;
+        // An interval that saves no multiplier over a shorter one is not among them.
+        return Ok(measured.iter().position(is_own).unwrap_or(0));
+    };
+    let mut best: Option<usize> = None;
+    for (at, it) in measured.iter().enumerate() {
+        let is_smaller = best.is_none_or(|best| it.area < measured[best].area);
+        if it.rate >= wanted && is_smaller {
+            best = Some(at);
+        }
+    }
+    match best {
+        Some(best) => Ok(best),
+        None => {
+            let fastest = measured.iter().fold(0.0_f64, |fastest, it| fastest.max(it.rate));
+            bail!(
+                "no architecture has {wanted} million points a second; the fastest has {fastest:.1}"
+            )
+        }
+    }
+}
+
+impl ArchitectureFront<'_> {
+    fn plot(&self) -> Result<String> {
+        let name = &self.measured[0].architecture.core.config.name;
+        let mut places = Vec::new();
+        let (mut areas, mut marked) = (Vec::new(), Vec::new());
+        for (at, it) in self.measured.iter().enumerate() {
+            places.push(it.rate);
+            areas.push(it.area);
+            marked.push(if at == self.chosen { it.area } else { f64::NAN });
+        }
+        let most_area = areas.iter().copied().fold(0.0, f64::max);
+        let (mut least_rate, mut most_rate) = (f64::INFINITY, 0.0_f64);
+        for rate in places.iter().copied().filter(|rate| *rate > 0.0) {
+            least_rate = least_rate.min(rate);
+            most_rate = most_rate.max(rate);
+        }
+        if least_rate >= most_rate {
+            bail!("fewer than two architectures fit the chip, and there is no line to plot");
+        }
+        let chart = Chart {
+            id: "front".to_owned(),
+            title: format!("{name}: area over the rate"),
+            caption:
+                "Each corner is an architecture, from the sequential core to a point every clock."
+                    .to_owned(),
+            x: ChartAxis::logarithmic("million points a second", least_rate * 0.9, most_rate * 1.1),
+            y: ChartAxis::linear(
+                &format!("{name}: look-up tables of {}, blocks counted in", self.target.title()),
+                0.0,
+                most_area * 1.1,
+            ),
+            places,
+            series: vec![
+                Series { name: "architectures".to_owned(), values: areas },
+                Series { name: "chosen".to_owned(), values: marked },
+            ],
+            marks: Vec::new(),
+        };
+        svg_file(&chart)
+    }
+}
+
+impl CommandReport for ArchitectureFront<'_> {
+    fn json(&self) -> Result<Value> {
+        let mut all: Vec<Value> = Vec::new();
+        for (at, it) in self.measured.iter().enumerate() {
+            all.push(json!({
+                "architecture": if it.architecture.interval.is_some() { "pipelined" } else { "sequential" },
+                "interval": it.architecture.interval,
+                "clocks_per_point": it.architecture.clocks_per_point,
+                "million_points_per_second": it.rate,
+                "area_in_luts": it.area,
+                "estimate": it.architecture.cost,
+                "figures": it.figures,
+                "chosen": at == self.chosen,
+            }));
+        }
+        Ok(json!({ "ok": true, "config": self.path, "target": self.target, "front": all }))
+    }
+
+    fn print(&self) -> Result<()> {
+        let mut rows = Vec::new();
+        for (at, it) in self.measured.iter().enumerate() {
+            let area = it.figures.area.usage().context("an FPGA counts its cells")?;
+            let mhz = match it.figures.frequency {
+                Some(frequency) => format!("{:.1}", frequency.median),
+                None => "–".to_owned(),
+            };
+            rows.push(vec![
+                it.architecture.words(),
+                area.luts.to_string(),
+                area.dsps.to_string(),
+                area.block_rams.to_string(),
+                area.flip_flops.to_string(),
+                mhz,
+                format!("{:.1}", it.rate),
+                format!("{:.0}", it.area),
+                if at == self.chosen { "chosen".to_owned() } else { String::new() },
+            ]);
+        }
+        tables::print(
+            "architecture | LUT: | DSP: | RAM: | FF: | MHz: | M points/s: | area in LUT: | ",
+            rows,
+        );
+        let figures = self.measured.iter().map(|it| &it.figures);
+        let tools = glint_prove::synth::tools(figures);
+        say!(
+            "Measured for {} with {}.",
+            self.measured[self.chosen].figures.device,
+            Vec::from_iter(tools).join(", ")
+        );
+        Ok(())
+    }
+}

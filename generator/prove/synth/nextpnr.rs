@@ -1,0 +1,103 @@
+//! Measures a core with Yosys and a nextpnr that writes its timing as a report in JSON: nextpnr-ecp5, nextpnr-nexus and
+//! nextpnr-himbaechel.
+
+use anyhow::{Context, Result};
+use serde_json::Value;
+
+use super::SynthesisSubject;
+use super::netlist::{self, Netlist};
+use super::routes::routed;
+use super::workspace::Workspace;
+use glint_base::target::Chip;
+use glint_show::figures::{Figures, PathPoint, Target};
+use glint_tools::Tool;
+
+/// How nextpnr measures a core of a family.
+pub struct Recipe {
+    /// The target.
+    pub target: Target,
+    /// The speed grade, in words, or an empty text. For example, `speed grade 6`.
+    pub speed: &'static str,
+    /// Options of nextpnr beside those of the chip and of the frequency.
+    pub options: &'static str,
+    /// The frequency that is asked for, in MHz. It is out of reach, so that the placer tries hardest.
+    pub goal: u32,
+    /// Checks that nextpnr times every cell of the netlist, and prepares the files that nextpnr reads.
+    pub prepare: fn(&Workspace, &Netlist) -> Result<()>,
+}
+
+/// Measures area and frequency of a core as a recipe says. It calls `done` after each step.
+///
+/// # Errors
+/// Fails if a tool fails or takes too long, or if the recipe's `prepare` fails.
+pub fn measure(
+    recipe: &Recipe,
+    yosys: &Tool,
+    nextpnr: &Tool,
+    subject: &SynthesisSubject,
+    done: &(dyn Fn() + Sync),
+) -> Result<Figures> {
+    let workspace = Workspace::new(yosys, subject)?;
+    let (usage, netlist) = workspace.synthesise(recipe.target)?;
+    (recipe.prepare)(&workspace, &netlist)?;
+    done();
+    let family = recipe.target.family().context("nextpnr knows no such family")?;
+    // All chips of a family are as fast.
+    let fitting = family.chips.iter().find(|chip| chip.lack(usage.taken()).is_empty());
+    let chip = fitting.unwrap_or(&family.chips[family.chips.len() - 1]);
+    let mut name = format!("{} {}", family.title, chip.name);
+    if !recipe.speed.is_empty() {
+        name += &format!(", {}", recipe.speed);
+    }
+    let mut figures = Figures::new(recipe.target, &name, usage.into());
+    figures.untimed = fitting.is_none().then(|| "does not fit".to_owned());
+    routed(figures, subject, done, |seed| route(recipe, nextpnr, &workspace, &netlist, chip, seed))
+}
+
+fn route(
+    recipe: &Recipe,
+    nextpnr: &Tool,
+    workspace: &Workspace,
+    netlist: &Netlist,
+    chip: &Chip,
+    seed: u32,
+) -> Result<(f64, Vec<PathPoint>)> {
+    let report = format!("seed{seed}.json");
+    let goal = recipe.goal;
+    let mut options = format!("--freq {goal} --report {report}");
+    for own in [chip.options, recipe.options] {
+        if !own.is_empty() {
+            options += &format!(" {own}");
+        }
+    }
+    workspace.nextpnr(nextpnr, seed, &options)?;
+    let report = workspace.sources.json(&report)?;
+    // Clock pins of DSP blocks that are tied to ground are listed as a clock too.
+    let clocks = report["fmax"].as_object().into_iter().flatten();
+    let clock = clocks
+        .filter(|(name, _)| !name.contains("PACKER"))
+        .find_map(|(name, clock)| Some((name, clock["achieved"].as_f64()?)));
+    let (clock, frequency) =
+        clock.with_context(|| format!("`{nextpnr}` does not tell the frequency of the clock"))?;
+    Ok((frequency, steps(netlist, &report, &format!("posedge {clock}"))))
+}
+
+/// Returns the longest path from the clock to the clock.
+fn steps(netlist: &Netlist, report: &Value, clock: &str) -> Vec<PathPoint> {
+    let paths = report["critical_paths"].as_array().into_iter().flatten();
+    let path = paths.into_iter().find(|path| path["from"] == clock && path["to"] == clock);
+    let pieces = path.and_then(|path| path["path"].as_array()).into_iter().flatten();
+    let mut points = Vec::new();
+    let mut time = 0.0;
+    for piece in pieces {
+        // A net settles at the end of its route.
+        time += piece["delay"].as_f64().unwrap_or(0.0);
+        let name = match piece["type"].as_str() {
+            Some("routing") => piece["net"].as_str().and_then(|net| netlist.name(net)),
+            Some("setup") => piece["to"]["cell"].as_str().and_then(|cell| netlist.register(cell)),
+            _ => None,
+        };
+        points.extend(name.map(|name| (name.to_owned(), time)));
+    }
+    netlist::path(points)
+}

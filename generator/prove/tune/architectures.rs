@@ -1,0 +1,157 @@
+//! Estimates a configuration in each of its architectures: the sequential core, and the pipelines with an interval.
+
+use anyhow::{Context, Result};
+use rayon::prelude::*;
+
+use super::model::Cost;
+use super::search::EXPONENT;
+use crate::synth::Target;
+use glint_config::{Config, Shared, Value};
+use glint_core::core::Core;
+use glint_core::registry::Device;
+use glint_rtl::netlist::{Design, Driver, Op};
+use glint_show::evidence::comparison::clocks_per_point;
+
+/// A configuration in one architecture, with its estimated cost.
+pub struct Architecture {
+    /// The core.
+    pub core: Core,
+    /// The clocks from a point to the next in a pipeline; `None` for a sequential core.
+    pub interval: Option<u32>,
+    /// The clocks from a point to the next. A sequential core may take a fraction if it computes lines of points.
+    pub clocks_per_point: f64,
+    /// The number of multipliers in the netlist.
+    pub multipliers: usize,
+    /// The estimated cost.
+    pub cost: Cost,
+}
+
+impl Architecture {
+    fn new(device: &Device, config: Config, target: Target) -> Result<Self> {
+        let core = Core::new(*device, config)?;
+        let design = &core.design;
+        let interval = design.pipeline.as_ref().map(|pipeline| pipeline.interval as u32);
+        let clocks = clocks_per_point(design, core.contract.as_ref(), EXPONENT)?;
+        let multipliers = multipliers(design);
+        let cost = Cost::new(design, target);
+        Ok(Self { core, interval, clocks_per_point: clocks, multipliers, cost })
+    }
+
+    /// Returns the rate in million points a second, at the estimated clock.
+    pub fn rate(&self) -> f64 {
+        self.cost.mhz / self.clocks_per_point
+    }
+
+    /// Returns the architecture in words: for example, `sequential`, or `pipeline, interval 8`.
+    pub fn words(&self) -> String {
+        match self.interval {
+            None => "sequential".to_owned(),
+            Some(interval) => format!("pipeline, interval {interval}"),
+        }
+    }
+
+    /// Returns the keys that make this pipeline, or `None` for a sequential core. For example, `architecture = "pipelined",
+    /// pipeline.interval = 8`.
+    pub fn keys(&self) -> Option<String> {
+        let interval = self.interval?;
+        Some(format!("architecture = \"pipelined\", pipeline.interval = {interval}"))
+    }
+
+    /// Returns the estimated DSP blocks and rate in words: for example, `1 DSP block, 18.1 million points a second`.
+    pub fn figures(&self) -> String {
+        let blocks = match self.cost.dsps {
+            1 => "1 DSP block".to_owned(),
+            count => format!("{count} DSP blocks"),
+        };
+        format!("{blocks}, {:.1} million points a second", self.rate())
+    }
+
+    /// Returns whether this architecture has at least the rate of another with at most as many DSP blocks, and is better in one
+    /// of both.
+    pub fn dominates(&self, other: &Self) -> bool {
+        let (rate, dsps) = (self.rate(), self.cost.dsps);
+        let is_as_good = rate >= other.rate() && dsps <= other.cost.dsps;
+        is_as_good && (rate > other.rate() || dsps < other.cost.dsps)
+    }
+}
+
+/// Returns the number of products in a netlist.
+fn multipliers(design: &Design) -> usize {
+    let products = design.nets.iter().filter(|net| matches!(net.driver, Driver::Op(Op::Mul(..))));
+    products.count()
+}
+
+/// Returns a configuration as a sequential core on a target.
+///
+/// # Errors
+/// Fails if the configuration makes no core.
+pub fn sequential(device: &Device, base: &Config, target: Target) -> Result<Architecture> {
+    let mut config = base.clone();
+    config.set("architecture", Value::Text("sequential".to_owned()));
+    Architecture::new(device, config, target)
+}
+
+/// Returns a configuration as a pipeline with the longest interval, or `None` if the device cannot be a pipeline. For example,
+/// `cosine-power` has an interval of 8, the clocks of its sequential core.
+///
+/// # Errors
+/// Fails if the configuration makes no sequential core.
+pub fn longest_interval(
+    device: &Device,
+    base: &Config,
+    target: Target,
+) -> Result<Option<Architecture>> {
+    let clocks = sequential(device, base, target)?.clocks_per_point.ceil() as u32;
+    let mut intervals = (1..=clocks.min(LONGEST)).rev();
+    Ok(intervals.find_map(|interval| pipeline(device, base, target, interval).ok()))
+}
+
+/// The largest value of `pipeline.interval`.
+const LONGEST: u32 = 64;
+
+/// Returns a configuration as a pipeline.
+fn pipeline(device: &Device, base: &Config, target: Target, interval: u32) -> Result<Architecture> {
+    let mut config = base.clone();
+    config.set("architecture", Value::Text("pipelined".to_owned()));
+    config.set("pipeline.interval", Value::Text(interval.to_string()));
+    if Shared::of(base).architecture != "pipelined"
+        && let Some(family) = target.family()
+    {
+        config.set("pipeline.target", Value::Text(family.name().to_owned()));
+    }
+    Architecture::new(device, config, target)
+}
+
+/// Returns the sequential core of a configuration, and its pipelines from the longest interval to 1. A pipeline is left out if one
+/// with a shorter interval has no more multipliers.
+///
+/// # Errors
+/// Fails if the configuration makes no sequential core, or no pipeline.
+pub fn all(device: &Device, base: &Config, target: Target) -> Result<Vec<Architecture>> {
+    let sequential = sequential(device, base, target)?;
+    let clocks = sequential.clocks_per_point.ceil() as u32;
+    let intervals: Vec<u32> = (1..=clocks.min(LONGEST)).collect();
+    let made: Vec<Result<Architecture>> =
+        intervals.par_iter().map(|&interval| pipeline(device, base, target, interval)).collect();
+    let mut pipelines: Vec<Architecture> = Vec::new();
+    let mut refused = None;
+    for architecture in made {
+        match architecture {
+            Ok(made) => {
+                let is_smaller =
+                    pipelines.last().is_none_or(|shorter| made.multipliers < shorter.multipliers);
+                if is_smaller {
+                    pipelines.push(made);
+                }
+            }
+            Err(error) => refused = refused.or(Some(error)),
+        }
+    }
+    if pipelines.is_empty() {
+        let reason = refused.context("no interval is possible")?;
+        return Err(reason.context(format!("`{}` cannot be a pipeline", device.name)));
+    }
+    pipelines.push(sequential);
+    pipelines.reverse();
+    Ok(pipelines)
+}
