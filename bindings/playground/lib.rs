@@ -12,6 +12,7 @@ use base64::prelude::BASE64_STANDARD;
 use serde::Deserialize;
 use serde_json::{Value, json};
 
+use glint_base::target::{COMPARED, Family};
 use glint_config::{self as config, Key, KeyKind, Problems};
 use glint_core::core::Core;
 use glint_core::cosim::batch::Golden;
@@ -207,8 +208,14 @@ fn described(core: &Core) -> Result<Value> {
             (timing.start_to_valid, timing.start_to_start)
         }
     };
+    // The families of the other pages, and the one that a pipeline is scheduled for.
+    let own = design.pipeline.as_ref().map_or("", |pipeline| pipeline.target.as_str());
+    let is_shown = |family: &Family| {
+        let is_compared = COMPARED.iter().any(|it| it.name() == family.name());
+        is_compared || family.name() == own
+    };
     let estimates = TARGETS.iter().filter_map(|target| {
-        let family = target.family()?;
+        let family = target.family().filter(|family| is_shown(family))?;
         let cost = Cost::new(design, *target);
         Some(json!({ "target": family.title, "luts": cost.luts.round(), "dsps": cost.dsps,
             "block_rams": cost.block_rams, "mhz": cost.mhz }))

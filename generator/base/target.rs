@@ -138,6 +138,9 @@ pub struct Estimate {
 /// 2)` counts each carry cell of ECP5 as two look-up tables.
 pub type Kinds = &'static [(&'static str, u64)];
 
+/// A function that returns the number of look-up tables for a product, from the widths of its operands in bits.
+pub type LutsOfProduct = fn(u64, u64) -> u64;
+
 /// An FPGA family, with all data that Glint has about it: delays, Yosys commands, cell names and chips.
 #[derive(Debug)]
 pub struct Family {
@@ -157,7 +160,7 @@ pub struct Family {
     pub luts: Kinds,
     /// The kind of cell that multiplies in look-up tables, if the family has no DSP blocks, and the number of look-up tables that such
     /// a cell takes for operands of two widths.
-    pub fabric_product: Option<(&'static str, fn(u64, u64) -> u64)>,
+    pub fabric_product: Option<(&'static str, LutsOfProduct)>,
     /// The cells that count as DSP blocks. Empty for a family without DSP blocks.
     pub dsps: Kinds,
     /// The cells that count as block RAMs: of 4 kbit in iCE40, of 20 kbit in GateMate, of 18 kbit in the others.
