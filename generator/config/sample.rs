@@ -30,7 +30,7 @@ pub fn sample(schema: &Schema, seed: u64) -> Config {
             config.set(key.name, draw(key, &mut rng));
         }
         for _ in 0..REPAIRS {
-            settle(schema, &mut config);
+            config.reset_keys_without_effect(schema);
             let mut problems = Problems::default();
             (schema.check)(&config, &mut problems);
             if problems.is_empty() {
@@ -48,15 +48,6 @@ pub fn sample(schema: &Schema, seed: u64) -> Config {
         }
     }
     panic!("no valid configuration of `{}` was found", schema.device)
-}
-
-/// Gives the keys that do not apply their defaults.
-fn settle(schema: &Schema, config: &mut Config) {
-    for key in &schema.keys {
-        if !config.applies(schema, key.name) {
-            config.set(key.name, key.default.clone());
-        }
-    }
 }
 
 fn draw(key: &Key, rng: &mut ChaCha8Rng) -> Value {

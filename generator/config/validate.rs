@@ -384,6 +384,16 @@ impl Config {
         draft.finish(schema, problems)
     }
 
+    /// Gives the keys that have no effect their defaults. For example, `output.registered` is a key of sequential cores, so that a
+    /// configuration that has become a pipeline must not keep it.
+    pub fn reset_keys_without_effect(&mut self, schema: &Schema) {
+        for key in schema.all_keys() {
+            if !self.applies(schema, key.name) {
+                self.set(key.name, key.default.clone());
+            }
+        }
+    }
+
     /// Returns whether the key has an effect, given the values of the other keys.
     pub fn applies(&self, schema: &Schema, key: &str) -> bool {
         match schema.key(key).and_then(|key| key.condition) {

@@ -2,7 +2,9 @@
 
 use std::env;
 use std::ffi::OsString;
+use std::fs;
 use std::path::Path;
+use std::process::Command;
 
 use glint::base::input;
 use glint::dsl::{Designer, end, step, valid};
@@ -15,7 +17,8 @@ use crate::common::Sure;
 use crate::common::cores::configuration;
 use crate::common::files::root;
 use crate::common::sample::sampled;
-use crate::common::tools::LIMIT;
+use crate::common::tools::{LIMIT, succeeded};
+use serde_json::Value;
 
 /// Pairs of a configuration and a target whose areas are measured again.
 const PAIRS: usize = 2;
@@ -77,6 +80,62 @@ fn the_delay_of_a_multiplier_is_not_left_out() {
         let end = figures.critical_path.last().expect("a path").ns;
         assert!(end <= 1000.0 / frequency.median + 0.01, "{figures:?}");
     }
+}
+
+/// The area of a chip in look-up tables by hand: an LFE5U-25F has 24 288 look-up tables, 28 DSP blocks and 56 block RAMs.
+fn area_on_ecp5(area: &Value) -> f64 {
+    let number = |key: &str| area[key].as_f64().expect(key);
+    number("luts") + 867.0 * number("dsps") + 434.0 * number("block_rams")
+}
+
+/// `--front` measures the sequential core and the pipelines from the longest interval to 1, each as `synth` measures it alone, and
+/// marks the smallest with the rate. The second run takes the figures from the cache.
+#[test]
+fn the_front_has_every_architecture_and_marks_the_smallest_with_the_rate() {
+    const RATE: f64 = 20.0;
+    let directory = tempfile::tempdir().expect("a directory");
+    let venv = root().join("target/tools/venv/bin");
+    let path = env::var_os("PATH").unwrap_or_default();
+    let search = env::join_paths(std::iter::once(venv).chain(env::split_paths(&path)));
+    let glint = |arguments: &str| {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_glint"));
+        command.args(arguments.split(' ')).current_dir(directory.path());
+        command.env("PATH", search.as_ref().expect("a search path"));
+        succeeded(&mut command)
+    };
+    let parsed = |text: String| -> Value { serde_json::from_str(&text).expect("JSON") };
+    let written = |name: &str, text: String| fs::write(directory.path().join(name), text);
+    written("core.toml", glint("new rsqrt")).expect("written");
+    written("fast.toml", glint("new rsqrt --pipelined")).expect("written");
+    let command = format!("synth core.toml --front --rate {RATE} --seeds 1 --json");
+    let report = parsed(glint(&format!("{command} --plot front.svg")));
+    let front = report["front"].as_array().expect("architectures");
+    let intervals: Vec<u64> = front.iter().map(|it| it["interval"].as_u64().unwrap_or(0)).collect();
+    let pipelines = &intervals[1..];
+    assert!(intervals[0] == 0 && pipelines.last() == Some(&1), "{intervals:?}");
+    assert!(pipelines.is_sorted_by(|longer, shorter| longer > shorter), "{intervals:?}");
+    let mut smallest: Option<&Value> = None;
+    for it in front {
+        let mhz = it["figures"]["frequency"]["median"].as_f64().expect("a frequency");
+        let rate = mhz / it["clocks_per_point"].as_f64().expect("clocks");
+        assert!((it["million_points_per_second"].as_f64().expect("a rate") - rate).abs() < 1e-9);
+        let area = area_on_ecp5(&it["figures"]["area"]);
+        assert_eq!(it["area_in_luts"].as_f64(), Some(area), "{it}");
+        let is_smaller =
+            smallest.is_none_or(|other| area < area_on_ecp5(&other["figures"]["area"]));
+        if rate >= RATE && is_smaller {
+            smallest = Some(it);
+        }
+    }
+    let chosen: Vec<&Value> = front.iter().filter(|it| it["chosen"] == true).collect();
+    assert_eq!(chosen, [smallest.expect("an architecture with the rate")]);
+    let alone = parsed(glint("synth fast.toml --target ecp5 --seeds 1 --json"));
+    let fastest = &front[front.len() - 1]["figures"];
+    assert_eq!(fastest["area"], alone["synthesis"][0]["targets"][0]["area"]);
+    assert_eq!(fastest["frequency"], alone["synthesis"][0]["targets"][0]["frequency"]);
+    let svg = fs::read_to_string(directory.path().join("front.svg")).expect("a plot");
+    assert!(svg.starts_with("<svg ") && svg.contains("chosen"), "{svg}");
+    assert_eq!(parsed(glint(&command)), report);
 }
 
 /// No open tool times all cells of Gowin and Xilinx 7, so that there is no frequency, and the reason is told.

@@ -18,7 +18,7 @@ use super::{Chip, Estimate, Family, Timing};
 
 /// Returns the look-up tables of a product with operands of these widths in bits: two for each CPE that nextpnr makes. The formula
 /// is exact for the products of 4 × 4, 8 × 8, 9 × 9, 12 × 8, 16 × 8, 16 × 16 and 18 × 18 bits, which were placed. For example, 8
-/// by 8 bits take 73 CPEs.
+/// by 8 bits take 73 CPEs, and so 146 look-up tables.
 fn product_luts(first: u64, second: u64) -> u64 {
     let (columns, rows) = (first.max(second) / 2, first.min(second) / 2);
     let cells = columns * rows + 3 * columns + 7 * rows + 17;
@@ -79,3 +79,26 @@ pub const GATEMATE: Family = Family {
         least_block: 1024,
     },
 };
+
+#[cfg(test)]
+mod tests {
+    use super::product_luts;
+
+    /// The CPEs that nextpnr-himbaechel-gatemate 0.11 says it creates.
+    #[test]
+    fn products_take_what_nextpnr_takes() {
+        let measured = [
+            ((4, 4), 41),
+            ((8, 8), 73),
+            ((9, 9), 73),
+            ((12, 8), 87),
+            ((16, 8), 101),
+            ((16, 16), 161),
+            ((18, 18), 188),
+        ];
+        for ((first, second), cells) in measured {
+            assert_eq!(product_luts(first, second), 2 * cells, "{first} by {second}");
+            assert_eq!(product_luts(second, first), 2 * cells, "{second} by {first}");
+        }
+    }
+}

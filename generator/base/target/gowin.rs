@@ -62,8 +62,8 @@ const FLIP_FLOPS: Kinds = &[
 const DELAY_MEMORY: DelayMemory = DelayMemory { words: 16, width: 4, tables: 4 };
 
 /// The estimate of a core's cost. `benches/tune/fit` computed the weights from twelve cores on GW2A. The estimate of
-/// half of the cores is within 20 % of the look-up tables; the worst is `cosine_power` (46 % too few), where Yosys makes a ROM of
-/// tables with one input each.
+/// half of the cores is within 20 % of the look-up tables; the worst is `cosine_power` (46 % too few), where Yosys makes
+/// 182 tables of one input.
 const ESTIMATE: Estimate = Estimate {
     weights: [0.72, 0.79, 0.78, 2.50, 2.07, 26.88],
     scale: 1.0,

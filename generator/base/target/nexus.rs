@@ -17,7 +17,7 @@ use super::{Chip, DelayMemory, Estimate, Family, Timing};
 
 /// Products in DSP blocks that are multipliers and nothing else, and small products in look-up tables. By itself `synth_nexus` of
 /// Yosys 0.70 also moves registers and sums into the blocks, and its netlists then give wrong results: the simulation of
-/// `cosine_power` after synthesis has a constant 0 at an input of three of its multipliers. (The reports at Yosys's pull request
+/// `cosine_power` after synthesis has a constant 0 at an input of two of its multipliers. (The reports at Yosys's pull request
 /// 5929 describe such faults.) The clocks, enables and resets that such a multiplier does not use become undefined constants.
 const PURE_MULTIPLIERS: &str = "synth_nexus -top {top} -run begin:coarse; proc; flatten; opt_expr; opt_clean; \
     opt -nodffe -nosdff; check -assert; wreduce; peepopt; opt_clean; wreduce t:$mul; \

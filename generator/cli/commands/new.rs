@@ -96,14 +96,15 @@ pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) ->
     Ok(true)
 }
 
-/// Returns a comment about the pipeline with the longest interval, if by the estimate this pipeline is better than the sequential
-/// core in both its DSP blocks and its rate. Returns `None` if it is not, or if the user has chosen an architecture.
+/// Returns a comment about the pipeline with the longest interval, if by the estimate it has no more DSP blocks and no lower rate
+/// than the sequential core, and an advantage in one of both. Returns `None` if it has not, or if the user has chosen an
+/// architecture.
 fn hint(device: &Device, config: &Config, given: &[String]) -> Option<String> {
     if given.iter().any(|key| key == "architecture") {
         return None;
     }
     let sequential = architectures::sequential(device, config, Target::Ecp5).ok()?;
-    let pipeline = architectures::longest_interval(device, config, Target::Ecp5).ok()??;
+    let pipeline = architectures::longest_interval(device, &sequential, Target::Ecp5)?;
     if !pipeline.dominates(&sequential) {
         return None;
     }

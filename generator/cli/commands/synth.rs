@@ -8,6 +8,7 @@ use std::path::PathBuf;
 
 use anyhow::{Context, Result, bail};
 use clap::Args;
+use rayon::ThreadPool;
 use rayon::prelude::*;
 use serde::Serialize;
 
@@ -15,6 +16,7 @@ use super::{Loaded, load};
 use crate::own_file::OwnFile;
 use crate::{Configs, OutputOptions, TimeLimit, progress, say};
 use cache::Cache;
+use glint_core::core::Core;
 use glint_core::registry::Registry;
 use glint_prove::synth::{
     Figures, Flow, RECORDED_TARGETS, Rate, SynthesisRecord, SynthesisSubject, TARGETS, Target,
@@ -24,16 +26,13 @@ use glint_show::evidence::comparison;
 use glint_tools::gates::cells::LIBERTY;
 use show::SynthesisReport;
 
-/// The exponent at which the clocks of a device are counted if they depend on it.
-const EXPONENT: f64 = 35.0;
-
 /// Measure area and frequency by synthesis, placement and routing
 ///
-/// iCE40 (UP5K), ECP5, Nexus and GateMate by Yosys and nextpnr over several seeds, Xilinx 7 and Gowin by Yosys (area alone, since no
-/// open tool times all of their cells), 0.18 µm standard cells by Yosys and OpenSTA (before layout; a gate is a NAND2X1). Registers
-/// stand around the core, so that pins do not count; the delay of a DSP block always counts. Points a second are the median frequency divided by the clocks a
-/// point. The critical path has the names of the description. Results are cached in `.glint/` beside the
-/// configuration, until the Verilog or the tools change.
+/// iCE40 (UP5K), ECP5, Nexus and GateMate by Yosys and nextpnr over several seeds, Xilinx 7 and Gowin by Yosys (area
+/// alone, since no open tool times all of their cells), 0.18 µm standard cells by Yosys and OpenSTA (before layout; a
+/// gate is a NAND2X1). Registers stand around the core, so that pins do not count; the delay of a DSP block always
+/// counts. Points a second are the median frequency divided by the clocks a point. The critical path has the names of
+/// the description. Results are cached in `.glint/` beside the configuration, until the Verilog or the tools change.
 #[derive(Args)]
 #[command(after_help = "\
 Examples:
@@ -122,12 +121,7 @@ pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) ->
             bar.suspend(|| say!("{}: {}", one.path, show::in_a_line(figures)));
         }
     };
-    let threads = match arguments.jobs {
-        Some(jobs) => usize::from(jobs),
-        None => rayon::current_num_threads(),
-    };
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
-    let results: Vec<Result<Measurement>> = pool.context("cannot start threads")?.install(|| {
+    let results: Vec<Result<Measurement>> = arguments.threads()?.install(|| {
         let all = loaded.par_iter();
         all.map(|one| measure(one, &flows, arguments, &|steps| bar.inc(steps), &tell)).collect()
     });
@@ -200,32 +194,59 @@ fn measure<'a>(
 ) -> Result<Measurement<'a>> {
     let core = &one.core;
     let clocks_per_point =
-        comparison::clocks_per_point(&core.design, core.contract.as_ref(), EXPONENT)?;
+        comparison::clocks_per_point(&core.design, core.contract.as_ref(), comparison::EXPONENT)?;
     let figures = flows.par_iter().map(|flow| {
-        let files = core.verilog_for(flow.target().name())?;
-        let subject = SynthesisSubject {
-            design: &core.design,
-            files: &files,
-            seeds: arguments.seeds,
-            limit: arguments.time_limit.get(),
-        };
-        let digest = flow.digest(&subject);
-        if !arguments.no_cache
-            && let Some(cache) = Cache::beside(&one.path)
-            && let Some(figures) = cache.find(core, flow.target(), &digest)
-        {
-            done(Flow::steps(flow.target(), arguments.seeds));
-            return Ok(figures);
-        }
-        let measured = flow.measure(&subject, &|| done(1));
-        let figures = measured.with_context(|| format!("`{}`", one.path))?;
-        if let Some(cache) = Cache::beside(&one.path) {
-            cache.keep(core, &digest, &figures);
-        }
+        let name = &core.config.name;
+        let figures = figures(core, name, &one.path, flow, arguments, done)?;
         tell(one, &figures);
         Ok(figures)
     });
     Ok(Measurement { one, clocks_per_point, figures: figures.collect::<Result<_>>()? })
+}
+
+/// Measures a core, or takes its figures from the cache beside the configuration `path`, where they are under `name`.
+fn figures(
+    core: &Core,
+    name: &str,
+    path: &str,
+    flow: &Flow,
+    arguments: &Arguments,
+    done: &(dyn Fn(u64) + Sync),
+) -> Result<Figures> {
+    let files = core.verilog_for(flow.target().name())?;
+    let subject = SynthesisSubject {
+        design: &core.design,
+        files: &files,
+        seeds: arguments.seeds,
+        limit: arguments.time_limit.get(),
+    };
+    let digest = flow.digest(&subject);
+    let cache = Cache::beside(path);
+    if !arguments.no_cache
+        && let Some(cache) = &cache
+        && let Some(figures) = cache.find(name, flow.target(), &digest)
+    {
+        done(Flow::steps(flow.target(), arguments.seeds));
+        return Ok(figures);
+    }
+    let measured = flow.measure(&subject, &|| done(1));
+    let figures = measured.with_context(|| format!("`{path}`"))?;
+    if let Some(cache) = &cache {
+        cache.keep(name, &digest, &figures);
+    }
+    Ok(figures)
+}
+
+impl Arguments {
+    /// Returns as many threads as `--jobs` asks for.
+    fn threads(&self) -> Result<ThreadPool> {
+        let threads = match self.jobs {
+            Some(jobs) => usize::from(jobs),
+            None => rayon::current_num_threads(),
+        };
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+        pool.context("cannot start threads")
+    }
 }
 
 impl Measurement<'_> {

@@ -173,7 +173,7 @@ fn one_of(names: [&str; 2], search: &OsStr) -> Result<Tool> {
 ///
 /// # Errors
 /// Fails if there is none, or if neither is new enough; the message says which version the family needs.
-pub fn yosys_of(family: &Family, search: &OsStr) -> Result<Tool> {
+fn yosys_of(family: &Family, search: &OsStr) -> Result<Tool> {
     let (major, minor) = family.least_yosys;
     let installed = Tool::find_in("yosys", search);
     let mut too_old = String::new();

@@ -18,7 +18,7 @@ pub struct Recipe {
     pub target: Target,
     /// The speed grade, in words, or an empty text. For example, `speed grade 6`.
     pub speed: &'static str,
-    /// Options of nextpnr beside those of the chip and of the frequency.
+    /// Further options of nextpnr; the chip and the frequency have options of their own.
     pub options: &'static str,
     /// The frequency that is asked for, in MHz. It is out of reach, so that the placer tries hardest.
     pub goal: u32,

@@ -1,4 +1,4 @@
-//! How nextpnr-nexus measures a core on the FPGA family Nexus. It times every cell, with the registers inside of DSP blocks.
+//! How nextpnr-nexus measures a core on the FPGA family Nexus. It times every cell.
 
 use std::collections::BTreeSet;
 

@@ -4,13 +4,12 @@ use anyhow::{Context, Result};
 use rayon::prelude::*;
 
 use super::model::Cost;
-use super::search::EXPONENT;
 use crate::synth::Target;
 use glint_config::{Config, Shared, Value};
 use glint_core::core::Core;
 use glint_core::registry::Device;
 use glint_rtl::netlist::{Design, Driver, Op};
-use glint_show::evidence::comparison::clocks_per_point;
+use glint_show::evidence::comparison::{EXPONENT, clocks_per_point};
 
 /// A configuration in one architecture, with its estimated cost.
 pub struct Architecture {
@@ -27,8 +26,7 @@ pub struct Architecture {
 }
 
 impl Architecture {
-    fn new(device: &Device, config: Config, target: Target) -> Result<Self> {
-        let core = Core::new(*device, config)?;
+    fn new(core: Core, target: Target) -> Result<Self> {
         let design = &core.design;
         let interval = design.pipeline.as_ref().map(|pipeline| pipeline.interval as u32);
         let clocks = clocks_per_point(design, core.contract.as_ref(), EXPONENT)?;
@@ -88,59 +86,73 @@ fn multipliers(design: &Design) -> usize {
 pub fn sequential(device: &Device, base: &Config, target: Target) -> Result<Architecture> {
     let mut config = base.clone();
     config.set("architecture", Value::Text("sequential".to_owned()));
-    Architecture::new(device, config, target)
+    config.reset_keys_without_effect(&(device.schema)());
+    Architecture::new(Core::new(*device, config)?, target)
 }
 
-/// Returns a configuration as a pipeline with the longest interval, or `None` if the device cannot be a pipeline. For example,
-/// `cosine-power` has an interval of 8, the clocks of its sequential core.
-///
-/// # Errors
-/// Fails if the configuration makes no sequential core.
+/// Returns a configuration as a pipeline with the longest interval, or `None` if the device cannot be a pipeline. `sequential` is
+/// the configuration as a sequential core. For example, `cosine-power` has an interval of 8, the clocks of its sequential core.
 pub fn longest_interval(
     device: &Device,
-    base: &Config,
+    sequential: &Architecture,
     target: Target,
-) -> Result<Option<Architecture>> {
-    let clocks = sequential(device, base, target)?.clocks_per_point.ceil() as u32;
-    let mut intervals = (1..=clocks.min(LONGEST)).rev();
-    Ok(intervals.find_map(|interval| pipeline(device, base, target, interval).ok()))
+) -> Option<Architecture> {
+    let base = &sequential.core.config;
+    intervals(sequential).rev().find_map(|interval| pipeline(device, base, target, interval).ok())
 }
 
 /// The largest value of `pipeline.interval`.
 const LONGEST: u32 = 64;
 
-/// Returns a configuration as a pipeline.
+/// Returns the intervals that a pipeline can have at most: up to the clocks of its sequential core.
+fn intervals(sequential: &Architecture) -> std::ops::RangeInclusive<u32> {
+    let clocks = sequential.clocks_per_point.ceil() as u32;
+    1..=clocks.min(LONGEST)
+}
+
+/// Returns a configuration as a pipeline. If the configuration is sequential, the pipeline is scheduled for the target, and if it
+/// cannot reach the default clock, for the fastest clock that it can reach.
 fn pipeline(device: &Device, base: &Config, target: Target, interval: u32) -> Result<Architecture> {
     let mut config = base.clone();
     config.set("architecture", Value::Text("pipelined".to_owned()));
     config.set("pipeline.interval", Value::Text(interval.to_string()));
-    if Shared::of(base).architecture != "pipelined"
-        && let Some(family) = target.family()
-    {
-        config.set("pipeline.target", Value::Text(family.name().to_owned()));
-    }
-    Architecture::new(device, config, target)
+    config.reset_keys_without_effect(&(device.schema)());
+    let core = if Shared::of(base).architecture == "pipelined" {
+        Core::new(*device, config)?
+    } else {
+        if let Some(family) = target.family() {
+            config.set("pipeline.target", Value::Text(family.name().to_owned()));
+        }
+        Core::with_free_clock(*device, config)?
+    };
+    Architecture::new(core, target)
 }
 
 /// Returns the sequential core of a configuration, and its pipelines from the longest interval to 1. A pipeline is left out if one
-/// with a shorter interval has no more multipliers.
+/// with a shorter interval has no more multipliers, unless its interval is `kept`. For example, `cosine-power` has the intervals
+/// 8, 4, 3, 2 and 1: with 5, 6 and 7 it needs two multipliers, as with 4.
 ///
 /// # Errors
 /// Fails if the configuration makes no sequential core, or no pipeline.
-pub fn all(device: &Device, base: &Config, target: Target) -> Result<Vec<Architecture>> {
+pub fn all(
+    device: &Device,
+    base: &Config,
+    kept: Option<u32>,
+    target: Target,
+) -> Result<Vec<Architecture>> {
     let sequential = sequential(device, base, target)?;
-    let clocks = sequential.clocks_per_point.ceil() as u32;
-    let intervals: Vec<u32> = (1..=clocks.min(LONGEST)).collect();
+    let intervals: Vec<u32> = intervals(&sequential).collect();
     let made: Vec<Result<Architecture>> =
         intervals.par_iter().map(|&interval| pipeline(device, base, target, interval)).collect();
     let mut pipelines: Vec<Architecture> = Vec::new();
+    let mut fewest = usize::MAX;
     let mut refused = None;
     for architecture in made {
         match architecture {
             Ok(made) => {
-                let is_smaller =
-                    pipelines.last().is_none_or(|shorter| made.multipliers < shorter.multipliers);
-                if is_smaller {
+                let saves_multipliers = made.multipliers < fewest;
+                fewest = fewest.min(made.multipliers);
+                if saves_multipliers || made.interval == kept {
                     pipelines.push(made);
                 }
             }

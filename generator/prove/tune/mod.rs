@@ -112,7 +112,7 @@ pub fn tune(
     // The configurations that were looked at in the architectures before.
     let mut looked_at_before = 0;
     let mut best_pipeline = None;
-    for config in pipelines(base, fixed, goal) {
+    for config in pipelines(device, base, fixed, goal) {
         let shown = |looked_at: usize| progress(looked_at_before + looked_at);
         if let Ok(mut answer) = of_architecture(device, &config, fixed, goal, &shown) {
             looked_at_before += answer.looked_at;
@@ -143,7 +143,7 @@ pub fn tune(
 
 /// Returns the pipelines that could have the rate, and no more multipliers than are allowed, the longest interval
 /// first. For example, a clock of 50 MHz and a rate of 10 million points a second allow the intervals 5, 4, 3, 2 and 1.
-fn pipelines(base: &Config, fixed: &[&str], goal: &TuningGoal) -> Vec<Config> {
+fn pipelines(device: &Device, base: &Config, fixed: &[&str], goal: &TuningGoal) -> Vec<Config> {
     let Some(family) = goal.target.family() else { return Vec::new() };
     if goal.rate.is_none() && goal.most_dsps.is_none() {
         return Vec::new();
@@ -154,6 +154,7 @@ fn pipelines(base: &Config, fixed: &[&str], goal: &TuningGoal) -> Vec<Config> {
     }
     let mut pipeline = base.clone();
     pipeline.set("architecture", Value::Text("pipelined".to_owned()));
+    pipeline.reset_keys_without_effect(&(device.schema)());
     if !fixed.contains(&"pipeline.target") {
         pipeline.set("pipeline.target", Value::Text(family.name().to_owned()));
     }

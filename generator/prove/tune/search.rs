@@ -13,10 +13,7 @@ use super::{ErrorUnit, Objective, TuningGoal};
 use glint_config::{Config, Value};
 use glint_core::registry::Device;
 use glint_golden::{Bound, Term};
-use glint_show::evidence::comparison::clocks_per_point;
-
-/// The exponent at which the clocks of a point are counted if they depend on it.
-pub const EXPONENT: f64 = 35.0;
+use glint_show::evidence::comparison::{EXPONENT, clocks_per_point};
 
 /// A configuration that `glint tune` has evaluated, with its error bound, its cost and its rate.
 #[derive(Clone, Debug)]

@@ -19,6 +19,9 @@ pub const ANGLES_PER_DEGREE: u32 = 100;
 /// The number of angles at which [`accuracy`] compares: 9001, from 0 to 90° in steps of 0.01°, both ends included.
 pub const ANGLES: u32 = 90 * ANGLES_PER_DEGREE + 1;
 
+/// The exponent n at which the clocks of a point are counted, if they depend on it.
+pub const EXPONENT: f64 = 35.0;
+
 /// An angle at which a device is timed, in degrees.
 const TYPICAL: f64 = 10.0;
 

@@ -7,7 +7,6 @@ use serde::{Deserialize, Serialize};
 
 use crate::destination;
 use glint_base::input;
-use glint_core::core::Core;
 use glint_prove::synth::{Figures, Target};
 
 /// The folder beside configurations, which may be deleted at any time.
@@ -31,19 +30,19 @@ impl Cache {
             .then(|| Self(Path::new(path).parent().unwrap_or(Path::new("")).join(FOLDER)))
     }
 
-    fn file(&self, core: &Core, target: Target) -> PathBuf {
-        self.0.join(format!("{}.{target}.json", core.config.name))
+    fn file(&self, name: &str, target: Target) -> PathBuf {
+        self.0.join(format!("{name}.{target}.json"))
     }
 
-    /// Returns the stored measurement of a core on a target, if it has this digest.
-    pub fn find(&self, core: &Core, target: Target, digest: &str) -> Option<Figures> {
-        let text = fs::read_to_string(self.file(core, target)).ok()?;
+    /// Returns the measurement on a target that is stored under a core's name, if it has this digest.
+    pub fn find(&self, name: &str, target: Target, digest: &str) -> Option<Figures> {
+        let text = fs::read_to_string(self.file(name, target)).ok()?;
         let entry: CacheEntry = serde_json::from_str(&text).ok()?;
         (entry.digest == digest).then_some(entry.figures)
     }
 
-    /// Stores a measurement. If the folder cannot be written, the function does nothing.
-    pub fn keep(&self, core: &Core, digest: &str, figures: &Figures) {
+    /// Stores a measurement under a core's name. If the folder cannot be written, the function does nothing.
+    pub fn keep(&self, name: &str, digest: &str, figures: &Figures) {
         let entry = CacheEntry {
             glint: env!("CARGO_PKG_VERSION").to_owned(),
             digest: digest.to_owned(),
@@ -51,7 +50,7 @@ impl Cache {
         };
         let text = serde_json::to_string_pretty(&entry);
         if let (Ok(text), Ok(())) = (text, fs::create_dir_all(&self.0)) {
-            let _ = destination::replace(&self.file(core, figures.target), text);
+            let _ = destination::replace(&self.file(name, figures.target), text);
         }
     }
 }

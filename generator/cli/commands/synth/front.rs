@@ -1,9 +1,10 @@
 //! `glint synth --front`: measures a configuration in each of its architectures, from the sequential core to a point every clock.
 
 use anyhow::{Context, Result, bail};
+use rayon::prelude::*;
 use serde_json::{Value, json};
 
-use super::{Arguments, Loaded, SynthesisSubject};
+use super::{Arguments, Loaded, figures};
 use crate::commands::plot_file::svg_file;
 use crate::destination::Destination;
 use crate::report::CommandReport;
@@ -51,22 +52,25 @@ pub fn run(output: OutputOptions, arguments: &Arguments, loaded: &[Loaded]) -> R
     };
     let search = std::env::var_os("PATH").unwrap_or_default();
     let flow = Flow::find(target, &search, &arguments.liberty)?;
-    let made = architectures::all(&one.core.device, &one.core.config, target)?;
+    let own = one.core.design.pipeline.as_ref().map(|pipeline| pipeline.interval as u32);
+    let made = architectures::all(&one.core.device, &one.core.config, own, target)?;
     let steps = Flow::steps(target, arguments.seeds) * made.len() as u64;
     let bar = progress::bar(output, steps, "synthesis");
     bar.tick();
-    let mut measured = Vec::new();
-    for architecture in made {
+    let measured_one = |architecture: Architecture| {
         let words = architecture.words();
-        let done = measure(architecture, &flow, arguments, &|| bar.inc(1));
+        let done = measure(architecture, &flow, arguments, &one.path, &|steps| bar.inc(steps));
         let done = done.with_context(|| format!("`{}` as {words}", one.path))?;
         if output.is_for_people() {
             bar.suspend(|| say!("{words}: {}", super::show::in_a_line(&done.figures)));
         }
-        measured.push(done);
-    }
+        Ok(done)
+    };
+    let measured: Vec<Result<MeasuredArchitecture>> =
+        arguments.threads()?.install(|| made.into_par_iter().map(measured_one).collect());
+    let measured: Vec<MeasuredArchitecture> = measured.into_iter().collect::<Result<_>>()?;
     bar.finish_and_clear();
-    let chosen = chosen(&measured, arguments.rate, one)?;
+    let chosen = chosen(&measured, arguments.rate, own)?;
     let front = ArchitectureFront { path: &one.path, target, measured, chosen };
     if let Some(drawing) = drawing {
         drawing.write(front.plot()?)?;
@@ -96,17 +100,15 @@ fn measure(
     architecture: Architecture,
     flow: &Flow,
     arguments: &Arguments,
-    done: &(dyn Fn() + Sync),
+    path: &str,
+    done: &(dyn Fn(u64) + Sync),
 ) -> Result<MeasuredArchitecture> {
     let core = &architecture.core;
-    let files = core.verilog_for(flow.target().name())?;
-    let subject = SynthesisSubject {
-        design: &core.design,
-        files: &files,
-        seeds: arguments.seeds,
-        limit: arguments.time_limit.get(),
+    let name = match architecture.interval {
+        None => format!("{}.sequential", core.config.name),
+        Some(interval) => format!("{}.interval{interval}", core.config.name),
     };
-    let figures = flow.measure(&subject, done)?;
+    let figures = figures(core, &name, path, flow, arguments, done)?;
     // A core that does not fit has no frequency, and so no rate.
     let mhz = figures.frequency.map_or(0.0, |frequency| frequency.median);
     let usage = figures.area.usage().context("an FPGA counts its cells")?;
@@ -119,13 +121,13 @@ fn measure(
     })
 }
 
-/// Returns the place of the architecture to mark.
-fn chosen(measured: &[MeasuredArchitecture], rate: Option<f64>, one: &Loaded) -> Result<usize> {
+/// Returns the place of the architecture to mark: the smallest that has the rate, or without a rate the configuration's `own`
+/// interval.
+fn chosen(measured: &[MeasuredArchitecture], rate: Option<f64>, own: Option<u32>) -> Result<usize> {
     let Some(wanted) = rate else {
-        let own = one.core.design.pipeline.as_ref().map(|pipeline| pipeline.interval as u32);
         let is_own = |it: &MeasuredArchitecture| it.architecture.interval == own;
-        // An interval that saves no multiplier over a shorter one is not among them.
-        return Ok(measured.iter().position(is_own).unwrap_or(0));
+        let place = measured.iter().position(is_own);
+        return place.context("the configuration's own architecture was not measured");
     };
     let mut best: Option<usize> = None;
     for (at, it) in measured.iter().enumerate() {
@@ -148,22 +150,24 @@ fn chosen(measured: &[MeasuredArchitecture], rate: Option<f64>, one: &Loaded) ->
 impl ArchitectureFront<'_> {
     fn plot(&self) -> Result<String> {
         let name = &self.measured[0].architecture.core.config.name;
+        let chosen = self.measured[self.chosen].architecture.interval;
+        // An architecture that does not fit the chip has no rate, and no place.
+        let mut shown: Vec<&MeasuredArchitecture> =
+            self.measured.iter().filter(|it| it.rate > 0.0).collect();
+        shown.sort_by(|one, other| one.rate.total_cmp(&other.rate));
+        let [slowest, .., fastest] = shown[..] else {
+            bail!("fewer than two architectures fit the chip, and there is no line to plot");
+        };
+        let (least_rate, most_rate) = (slowest.rate, fastest.rate);
         let mut places = Vec::new();
         let (mut areas, mut marked) = (Vec::new(), Vec::new());
-        for (at, it) in self.measured.iter().enumerate() {
+        for it in shown {
+            let is_chosen = it.architecture.interval == chosen;
             places.push(it.rate);
             areas.push(it.area);
-            marked.push(if at == self.chosen { it.area } else { f64::NAN });
+            marked.push(if is_chosen { it.area } else { f64::NAN });
         }
         let most_area = areas.iter().copied().fold(0.0, f64::max);
-        let (mut least_rate, mut most_rate) = (f64::INFINITY, 0.0_f64);
-        for rate in places.iter().copied().filter(|rate| *rate > 0.0) {
-            least_rate = least_rate.min(rate);
-            most_rate = most_rate.max(rate);
-        }
-        if least_rate >= most_rate {
-            bail!("fewer than two architectures fit the chip, and there is no line to plot");
-        }
         let chart = Chart {
             id: "front".to_owned(),
             title: format!("{name}: area over the rate"),
