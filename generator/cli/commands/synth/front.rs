@@ -213,9 +213,10 @@ impl CommandReport for ArchitectureFront<'_> {
         let mut rows = Vec::new();
         for (at, it) in self.measured.iter().enumerate() {
             let area = it.figures.area.usage().context("an FPGA counts its cells")?;
-            let mhz = match it.figures.frequency {
-                Some(frequency) => format!("{:.1}", frequency.median),
-                None => "–".to_owned(),
+            // A core that does not fit the chip has neither.
+            let (mhz, rate) = match it.figures.frequency {
+                Some(frequency) => (format!("{:.1}", frequency.median), format!("{:.1}", it.rate)),
+                None => ("–".to_owned(), "–".to_owned()),
             };
             rows.push(vec![
                 it.architecture.words(),
@@ -224,7 +225,7 @@ impl CommandReport for ArchitectureFront<'_> {
                 area.block_rams.to_string(),
                 area.flip_flops.to_string(),
                 mhz,
-                format!("{:.1}", it.rate),
+                rate,
                 format!("{:.0}", it.area),
                 if at == self.chosen { "chosen".to_owned() } else { String::new() },
             ]);
