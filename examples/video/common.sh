@@ -9,6 +9,7 @@ fail() {
 declare -rA files=(
     [icebreaker]="icebreaker.v dither.v"
     [ulx3s]="ulx3s.v tmds.v"
+    [tangnano20k]="tangnano20k.v tmds.v"
     [ball]="video.v ball.v root.v beam.v"
     [mesh]="mesh.v beam.v"
 )

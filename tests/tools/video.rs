@@ -7,7 +7,8 @@ use crate::common::tools::{LIMIT, example, tool};
 
 #[test]
 fn cores_shade_under_the_beam() {
-    let signals = ["icebreaker-ball", "ulx3s-ball", "ulx3s-mesh"];
+    let signals =
+        ["icebreaker-ball", "ulx3s-ball", "ulx3s-mesh", "tangnano20k-ball", "tangnano20k-mesh"];
     for signal in sampled("signals of examples/video", signals, 1) {
         let dir = tempfile::tempdir().expect("a directory");
         let arguments = [dir.path().as_os_str(), "2".as_ref(), signal.as_ref()];
@@ -19,11 +20,11 @@ fn cores_shade_under_the_beam() {
             std::fs::read(path).expect("a frame")
         });
         // The light of the ball moves.
-        assert_eq!(frames[0] == frames[1], signal == "ulx3s-mesh", "{signal}");
-        if signal == "ulx3s-ball" {
+        assert_eq!(frames[0] == frames[1], signal.ends_with("-mesh"), "{signal}");
+        if signal == "ulx3s-ball" || signal == "tangnano20k-ball" {
             let shown = root().join("docs/images/video.png");
             let compare = root().join("examples/soc/compare.py");
-            let seen = dir.path().join("ulx3s-ball/frame1.ppm");
+            let seen = dir.path().join(signal).join("frame1.ppm");
             tool("python3")
                 .run_to_success([compare, shown, seen], root(), LIMIT)
                 .sure_of("docs/images/video.png is of another time");
@@ -33,13 +34,23 @@ fn cores_shade_under_the_beam() {
 
 #[test]
 fn boards_keep_the_clocks() {
-    let signals = [("icebreaker", "ball"), ("ulx3s", "ball"), ("ulx3s", "mesh")];
+    let signals = [
+        ("icebreaker", "ball"),
+        ("ulx3s", "ball"),
+        ("ulx3s", "mesh"),
+        ("tangnano20k", "ball"),
+        ("tangnano20k", "mesh"),
+    ];
     for (board, scene) in sampled("bitstreams of examples/video", signals, 1) {
         let dir = tempfile::tempdir().expect("a directory");
         let output =
             example("video/bitstream", &[board.as_ref(), scene.as_ref(), dir.path().as_os_str()]);
         assert!(output.contains("PASS") && !output.contains("FAIL"), "{output}");
-        let file = if board == "icebreaker" { "icebreaker.bin" } else { "ulx3s.bit" };
+        let file = match board {
+            "icebreaker" => "icebreaker.bin",
+            "ulx3s" => "ulx3s.bit",
+            _ => "tangnano20k.fs",
+        };
         let path = dir.path().join(format!("{board}-{scene}")).join(file);
         let bitstream = std::fs::metadata(path).expect("a bitstream");
         assert!(bitstream.len() > 10_000, "{} bytes", bitstream.len());
