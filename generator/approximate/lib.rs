@@ -40,6 +40,12 @@ const MOST_SUMS: usize = 4;
 const POLES: u32 = 1 << 16;
 const BESIDE: f64 = 1.0 / 1024.0;
 
+/// The words of a bit that a look-up table of four inputs holds.
+pub const FULL_CELL: usize = 16;
+
+/// A domain may have an overhang of its operands divided by 2 to this power at most.
+const SMALL_PART: u32 = 5;
+
 /// The largest number of bits of a domain whose operands a proof computes one by one.
 pub const MOST_BITS: u32 = 26;
 
@@ -155,6 +161,16 @@ pub struct Piecewise {
     pub bound: f64,
 }
 
+/// The numbers of a domain's operands: the operand `origin` has the number 0.
+#[derive(Clone, Copy, Debug)]
+struct Numbering {
+    origin: i64,
+    /// The number of bits of a number, without the overhang.
+    bits: u32,
+    /// The number of operands with numbers from 2^bits on.
+    overhang: u64,
+}
+
 impl TargetFunction {
     /// Returns an interval that contains the exact value of the function at a raw operand, in units of the last bit of the result.
     ///
@@ -228,13 +244,19 @@ impl TargetFunction {
         }
     }
 
-    /// Returns the raw operand whose number is 0, and the bits of a number.
-    fn numbering(&self) -> (i64, u32) {
+    /// Returns how the operands of the domain are numbered.
+    fn numbering(&self) -> Numbering {
         let span = (self.domain.1 - self.domain.0) as u64;
         let bits = (u64::BITS - span.leading_zeros()).max(1);
+        let beyond = span + 1 - (1 << (bits - 1));
+        if self.outside == Outside::Anything && beyond <= span >> SMALL_PART {
+            return Numbering { origin: self.domain.0, bits: bits - 1, overhang: beyond };
+        }
         let whole = self.operand.width();
-        let origin = self.operand.min_raw() as i64;
-        if bits < whole { (self.domain.0, bits) } else { (origin, whole) }
+        if bits < whole {
+            return Numbering { origin: self.domain.0, bits, overhang: 0 };
+        }
+        Numbering { origin: self.operand.min_raw() as i64, bits: whole, overhang: 0 }
     }
 
     /// Returns a place where the formula has no value, as a refusal of the formula.
@@ -271,7 +293,7 @@ impl Piecewise {
     /// Returns the number of a raw operand. Numbers run from 0 over the polynomial's domain, and [`Segments`] finds the segment of
     /// a number.
     pub fn number(&self, raw: i64) -> u64 {
-        (self.reduced(raw).0 - self.origin) as u64 & ((1 << self.segments.bits) - 1)
+        (self.reduced(raw).0 - self.origin) as u64 & ((1 << self.segments.number_bits()) - 1)
     }
 
     /// Returns the segment of a raw operand, and the offset of the operand in it. An operand beyond the domain gets the last
@@ -323,6 +345,12 @@ impl Piecewise {
     pub fn rom_bits(&self) -> u64 {
         let width: u32 = self.coefficients.iter().map(|format| format.width()).sum();
         self.words.len() as u64 * u64::from(width)
+    }
+
+    /// Returns the number of look-up tables of four inputs that the table takes. A short table takes as many as one of 16 words.
+    pub fn rom_cells(&self) -> f64 {
+        let width: u32 = self.coefficients.iter().map(|format| format.width()).sum();
+        table::cells(self.words.len().max(FULL_CELL), width)
     }
 
     /// Proves a bound on the error at every operand of the domain, and returns it in units of the last bit of the result. The

@@ -18,6 +18,9 @@ pub struct Wish {
     pub layout: Option<Layout>,
     /// The identity that the range reduction uses, for example f(−x) = f(x).
     pub identity: Identity,
+    /// The number of words by which a shorter table is counted. A look-up table of four inputs holds 16 words of a bit, and is used
+    /// whole if there are fewer.
+    pub least_words: usize,
 }
 
 /// The degree that a polynomial may have at most.
@@ -162,7 +165,7 @@ fn cheapest(seen: &AllowedResults, wish: Wish) -> Option<Piecewise> {
             while let Some(most) = generous
                 && let Some((widths, words)) = table.narrowest(&most)
             {
-                let cost = base + table.cost(&widths, &words);
+                let cost = base + table.cost(&widths, &words, wish.least_words);
                 least = least.min(cost);
                 generous = table.within_factors(&most, &widths, &words);
                 found.push((cost, cut, widths, most));
@@ -239,13 +242,15 @@ impl CutSearch<'_> {
     fn is_possible(&self, cut: &Segments) -> bool {
         cut.words() <= self.most.min(1 << ADDRESS)
             && cut.octaves + cut.prefix + u32::from(self.degree > 0) <= self.seen.bits
+            && cut.holds_overhang()
     }
 
     /// Returns the cut with the fewest segments of a layout that is fine enough, if there is one.
     fn coarsest(&mut self, layout: Layout, octaves: u32) -> Option<Segments> {
         let least = u32::from(octaves == 0);
         for prefix in least..=ADDRESS {
-            let cut = Segments { bits: self.seen.bits, layout, octaves, prefix };
+            let AllowedResults { bits, overhang, .. } = *self.seen;
+            let cut = Segments { bits, layout, octaves, prefix, overhang };
             if !self.is_possible(&cut) {
                 return None;
             }

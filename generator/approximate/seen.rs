@@ -4,7 +4,7 @@
 
 use rayon::prelude::*;
 
-use super::{Reduction, Refusal, TargetFunction};
+use super::{Numbering, Reduction, Refusal, TargetFunction};
 use glint_base::fixed::{Format, exp2, nearest};
 
 /// The number of operands that the search may look at. If there are more, the search takes evenly spread ones.
@@ -21,6 +21,8 @@ pub(super) struct AllowedResults<'f> {
     pub(super) function: &'f TargetFunction,
     pub(super) origin: i64,
     pub(super) bits: u32,
+    /// The number of operands with numbers from 2^bits on.
+    pub(super) overhang: u64,
     /// From an operand to the next that is looked at.
     pub(super) stride: i64,
     /// The polynomials that are right, lowest and highest, of each operand that is looked at.
@@ -85,7 +87,7 @@ impl<'f> AllowedResults<'f> {
         stricter: f64,
     ) -> Result<Option<Self>, Refusal> {
         let (first, last) = function.domain;
-        let (origin, bits) = function.numbering();
+        let Numbering { origin, bits, overhang } = function.numbering();
         let count = (last - first) as u64 + 1;
         let held = if function.is_wide() { HELD_OF_MANY } else { HELD };
         // An odd one, so that the low bits take every value.
@@ -109,7 +111,7 @@ impl<'f> AllowedResults<'f> {
                 return Ok(None);
             }
         }
-        Ok(Some(Self { function, origin, bits, stride, right, result, whole: None }))
+        Ok(Some(Self { function, origin, bits, overhang, stride, right, result, whole: None }))
     }
 
     /// Evaluates a function whose operands are reduced: a polynomial is right with which the results of all operands are that

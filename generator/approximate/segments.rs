@@ -23,7 +23,8 @@ impl Layout {
     }
 }
 
-/// A domain of the numbers from 0 to 2^bits − 1, cut into segments. Segments may become shorter toward 0, by octaves.
+/// A domain of the numbers from 0 to 2^bits − 1, cut into segments. Segments may become shorter toward 0, by octaves. The last
+/// segment may also contain a few numbers from 2^bits on: the overhang.
 ///
 /// An octave is the block of numbers with the same highest bit, such as 128 to 255. The numbers below the last octave form one more
 /// block, and all blocks have the same number of segments. For example, `bits = 8`, `octaves = 0` and `prefix = 4` give 16 segments
@@ -39,6 +40,9 @@ pub struct Segments {
     pub octaves: u32,
     /// The number of bits that select a segment within a block.
     pub prefix: u32,
+    /// The number of numbers from 2^bits on that belong to the last segment. For example, the domain from 0 to 1 with both ends
+    /// has an overhang of 1. Without it, the end 1 alone would double the number of segments.
+    pub overhang: u64,
 }
 
 /// The segment of an operand, and the offset of the operand in it.
@@ -47,7 +51,7 @@ pub struct SegmentOffset {
     /// The index of the segment's word in the table.
     pub word: usize,
     /// The distance of the operand from the middle of the segment, in units of 2^−[`Segments::rest`] of the segment's length. It
-    /// lies from −1/2 to below 1/2 of the length.
+    /// lies from −1/2 to below 1/2 of the length, and above 1/2 in the overhang.
     pub offset: i64,
 }
 
@@ -55,6 +59,26 @@ impl Segments {
     /// Returns the number of bits of an offset in the longest segment. For example, it is 4 for 8 bits in 16 uniform segments.
     pub fn rest(&self) -> u32 {
         self.bits - self.prefix - u32::from(self.octaves > 0)
+    }
+
+    /// Returns the number of bits of an operand's number, with the bit that is 1 in the overhang.
+    pub fn number_bits(&self) -> u32 {
+        self.bits + self.extra_bit()
+    }
+
+    /// Returns 1 if there is an overhang, for which numbers and offsets have one bit more, and otherwise 0.
+    pub fn extra_bit(&self) -> u32 {
+        u32::from(self.overhang > 0)
+    }
+
+    /// Returns whether the last segment can contain the overhang: offsets must be able to denote it.
+    pub fn holds_overhang(&self) -> bool {
+        if self.overhang == 0 {
+            return true;
+        }
+        let used = self.prefix + u32::from(self.octaves > 0);
+        let fits = self.bits >= used + 2 && self.overhang <= 1 << (self.rest() - 1);
+        fits && self.layout != Layout::Halving
     }
 
     /// Returns the number of bits of an offset in a segment of a block. Block 0 lies below the octaves; the last block is the
@@ -80,6 +104,11 @@ impl Segments {
     /// segments has the word 3 and the offset −3.
     #[inline]
     pub fn place(&self, number: u64) -> SegmentOffset {
+        if self.overhang > 0 && number >> self.bits != 0 {
+            let middle = (1 << self.rest()) / 2;
+            let low = number & ((1 << self.rest()) - 1);
+            return SegmentOffset { word: self.words() - 1, offset: (low ^ middle) as i64 };
+        }
         let number = self.turned(number);
         let below = self.bits - self.octaves;
         let (block, within) = if self.octaves > 0 && number >> below != 0 {
@@ -103,7 +132,9 @@ impl Segments {
         let rest = self.rest_of(block);
         let within = (word as u64 & ((1 << self.prefix) - 1)) << rest;
         let first = if block == 0 { 0 } else { 1u64 << (self.bits - self.octaves + block - 1) };
-        let (from, count) = (first + within, 1u64 << rest);
+        let is_last = word + 1 == self.words();
+        let beyond = if is_last { self.overhang } else { 0 };
+        let (from, count) = (first + within, (1u64 << rest) + beyond);
         (self.turned(from).min(self.turned(from + count - 1)), count)
     }
 }
@@ -117,7 +148,7 @@ mod tests {
         for layout in [Layout::Uniform, Layout::Octaves, Layout::Halving] {
             for octaves in if layout == Layout::Uniform { 0..=0 } else { 1..=3 } {
                 for prefix in 0..=3 {
-                    let cut = Segments { bits: 6, layout, octaves, prefix };
+                    let cut = Segments { bits: 6, layout, octaves, prefix, overhang: 0 };
                     for number in 0..64 {
                         let SegmentOffset { word, offset } = cut.place(number);
                         let (first, count) = cut.numbers(word);
@@ -131,8 +162,24 @@ mod tests {
     }
 
     #[test]
+    fn the_last_segment_contains_the_overhang() {
+        for (layout, octaves) in [(Layout::Uniform, 0), (Layout::Octaves, 2)] {
+            let cut = Segments { bits: 6, layout, octaves, prefix: 2, overhang: 2 };
+            let last = cut.words() - 1;
+            let half = (1i64 << cut.rest()) / 2;
+            let (first, count) = cut.numbers(last);
+            assert_eq!(first + count, 66, "{cut:?}");
+            assert!(cut.holds_overhang());
+            for (number, offset) in [(63, half - 1), (64, half), (65, half + 1)] {
+                assert_eq!(cut.place(number), SegmentOffset { word: last, offset });
+            }
+            assert!(!Segments { overhang: 33, ..cut }.holds_overhang());
+        }
+    }
+
+    #[test]
     fn octaves_are_shorter_toward_the_end_that_they_are_for() {
-        let low = Segments { bits: 6, layout: Layout::Octaves, octaves: 2, prefix: 1 };
+        let low = Segments { bits: 6, layout: Layout::Octaves, octaves: 2, prefix: 1, overhang: 0 };
         assert_eq!(
             [0, 1, 2, 3, 4, 5].map(|word| low.numbers(word)),
             [(0, 8), (8, 8), (16, 8), (24, 8), (32, 16), (48, 16)]

@@ -388,15 +388,15 @@ impl<'s> Table<'s> {
         })
     }
 
-    /// Returns the cost of table and partial products in look-up tables.
-    pub(super) fn cost(&self, widths: &Widths, words: &Words) -> f64 {
+    /// Returns the cost of table and partial products in look-up tables. A table counts as one of at least `least_words` words.
+    pub(super) fn cost(&self, widths: &Widths, words: &Words, least_words: usize) -> f64 {
         let formats = self.formats(widths, words);
         let width: u32 = formats.iter().map(|format| format.width()).sum();
         let mut partial = 0;
         for (bits, offset) in Self::excess(&formats).zip(&widths.offset) {
             partial += bits * offset;
         }
-        words.len() as f64 * f64::from(width) / BITS_A_CELL + PARTIAL * f64::from(partial)
+        cells(words.len().max(least_words), width) + PARTIAL * f64::from(partial)
     }
 
     /// Returns narrower widths than `most`, from which the search begins again so that no factor is too wide; none where none is.
@@ -450,13 +450,18 @@ impl<'s> Table<'s> {
             *sum = Format::holding(low, high, found.coefficients[k].frac);
         }
         for (step, sum) in found.steps.iter().zip(&found.sums[1..]) {
-            let product_width = sum.width() + 1 + step.offset;
+            let product_width = sum.width() + 1 + step.offset + self.cut.extra_bit();
             if product_width >= MAX_WIDTH {
                 return None;
             }
         }
         Some(found)
     }
+}
+
+/// Returns the look-up tables that a table of coefficients takes.
+pub(super) fn cells(words: usize, width: u32) -> f64 {
+    words as f64 * f64::from(width) / BITS_A_CELL
 }
 
 /// Returns the limits of each partial sum over all operands of the domain. If the domain is wide, it computes intervals within each

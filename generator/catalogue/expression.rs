@@ -184,11 +184,13 @@ impl<'d, 'p> PlanDatapath<'d, 'p> {
             Operation::Subtract(a, b) => d.sub(name, input(a), input(b)),
             Operation::Multiply(..) => unreachable!("a product needs the multiplier"),
             Operation::Absolute(a) => {
+                // −a is ~a and a carry. A choice behind the sum would become one large function with the choices that follow it.
                 let a = input(a);
-                let zero = d.raw_constant("zero", 0, a.format());
-                let negated = d.sub(&format!("{name}_negated"), zero, a);
                 let is_negative = a.bit(a.format().width() - 1);
-                d.choose(&format!("{name}_chosen"), is_negative, [a, negated])
+                let inverted = d.not(&format!("{name}_inverted"), a);
+                let mirrored = d.choose(&format!("{name}_mirrored"), is_negative, [a, inverted]);
+                let zero = d.raw_constant("zero", 0, a.format());
+                d.add_carry(&format!("{name}_sum"), zero, mirrored, is_negative)
             }
             Operation::Minimum(a, b) => {
                 let (a, b) = (input(a), input(b));
@@ -218,9 +220,7 @@ impl<'d, 'p> PlanDatapath<'d, 'p> {
             Operation::Narrow(a, rounding) => {
                 return d.narrow(name, input(a), *format, *rounding, Overflow::Wrap);
             }
-            Operation::Saturate(a) => {
-                return d.narrow(name, input(a), *format, Rounding::Truncate, Overflow::Saturate);
-            }
+            Operation::Middle(a) => return middle(d, name, input(a), *format),
             Operation::Bit(a, number) => {
                 let a = input(a);
                 let top = a.format().width() - 1;
@@ -333,9 +333,21 @@ impl<'d, 'p> PlanDatapath<'d, 'p> {
                 let name = format!("{}_next", node.name);
                 self.d.narrow(&name, before, node.format, rounding, Overflow::Wrap)
             }
+            Operation::Middle(_) => {
+                middle(self.d, &format!("{}_next", node.name), before, node.format)
+            }
             _ => before.read_as(node.format),
         }
     }
+}
+
+/// Returns a signal with its low bits replaced by a 1, which is the lowest bit of the format.
+fn middle<'d>(d: &'d Designer, name: &str, signal: Signal<'d>, format: Format) -> Signal<'d> {
+    let kept = Format { frac: format.frac - 1, ..format };
+    let name_of_kept = format!("{name}_kept");
+    let upper = d.narrow(&name_of_kept, signal, kept, Rounding::Truncate, Overflow::Wrap);
+    let one = d.raw_constant("middle", 1, Format::BIT);
+    d.join(name, &[upper, one], format)
 }
 
 /// Returns the chain of mirrors that ends at each node of a plan, and whether each node is inside a chain.

@@ -25,6 +25,8 @@ struct Mirror {
 pub(super) struct MirrorChain {
     /// The value before the first mirror.
     start: NodeId,
+    /// The condition and the cases of the value before the first mirror, if it is a choice that nothing else reads.
+    choice: Option<(NodeId, [NodeId; 2])>,
     /// The first mirror first.
     mirrors: Vec<Mirror>,
     /// The node that rounds the mirrored value to nearest, if there is one.
@@ -36,7 +38,13 @@ pub(super) struct MirrorChain {
 impl MirrorChain {
     /// Returns the chain that ends at a node, if it saves an adder. `held` says which nodes have registers.
     pub(super) fn ending_at(plan: &ExpressionPlan, end: NodeId, held: &[bool]) -> Option<Self> {
-        let mut chain = Self { start: end, mirrors: Vec::new(), rounded: None, inner: Vec::new() };
+        let mut chain = Self {
+            start: end,
+            choice: None,
+            mirrors: Vec::new(),
+            rounded: None,
+            inner: Vec::new(),
+        };
         if let Operation::Narrow(a, Rounding::Nearest) = plan.node(end).operation {
             let drops_bits = plan.node(a).format.frac > plan.node(end).format.frac;
             if drops_bits && readers(plan, a) == [end] && !held[a.0] {
@@ -58,6 +66,15 @@ impl MirrorChain {
             chain.inner.push(top);
             chain.start = before;
         }
+        // The difference and the choice of a mirror read the value.
+        let is_inner = !held[chain.start.0] && readers(plan, chain.start).len() == 2;
+        if let Operation::Choose { condition, cases } = plan.node(chain.start).operation
+            && is_inner
+            && !chain.mirrors.is_empty()
+        {
+            chain.choice = Some((condition, cases));
+            chain.inner.push(chain.start);
+        }
         chain.inner.retain(|node| *node != end);
         let adders = chain.mirrors.len() + usize::from(chain.rounded.is_some());
         (!chain.mirrors.is_empty() && adders > 1).then_some(chain)
@@ -77,8 +94,7 @@ impl MirrorChain {
         name: &str,
         signal: &dyn Fn(NodeId) -> Signal<'d>,
     ) -> Signal<'d> {
-        let start = signal(self.start);
-        let mut frac = start.format().frac;
+        let mut frac = plan.node(self.start).format.frac;
         for mirror in &self.mirrors {
             frac = frac.max(mirror.constant.1);
         }
@@ -97,8 +113,21 @@ impl MirrorChain {
             is_negative = d.xor(&format!("{name}_is_negative{number}"), is_negative, *condition);
         }
         // −v is ~v with a carry into the sum.
-        let value = start.as_signed().with_fraction(frac);
-        let inverted = d.not(&format!("{name}_inverted"), value);
+        let [value, inverted] = match self.choice {
+            Some((condition, cases)) => {
+                let cases = cases.map(|case| signal(case).as_signed().with_fraction(frac));
+                let inverted = cases.map(|case| d.not(&format!("{name}_inverted"), case));
+                let condition = signal(condition);
+                [
+                    d.choose(&format!("{name}_chosen"), condition, cases),
+                    d.choose(&format!("{name}_inverted_chosen"), condition, inverted),
+                ]
+            }
+            None => {
+                let value = signal(self.start).as_signed().with_fraction(frac);
+                [value, d.not(&format!("{name}_inverted"), value)]
+            }
+        };
         let value = d.choose(&format!("{name}_mirrored"), is_negative, [value, inverted]);
         let sum = d.add_carry(&format!("{name}_sum"), base, value, is_negative);
         match self.rounded {

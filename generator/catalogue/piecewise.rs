@@ -108,7 +108,7 @@ pub(super) fn whole(x: Signal) -> Signal {
 pub(super) fn number<'d>(d: &'d Designer, name: &str, x: Signal<'d>, it: &Piecewise) -> Signal<'d> {
     let width = x.format().width() as i32;
     let integer = |bits: i32| Format::unsigned(bits, 0);
-    let bits = it.segments.bits as i32;
+    let bits = it.segments.number_bits() as i32;
     let origin = i128::from(it.origin);
     if origin == it.operand.min_raw() {
         return match it.operand.signed {
@@ -137,7 +137,7 @@ pub struct PolynomialDatapath<'d, 'p> {
 impl<'d, 'p> PolynomialDatapath<'d, 'p> {
     /// Makes the table, and the registers of the partial sums. `registers` are the names of these registers, starting with the
     /// register of the whole polynomial; the names of other nets begin with `prefix`. `number` is the position of the operand in
-    /// its domain, an integer of [`glint_approximate::Segments::bits`] bits. It must be stable while the sums are loaded, and one
+    /// its domain, an integer of [`glint_approximate::Segments::number_bits`] bits. It must be stable while the sums are loaded, and one
     /// clock earlier if the table is read at the rising edge.
     pub fn new(
         d: &'d Designer,
@@ -152,7 +152,8 @@ impl<'d, 'p> PolynomialDatapath<'d, 'p> {
         let cut = |step: &HornerStep| {
             let offset = offset.expect("a polynomial has an offset");
             let width = step.offset as i32;
-            offset.bits(it.segments.rest() - step.offset, Format::signed(-1, width))
+            let whole = it.segments.extra_bit() as i32 - 1;
+            offset.bits(it.segments.rest() - step.offset, Format::signed(whole, width))
         };
         let offsets = it.steps.iter().map(cut).collect();
         let registers = registers.iter().zip(&it.sums).take(it.degree().max(1));
@@ -248,7 +249,7 @@ fn place<'d>(
     let (mut word, mut way) = arm(0);
     for block in 1..=cut.octaves {
         let low = cut.bits - cut.octaves + block - 1;
-        let above = number.bits(low, integer(cut.bits - low));
+        let above = number.bits(low, integer(cut.number_bits() - low));
         let here = d.any(&format!("{prefix}octave{block}"), above);
         let (own, own_way) = arm(block);
         word = d.choose(&format!("{prefix}word{block}"), here, [word, own]);
@@ -256,8 +257,31 @@ fn place<'d>(
             .zip(own_way)
             .map(|(below, own)| d.choose(&format!("{prefix}way{block}"), here, [below, own]));
     }
-    let format = Format::signed(-1, cut.rest() as i32);
-    (word, way.map(|way| flipped(d, &format!("{prefix}offset"), way, format)))
+    let name = format!("{prefix}offset");
+    if cut.overhang == 0 {
+        let format = Format::signed(-1, cut.rest() as i32);
+        return (word, way.map(|way| flipped(d, &name, way, format)));
+    }
+    let beyond = number.bit(cut.bits).named(&format!("{prefix}beyond"));
+    let last = d.raw_constant("last", cut.words() as i128 - 1, word.format());
+    let word = d.choose(&format!("{prefix}segment"), beyond, [word, last]);
+    (word, way.map(|way| offset_with_overhang(d, &name, way, beyond)))
+}
+
+/// Returns the offset from the middle of a segment, where `way` is the offset from the segment's beginning. An operand beyond the
+/// last segment has the offset half a segment plus `way`.
+fn offset_with_overhang<'d>(
+    d: &'d Designer,
+    name: &str,
+    way: Signal<'d>,
+    beyond: Signal<'d>,
+) -> Signal<'d> {
+    let rest = way.format().width();
+    let top = d.not(&format!("{name}_top"), way.bit(rest - 1));
+    let no_sign = d.raw_constant("no_sign", 0, Format::BIT);
+    let sign = d.choose(&format!("{name}_sign"), beyond, [top, no_sign]);
+    let low = way.bits(0, Format::unsigned(rest as i32 - 1, 0));
+    d.join(name, &[sign, top, low], Format::signed(0, rest as i32))
 }
 
 /// Returns the coefficients of the segment, the constant first.

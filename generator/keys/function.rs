@@ -84,6 +84,7 @@ pub fn found(config: &Config) -> Result<(TargetFunction, Arc<Piecewise>), Refusa
         degree: keys.degree.parse().ok(),
         layout: Layout::NAMES.iter().find(|it| it.0 == keys.segments).map(|it| it.1),
         identity: keys.reduction,
+        least_words: 0,
     };
     let it = find(&function, wish)?;
     Ok((function, it))

@@ -4,7 +4,7 @@
 //! every result is within its allowed error. Afterwards the module removes bits that are not needed.
 
 use super::boxes::{BoxError, ResultProof};
-use super::lower::{FoundPolynomials, Guards, lowered};
+use super::lower::{FoundPolynomials, Guards, PlanStyle, lowered};
 use super::plan::ExpressionPlan;
 use super::refusal::PlanRefusal;
 use super::statement::ExpressionStatement;
@@ -36,24 +36,29 @@ pub(super) struct Allocation {
 ///
 /// # Errors
 /// Fails if a formula has no plan, or if no number of bits is enough.
-pub(super) fn allocated(statement: &ExpressionStatement) -> Result<Allocation, PlanRefusal> {
+pub(super) fn allocated(
+    statement: &ExpressionStatement,
+    style: PlanStyle,
+) -> Result<Allocation, PlanRefusal> {
     let [few, many] = DIVISIONS;
-    allocated_with(statement, few).or_else(|_| allocated_with(statement, many))
+    let none = Guards::new(style);
+    allocated_with(statement, &none, few).or_else(|_| allocated_with(statement, &none, many))
 }
 
 /// Returns guards with which every result keeps its error, where the errors are computed with so many divisions of the domain.
 fn allocated_with(
     statement: &ExpressionStatement,
+    none: &Guards,
     divisions: usize,
 ) -> Result<Allocation, PlanRefusal> {
-    let (mut guards, mut plan) = match grown(statement, divisions) {
+    let (mut guards, mut plan) = match grown(statement, none, divisions) {
         Ok(enough) => enough,
-        Err(refusal) => equally_many(statement, divisions).ok_or(refusal)?,
+        Err(refusal) => equally_many(statement, none, divisions).ok_or(refusal)?,
     };
-    for source in 0..guards.0.len() {
-        while guards.0[source] > FIRST_GUARD {
+    for source in 0..guards.bits.len() {
+        while guards.bits[source] > FIRST_GUARD {
             let mut fewer = guards.clone();
-            fewer.0[source] -= 1;
+            fewer.bits[source] -= 1;
             let Ok(candidate) = with_guards(statement, &mut fewer, FIRST_GUARD) else { break };
             if largest_excess(statement, &candidate, divisions).is_some() {
                 break;
@@ -68,9 +73,10 @@ fn allocated_with(
 /// Returns guards that grow, where the largest share of an error is, until every result keeps its error.
 fn grown(
     statement: &ExpressionStatement,
+    none: &Guards,
     divisions: usize,
 ) -> Result<(Guards, ExpressionPlan), PlanRefusal> {
-    let (mut guards, mut plan) = first_plan(statement)?;
+    let (mut guards, mut plan) = first_plan(statement, none)?;
     while let Some(excess) = largest_excess(statement, &plan, divisions) {
         let source = excess.source(statement, &plan, &guards)?;
         guards.add_bit(source);
@@ -84,10 +90,11 @@ fn grown(
 /// where one operation alone gets so many bits that a product is too wide.
 fn equally_many(
     statement: &ExpressionStatement,
+    none: &Guards,
     divisions: usize,
 ) -> Option<(Guards, ExpressionPlan)> {
     for guard in (0..=MOST_FIRST_GUARD).step_by(3) {
-        let mut guards = Guards(Vec::new());
+        let mut guards = none.clone();
         let Ok(plan) = with_guards(statement, &mut guards, guard) else { continue };
         if largest_excess(statement, &plan, divisions).is_none() {
             return Some((guards, plan));
@@ -98,14 +105,17 @@ fn equally_many(
 
 /// Returns the first plan, with the fewest bits for which there is one. With fewer bits a divisor may be rounded to 0, for
 /// example.
-fn first_plan(statement: &ExpressionStatement) -> Result<(Guards, ExpressionPlan), PlanRefusal> {
-    let mut guards = Guards(Vec::new());
+fn first_plan(
+    statement: &ExpressionStatement,
+    none: &Guards,
+) -> Result<(Guards, ExpressionPlan), PlanRefusal> {
+    let mut guards = none.clone();
     let mut refusal = match with_guards(statement, &mut guards, FIRST_GUARD) {
         Ok(plan) => return Ok((guards, plan)),
         Err(refusal) => refusal,
     };
     for first in FIRST_GUARD + 1..=MOST_FIRST_GUARD {
-        let mut guards = Guards(Vec::new());
+        let mut guards = none.clone();
         match with_guards(statement, &mut guards, first) {
             Ok(plan) => return Ok((guards, plan)),
             // With very many bits a part is too wide, which is not the reason.
@@ -124,10 +134,10 @@ fn with_guards(
 ) -> Result<ExpressionPlan, PlanRefusal> {
     loop {
         let (plan, sources) = lowered(statement, guards, first, &FoundPolynomials::default())?;
-        if sources <= guards.0.len() {
+        if sources <= guards.bits.len() {
             return Ok(plan);
         }
-        guards.0.resize(sources, first);
+        guards.bits.resize(sources, first);
     }
 }
 
@@ -169,10 +179,15 @@ impl ExcessiveResult {
         let mut largest = (0.0, None);
         for (node, needed) in plan.nodes.iter().zip(&proof.needed) {
             let Some(source) = node.source.filter(|_| *needed) else { continue };
-            if guards.0.get(source).is_some_and(|guard| *guard >= MOST_GUARD) {
+            if guards.bits.get(source).is_some_and(|guard| *guard >= MOST_GUARD) {
                 continue;
             }
             let share = proof.share(&self.worst.limits, source);
+            // A part that alone has no limit tells nothing where all together have one.
+            let share = match share.is_finite() || self.worst.units.is_infinite() {
+                true => share,
+                false => f64::MIN_POSITIVE,
+            };
             if share > largest.0 {
                 largest = (share, Some(source));
             }

@@ -10,6 +10,7 @@
 use glint_base::fixed::{Format, Rounding, exp2};
 use glint_formula::Enclosure;
 
+use super::evaluate::middle;
 use super::node::{Approximation, NodeId, Operation, PlanNode, normalising_shifts};
 use super::plan::ExpressionPlan;
 
@@ -315,13 +316,12 @@ impl ErrorAnalysis<'_> {
                 };
                 NodeError::new(ideal, error + own)
             }
-            Operation::Saturate(a) => {
-                let a = input(*a);
-                let largest = node.format.to_f64(node.format.max_raw());
-                // The part of the value above the largest is lost.
-                let lost = (largest - a.actual.high).min(0.0);
-                let value = NodeError::new(a.ideal, a.error + Enclosure::between(lost, 0.0));
-                value.limited(Enclosure::between(0.0, largest))
+            Operation::Middle(a) => {
+                let NodeError { ideal, error, .. } = input(*a);
+                let half = exp2(-node.format.frac);
+                let least = exp2(-self.plan.node(*a).format.frac);
+                let own = if own_errors { Enclosure::between(least - half, half) } else { NOTHING };
+                NodeError::new(ideal, error + own)
             }
             Operation::Bit(a, number) => {
                 let value = match input(*a).known() {
@@ -370,7 +370,7 @@ impl ErrorAnalysis<'_> {
         // A result's format holds all values that are within the allowed error, so that its error tells whether it fits.
         let drops_bits = match node.operation {
             Operation::ShiftLeft(..) => true,
-            Operation::Narrow(..) => !self.plan.proved.contains(&id),
+            Operation::Narrow(..) | Operation::Middle(_) => !self.plan.proved.contains(&id),
             _ => false,
         };
         if drops_bits {
@@ -382,6 +382,17 @@ impl ErrorAnalysis<'_> {
     /// Returns limits of the hardware's value that follow from the hardware's values of its inputs alone.
     fn actual(&self, node: &PlanNode, values: &[NodeError]) -> Enclosure {
         let input = |id: NodeId| values[id.0].actual;
+        // If the operands are known, so is each rounding error, and may be 0 by chance. A share counts the largest that it can be.
+        let shortened = |before: NodeId, after: Enclosure| {
+            if self.only.is_none() {
+                return after;
+            }
+            let unit = exp2(-node.format.frac);
+            let [least, most] =
+                [node.format.min_raw(), node.format.max_raw()].map(|raw| node.format.to_f64(raw));
+            let before = input(before);
+            Enclosure::between((before.low - unit).max(least), (before.high + unit).min(most))
+        };
         match node.operation {
             Operation::Add(a, b) => input(a) + input(b),
             Operation::Subtract(a, b) => input(a) - input(b),
@@ -402,10 +413,16 @@ impl ErrorAnalysis<'_> {
                     return input(a);
                 }
                 let (low, high) = raw_limits(input(a), before);
-                Enclosure::between(
-                    node.format.to_f64(rounding.shift(low, places)),
-                    node.format.to_f64(rounding.shift(high, places)),
-                )
+                let [low, high] = [low, high].map(|raw| rounding.shift(raw, places));
+                let after = Enclosure::between(node.format.to_f64(low), node.format.to_f64(high));
+                shortened(a, after)
+            }
+            Operation::Middle(a) => {
+                let before = self.plan.node(a).format;
+                let places = before.frac - node.format.frac;
+                let (low, high) = raw_limits(input(a), before);
+                let [low, high] = [low, high].map(|raw| node.format.to_f64(middle(raw, places)));
+                shortened(a, Enclosure::between(low, high))
             }
             _ => ANYTHING,
         }

@@ -28,10 +28,10 @@ impl ExpressionPlan {
             Operation::Scale(a) => format!("{} times a power of two", name(a)),
             Operation::Narrow(a, Rounding::Nearest) => format!("{}, rounded to nearest", name(a)),
             Operation::Narrow(a, Rounding::Truncate) => format!("{}, without low bits", name(a)),
+            Operation::Middle(a) => format!("{}, its low bits replaced by a 1", name(a)),
             Operation::Bit(a, number) => format!("bit {number} of {}", name(a)),
             Operation::IntegerPart(a) => format!("the integer part of {}", name(a)),
             Operation::FractionPart(a, _) => format!("the fraction of {}", name(a)),
-            Operation::Saturate(a) => format!("{}, at most the largest value", name(a)),
             Operation::Normalise { word, .. } => {
                 format!("{} without its leading zeros", name(word))
             }

@@ -64,7 +64,7 @@ impl ExpressionPlan {
                 let places = self.node(*a).format.frac - node.format.frac;
                 if places > 0 { rounding.shift(known(*a), places) } else { known(*a) << -places }
             }
-            Operation::Saturate(a) => known(*a).clamp(0, node.format.max_raw()),
+            Operation::Middle(a) => middle(known(*a), self.node(*a).format.frac - node.format.frac),
             Operation::Bit(a, number) => known(*a) >> number & 1,
             Operation::IntegerPart(a) => known(*a) >> self.node(*a).format.frac,
             Operation::FractionPart(a, _) => known(*a),
@@ -92,6 +92,11 @@ impl ExpressionPlan {
 /// Returns the value that is left of `raw` when the bits beyond the format of the node are dropped.
 fn wrapped(node: &PlanNode, raw: i128) -> i128 {
     node.format.raw(node.format.bits(raw))
+}
+
+/// Returns a raw value with its lowest `places` + 1 bits replaced by a 1, and `places` fraction bits fewer.
+pub(super) fn middle(raw: i128, places: i32) -> i128 {
+    raw >> places | 1
 }
 
 /// Returns the bits of a word shifted left until the top one is 1, and the places, or pairs of places. For example, 22 in

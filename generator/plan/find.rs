@@ -4,13 +4,13 @@
 use std::collections::HashMap;
 use std::sync::{Arc, LazyLock, Mutex};
 
-use glint_approximate::{Piecewise, TargetFunction, Wish};
+use glint_approximate::{FULL_CELL, Piecewise, TargetFunction, Wish};
 use glint_base::fixed::MAX_WIDTH;
 
 use super::allocate::{Allocation, allocated, largest_excess};
 use super::boxes::ResultProof;
 use super::exhaust::largest_errors;
-use super::lower::{FoundPolynomials, Guards, lowered};
+use super::lower::{FoundPolynomials, Guards, PlanStyle, lowered};
 use super::plan::ExpressionPlan;
 use super::refusal::PlanRefusal;
 use super::statement::ExpressionStatement;
@@ -21,11 +21,17 @@ pub(super) const DIVISIONS: usize = 4000;
 /// Every combination of operands is computed if there are at most 2 to this power.
 const MOST_COMBINATIONS: u32 = 20;
 
+/// The styles that the planner tries. If a table may have a little less than a whole unit of error, a single table needs no further bit
+/// beside the rounding of the result by half a unit.
+const STYLES: [PlanStyle; 4] = [
+    PlanStyle { table_error: 1.0, centres_fractions: false },
+    PlanStyle { table_error: 0.96, centres_fractions: false },
+    PlanStyle { table_error: 1.0, centres_fractions: true },
+    PlanStyle { table_error: 0.96, centres_fractions: true },
+];
+
 /// A number that no source has.
 const NO_SOURCE: usize = usize::MAX;
-
-/// The bits of a table that a look-up table of four inputs holds.
-const BITS_OF_A_CELL: f64 = 16.0;
 
 /// The look-up tables that a degree more takes: the sum, and delays beside it.
 const CELLS_OF_A_DEGREE: f64 = 50.0;
@@ -84,16 +90,15 @@ pub fn find(statement: &ExpressionStatement) -> FindResult {
     found
 }
 
+/// A plan with its polynomials.
+struct Candidate {
+    plan: ExpressionPlan,
+    /// The divisions of the domain by which the errors are known.
+    divisions: usize,
+}
+
 fn searched(statement: &ExpressionStatement) -> Result<ProvedPlan, PlanRefusal> {
-    let Allocation { mut guards, plan: estimate, divisions } = allocated(statement)?;
-    let mut plan = with_polynomials(statement, &guards, estimate)?;
-    // The polynomials can have other formats than was estimated, and then another error.
-    while let Some(excess) = largest_excess(statement, &plan, divisions) {
-        let source = excess.source(statement, &plan, &guards)?;
-        guards.add_bit(source);
-        let estimate = lowered(statement, &guards, 0, &FoundPolynomials::default())?.0;
-        plan = with_polynomials(statement, &guards, estimate)?;
-    }
+    let Candidate { plan, divisions } = smallest_candidate(statement)?;
     let [first, second] = plan.multiplier_widths();
     if first + second > MAX_WIDTH {
         return Err(PlanRefusal::too_wide("product_of_factors", (first + second) as i32));
@@ -108,6 +113,50 @@ fn searched(statement: &ExpressionStatement) -> Result<ProvedPlan, PlanRefusal> 
     }
     let shares = error_shares(statement, &plan, divisions);
     Ok(ProvedPlan { statement: statement.clone(), plan, bounds, shares, proof })
+}
+
+/// Returns the plan that takes the fewest look-up tables by the estimate.
+///
+/// # Errors
+/// Fails if there is no plan. The refusal is that of the first search.
+fn smallest_candidate(statement: &ExpressionStatement) -> Result<Candidate, PlanRefusal> {
+    let mut smallest: Option<(f64, Candidate)> = None;
+    let mut first_refusal = None;
+    for style in STYLES {
+        let candidate = match candidate_with(statement, style) {
+            Ok(candidate) => candidate,
+            Err(refusal) => {
+                first_refusal.get_or_insert(refusal);
+                continue;
+            }
+        };
+        let cells = candidate.plan.total_cells();
+        if smallest.as_ref().is_none_or(|(least, _)| cells < *least) {
+            smallest = Some((cells, candidate));
+        }
+    }
+    match (smallest, first_refusal) {
+        (Some((_, candidate)), _) => Ok(candidate),
+        (None, Some(refusal)) => Err(refusal),
+        (None, None) => unreachable!("there are errors to try"),
+    }
+}
+
+/// Returns a plan of a style that keeps the errors.
+fn candidate_with(
+    statement: &ExpressionStatement,
+    style: PlanStyle,
+) -> Result<Candidate, PlanRefusal> {
+    let Allocation { mut guards, plan: estimate, divisions } = allocated(statement, style)?;
+    let mut plan = with_polynomials(statement, &guards, estimate)?;
+    // The polynomials can have other formats than was estimated, and then another error.
+    while let Some(excess) = largest_excess(statement, &plan, divisions) {
+        let source = excess.source(statement, &plan, &guards)?;
+        guards.add_bit(source);
+        let estimate = lowered(statement, &guards, 0, &FoundPolynomials::default())?.0;
+        plan = with_polynomials(statement, &guards, estimate)?;
+    }
+    Ok(Candidate { plan, divisions })
 }
 
 /// Returns the plan with polynomials for all of its functions.
@@ -143,9 +192,9 @@ fn with_polynomials(
 fn cheapest_polynomials(function: &TargetFunction) -> Result<Arc<Piecewise>, PlanRefusal> {
     let mut cheapest: Option<(f64, Arc<Piecewise>)> = None;
     for degree in [1, 2] {
-        let wish = Wish { degree: Some(degree), ..Wish::default() };
+        let wish = Wish { degree: Some(degree), least_words: FULL_CELL, ..Wish::default() };
         let Ok(found) = glint_approximate::find(function, wish) else { continue };
-        let cost = found.rom_bits() as f64 / BITS_OF_A_CELL + CELLS_OF_A_DEGREE * f64::from(degree);
+        let cost = found.rom_cells() + CELLS_OF_A_DEGREE * f64::from(degree);
         if cheapest.as_ref().is_none_or(|(least, _)| cost < *least) {
             cheapest = Some((cost, found));
         }

@@ -31,6 +31,7 @@
 mod allocate;
 mod analyse;
 mod boxes;
+mod cost;
 mod describe;
 mod evaluate;
 mod exhaust;

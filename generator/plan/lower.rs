@@ -41,24 +41,41 @@ const MOST_CONSTANT_BITS: u32 = 18;
 /// The divisions of the domain for the error of a single node.
 const DIVISIONS_FOR_AN_ERROR: usize = 64;
 
-/// The error that polynomials inside a plan may have, in units of the last place of their result.
-const UNITS: f64 = 1.0;
-
 /// The remedy where a formula has no finite value.
 const LIMIT_THE_OPERANDS: &str =
     "limit the operands by `where`, for example where = \"y > 0\", or by `from` and `to`";
 
-/// The fraction bits of each place where a plan rounds, relative to the result with the most of them.
-#[derive(Clone, Debug, PartialEq, Eq, Hash)]
-pub(super) struct Guards(pub(super) Vec<i32>);
+/// How exact the parts of a plan are.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Guards {
+    /// The fraction bits of each place where the plan rounds, relative to the result with the most of them.
+    pub(super) bits: Vec<i32>,
+    /// The choices that hold for the whole plan.
+    pub(super) style: PlanStyle,
+}
+
+/// Choices that the planner makes for a whole plan. It tries several, and takes the smallest plan.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct PlanStyle {
+    /// The error that a table of polynomials may have, in units of its result.
+    pub(super) table_error: f64,
+    /// Whether the fraction of a normalised word is shortened to the middle of the values with the same upper bits; otherwise its
+    /// low bits are dropped.
+    pub(super) centres_fractions: bool,
+}
 
 impl Guards {
+    /// Makes guards without bits.
+    pub(super) fn new(style: PlanStyle) -> Self {
+        Self { bits: Vec::new(), style }
+    }
+
     /// Gives the place of this number a bit more.
     pub(super) fn add_bit(&mut self, place: usize) {
-        if place >= self.0.len() {
-            self.0.resize(place + 1, 0);
+        if place >= self.bits.len() {
+            self.bits.resize(place + 1, 0);
         }
-        self.0[place] += 1;
+        self.bits[place] += 1;
     }
 }
 
@@ -90,6 +107,8 @@ pub(super) struct Lowering<'s> {
     plan: ExpressionPlan,
     /// The parts of formulas that have a node already, with their nodes.
     known: Vec<(Expression, NodeId)>,
+    /// The tables that sines and cosines of the same angle share.
+    octants: Vec<wave::OctantWaves>,
     /// The number of operations that round, so far.
     sources: usize,
     /// The largest number of fraction bits among the results.
@@ -115,6 +134,7 @@ pub(super) fn lowered(
         found,
         plan: ExpressionPlan::default(),
         known: Vec::new(),
+        octants: Vec::new(),
         sources: 0,
         finest: finest.unwrap_or(0),
     };
@@ -222,7 +242,7 @@ impl<'s> Lowering<'s> {
     ) -> Result<NodeId, PlanRefusal> {
         let source = self.sources;
         self.sources += 1;
-        let guard = self.guards.0.get(source).copied().unwrap_or(self.first_guard);
+        let guard = self.guards.bits.get(source).copied().unwrap_or(self.first_guard);
         let before = self.plan.nodes.len();
         let node = make(self, frac + guard)?;
         if node.0 >= before {
@@ -277,7 +297,7 @@ impl<'s> Lowering<'s> {
             if format.width() <= WIDEST_OPERAND {
                 return Ok(node);
             }
-            own.plan.shorten("operand", node, frac, Rounding::Nearest)
+            own.plan.shorten_for_table("operand", node, frac)
         })?;
         self.function("curve", node, &function, range)
     }
@@ -462,7 +482,7 @@ impl<'s> Lowering<'s> {
             operand,
             outside: Outside::Anything,
             fraction,
-            error: UNITS,
+            error: self.guards.style.table_error,
         };
         let values = function_range(function, operand, domain).ok_or_else(|| {
             let [from, to] = [domain.0, domain.1].map(|raw| operand.to_f64(raw.into()));
@@ -474,8 +494,8 @@ impl<'s> Lowering<'s> {
         })?;
         let unit = exp2(fraction as i32);
         let values = (
-            (values.low * unit - UNITS).floor() as i128,
-            (values.high * unit + UNITS).ceil() as i128,
+            (values.low * unit - target.error).floor() as i128,
+            (values.high * unit + target.error).ceil() as i128,
         );
         let polynomials = self.found.get(&target);
         let approximation = Approximation { function: target, polynomials };
@@ -505,8 +525,7 @@ impl<'s> Lowering<'s> {
     /// Returns whether the value of a node has no rounding error.
     fn is_exact(&self, node: NodeId) -> bool {
         let node = self.plan.node(node);
-        let rounds = node.source.is_some() || matches!(node.operation, Operation::Saturate(_));
-        !rounds && node.operation.inputs().into_iter().all(|it| self.is_exact(it))
+        node.source.is_none() && node.operation.inputs().into_iter().all(|it| self.is_exact(it))
     }
 }
 

@@ -73,14 +73,15 @@ pub enum Operation {
     /// The value, converted to the format of the result: low bits are rounded off, and high bits are dropped. The proof shows
     /// that the dropped high bits are copies of the sign.
     Narrow(NodeId, Rounding),
+    /// The value, with its low bits replaced by a single 1: the middle of all values with the same upper bits. High bits are dropped,
+    /// as by [`Operation::Narrow`]. For example, 0.1011 and 0.1001 become 0.101 if two bits are kept.
+    Middle(NodeId),
     /// One bit of an integer, by its number; bit 0 is the lowest.
     Bit(NodeId, u32),
     /// The greatest integer that is not above a.
     IntegerPart(NodeId),
     /// a minus its integer part, from 0 to below 1. The second node is the integer part.
     FractionPart(NodeId, NodeId),
-    /// The value, or the largest value of the format if it exceeds that. The value is never negative.
-    Saturate(NodeId),
     /// An unsigned word, shifted left until its top bit is 1, and read as a fraction from 1/2 to below 1. With `by_pairs` the
     /// shift is even and the fraction goes from 1/4 to below 1. A word of zeros stays zero.
     Normalise {
@@ -124,7 +125,9 @@ impl Operation {
     pub(super) fn identity(&self) -> Option<(Discriminant<Self>, Vec<NodeId>, u32)> {
         let more = match self {
             Self::Operand(_) | Self::Constant { .. } | Self::Polynomial(..) => return None,
-            Self::Narrow(..) | Self::ShiftRight(..) | Self::ShiftLeft(..) => return None,
+            Self::Narrow(..) | Self::Middle(_) | Self::ShiftRight(..) | Self::ShiftLeft(..) => {
+                return None;
+            }
             Self::Normalise { by_pairs, .. } => u32::from(*by_pairs),
             Self::Bit(_, number) => *number,
             _ => 0,
@@ -140,9 +143,9 @@ impl Operation {
             | Self::NonZero(a)
             | Self::Scale(a)
             | Self::Narrow(a, _)
+            | Self::Middle(a)
             | Self::IntegerPart(a)
             | Self::Bit(a, _)
-            | Self::Saturate(a)
             | Self::Normalise { word: a, .. }
             | Self::Places(a)
             | Self::Polynomial(a, _) => vec![*a],

@@ -4,6 +4,7 @@ use glint_base::fixed::{Format, MAX_WIDTH, Rounding};
 use glint_base::interval::{self, Interval};
 use glint_formula::Enclosure;
 
+use super::evaluate::middle;
 use super::node::{Approximation, NodeId, Operation, PlanNode};
 use super::refusal::PlanRefusal;
 
@@ -357,14 +358,36 @@ impl ExpressionPlan {
         self.narrow(name, a, Format::holding(range.0, range.1, frac), rounding)
     }
 
-    /// Adds a value that is not below 0, limited to the largest value of a format with as many fraction bits.
-    pub(super) fn saturate(
+    /// Adds a with its low bits replaced by a single 1, in a format that has at least one fraction bit less than a. The caller must
+    /// prove that no value leaves the format.
+    pub(super) fn middle(
         &mut self,
         name: &str,
         a: NodeId,
         format: Format,
     ) -> Result<NodeId, PlanRefusal> {
-        self.insert(name, Operation::Saturate(a), format, format.range())
+        let node = self.node(a);
+        let places = node.format.frac - format.frac;
+        let whole = (middle(node.range.0, places), middle(node.range.1, places));
+        let range = if interval::fits(whole, format) { whole } else { format.range() };
+        self.insert(name, Operation::Middle(a), format, range)
+    }
+
+    /// Adds a for a function that reads it alone: if a has more than `frac` fraction bits, all beyond them are replaced by a single 1. A
+    /// table absorbs this bit, so that it costs no logic, and the error is as small as with rounding.
+    pub(super) fn shorten_for_table(
+        &mut self,
+        name: &str,
+        a: NodeId,
+        frac: i32,
+    ) -> Result<NodeId, PlanRefusal> {
+        let node = self.node(a);
+        let places = node.format.frac - (frac + 1);
+        if places < 0 {
+            return Ok(a);
+        }
+        let range = (middle(node.range.0, places), middle(node.range.1, places));
+        self.middle(name, a, Format::holding(range.0, range.1, frac + 1))
     }
 
     /// Adds a bit of an integer.

@@ -102,7 +102,7 @@ impl ExpressionPlan {
                 return held;
             }
             match self.node(reader).operation {
-                Operation::Narrow(..) => return reader,
+                Operation::Narrow(..) | Operation::Middle(_) => return reader,
                 Operation::Scale(_) => held = reader,
                 _ => return held,
             }

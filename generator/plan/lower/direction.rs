@@ -3,7 +3,7 @@
 //! One table covers an octant: there the angle is the arc tangent of the smaller coordinate divided by the larger one, a number
 //! from 0 to 1. The other octants are mirror images of this octant, at the diagonal, the y axis and the x axis.
 
-use glint_base::fixed::{Rounding, exp2};
+use glint_base::fixed::{Format, exp2};
 use glint_formula::{Enclosure, Expression, Function, Kind, Operator};
 
 use super::root::holding;
@@ -75,10 +75,14 @@ impl Lowering<'_> {
         let smaller = self.plan.minimum("smaller", x_size, y_size)?;
         let ratio = self.ratio_in_octave(smaller, &octave, 1.0, true)?;
         let finest = self.finest;
-        // A tangent is at most 1, and rounded at most a unit above it.
+        // A tangent is at most 1, and shortened at most half a unit above it.
         let tangent = self.rounding(finest + 2, |own, frac| {
-            let format = holding(Enclosure::between(0.0, 1.0), frac);
-            own.plan.narrow("tangent", ratio, format, Rounding::Nearest)
+            if own.plan.node(ratio).format.frac <= frac {
+                return Ok(ratio);
+            }
+            let kept = holding(Enclosure::between(0.0, 1.0), frac);
+            let format = Format { frac: frac + 1, ..kept };
+            own.plan.middle("tangent", ratio, format)
         })?;
         let arc = scaling.of(Expression::new(
             Kind::Unary(Function::Atan, Box::new(Expression::operand("x"))),

@@ -105,14 +105,14 @@ impl Lowering<'_> {
         let exact = self.part(&exponents)?;
         let finest = self.finest;
         let exponent = self.rounding(finest + 2, |own, frac| {
-            own.plan.shorten("exponent", exact, frac.max(1), Rounding::Nearest)
+            own.plan.shorten_for_table("exponent", exact, frac.max(1))
         })?;
         if self.plan.node(exponent).format.frac < 1 {
             return Ok(None);
         }
         let [integer, fraction] = self.plan.split("exponent", exponent)?;
         let bits = self.plan.node(fraction).format.frac;
-        // Rounding can carry the exponent to the next integer.
+        // The error of the exponent can carry it to the next integer.
         let largest = (range.high.floor() as i32 + 1).min(self.plan.node(integer).range.1 as i32);
         let domain = (0, (1i64 << bits) - 1);
         let frac = (finest + 2 + largest).max(0);

@@ -148,7 +148,11 @@ impl Lowering<'_> {
         let [normalised, places] = self.plan.normalise("normalised", word, by_pairs)?;
         let finest = self.finest;
         let mantissa = self.rounding(finest + 1, |own, frac| {
-            own.plan.shorten("mantissa", normalised, frac.max(2), Rounding::Truncate)
+            let frac = frac.max(2);
+            match own.guards.style.centres_fractions {
+                true => own.plan.shorten_for_table("mantissa", normalised, frac),
+                false => own.plan.shorten("mantissa", normalised, frac, Rounding::Truncate),
+            }
         })?;
         let bits = self.plan.node(mantissa).format.frac;
         let first = 1i64 << (bits - if by_pairs { 2 } else { 1 });

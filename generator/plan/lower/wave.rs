@@ -1,13 +1,15 @@
-//! Rewrites sines and cosines such as `sin(2 * pi * x)` as operations of a plan, so that a table of one quadrant serves all four.
+//! Rewrites sines and cosines such as `sin(2 * pi * x)` as operations of a plan, so that a short table serves the whole circle.
 //!
-//! The angle in quarter turns is q + w, with an integer q and w from 0 to below 1. The sine is the table's value at w if q is
-//! even, and at 1 − w if q is odd; in the third and the fourth quadrant it is negative. The cosine is the sine of the angle plus
-//! a quarter turn.
+//! If a formula has only the sine or only the cosine of an angle, the table covers a quadrant. The angle in quarter turns is
+//! q + w, with an integer q and w from 0 to below 1. The sine is the table's value at w if q is even, and at 1 − w if q is odd;
+//! in the third and the fourth quadrant it is negative. The cosine is the sine of the angle plus a quarter turn.
+//!
+//! If the formulas have both, two tables cover an octant: the sine and the cosine of up to an eighth of a turn. They share the
+//! folded angle, and both results choose between them.
 
-use glint_base::fixed::Format;
 use glint_formula::{Expression, Function, Kind, Operator, RBig};
 
-use super::{Lowering, number};
+use super::{Lowering, core_of, number};
 use crate::node::NodeId;
 use crate::refusal::PlanRefusal;
 
@@ -50,6 +52,20 @@ fn is_multiple(formula: &Expression) -> bool {
     }
 }
 
+/// The sine and the cosine of an angle that is folded into the first octant, with the nodes that unfold them.
+pub(super) struct OctantWaves {
+    /// The part of the formula from which the angle is computed.
+    core: Expression,
+    /// The power of two by which the part is multiplied to give quarter turns.
+    power: i32,
+    /// The sine and the cosine of the folded angle.
+    waves: [NodeId; 2],
+    /// 1 in the octants in which the size of the sine is the cosine of the folded angle.
+    is_swapped: NodeId,
+    /// Whether the sine is negative, and whether the cosine is.
+    signs: [NodeId; 2],
+}
+
 impl Lowering<'_> {
     /// Returns the node of a sine or a cosine of whole turns; `None` for any other function, and where a quadrant has few
     /// angles or too many.
@@ -64,6 +80,19 @@ impl Lowering<'_> {
         if !(FEWEST_BITS..=MOST_BITS).contains(&bits) {
             return Ok(None);
         }
+        if self.has_sine_and_cosine(core, power) {
+            return self.wave_by_octants(kind, core, power).map(Some);
+        }
+        self.wave_by_quadrants(kind, node, power).map(Some)
+    }
+
+    /// Returns the node of a sine or a cosine, by a table of the sine in a quadrant.
+    fn wave_by_quadrants(
+        &mut self,
+        kind: Function,
+        node: NodeId,
+        power: i32,
+    ) -> Result<NodeId, PlanRefusal> {
         let quarters = self.plan.scale("quarters", node, power)?;
         let [quadrant, way] = self.plan.split("angle", quarters)?;
         let quadrant = match kind {
@@ -74,19 +103,121 @@ impl Lowering<'_> {
             _ => quadrant,
         };
         let is_odd = self.plan.bit("is_odd_quadrant", quadrant, 0)?;
-        let one = self.plan.constant("quarter", 1, 0)?;
-        let back = self.plan.subtract("angle_back", one, way)?;
-        // At 1 itself the sine is flat, so that the nearest angle below has nearly the same sine, and the table needs no word more.
-        let back = self.plan.saturate("angle_back_kept", back, Format::unsigned(0, bits))?;
-        let angle = self.plan.choose("angle_in_quadrant", is_odd, [way, back])?;
-        let finest = self.finest;
-        let domain = (0, (1i64 << bits) - 1);
-        let table = number("sin(pi / 2 * x)");
-        let size = self.rounding(finest + 1, |own, frac| {
-            own.approximation("wave", angle, &table, domain, frac)
-        })?;
+        let angle = self.folded("quadrant", is_odd, way)?;
+        let size = self.wave_of_angle("wave", angle, "sin(pi / 2 * x)")?;
         let is_negative = self.plan.bit("is_negative", quadrant, 1)?;
-        let negated = self.plan.negate("wave_negated", size)?;
-        self.plan.choose("wave_with_sign", is_negative, [size, negated]).map(Some)
+        self.with_sign("wave", size, is_negative)
     }
+
+    /// Returns the node of a sine or a cosine, by tables of both in an octant.
+    ///
+    /// In the octants 0 to 3 the size of the sine is the sine, the cosine, the cosine and the sine of the folded angle, and the
+    /// size of the cosine is the other one. The octants 4 to 7 repeat these. The sine is negative in the octants 4 to 7, and the
+    /// cosine in the octants 2 to 5.
+    fn wave_by_octants(
+        &mut self,
+        kind: Function,
+        core: &Expression,
+        power: i32,
+    ) -> Result<NodeId, PlanRefusal> {
+        let is_known = |it: &OctantWaves| it.core == *core && it.power == power;
+        let known = match self.octants.iter().position(is_known) {
+            Some(known) => known,
+            None => {
+                let waves = self.octant_waves(core, power)?;
+                self.octants.push(waves);
+                self.octants.len() - 1
+            }
+        };
+        let OctantWaves { waves: [sine, cosine], is_swapped, signs, .. } = self.octants[known];
+        match kind {
+            Function::Cos => {
+                let size = self.plan.choose("cosine_size", is_swapped, [cosine, sine])?;
+                self.with_sign("cosine", size, signs[1])
+            }
+            _ => {
+                let size = self.plan.choose("sine_size", is_swapped, [sine, cosine])?;
+                self.with_sign("sine", size, signs[0])
+            }
+        }
+    }
+
+    /// Adds the tables of an octant, with the nodes that unfold the angle.
+    fn octant_waves(&mut self, core: &Expression, power: i32) -> Result<OctantWaves, PlanRefusal> {
+        let node = self.part(core)?;
+        let eighths = self.plan.scale("eighths", node, power + 1)?;
+        let [octant, way] = self.plan.split("angle", eighths)?;
+        let is_odd = self.plan.bit("is_odd_octant", octant, 0)?;
+        let angle = self.folded("octant", is_odd, way)?;
+        let sine = self.wave_of_angle("octant_sine", angle, "sin(pi / 4 * x)")?;
+        let cosine = self.wave_of_angle("octant_cosine", angle, "cos(pi / 4 * x)")?;
+        let one = self.plan.constant("one", 1, 0)?;
+        let next = self.plan.add("next_octant", octant, one)?;
+        let is_swapped = self.plan.bit("is_swapped", next, 1)?;
+        let two = self.plan.constant("two", 2, 0)?;
+        let after_next = self.plan.add("quadrant_ahead", octant, two)?;
+        let is_sine_negative = self.plan.bit("is_sine_negative", octant, 2)?;
+        let is_cosine_negative = self.plan.bit("is_cosine_negative", after_next, 2)?;
+        Ok(OctantWaves {
+            core: core.clone(),
+            power,
+            waves: [sine, cosine],
+            is_swapped,
+            signs: [is_sine_negative, is_cosine_negative],
+        })
+    }
+
+    /// Returns the angle within a quadrant or an octant, counted from the end where the table begins: `way`, or 1 − `way` in
+    /// those with an odd number.
+    fn folded(&mut self, name: &str, is_odd: NodeId, way: NodeId) -> Result<NodeId, PlanRefusal> {
+        let one = self.plan.constant("whole", 1, 0)?;
+        let back = self.plan.subtract("angle_back", one, way)?;
+        self.plan.choose(&format!("angle_in_{name}"), is_odd, [way, back])
+    }
+
+    /// Returns the node of a table of a sine or a cosine, for a folded angle from 0 to 1 with both ends.
+    fn wave_of_angle(
+        &mut self,
+        name: &str,
+        angle: NodeId,
+        formula: &str,
+    ) -> Result<NodeId, PlanRefusal> {
+        let finest = self.finest;
+        let domain = (0, 1i64 << self.plan.node(angle).format.frac);
+        self.rounding(finest + 1, |own, frac| {
+            own.approximation(name, angle, &number(formula), domain, frac)
+        })
+    }
+
+    /// Returns a value with its sign changed where `is_negative` is 1.
+    fn with_sign(
+        &mut self,
+        name: &str,
+        size: NodeId,
+        is_negative: NodeId,
+    ) -> Result<NodeId, PlanRefusal> {
+        let negated = self.plan.negate(&format!("{name}_negated"), size)?;
+        self.plan.choose(&format!("{name}_with_sign"), is_negative, [size, negated])
+    }
+
+    /// Returns whether the formulas of the statement have both the sine and the cosine of an angle.
+    fn has_sine_and_cosine(&self, core: &Expression, power: i32) -> bool {
+        let has = |kind: Function| {
+            let wanted = (kind, power);
+            let mut results = self.statement.results.iter();
+            results.any(|result| has_wave(&result.formula, core, wanted))
+        };
+        has(Function::Sin) && has(Function::Cos)
+    }
+}
+
+/// Returns whether a formula contains the sine or the cosine of a part, in quarter turns times a power of two.
+fn has_wave(formula: &Expression, core: &Expression, wanted: (Function, i32)) -> bool {
+    if core_of(formula) == core {
+        let function = formula.substitute(core, &Expression::operand("x"), &formula.span);
+        if quarter_turns(&function) == Some(wanted) {
+            return true;
+        }
+    }
+    formula.parts().into_iter().any(|part| has_wave(part, core, wanted))
 }
