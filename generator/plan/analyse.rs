@@ -10,8 +10,7 @@
 use glint_base::fixed::{Format, Rounding, exp2};
 use glint_formula::Enclosure;
 
-use super::evaluate::middle;
-use super::node::{Approximation, NodeId, Operation, PlanNode, normalising_shifts};
+use super::node::{Approximation, NodeId, Operation, PlanNode, middle, normalising_shifts};
 use super::plan::ExpressionPlan;
 
 /// The values of an integer part that are followed one by one.

@@ -1,7 +1,7 @@
 //! Computes the values of all nodes of a plan in integers, from the definitions of their operations. The golden model of the
 //! device `expression` uses it.
 
-use super::node::{NodeId, Operation, PlanNode, normalising_shifts};
+use super::node::{NodeId, Operation, PlanNode, middle, normalising_shifts};
 use super::plan::ExpressionPlan;
 
 impl ExpressionPlan {
@@ -92,11 +92,6 @@ impl ExpressionPlan {
 /// Returns the value that is left of `raw` when the bits beyond the format of the node are dropped.
 fn wrapped(node: &PlanNode, raw: i128) -> i128 {
     node.format.raw(node.format.bits(raw))
-}
-
-/// Returns a raw value with its lowest `places` + 1 bits replaced by a 1, and `places` fraction bits fewer.
-pub(super) fn middle(raw: i128, places: i32) -> i128 {
-    raw >> places | 1
 }
 
 /// Returns the bits of a word shifted left until the top one is 1, and the places, or pairs of places. For example, 22 in

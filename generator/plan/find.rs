@@ -91,14 +91,14 @@ pub fn find(statement: &ExpressionStatement) -> FindResult {
 }
 
 /// A plan with its polynomials.
-struct Candidate {
+struct PlanCandidate {
     plan: ExpressionPlan,
     /// The divisions of the domain by which the errors are known.
     divisions: usize,
 }
 
 fn searched(statement: &ExpressionStatement) -> Result<ProvedPlan, PlanRefusal> {
-    let Candidate { plan, divisions } = smallest_candidate(statement)?;
+    let PlanCandidate { plan, divisions } = smallest_candidate(statement)?;
     let [first, second] = plan.multiplier_widths();
     if first + second > MAX_WIDTH {
         return Err(PlanRefusal::too_wide("product_of_factors", (first + second) as i32));
@@ -119,8 +119,8 @@ fn searched(statement: &ExpressionStatement) -> Result<ProvedPlan, PlanRefusal> 
 ///
 /// # Errors
 /// Fails if there is no plan. The refusal is that of the first search.
-fn smallest_candidate(statement: &ExpressionStatement) -> Result<Candidate, PlanRefusal> {
-    let mut smallest: Option<(f64, Candidate)> = None;
+fn smallest_candidate(statement: &ExpressionStatement) -> Result<PlanCandidate, PlanRefusal> {
+    let mut smallest: Option<(f64, PlanCandidate)> = None;
     let mut first_refusal = None;
     for style in STYLES {
         let candidate = match candidate_with(statement, style) {
@@ -146,7 +146,7 @@ fn smallest_candidate(statement: &ExpressionStatement) -> Result<Candidate, Plan
 fn candidate_with(
     statement: &ExpressionStatement,
     style: PlanStyle,
-) -> Result<Candidate, PlanRefusal> {
+) -> Result<PlanCandidate, PlanRefusal> {
     let Allocation { mut guards, plan: estimate, divisions } = allocated(statement, style)?;
     let mut plan = with_polynomials(statement, &guards, estimate)?;
     // The polynomials can have other formats than was estimated, and then another error.
@@ -156,7 +156,7 @@ fn candidate_with(
         let estimate = lowered(statement, &guards, 0, &FoundPolynomials::default())?.0;
         plan = with_polynomials(statement, &guards, estimate)?;
     }
-    Ok(Candidate { plan, divisions })
+    Ok(PlanCandidate { plan, divisions })
 }
 
 /// Returns the plan with polynomials for all of its functions.

@@ -177,3 +177,9 @@ pub fn normalising_shifts(width: u32, by_pairs: bool) -> Vec<u32> {
     }
     shifts
 }
+
+/// Returns a raw value with its lowest `places` + 1 bits replaced by a 1, and `places` fraction bits fewer. For example, 0b10110 with
+/// 2 places gives 0b101.
+pub(super) fn middle(raw: i128, places: i32) -> i128 {
+    raw >> places | 1
+}

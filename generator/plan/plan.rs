@@ -4,8 +4,7 @@ use glint_base::fixed::{Format, MAX_WIDTH, Rounding};
 use glint_base::interval::{self, Interval};
 use glint_formula::Enclosure;
 
-use super::evaluate::middle;
-use super::node::{Approximation, NodeId, Operation, PlanNode};
+use super::node::{Approximation, NodeId, Operation, PlanNode, middle};
 use super::refusal::PlanRefusal;
 
 /// The limits of a value before the rewriting limits it.

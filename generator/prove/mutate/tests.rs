@@ -20,6 +20,17 @@ fn every() -> usize {
     if std::env::var("GLINT_TESTS").is_ok_and(|tests| tests == "all") { 29 } else { 211 }
 }
 
+/// A fault may replace an operand by a net that the part of the netlist around the fault does not contain.
+#[test]
+fn faults_that_read_other_nets_are_no_proof_and_no_panic() {
+    let core = core("benches/small/rough_up5k_pipelined.toml");
+    let prover = Prover::new(&core.design).unwrap();
+    let faults = Faults::of(&core.design);
+    let wired: Vec<_> = faults.iter().filter(|fault| fault.kind == FaultKind::Wiring).collect();
+    let proved = wired.par_iter().filter(|fault| prover.proves(&fault.site).is_some()).count();
+    assert!(proved < wired.len(), "{proved} of {}", wired.len());
+}
+
 /// Points in which most faults show.
 const POINTS: u64 = 200;
 

@@ -250,6 +250,11 @@ impl<'a> Windows<'a> {
         }
         let total = combinations as u64;
         let steps = self.cells_behind(&cut, wanted);
+        if let Some((net, site)) = fault
+            && !reads_known_nets(net, site, &cut, &steps)
+        {
+            return None;
+        }
         let nets = self.design.nets.len();
         let chunks = total.div_ceil(LANES as u64);
         let all = (0..chunks).into_par_iter().map_init(
@@ -385,6 +390,15 @@ struct FaultyWords<'s> {
     sound: &'s [u64],
     /// Each word at fault, with its address.
     faulty: &'s [(usize, u64)],
+}
+
+/// Returns whether the faulty driver of a net reads only nets of the cut, and nets that are evaluated before the net. A fault may
+/// replace an operand by a net that the window does not contain.
+fn reads_known_nets(net: NetId, site: &Site, cut: &BTreeSet<NetId>, steps: &[NetId]) -> bool {
+    let Site::Driver(_, Driver::Op(op)) = site else { return true };
+    let end = steps.iter().position(|step| *step == net).unwrap_or(steps.len());
+    let earlier = &steps[..end];
+    op.operands().iter().all(|operand| cut.contains(operand) || earlier.contains(operand))
 }
 
 /// Keeps the lanes of a net.
