@@ -244,12 +244,14 @@ impl TargetFunction {
         }
     }
 
-    /// Returns how the operands of the domain are numbered.
-    fn numbering(&self) -> Numbering {
+    /// Returns how the operands of the domain are numbered. With `layout` halving there is no overhang: its last segment is short.
+    fn numbering(&self, layout: Option<Layout>) -> Numbering {
         let span = (self.domain.1 - self.domain.0) as u64;
         let bits = (u64::BITS - span.leading_zeros()).max(1);
         let beyond = span + 1 - (1 << (bits - 1));
-        if self.outside == Outside::Anything && beyond <= span >> SMALL_PART {
+        let may_overhang =
+            self.outside == Outside::Anything && layout != Some(Layout::Halving) && beyond > 0;
+        if may_overhang && beyond <= span >> SMALL_PART {
             return Numbering { origin: self.domain.0, bits: bits - 1, overhang: beyond };
         }
         let whole = self.operand.width();

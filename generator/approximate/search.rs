@@ -106,7 +106,7 @@ fn attempt(function: &TargetFunction, wish: Wish) -> Result<Option<Piecewise>, R
     let mut unproved = None;
     for stricter in STRICTER {
         let stricter = stricter * (function.error - 0.5);
-        let Some(seen) = AllowedResults::new(function, stricter)? else { break };
+        let Some(seen) = AllowedResults::new(function, stricter, wish.layout)? else { break };
         let Some(found) = cheapest(&seen, wish) else { break };
         match found.prove(function) {
             Ok(bound) => return Ok(Some(Piecewise { bound, ..found })),
@@ -137,7 +137,9 @@ fn attempt_reduced(function: &TargetFunction, wish: Wish) -> Result<Option<Piece
     }
     for &(guard, wider) in variants(wish.identity) {
         let (reduction, inner) = Reduction::of(wish.identity, function, guard, wider)?;
-        let Some(seen) = AllowedResults::reduced(function, &reduction, &inner)? else { continue };
+        let Some(seen) = AllowedResults::reduced(function, &reduction, &inner, wish.layout)? else {
+            continue;
+        };
         if let Some(found) = cheapest(&seen, wish) {
             return found.prove(function).map(|bound| Some(Piecewise { bound, ..found }));
         }

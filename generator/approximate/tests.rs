@@ -203,3 +203,16 @@ fn reduced_operands_serve_the_whole_domain() {
         assert_eq!(refusal.key, "approximation.reduction", "{text}");
     }
 }
+
+/// Both ends of the domain belong to it, so that the last operand is one beyond a power of two.
+#[test]
+fn a_domain_with_both_ends_may_have_every_layout() {
+    let mut it = function("sqrt(2 - x)", (0.0, 1.0), 10, 1.0);
+    let operand = Format::unsigned(1, 10);
+    it = TargetFunction { domain: (0, 1 << 10), operand, outside: Outside::Anything, ..it };
+    for (layout, overhang) in [(Layout::Uniform, 1), (Layout::Octaves, 1), (Layout::Halving, 0)] {
+        let found = find(&it, Wish { layout: Some(layout), ..Wish::default() }).unwrap();
+        assert_eq!(found.segments.overhang, overhang, "{layout:?}");
+        assert!(found.bound < 1.0);
+    }
+}

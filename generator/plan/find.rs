@@ -118,7 +118,7 @@ fn searched(statement: &ExpressionStatement) -> Result<ProvedPlan, PlanRefusal> 
 /// Returns the plan that takes the fewest look-up tables by the estimate.
 ///
 /// # Errors
-/// Fails if there is no plan. The refusal is that of the first search.
+/// Fails if no style has a plan, with the refusal of the first style.
 fn smallest_candidate(statement: &ExpressionStatement) -> Result<PlanCandidate, PlanRefusal> {
     let mut smallest: Option<(f64, PlanCandidate)> = None;
     let mut first_refusal = None;
@@ -138,7 +138,7 @@ fn smallest_candidate(statement: &ExpressionStatement) -> Result<PlanCandidate, 
     match (smallest, first_refusal) {
         (Some((_, candidate)), _) => Ok(candidate),
         (None, Some(refusal)) => Err(refusal),
-        (None, None) => unreachable!("there are errors to try"),
+        (None, None) => unreachable!("there are styles to try"),
     }
 }
 
