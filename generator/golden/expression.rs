@@ -250,6 +250,8 @@ impl Formula for ProvedFormulas {
                 words: plan.words(NodeId(at)),
                 format: node.format,
                 shares: self.found.shares.iter().map(|of_result| of_result[at]).collect(),
+                cells: plan.cells(NodeId(at)),
+                products: plan.products(NodeId(at)),
             });
         }
         parts

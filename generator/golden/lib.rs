@@ -394,6 +394,10 @@ pub struct ComputedPart {
     pub format: Format,
     /// The part's share in the error of each output, in units of the output's last bit; 0 for a part that is exact.
     pub shares: Vec<f64>,
+    /// An estimate of the look-up tables of four inputs that the part takes. It is 0 for a part that only selects bits.
+    pub cells: f64,
+    /// The number of products that the part computes: in a pipeline each takes a multiplier of its own.
+    pub products: usize,
 }
 
 /// One contribution to a [`Bound`]. For example, `output.rounding` contributes 0.5 units to the bound of `rough`, for the

@@ -7,16 +7,24 @@
 use std::ops::Range;
 use std::sync::Arc;
 
-use glint_base::fixed::{Format, MAX_WIDTH};
+use glint_base::fixed::{Format, MAX_WIDTH, exp2};
 use glint_base::identifier;
 use glint_base::key_error::KeyError;
 use glint_config::{Config, Key, Problems, Schema, TableEntries, TableEntry, TextPattern, Value};
 use glint_formula::{Comparison, Expression, Fault, Kind, Operator, parse};
 use glint_plan::{
-    ExpressionStatement, ProvedPlan, StatedOperand, StatedOverflow, StatedResult, StatedWidth, find,
+    ExpressionStatement, PlanRefusal, ProvedPlan, StatedOperand, StatedOverflow, StatedResult,
+    StatedWidth, find, least_size,
 };
 
 use super::function::End;
+
+/// The errors that may be stated, in units of a result's last place.
+const LEAST_ERROR: f64 = 0.5;
+const LARGEST_ERROR: f64 = 1024.0;
+
+/// The remedy for a relative error that is no part of a value.
+const RELATIVE_ERROR: &str = "a number between 0 and 1, or a formula of numbers: \"2^-12\", say";
 
 glint_config::keys! {
     /// The values of a configuration of the device `expression`, one field for each of its keys.
@@ -52,8 +60,14 @@ fn result_fields() -> Vec<Key> {
         Key::number(
             "error",
             1.0,
-            0.5..=1024.0,
+            LEAST_ERROR..=LARGEST_ERROR,
             "The result is nearer to the formula than this, in units of its last place.",
+        ),
+        Key::text(
+            "error_relative",
+            "2^-12",
+            TextPattern::Formula,
+            "In place of error: the result is nearer to the formula than this part of the formula's value.",
         ),
         Key::integer(
             "bits",
@@ -134,14 +148,17 @@ impl StatementError {
 /// Fails if an operand or a formula is wrong, or if there is no plan. The error says why.
 pub fn found(config: &Config) -> Result<Arc<ProvedPlan>, StatementError> {
     let statement = statement(&Keys::of(config))?;
-    find(&statement).map_err(|refusal| {
-        let key = match refusal.result {
-            Some(number) => format!("results.{}.formula", statement.results[number].name),
-            None => "results".to_owned(),
-        };
-        let error = StatementError::new(key, refusal.message, refusal.remedy);
-        StatementError { place: refusal.place, ..error }
-    })
+    find(&statement).map_err(|refusal| refused(&statement, refusal))
+}
+
+/// Returns the refusal of a plan as an error in the formula that it concerns.
+fn refused(statement: &ExpressionStatement, refusal: PlanRefusal) -> StatementError {
+    let key = match refusal.result {
+        Some(number) => format!("results.{}.formula", statement.results[number].name),
+        None => "results".to_owned(),
+    };
+    let error = StatementError::new(key, refusal.message, refusal.remedy);
+    StatementError { place: refusal.place, ..error }
 }
 
 /// Returns the statement of a configuration: its formulas in terms of operands alone.
@@ -170,7 +187,52 @@ fn statement(keys: &Keys) -> Result<ExpressionStatement, StatementError> {
             return Err(StatementError::new(key, message, "remove it, or name it in a formula"));
         }
     }
-    Ok(ExpressionStatement { operands, results })
+    let mut statement = ExpressionStatement { operands, results };
+    for (number, record) in keys.results.0.iter().enumerate() {
+        if let Some(text) = record.text("error_relative") {
+            statement.results[number].error = error_of_relative(&statement, number, text)?;
+        }
+    }
+    Ok(statement)
+}
+
+/// Returns the allowed error of a result whose error is stated as a part of its value, in units of its last place. The smallest
+/// value decides. For example, 2^-12 of values from 0.5 to 1 is 2^-13, which is 4 units with 15 fraction bits.
+fn error_of_relative(
+    statement: &ExpressionStatement,
+    number: usize,
+    text: &str,
+) -> Result<f64, StatementError> {
+    let StatedResult { name, fraction, .. } = &statement.results[number];
+    let key = format!("results.{name}.error_relative");
+    let part = parse(text).and_then(|part| part.enclose(&[])).map_err(|fault| StatementError {
+        place: Some(fault.span),
+        ..StatementError::new(&key, fault.message, RELATIVE_ERROR)
+    })?;
+    if !(part.low > 0.0 && part.high < 1.0) {
+        let message = format!("`{text}` is not a number between 0 and 1");
+        return Err(StatementError::new(key, message, RELATIVE_ERROR));
+    }
+    let least = least_size(statement, number).map_err(|refusal| refused(statement, refusal))?;
+    if least == 0.0 {
+        let message = format!(
+            "`{name}` may be 0 or near 0, where no error is small enough as a part of the value"
+        );
+        let remedy =
+            "limit the operands, by `where` or by their domains, or give `error` in its place";
+        return Err(StatementError::new(key, message, remedy));
+    }
+    let allowed = part.low * least;
+    let units = (allowed * exp2(*fraction as i32)).next_down();
+    if units < LEAST_ERROR {
+        let needed = (LEAST_ERROR / allowed).log2().ceil();
+        let message = format!(
+            "`{name}` comes down to {least:.6}: with {fraction} fraction bits half a unit is more than {text} of it"
+        );
+        let remedy = format!("at least {needed} fraction bits, or a larger part");
+        return Err(StatementError::new(key, message, remedy));
+    }
+    Ok(units.min(LARGEST_ERROR))
 }
 
 /// The ports that every core has, as a pipeline or with a microprogram.
@@ -313,6 +375,14 @@ fn result(
         Some(text) => Some(promise(text, &format!("{whole}.where"), keys, parts)?),
         None => None,
     };
+    if record.field("error").is_some() && record.field("error_relative").is_some() {
+        let message = format!("`{name}` has both `error` and `error_relative`");
+        return Err(StatementError::new(
+            format!("{whole}.error_relative"),
+            message,
+            "keep one of the two",
+        ));
+    }
     let error = record.number("error").unwrap_or(1.0);
     let width = record.bits("bits").map(|bits| {
         let format = stated_format(record, bits, fraction);

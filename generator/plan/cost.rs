@@ -61,6 +61,17 @@ impl ExpressionPlan {
             }
         }
     }
+
+    /// Returns the number of products that a node computes. A table of polynomials of degree 2 computes two.
+    pub fn products(&self, id: NodeId) -> usize {
+        match &self.node(id).operation {
+            Operation::Multiply(..) => 1,
+            Operation::Polynomial(_, approximation) => {
+                approximation.polynomials.as_deref().map_or(0, Piecewise::degree)
+            }
+            _ => 0,
+        }
+    }
 }
 
 /// Returns the look-up tables for the bits of two factors that a multiplier does not have.

@@ -47,6 +47,7 @@ mod statement;
 pub use find::{ProofKind, ProvedPlan, find};
 pub use node::{Approximation, NodeId, Operation, PlanNode};
 pub use plan::ExpressionPlan;
+pub use range::least_size;
 pub use refusal::PlanRefusal;
 pub use schedule::{PlanSchedule, PlanStep};
 pub use statement::{

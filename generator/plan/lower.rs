@@ -19,7 +19,7 @@ use glint_formula::{Comparison, Enclosure, Expression, Function, Kind, Operator,
 use super::boxes::ResultProof;
 use super::node::{Approximation, NodeId, Operation};
 use super::plan::ExpressionPlan;
-use super::range::{NoRange, range_of};
+use super::range::{LIMIT_THE_OPERANDS, range_of};
 use super::refusal::PlanRefusal;
 use super::statement::{ExpressionStatement, StatedOverflow, StatedResult, StatedWidth};
 
@@ -40,10 +40,6 @@ const MOST_CONSTANT_BITS: u32 = 18;
 
 /// The divisions of the domain for the error of a single node.
 const DIVISIONS_FOR_AN_ERROR: usize = 64;
-
-/// The remedy where a formula has no finite value.
-const LIMIT_THE_OPERANDS: &str =
-    "limit the operands by `where`, for example where = \"y > 0\", or by `from` and `to`";
 
 /// How exact the parts of a plan are.
 #[derive(Clone, Debug, PartialEq)]
@@ -220,17 +216,7 @@ impl<'s> Lowering<'s> {
 
     /// Returns limits of the values of a part where something is promised.
     fn range(&self, part: &Expression) -> Result<Enclosure, PlanRefusal> {
-        range_of(self.statement, part).map_err(|error| match error {
-            NoRange::NotFinite(limits) => {
-                let place = self.statement.place(&limits);
-                let message = format!("this is not finite, or has no value, for {place}");
-                PlanRefusal::new(message, LIMIT_THE_OPERANDS).at(&part.span)
-            }
-            NoRange::NothingPromised => PlanRefusal::new(
-                "no operands of the domains satisfy `where`",
-                "change `where`, or the domains of the operands",
-            ),
-        })
+        range_of(self.statement, part).map_err(|error| error.refusal(self.statement, part))
     }
 
     /// Takes the next choice of fraction bits, beside `frac`, and gives its number to the node that `make` adds. The choice is

@@ -4,9 +4,10 @@
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
-use glint_formula::{Enclosure, Expression};
+use glint_formula::{Enclosure, Expression, Function, Kind};
 
 use super::boxes::{BoxScore, OperandBox, best_halves};
+use super::refusal::PlanRefusal;
 use super::statement::{ExpressionStatement, StatedResult};
 
 /// The divisions of the domain, at most, until the values have limits.
@@ -15,6 +16,10 @@ const DIVISIONS_TO_LIMITS: usize = 1 << 12;
 /// The divisions of the domain that bring each limit nearer to the true one.
 const DIVISIONS_OF_AN_END: usize = 300;
 
+/// The remedy where a formula has no finite value.
+pub(super) const LIMIT_THE_OPERANDS: &str =
+    "limit the operands by `where`, for example where = \"y > 0\", or by `from` and `to`";
+
 /// Why a part has no limits of its values.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum NoRange {
@@ -22,6 +27,23 @@ pub(super) enum NoRange {
     NotFinite(OperandBox),
     /// No operands satisfy `where`.
     NothingPromised,
+}
+
+impl NoRange {
+    /// Returns the refusal of a part of a formula for this reason.
+    pub(super) fn refusal(self, statement: &ExpressionStatement, part: &Expression) -> PlanRefusal {
+        match self {
+            Self::NotFinite(limits) => {
+                let place = statement.place(&limits);
+                let message = format!("this is not finite, or has no value, for {place}");
+                PlanRefusal::new(message, LIMIT_THE_OPERANDS).at(&part.span)
+            }
+            Self::NothingPromised => PlanRefusal::new(
+                "no operands of the domains satisfy `where`",
+                "change `where`, or the domains of the operands",
+            ),
+        }
+    }
 }
 
 /// A box with the limits of the values in it.
@@ -120,6 +142,25 @@ pub(super) fn range_of(
         largest(finite.iter().cloned().map(high_of), &|limits| values_in(limits).map(high_of));
     let low = largest(finite.iter().cloned().map(low_of), &|limits| values_in(limits).map(low_of));
     Ok(Enclosure::between(-low, high))
+}
+
+/// Returns a number that no promised value of a result comes nearer to 0 than. For example, it is 0.5 or a little less for `1 / x`
+/// with x from 1 to 2.
+///
+/// # Errors
+/// Fails if the values have no finite limits, or if nothing is promised.
+pub fn least_size(statement: &ExpressionStatement, result: usize) -> Result<f64, PlanRefusal> {
+    let stated = &statement.results[result];
+    let target = stated.target();
+    let kind = Kind::Unary(Function::Abs, Box::new(target.clone()));
+    let size = Expression::new(kind, target.span.clone());
+    // The condition of this result alone counts.
+    let alone = ExpressionStatement {
+        operands: statement.operands.clone(),
+        results: vec![StatedResult { formula: size.clone(), width: None, ..stated.clone() }],
+    };
+    let values = range_of(&alone, &size).map_err(|error| error.refusal(statement, target));
+    values.map(|values| values.low.max(0.0)).map_err(|refusal| refusal.of_result(result))
 }
 
 /// Returns a limit of the largest value in any of the boxes. `end_in` gives a limit within a box, or nothing if nothing is

@@ -7,7 +7,7 @@ use super::exhaust::largest_errors;
 use super::find::{DIVISIONS, enclosed_errors};
 use super::{
     ExpressionStatement, Operation, ProofKind, StatedOperand, StatedOverflow, StatedResult,
-    StatedWidth, find,
+    StatedWidth, find, least_size,
 };
 
 /// Returns an operand with a whole format as its domain.
@@ -399,4 +399,18 @@ fn shares_are_of_the_parts_that_round() {
             assert_eq!(has_table, largest_table > 0.0, "{}", statement.results[result].name);
         }
     }
+}
+
+/// The values of x / y with x and y from 1/2 to 1 − 2⁻¹² are at least 2048/4095; those of x − y include 0.
+#[test]
+fn least_sizes_by_hand() {
+    let half = StatedOperand { domain: (2048, 4095), ..operand("x", Format::unsigned(0, 12)) };
+    let operands = vec![half.clone(), StatedOperand { name: "y".to_owned(), ..half }];
+    let results = ["x / y", "-x / y", "x - y"].map(|formula| result("r", formula, 14)).to_vec();
+    let statement = ExpressionStatement { operands, results };
+    let sizes = [0, 1, 2].map(|number| least_size(&statement, number).expect("finite values"));
+    let exact = 2048.0 / 4095.0;
+    assert!(sizes[0] <= exact && sizes[0] > exact - 1e-9, "{sizes:?}");
+    assert!(sizes[1] <= exact && sizes[1] > exact - 1e-9, "{sizes:?}");
+    assert_eq!(sizes[2], 0.0);
 }

@@ -294,17 +294,19 @@ def function(formula, low, high, *, fraction=None, error=None, **keys):
     return Core(device="function", **{**given, **keys})
 
 
-def expression(results, *, let=None, fraction=None, error=None, where=None, keys=None, **operands):
+def expression(
+    results, *, let=None, fraction=None, error=None, error_relative=None, where=None, keys=None, **operands
+):
     """A core for formulas of several operands: `glint.expression("x / y", x=(0, 1, 16), y=(0.5, 1, 16), fraction=15)`.
 
     An operand is a domain with its fraction bits, `x=(-1, 1, 15)`, or its fields, `x={"bits": 16, "fraction": 15, "signed": True}`.
     `results` is a formula, whose result is named `r`, or a dictionary of formulas by name. A core with several results gives them
-    under the names of their ports, `core(x, y)["r_out"]`. In place of a formula a result can have its fields, `{"formula": "x / y", "fraction": 15, "where": "y > x"}`; `fraction`, `error` and `where` are for the results
-    that do not state them. `let` has named parts, and `keys` any other keys, `{"architecture": "pipelined"}`.
+    under the names of their ports, `core(x, y)["r_out"]`. In place of a formula a result can have its fields, `{"formula": "x / y", "fraction": 15, "where": "y > x"}`; `fraction`, `where` and
+    `error` or `error_relative` are for the results that do not state them. `let` has named parts, and `keys` any other keys, `{"architecture": "pipelined"}`.
     """
     if isinstance(results, str):
         results = {"r": results}
-    shared = {"fraction": fraction, "error": error, "where": where}
+    shared = {"fraction": fraction, "error": error, "error_relative": error_relative, "where": where}
     shared = {field: value for field, value in shared.items() if value is not None}
     lines = ['device = "expression"', 'name = "expression"']
     lines += [f"{key} = {_toml(key, value)}" for key, value in (keys or {}).items()]
@@ -321,7 +323,11 @@ def expression(results, *, let=None, fraction=None, error=None, where=None, keys
         lines.append(f"let.{name} = {_toml(f'let.{name}', formula)}")
     for name, result in results.items():
         fields = {"formula": result} if isinstance(result, str) else result
-        lines.append(f"results.{name} = {_table(f'results.{name}', {**shared, **fields})}")
+        # A result that states an error, in units or as a part of its value, gets neither from the call.
+        states_error = "error" in fields or "error_relative" in fields
+        left_out = ("error", "error_relative") if states_error else ()
+        given = {field: value for field, value in shared.items() if field not in left_out}
+        lines.append(f"results.{name} = {_table(f'results.{name}', {**given, **fields})}")
     core = Core.__new__(Core)
     core._set(_glint.Core.from_toml("\n".join(lines) + "\n"))
     return core

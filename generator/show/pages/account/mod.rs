@@ -318,8 +318,8 @@ pub fn terms(bound: &Bound) -> TextTable {
     table
 }
 
-/// Returns a table of the parts of the computation, with the share of each in the error of each output; `None` if the contract does
-/// not know the parts.
+/// Returns a table of the parts of the computation, with the share of each in the error of each output and in the area. The last row
+/// has the sums of the area. Returns `None` if the contract does not know the parts.
 pub fn parts(contract: &dyn Contract) -> Option<TextTable> {
     let parts = contract.parts();
     if parts.is_empty() {
@@ -329,14 +329,23 @@ pub fn parts(contract: &dyn Contract) -> Option<TextTable> {
     for output in contract.outputs() {
         headings += &format!(" | share in `{}`:", output.name);
     }
+    headings += " | LUTs, about: | products:";
     let mut table = TextTable::of(&headings);
-    for part in parts {
-        let mut row = vec![code(&part.name), part.words, format_text(part.format)];
-        for share in part.shares {
-            row.push(if share == 0.0 { String::new() } else { rounded_up(share, 3) });
+    let count_text = |count: usize| if count == 0 { String::new() } else { count.to_string() };
+    let cells_text = |cells: f64| count_text(cells.round() as usize);
+    for part in &parts {
+        let mut row = vec![code(&part.name), part.words.clone(), format_text(part.format)];
+        for share in &part.shares {
+            row.push(if *share == 0.0 { String::new() } else { rounded_up(*share, 3) });
         }
+        row.extend([cells_text(part.cells), count_text(part.products)]);
         table.row(row);
     }
+    let mut sums = vec!["all parts".to_owned(), String::new(), String::new()];
+    sums.extend(contract.outputs().iter().map(|_| String::new()));
+    sums.push(cells_text(parts.iter().map(|part| part.cells).sum()));
+    sums.push(count_text(parts.iter().map(|part| part.products).sum()));
+    table.row(sums);
     Some(table)
 }
 
