@@ -27,8 +27,8 @@ pub fn exponent_operand(format: Format, domain: (i64, i64)) -> Operand {
     control(EXPONENT, format, domain, "specular exponent n")
 }
 
-/// Returns a control operand, which is an operand that determines the reflectance `f`. Colour operands, which `f` multiplies, are
-/// no control operands.
+/// Returns a control operand, which is an operand that determines the reflectance `f`. Colour operands, which `f` multiplies,
+/// are not control operands.
 pub fn control(name: &str, format: Format, domain: (i64, i64), doc: &str) -> Operand {
     Operand { name: name.to_owned(), format, domain, colour: false, doc: doc.to_owned() }
 }
@@ -37,9 +37,9 @@ pub fn control(name: &str, format: Format, domain: (i64, i64), doc: &str) -> Ope
 /// contributions to the error of `f`.
 ///
 /// An output is `f` times a colour of `colour_bits` bits, rounded by `output_rounding`. The bound of an output is therefore the
-/// error of `f` times the largest colour, plus the error of that rounding. Both `f` and the formula lie in 0 … 1, so shares whose
-/// sum exceeds 1.0 are scaled down to 1.0. The term of the rounding names the key `output.rounding`, so the device must have this
-/// key. Without shares the bound is not stated.
+/// error of `f` times the largest colour, plus the error of that rounding. Both `f` and the formula lie in 0 … 1, so shares
+/// whose sum exceeds 1.0 are scaled down to 1.0. The term of the rounding names the key `output.rounding`, so the device must
+/// have this key. If `shares` is empty, the bound is infinite and has no terms: it is not stated.
 pub fn bound(
     shares: &[ErrorShare],
     frac: u32,
@@ -60,7 +60,7 @@ pub fn bound(
         key: "output.rounding",
         what: "rounding of the colour outputs",
         units: match output_rounding {
-            // The product has `frac` fraction bits, and its last ulp is never dropped.
+            // The product has `frac` fraction bits, so truncation loses at most `1 − 2^−frac`.
             Rounding::Truncate => 1.0 - exp2(-(frac as i32)),
             Rounding::Nearest => 0.5,
         },

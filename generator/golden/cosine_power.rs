@@ -17,7 +17,7 @@ use glint_base::fixed::{Format, Rounding, exp2};
 use glint_config::Config;
 use glint_keys::cosine_power::Keys;
 
-/// The arithmetic of the device, one operation a method. f is the accumulator.
+/// The arithmetic of the device, with one method for each operation. The accumulator register holds f after the last squaring.
 struct PowerArithmetic {
     keys: Keys,
     squarings: u32,
@@ -33,7 +33,7 @@ impl PowerArithmetic {
         let narrow = |frac| Narrow::new(frac, keys.f.format(), keys.f.rounding);
         Self {
             largest: (1 << f) - 1,
-            // n/m has log₂ m fraction bits: the same integer n, read elsewhere.
+            // n/m is the integer n, read with log₂ m fraction bits.
             scaled: narrow(keys.operands.cosine.fraction + squarings),
             square: narrow(2 * f),
             keys,
@@ -74,7 +74,7 @@ pub fn model(config: &Config) -> Box<dyn Model> {
         s[accumulator] = it.scaled(s[cosine], s[exponent]);
         s[remaining] = i64::from(it.squarings) - 1;
     });
-    // It takes the square of its inverse …
+    // The accumulator takes the square of its inverse …
     let base = step_by(&it, move |it, s| {
         s[accumulator] = it.square(it.base(s[cosine], s[accumulator]));
     });
@@ -123,8 +123,8 @@ impl Reflectance for PowerArithmetic {
         vec![contract::where_it_faces(&format!("{base} ** {power}"))]
     }
 
-    /// Limits the slope n·base^(m − 1) to n, since the base is at most 1. At 0 W is (1 − n/m)^m, from where it falls to 0 at once
-    /// below n = m.
+    /// Limits the slope n·base^(m − 1) to n, since the base is at most 1. At a right angle W is (1 − n/m)^m if n is below m,
+    /// and jumps from this value to 0.
     fn variation(&self) -> Option<Variation> {
         let (least, most) = self.keys.domain.exponents();
         let power = f64::from(self.keys.power);
@@ -136,10 +136,10 @@ impl Reflectance for PowerArithmetic {
     /// theorem an error ε before a power p grows to at most p·ε.
     ///
     /// - Base: the hardware uses the inverse, 1.0 − ulp − t, instead of 1.0 − t. If t is truncated, its error is in (−ulp, 0],
-    ///   and the base is low by (0, ulp]. If t is rounded to the nearest, its error is ±ulp/2, and the base is low by up to
-    ///   3/2 ulp. Saturation of t at 1.0 − ulp makes the base 0, and the formula's base is then at most as large as that error.
-    ///   The base is raised to m.
-    /// - The result of squaring number i is rounded, and then raised to m/2^i: m − 1 in sum.
+    ///   and the base is low by (0, ulp]. If t is rounded to the nearest, its error is ±ulp/2, and the base is low by up to 3/2
+    ///   ulp. Saturation of t at 1.0 − ulp makes the base 0, and the formula's base is then at most as large as that error. The
+    ///   base is raised to m.
+    /// - The result of squaring number i is rounded, and then raised to m/2^i. The factors of these errors add up to m − 1.
     /// - The output adds its own rounding; it cannot exceed the largest colour, for f < 1.
     fn shares(&self) -> Vec<ErrorShare> {
         let (f, power) = (self.keys.f.fraction, f64::from(self.keys.power));
@@ -158,7 +158,8 @@ impl Reflectance for PowerArithmetic {
         ]
     }
 
-    /// Warns of n below m, where W loses to a smaller m: its base no longer reaches 0 where cosⁿγ does.
+    /// Returns a remark if a smaller m approximates cosⁿγ better than the configured m, for some n below m. The base of W is
+    /// then above 0 at a right angle, where cosⁿγ is 0.
     fn remarks(&self) -> Vec<String> {
         let power = self.keys.power;
         let (first, last) = self.keys.domain.exponents();

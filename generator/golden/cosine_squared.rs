@@ -18,7 +18,7 @@ use glint_base::fixed::exp2;
 use glint_config::Config;
 use glint_keys::cosine_squared::Keys;
 
-/// The arithmetic of the device, one operation a method.
+/// The arithmetic of the device, with one method for each operation.
 struct SquaredArithmetic {
     keys: Keys,
     /// The table of cos², ROM 12 by the numbers of blocks in seed 000.
@@ -64,7 +64,7 @@ pub fn model(config: &Config) -> Box<dyn Model> {
         products.slots(&mut frame, cosine);
         frame.every_edge(move |s| s[cosine] = it.cosine_of(s[angle]));
     } else {
-        // The address of ROM 12, and the word that it read an edge earlier.
+        // The address of ROM 12, and the word that ROM 12 read one edge before the latest.
         let (address, held) = (frame.hidden(), frame.hidden());
         products.slots(&mut frame, held);
         // From the output back to the angle: each slot takes the value that the slot before it in the pipeline held.
@@ -114,14 +114,14 @@ impl Reflectance for SquaredArithmetic {
         vec![line::interval(angle, last[1], length, first[0]), angle, length]
     }
 
-    /// Returns a line of one point. Its angle is stretched by `√(n/2)`, as the host stretches it. The operand denotes an
-    /// angle and n together, so it has no cosine.
+    /// Returns the operands of a line of one point, at the angle `gamma`·√(n/2). The host multiplies angles by this root before
+    /// it writes them.
     fn at(&self, operands: &[Operand], gamma: f64, n: f64) -> Option<Vec<i64>> {
         let stretched = (n / 2.0).sqrt() * gamma;
         Some(vec![0, line::raw_angle(&operands[1], stretched), 0])
     }
 
-    /// Returns none: the operand denotes an angle and n together.
+    /// Returns `None`: the operand is an angle times √(n/2), from which the angle alone cannot be computed.
     fn cosine(&self, _: &[Operand], _: &[i64]) -> Option<f64> {
         None
     }
@@ -130,14 +130,15 @@ impl Reflectance for SquaredArithmetic {
         Some("length")
     }
 
-    /// Returns every angle that a line can come to, by the step of ROM 12 that it is in. Beyond a right angle the
-    /// word is the table's last, 0, and so is the formula.
+    /// Returns every step of ROM 12, which covers every angle that a line can reach. For a right angle and beyond, the word is
+    /// the table's last, 0, and the formula is 0 too.
     fn sweep(&self) -> Option<Sweep> {
         let last = (1 << self.keys.table_address) - 1;
         Some(Sweep::ranges([("step of the table", (0, last))]))
     }
 
-    /// Returns the largest error over the step's angles of either sign: the formula falls from one end to the other.
+    /// Returns the largest error over all angles in the step, of either sign. The formula falls from one end of the step to the
+    /// other, so the error is largest at an end.
     fn sweep_error(&self, place: &[i64]) -> Option<f64> {
         let step = place[0];
         let word = self.table.words[step as usize];
@@ -147,7 +148,8 @@ impl Reflectance for SquaredArithmetic {
         Some((end(step) - f).max(f - end(step + 1)))
     }
 
-    /// Returns how far ROM 12 is from the formula within a step: the angle itself is exact, and so is its step.
+    /// Returns two contributions to the error of f. One is the distance of the formula from the middle of its values in a step.
+    /// The other is the rounding of the word of ROM 12. The angle and its step are exact.
     fn shares(&self) -> Vec<ErrorShare> {
         let table = &self.table;
         vec![

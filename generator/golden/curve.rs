@@ -1,4 +1,4 @@
-//! Builds a table that interpolates an increasing, concave function linearly between the ends of segments, such as the square root.
+//! Builds a table of straight segments that approximates an increasing, concave function, such as the square root.
 //!
 //! The golden model of a device uses it to check a table in the hardware, which other code computes. The operand u is an unsigned
 //! integer of C bits. The upper three quarters of the operands are the first range; the upper three quarters of the remaining
@@ -49,8 +49,8 @@ pub struct Piece {
 #[derive(Clone, Debug)]
 pub struct SegmentedCurve {
     params: CurveParams,
-    /// From the topmost range down: log₂ of a segment's length, and the index in `segments` that the range's prefix 0 would
-    /// have.
+    /// For each range from the topmost down, and then for the tail: log₂ of the length of a segment, and an index in
+    /// `segments`. Prefix 0 of the range would have this index.
     ranges: Vec<(u32, i64)>,
     segments: Vec<CurveSegment>,
     largest: i64,
@@ -79,7 +79,7 @@ impl SegmentedCurve {
         curve
     }
 
-    /// Appends the segments number `first .. end` of length 2^`log_length`.
+    /// Appends a range, or the tail, with the segments number `first .. end`, each of 2^`log_length` operands.
     fn cut(&mut self, log_length: u32, first: u64, end: u64) {
         let zero = self.segments.len() as i64 - first as i64;
         self.ranges.push((log_length, zero));
@@ -91,11 +91,12 @@ impl SegmentedCurve {
         }));
     }
 
-    /// Fits the base and the slope of a segment, and states its errors.
+    /// Fits the base and the slope of segment number `at`, and appends its errors to `pieces`.
     ///
-    /// The slope is the chord's, rounded. Relative to it a concave function rises and then falls, so its
-    /// extremes are the ends and the point from which on it rises less, from one operand to the next, than
-    /// the line. The base halves the extremes; where a segment has one operand there is no rise.
+    /// The slope is the slope of the chord, rounded. The difference between a concave function and a line of this slope rises
+    /// and then falls. The smallest difference is therefore at an end of the segment. The largest is at the turning point,
+    /// after which the function rises less than the line from one operand to the next. The base is the mean of both extremes. A
+    /// segment with a single operand has the slope 0.
     fn fit(&mut self, at: usize, function: &impl Fn(f64) -> f64) {
         let CurveSegment { start, log_length, .. } = self.segments[at];
         let steps = 1u64 << log_length;
@@ -109,7 +110,7 @@ impl SegmentedCurve {
             let slope = ((value(steps) - first) * slope_scale + 0.5).floor();
             let rise = slope / slope_scale / steps as f64;
             let above = |step: u64| value(step) - rise * step as f64;
-            // The first step at which the function has turned.
+            // The turning point: the first step after which the function does not rise more than the line.
             let (mut from, mut to) = (0, steps - 1);
             while from < to {
                 let middle = (from + to) / 2;
@@ -126,8 +127,8 @@ impl SegmentedCurve {
         segment.base = base.clamp(0, self.largest);
         segment.slope = slope;
 
-        // The line is off by the most at its extremes; the truncated rise takes less than an ulp, and saturation to 1 − ulp is off
-        // by up to one.
+        // The line has its largest errors at the two extremes. Truncation of the rise loses less than an ulp, and saturation to
+        // 1 − ulp loses up to an ulp.
         let line = segment.base as f64 / scale;
         let (error, shape) = if steps == 1 {
             ((self.at(start as i64) as f64 / scale - first).abs(), 0.0)
@@ -139,7 +140,7 @@ impl SegmentedCurve {
         self.pieces.push(Piece { start, last: start + steps - 1, error, shape });
     }
 
-    /// Returns all segments of the table.
+    /// Returns all segments of the table with their largest errors, the segments of the topmost range first and the tail last.
     pub fn pieces(&self) -> &[Piece] {
         &self.pieces
     }
@@ -148,7 +149,7 @@ impl SegmentedCurve {
     #[inline]
     pub fn at(&self, u: i64) -> i64 {
         let length = 64 - (u as u64).leading_zeros();
-        // Two bits a range.
+        // Every two leading zeros of u lead to the next range.
         let range = ((self.params.operand_bits - length) / 2) as usize;
         let (log_length, zero) = self.ranges[range.min(self.ranges.len() - 1)];
         let segment = &self.segments[(zero + (u >> log_length)) as usize];
@@ -173,7 +174,8 @@ mod tests {
         0.75 * (u / 16.0) * (2.0 - u / 16.0)
     }
 
-    /// Makes the curve of the parabola with C = 4: one range, 4 … 15, in prefixes of four operands; a tail of one segment.
+    /// Makes the curve of `lobe` for operands of 4 bits, with 8 fraction bits in values and slopes. For example,
+    /// `parabola(&[2], 0)` has one range, 4 … 15, in segments of four operands, and a tail of one segment.
     fn parabola(segments: &[u32], tail: u32) -> SegmentedCurve {
         let params = CurveParams {
             operand_bits: 4,

@@ -23,10 +23,10 @@ use glint_base::fixed::{Format, Rounding, exp2};
 use glint_config::Config;
 use glint_keys::decay::{Decay, Keys};
 
-/// Parts of an octave of the distance that are weighed one by one.
+/// The number of parts into which each octave of the distance is divided. The error is bounded in each part separately.
 const PARTS: i64 = 32;
 
-/// The arithmetic of the device, one operation a method.
+/// The arithmetic of the device, with one method for each operation.
 struct DecayArithmetic {
     of: Decay,
     keys: Keys,
@@ -66,10 +66,12 @@ impl DecayArithmetic {
         }
     }
 
-    /// Returns the octave of c and its distance. The octave is the number of times that c is doubled until it is at least one
-    /// half. The distance is 1 minus the doubled c, less an ulp.
+    /// Returns the octave and the raw distance of the raw cosine c. In `blinn`, the octave is the number of times that c must
+    /// be doubled to be at least one half. The distance is 1 minus the doubled c, less an ulp. In `gauss`, the octave is always
+    /// 0, and c is not doubled. For example, with 4 fraction bits, c = 5/16 has octave 1 and distance 5 in `blinn`.
     ///
-    /// If c has no fraction (c = 0 and 1.0), the hardware counts all ones; f does not depend on either number then.
+    /// If the fraction bits of c are all 0 (c = 0 or 1.0), the octave in `blinn` is all ones, as in the hardware. The
+    /// reflectance does not depend on the octave and the distance then.
     #[inline]
     fn operand(&self, cosine: i64) -> (i64, i64) {
         let one = self.keys.operands.cosine.one();
@@ -87,8 +89,9 @@ impl DecayArithmetic {
         }
     }
 
-    /// Returns the decay of a distance in an octave as a factor, and whether it is small. `ratio` is the decay divided by the
-    /// distance. A small decay, below ¼, keeps all bits; a larger decay has fewer bits.
+    /// Returns the decay as the factor that is multiplied by n, and whether the decay is small. The decay is `octave` plus
+    /// `distance` times `ratio`. A small decay, below ¼, has `decay.fraction` fraction bits; a larger decay is truncated to
+    /// `decay.coarse_fraction` fraction bits.
     #[inline]
     fn factor(&self, octave: i64, distance: i64, ratio: i64) -> (i64, bool) {
         let (fraction, coarse) = (self.keys.decay_fraction, self.keys.coarse_fraction);
@@ -100,20 +103,21 @@ impl DecayArithmetic {
         }
     }
 
-    /// Returns n times the decay.
+    /// Returns the raw product n·decay with `exponential.argument` fraction bits. f is 2 to the power of minus this product.
     #[inline]
     fn halvings(&self, (factor, small): (i64, bool), exponent: i64) -> i64 {
         let narrow = if small { self.from_fine } else { self.from_coarse };
         narrow.apply(factor * exponent)
     }
 
-    /// Returns the operand of the table of 2^−x.
+    /// Returns the operand of the table of 2^−x: the fraction bits of n·decay.
     #[inline]
     fn argument(&self, halvings: i64) -> i64 {
         halvings & ((1 << self.keys.argument) - 1)
     }
 
-    /// Returns f from the power 2^−x, which the integer of n·decay shifts.
+    /// Returns the raw f: `power`, the table's value of 2^−x, shifted right by the integer part of n·decay and rounded. f is 0
+    /// if c is 0, and 1.0 less an ulp if c is 1.0.
     #[inline]
     fn reflectance(&self, cosine: i64, halvings: i64, power: i64) -> i64 {
         if cosine == 0 {
@@ -126,7 +130,7 @@ impl DecayArithmetic {
         }
     }
 
-    /// Returns the decay of a distance from 0 to 1.0, exactly.
+    /// Returns the exact decay in f64 for a distance 1 − c, as a value from 0 to 1.0.
     fn exact_decay(&self, distance: f64) -> f64 {
         match self.of {
             Decay::Logarithm => -libm::log2(1.0 - distance),
@@ -137,8 +141,8 @@ impl DecayArithmetic {
         }
     }
 
-    /// Returns the error of f for the distances `from` to `to`, in an octave. The three shares are the error of the ratio,
-    /// the rounding of the decay, and the bits that a coarse decay loses.
+    /// Returns upper limits of three errors of f for all raw distances from `from` to `to` in an octave. They come from the
+    /// error of the ratio, from the rounding of the decay, and from the bits that a coarse decay loses.
     fn of_distances(&self, (from, to): (i64, i64), octave: f64) -> [f64; 3] {
         let keys = &self.keys;
         let [from, to] = [from, to].map(|raw| raw as f64 * keys.operands.cosine.ulp());
@@ -149,7 +153,7 @@ impl DecayArithmetic {
         };
         let ratio = self.ratio.bound * exp2(-(keys.ratio_fraction as i32)) + unseen;
         let fine = [ratio * to, exp2(-(keys.decay_fraction as i32))];
-        // Small decays are multiplied whole.
+        // A small decay keeps all its bits, so it has no coarse error.
         let is_coarse = octave > 0.0 || self.exact_decay(to) + fine[0] >= 0.25;
         let coarse = if is_coarse { exp2(-(keys.coarse_fraction as i32)) } else { 0.0 };
         let parts = [fine[0], fine[1], coarse];
@@ -160,7 +164,7 @@ impl DecayArithmetic {
         parts.map(|part| part * weight)
     }
 
-    /// Returns the formula in f64.
+    /// Returns the exact f in f64, unrounded.
     #[inline]
     fn formula(&self, cosine: f64, exponent: f64) -> f64 {
         match self.of {
@@ -234,9 +238,10 @@ impl Reflectance for DecayArithmetic {
     }
 
     /// Limits the slope by the largest n, and the jump at a right angle by the jump of the smallest n:
-    /// - cosⁿγ: n·c^(n − 1), at most n; with n = 0 it jumps from 1.
-    /// - exp(−n·γ²/2): n·(γ/sin γ)·exp(−n·γ²/2), at most n, since γ/sin γ ≤ exp(γ²/2) up to a right angle (its logarithm is
-    ///   γ²/6 + γ⁴/180 + …, of positive terms that are together below γ²/2 there). There it jumps from exp(−n·π²/8).
+    /// - cosⁿγ has the slope n·c^(n − 1), at most n. With n = 0 it jumps from 1 to 0 at a right angle.
+    /// - exp(−n·γ²/2) has the slope n·(γ/sin γ)·exp(−n·γ²/2). It is at most n, since γ/sin γ ≤ exp(γ²/2) up to a right angle:
+    ///   the logarithm of γ/sin γ is γ²/6 + γ⁴/180 + …, of positive terms that are together below γ²/2 there. At a right angle
+    ///   exp(−n·γ²/2) jumps from exp(−n·π²/8) to 0.
     fn variation(&self) -> Option<Variation> {
         let (least, most) = self.keys.domain.exponents();
         let jump = match self.of {
@@ -258,16 +263,17 @@ impl Reflectance for DecayArithmetic {
     /// bits of the table of 2^−x.
     ///
     /// - The ratio of decay to distance has the error of its table, which is proved over every operand. In addition, several
-    ///   distances share one operand of the table: their difference from the middle distance counts times the ratio's
-    ///   steepest slope. The sum of both errors is multiplied by the distance.
-    /// - |z − y| ≤ n·e, where e is the error of the decay and of the bits that a coarse decay loses. So
-    ///   |2^−z − 2^−y| ≤ ln 2·n·e·2^−min(y, z), and min(y, z) ≥ n·(decay − e) with the smallest decay of a set of distances.
-    ///   As a function of n this is largest at n = 1/(ln 2·(decay − e)). Octaves beyond the first have the same distances and
-    ///   larger decays; the first of them is the worst.
-    /// - The table of 2^−x has the value in the middle of the arguments that are cut to one operand. Half of the cut counts
-    ///   ln 2 times, and the table's own error is added. The shift makes both smaller.
-    /// - f is rounded, or saturated just below 1.0: an ulp. If the integer of n·decay is F + 2 or more, nothing of f is left,
-    ///   which is less than that ulp too.
+    ///   distances share one operand of the table. Their difference from the middle distance is multiplied by the steepest
+    ///   slope of the ratio. The sum of both errors is multiplied by the distance.
+    /// - |z − y| ≤ n·e, where e is the error of the decay, including the bits that a coarse decay loses. So |2^−z − 2^−y| ≤ ln
+    ///   2·n·e·2^−min(y, z), and min(y, z) ≥ n·(decay − e) with the smallest decay of a set of distances. As a function of n
+    ///   this is largest at n = 1/(ln 2·(decay − e)). Octaves beyond the first have the same distances and larger decays, so
+    ///   the first of them is the worst.
+    /// - z is truncated to the operand of the table of 2^−x. The table holds the value at the middle of the arguments that are
+    ///   truncated to one operand, so the argument is off by at most half an ulp of the operand. The slope of 2^−x is at most
+    ///   ln 2, and the table adds its own error. The shift to the right makes both errors smaller.
+    /// - f is rounded, or saturated just below 1.0; this changes f by at most an ulp. If the integer part of n·decay is F + 2
+    ///   or more, nothing of f is left, which is less than that ulp too.
     /// - The output adds its own rounding. It cannot exceed the largest colour, because f < 1.
     fn shares(&self) -> Vec<ErrorShare> {
         let octaves: &[f64] = match self.of {

@@ -18,13 +18,13 @@
 //!         vec![x[0] * x[0]]
 //!     }
 //!
-//!     /// The cut loses less than the last place.
+//!     /// Truncation to 4 fraction bits loses at most 15/16 of the last bit.
 //!     fn terms(&self) -> Vec<Term> {
 //!         vec![Term { key: "width", what: "the square is cut", units: 1.0 - 1.0 / 16.0 }]
 //!     }
 //! }
 //!
-//! // The square of its operand, with half the fraction bits of the product.
+//! // The device outputs the square of its operand, truncated to half the fraction bits of the product.
 //! let mut frame = Frame::default();
 //! let x = frame.operand("x", Format::unsigned(0, 4));
 //! let square = frame.register("square", Format::unsigned(0, 4));
@@ -75,11 +75,12 @@ impl Frame {
         Device { model: self.model(program), operands, outputs }
     }
 
-    /// Returns the device that runs the parts of the frame one after the other, in the order in which [`Frame::part`] added them,
-    /// and holds its outputs in registers.
+    /// Returns the device that runs the parts of the frame one after the other, in the order in which [`Frame::part`] added
+    /// them, and holds its outputs in registers.
     ///
     /// # Panics
-    /// Never: registers can be put behind a program that ends with its results, as a program of parts does.
+    /// This method never panics. Its program ends unconditionally with the microinstruction that raises `valid`, so that output
+    /// registers can be added.
     pub fn dataflow(mut self) -> Device {
         let device = match std::mem::take(&mut self.parts) {
             parts if parts.is_empty() => self.device([idle(), idle().valid().end()]),
@@ -96,10 +97,11 @@ impl Device {
         Box::new(self.model)
     }
 
-    /// Restricts the contract to the raw values `low ..= high` of an operand, if the operand's register can hold more values.
+    /// Sets the domain of the operand `operand` in the contract to the raw values `low ..= high`. A device needs this if the
+    /// operand's register can hold values for which the contract promises nothing.
     ///
     /// # Panics
-    /// Panics if there is no such operand.
+    /// Panics if the device has no operand with this name.
     #[must_use]
     pub fn domain(mut self, operand: &str, low: i64, high: i64) -> Self {
         let found = self.operands.iter_mut().find(|it| it.name == operand);
@@ -123,8 +125,9 @@ pub trait Formula: Send + Sync {
     /// frame.
     fn exact(&self, operands: &[f64]) -> Vec<f64>;
 
-    /// Returns the values that output number `output` may be close to where the formula has `value`. There are two if the output
-    /// wraps. For example, an output from −1 to below 1 that wraps may be close to −1 or to 1 where the formula has 1.
+    /// Returns the two values that count as exact for output number `output` if the formula gives `value`. An error is measured
+    /// from the nearer one. Both are normally `value`. They differ if the output wraps: for example, an output from −1 to below
+    /// 1 that wraps may be close to −1 or to 1 if the formula gives 1.
     fn right_values(&self, value: f64, output: usize) -> [f64; 2] {
         let _ = output;
         [value; 2]
@@ -144,7 +147,8 @@ pub trait Formula: Send + Sync {
         false
     }
 
-    /// Returns the contributions to the error of an output, each a proven upper limit; nothing if the bound is not known yet.
+    /// Returns the contributions to the error of an output, each a proven upper limit. Returns an empty list if the bound is
+    /// not known yet.
     fn terms(&self) -> Vec<Term> {
         Vec::new()
     }
@@ -212,7 +216,8 @@ struct OfModel<F> {
 }
 
 impl<F> OfModel<F> {
-    /// Returns the raw outputs of the result with this number, after power-up; `None` if the device never shows it.
+    /// Runs the golden model from power-up with `operands`, and returns the raw outputs of result number `index`, counted
+    /// from 0. Returns `None` if the model does not show that result within `LONGEST` clocks.
     fn shown(&self, operands: &[i64], index: u64) -> Option<Vec<i64>> {
         let mut model = self.device.model.clone();
         model.clock(&self.inputs(operands, 1));
@@ -260,8 +265,9 @@ impl<F: Formula> Contract for OfModel<F> {
         &self.device.outputs
     }
 
-    /// Appends the results of the formula where it has them, else the model's. A result that is never shown is a number further
-    /// off than any bound.
+    /// Appends the raw outputs from [`Formula::results`] if the author has written that method. Otherwise it appends the
+    /// outputs of a run of the golden model. If the model never shows the result, each output gets a number that is further off
+    /// than any bound.
     fn results(&self, operands: &[i64], index: u64, raw: &mut Vec<i64>) {
         if index == 0 && self.formula.results(operands, raw) {
             return;

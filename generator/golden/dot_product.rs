@@ -15,7 +15,7 @@ use glint_base::fixed::{Format, Rounding, exp2};
 use glint_config::Config;
 use glint_keys::dot_product::Keys;
 
-/// Returns the operations of each microinstruction.
+/// Returns the device: its operands, registers and outputs, and the operation of each microinstruction.
 fn device(config: &Config) -> device::Device {
     let it = Arc::new(CosineFormula::new(config));
     let Keys { fraction, other, kept, .. } = it.keys;
@@ -76,11 +76,11 @@ fn raw_vector(vector: [f64; 3], fraction: u32) -> [i64; 3] {
     vector.map(|component| (component * exp2(fraction as i32)).round() as i64)
 }
 
-/// The formula: N·H, limited to 0 … 1, for a normal N of any length.
+/// The formula N·H/|N|, limited to 0 … 1, for a normal N of any length, with the constants of the hardware's arithmetic.
 struct CosineFormula {
     keys: Keys,
     root: Root,
-    /// Computes the distance from the products of both vectors, which are shifted. The distance is half of the products.
+    /// Rounds the shifted product N·H to the register `distance`, which holds half of the product.
     distance: Narrow,
     shortened: Narrow,
     rounded: Narrow,
@@ -101,19 +101,21 @@ impl CosineFormula {
         }
     }
 
-    /// Returns the products of both vectors, for a length from 1 to 2; from both sides without their sign.
+    /// Returns the value of the register `distance`: half of N·H, shifted so that the length of N is from 1 to 2. With
+    /// `two_sided` it is half of |N·H|.
     fn distance(&self, sum: i64, shift: i64) -> i64 {
         self.distance.apply(if self.keys.two_sided { sum.abs() } else { sum } << shift)
     }
 
-    /// Returns the errors, as values, of a cosine by the inverse root, by its factors, and by its rounding.
+    /// Returns upper limits of three errors of the cosine, as values: by the inverse root, by the rounding of both factors, and
+    /// by the rounding of the cosine.
     ///
-    /// Let m be the squares, shifted to 1 ≤ m < 4, let f = 1/√m, and let t be the products, shifted as far. The cosine is
-    /// t·f.
+    /// Let m be N·N, shifted to 1 ≤ m < 4. Let f = 1/√m, and let t be N·H, shifted by half as many places. The cosine is t·f.
     ///
-    /// - The hardware's f is off by `Root::error`, which counts √m times. Its own rounding adds half a place, which counts
-    ///   √m < 2 times.
-    /// - The hardware's t is off by half a place. A t of 2.0 is off by a whole place, but f is a half there. f is at most 1.
+    /// - The hardware's f is multiplied by t, which is at most √m. `Root::error` bounds the error of √m·f. The rounding of f to
+    ///   the factor adds half a unit of the factor's last place, times √m < 2.
+    /// - The hardware's t is off by half a unit of its last place. A t of 2.0 is off by a whole unit, but f is a half there. f
+    ///   is at most 1.
     /// - Beyond t = √m the cosine stays 1, and the computed value does not fall.
     fn errors(&self) -> [f64; 3] {
         let Keys { factor, kept, rounding, .. } = self.keys;
@@ -141,8 +143,8 @@ impl Formula for CosineFormula {
         terms.map(|(key, what, error)| Term { key, what, units: error * units }).into()
     }
 
-    /// Returns a unit vector, and another close to it, or close to a right angle with it: highlights are near a product of 1,
-    /// and at 0 the result begins to be clamped.
+    /// Returns a normal of random length, and a unit vector that is close to the normal's direction or nearly at a right angle
+    /// to it. Highlights are near a cosine of 1, and at a cosine of 0 the result begins to be clamped.
     fn hint(&self, unit: &mut dyn FnMut() -> f64) -> Option<Vec<i64>> {
         let normal = unit_vector(centred(unit));
         let off = centred(unit);
@@ -170,7 +172,8 @@ impl Formula for CosineFormula {
         Some(self.root.sweep())
     }
 
-    /// Returns the error of the inverse root as it is, and of the factors and the rounding as far as they can be off.
+    /// Returns an upper limit of the error, in units. It is the actual error of the inverse root for this sum of squares, plus
+    /// the largest possible errors of the factors and of the rounding.
     fn sweep_error(&self, place: &[i64]) -> Option<f64> {
         let [_, factors, rounding] = self.errors();
         let error = self.root.relative_error(place[0]) + factors + rounding;

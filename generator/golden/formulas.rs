@@ -110,8 +110,8 @@ pub fn cosine_power(c: f64, n: f64, m: u32) -> f64 {
     (0..m.ilog2()).fold(base, |power, _| power * power)
 }
 
-/// Returns the power k that the device `quad-cosine` (seed 000) uses for the exponent `n`: 1 for n = 1, 2 for n = 2, 4 for n = 3
-/// to 6, and 16 for every other n, including 0.
+/// Returns the power k that the device `quad-cosine` (seed 000) uses for the exponent `n`. k is 1 for n = 1, 2 for n = 2, 4 for
+/// n = 3 to 6, and 16 for every other n, including 0.
 #[inline]
 pub fn quad_power(n: i64) -> u32 {
     match n {
@@ -122,7 +122,8 @@ pub fn quad_power(n: i64) -> u32 {
     }
 }
 
-/// Returns `cosᵏ` of an angle in radians of whatever sign, 0 where it is a right angle or more. k is a power of two.
+/// Returns `cosᵏ` of `angle` in radians, which may be negative. The result is 0 if the magnitude of the angle is a right angle
+/// or more. k is a power of two.
 #[inline]
 fn lobe(angle: f64, k: u32) -> f64 {
     let magnitude = angle.abs();

@@ -7,7 +7,7 @@
 use super::Sweep;
 use glint_base::fixed::{exp2, mask};
 
-/// The most that the sum of squares can be: each component is at least −2.0.
+/// The largest sum of squares as a value: each of the three components is at least −2.0, so its square is at most 4.
 const FARTHEST: i64 = 12;
 
 /// A table that gives the inverse square root of a sum of three squares.
@@ -64,15 +64,16 @@ impl Root {
         self.ends[at] - (((self.ends[at] - self.ends[at + 1]) * rest) >> along)
     }
 
-    /// Returns the errors of √m·f by the chords and by roundings, as values. Let m be the mantissa, 1 ≤ m < 4, and f = 1/√m.
-    /// Let r be the hardware's value of f, and u the last place of r.
+    /// Returns upper limits of two errors of √m·r, as values: the first comes from the chords, the second from roundings. Let m
+    /// be the mantissa, 1 ≤ m < 4, and f = 1/√m. Let r be the hardware's value of f with R fraction bits, u the weight of its
+    /// last bit, and A the number of address bits.
     ///
-    /// - f is convex, so that a chord lies above it, by at most h²/8·max f″ = h²/8·¾·a^(−5/2) in the segment from
-    ///   a on, of length h.
-    /// - The ends of the chord are rounded: ½u. The cut of the way along the segment is at most a part 2^−(R − A + 2) of a fall
-    ///   of at most h/2 = 2^(1 − A): ½u. The fall is truncated: u. The sum is 2u.
-    /// - The rounding error counts √m times, which is below 2: 4u. The error of the chord counts as often as the root of the
-    ///   segment's end.
+    /// - f is convex, so that a chord lies above it, by at most h²/8·max f″ = h²/8·¾·a^(−5/2) in the segment of length h that
+    ///   begins at a.
+    /// - The ends of the chord are rounded: ½u. The position in the segment is truncated by at most 2^−(R − A + 2) of the
+    ///   segment's length, over which f falls by at most h/2 = 2^(1 − A): ½u. The fall is truncated: u. The sum is 2u.
+    /// - √m is below 2, so the roundings contribute at most 4u to the error of √m·r. The error of the chord is multiplied by
+    ///   the square root of the segment's upper end.
     pub fn error(&self) -> [f64; 2] {
         let h = 4.0 / exp2(self.address as i32);
         let chord = (1 << (self.address - 2)..1u32 << self.address)
@@ -84,7 +85,7 @@ impl Root {
         [chord, 4.0 * exp2(-(self.fraction as i32))]
     }
 
-    /// Returns the places of an exhaustive check: every sum of squares. The sum alone determines the inverse root.
+    /// Returns the cases of an exhaustive check: every sum of squares from 1 on. The sum alone determines the inverse root.
     pub fn sweep(&self) -> Sweep {
         Sweep::ranges([("sum of squares", (1, FARTHEST << (self.width - 4)))])
     }
@@ -102,7 +103,7 @@ pub(super) fn centred(unit: &mut dyn FnMut() -> f64) -> [f64; 3] {
     [(); 3].map(|()| 2.0 * unit() - 1.0)
 }
 
-/// Returns the unit vector of a direction; the zero vector stays.
+/// Returns the unit vector with the direction of `vector`, or the zero vector if `vector` is zero.
 pub(super) fn unit_vector(vector: [f64; 3]) -> [f64; 3] {
     let now = vector.map(|it| it * it).iter().sum::<f64>().sqrt();
     vector.map(|it| if now == 0.0 { 0.0 } else { it / now })

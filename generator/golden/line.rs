@@ -20,9 +20,11 @@ pub fn raw_angle(operand: &Operand, angle: f64) -> i64 {
     raw.clamp(low, high)
 }
 
-/// Adds the accumulator, which computes the angles of the points along a scan line, to `frame`: control block 14, counter 5,
-/// adder 6, mux 7 and register 8 of seed 000, and the operands `delta_zeta`, `zeta_start` and `length`. The angles have the
-/// format `format`. Returns the slot of register 8, the angle of the current point, and the microinstructions. The outputs show a
+/// Adds the accumulator, which computes the angles of the points along a scan line, to `frame`. It consists of control block
+/// 14, counter 5, adder 6, mux 7 and register 8 of seed 000. Its operands are `delta_zeta`, `zeta_start` and `length`. The
+/// angles have the format `format`.
+///
+/// Returns the slot of register 8, which holds the angle of the current point, and the microinstructions. The outputs show a
 /// point `stages` clocks after the pulse on output 37 (`write_angle`) that loads its angle.
 pub fn walker(
     frame: &mut Frame,
@@ -56,7 +58,7 @@ pub fn walker(
         first.valid().asserts(write_angle),
         next.valid().asserts(write_angle).asserts(count).asserts(accumulate),
     ];
-    // The last point comes out.
+    // The device waits until the last point is on the outputs.
     program.extend((1..stages).map(|_| idle()));
     program.push(idle().end());
     (angle, program)
@@ -66,7 +68,7 @@ fn length_format(length_bits: u32) -> Format {
     Format::unsigned(length_bits as i32, 0)
 }
 
-/// Returns an angle as the accumulator holds it.
+/// Returns the raw angle `raw` wrapped to the width of `format`, as the accumulator holds it.
 #[inline]
 fn wrapped(format: Format, raw: i64) -> i64 {
     let above = MAX_WIDTH - format.width();
@@ -125,7 +127,7 @@ pub fn magnitude(angle: i64, fraction: u32, kept: u32) -> Option<i64> {
     Some(positive >> (fraction - kept))
 }
 
-/// Values are computed in f64, and less off than this: a bound on errors has room for it.
+/// An upper limit of the errors of f64 in the values of a table; [`CosineTable::total`] includes it.
 const SLACK: f64 = 1.0 / (1u64 << 40) as f64;
 
 /// A table of `cosᵏ` over a right angle, ROM 12 of seed 000. The word of each step is the middle of the values of `cosᵏ` at both
@@ -178,7 +180,8 @@ impl CosineTable {
     }
 }
 
-/// Returns the largest slope of `cosᵏ`, per right angle: where `tan² = 1/(k − 1)`.
+/// Returns the largest slope of `cosᵏ` with k = `power`, as a difference per right angle. The slope is largest at the angle
+/// with `tan² = 1/(k − 1)`.
 fn slope(power: u32) -> f64 {
     let k = f64::from(power);
     if power == 1 {

@@ -34,7 +34,8 @@ impl Keys {
         Format::signed(1, self.vector_fraction as i32)
     }
 
-    /// Returns the format of n, or of log₂ n, which is `exponent.bits` at most.
+    /// Returns the format of the operand `exponent`, which is n, or of the operand `shift`, which is log₂ n and at most
+    /// `exponent.bits`.
     fn scale_format(&self) -> Format {
         match self.scale {
             Scale::Shift => Format::unsigned(self.exponent_bits.ilog2() as i32 + 1, 0),
@@ -42,7 +43,8 @@ impl Keys {
         }
     }
 
-    /// Returns the operand `shift` or `exponent` for an exponent: log₂ n to the nearest, or n itself.
+    /// Returns the operand `shift` or `exponent` for the exponent n: log₂ n rounded to the nearest integer, or n itself. For
+    /// example, n = 6 gives the shift 3.
     fn scale_operand(&self, n: i64) -> i64 {
         match self.scale {
             Scale::Multiplier => n,
@@ -62,7 +64,7 @@ impl Keys {
         }
     }
 
-    /// Returns the domain of that operand.
+    /// Returns the domain of the operand `shift` or `exponent`, as raw values.
     fn scale_domain(&self) -> (i64, i64) {
         (self.scale_operand(self.domain.least), self.scale_operand(self.domain.most))
     }
@@ -76,7 +78,7 @@ impl Keys {
     }
 }
 
-/// The arithmetic of the device, one operation a method.
+/// The arithmetic of the device, with one method for each operation.
 struct LyonArithmetic {
     keys: Keys,
     squarings: u32,
@@ -113,14 +115,14 @@ impl LyonArithmetic {
         }
     }
 
-    /// Returns D² as the register takes it.
+    /// Returns the word of D²: the sum of the squared components, rounded to the format of the register.
     #[inline]
     fn distance(&self, vector: [i64; 3]) -> i64 {
         let [x, y, z] = vector;
         self.distance.apply(x * x + y * y + z * z)
     }
 
-    /// Returns one place of the shift register.
+    /// Returns the next value of the shift register: `word` shifted left by one place, and saturated.
     #[inline]
     fn shifted(&self, word: i64) -> i64 {
         (2 * word).min(self.shifted_most)
@@ -135,7 +137,7 @@ impl LyonArithmetic {
         })
     }
 
-    /// Returns `1.0 − ulp − β·D²`, or 0 where β·D² is not below 1.0.
+    /// Returns `1.0 − ulp − β·D²`, or 0 if β·D² is 1.0 or more. `scaled` is the raw β·D².
     #[inline]
     fn base(&self, scaled: i64) -> i64 {
         (self.one - 1 - scaled).max(0)
@@ -146,7 +148,7 @@ impl LyonArithmetic {
         self.square.apply(x * x)
     }
 
-    /// Returns f from the word of D².
+    /// Returns the raw f for the word of D² and the operand `shift` or `exponent`.
     #[inline]
     fn f_of(&self, distance: i64, operand: i64) -> i64 {
         let base = self.base(self.beta_distance(distance, operand));
@@ -177,9 +179,9 @@ pub fn model(config: &Config) -> Box<dyn Model> {
         let format = Format::unsigned(int, frac);
         if there { frame.register(name, format) } else { frame.hidden() }
     };
-    // The sum of the first squares, where one multiplier makes all.
+    // The sum of the first squares, if one multiplier computes all three squares.
     let sum = register_if(in_turn, "distance_sum", 4, 2 * keys.vector_fraction as i32);
-    // D², where a multiplier scales it; otherwise the shift register.
+    // The shift register if the operand is `shift`, otherwise the register of D², which a multiplier scales.
     let distance = if shift {
         register_if(true, "shift_register", 1, point + squarings as i32 + 2)
     } else {
@@ -202,7 +204,7 @@ pub fn model(config: &Config) -> Box<dyn Model> {
             s[remaining] = s[operand];
         }
     }));
-    // β·D²: one place of the shift register, or the product.
+    // β·D² comes from the shift register, which shifts by one place a clock, or from the multiplier.
     program.push(if shift {
         step_by(&it, move |it, s| {
             s[distance] = it.shifted(s[distance]);
@@ -220,7 +222,7 @@ pub fn model(config: &Config) -> Box<dyn Model> {
             s[remaining] = i64::from(squarings) - 1;
         }
     }));
-    // … and then its own.
+    // … and then its own square, until all squarings are done.
     if squarings > 1 {
         let square = step_by(&it, move |it, s| {
             s[accumulator] = it.square(s[accumulator]);

@@ -40,20 +40,21 @@ impl Normaliser {
         Format::signed(1, self.keys.kept as i32)
     }
 
-    /// Returns a component of the unit vector.
+    /// Returns the raw component of the unit vector for a raw component of v. The component is shifted left by `pairs` places,
+    /// and multiplied by `inverse`, the inverse root of the shifted v·v.
     fn scaled(&self, component: i64, pairs: i64, inverse: i64) -> i64 {
         let shifted = if component == 0 { 0 } else { component << pairs };
         self.rounded.apply(shifted * inverse)
     }
 
-    /// Returns the error that the rounding of a result leaves, as a value.
+    /// Returns an upper limit of the error, as a value, that the rounding of a result causes.
     fn rounding_error(&self) -> f64 {
         let Keys { fraction, inverse, kept, rounding, .. } = self.keys;
         rounding_error(fraction + 1 + inverse, kept, rounding)
     }
 }
 
-/// Returns the operations of each microinstruction.
+/// Returns the device: its operands, registers and outputs, and the operation of each microinstruction.
 fn device(config: &Config) -> device::Device {
     let it = Arc::new(Normaliser::new(config));
     let mut frame = Frame::default();
@@ -82,7 +83,7 @@ fn device(config: &Config) -> device::Device {
             s[shift] = it.root.pairs(s[sum]);
             s[mantissa] = it.root.mantissa(s[sum], s[shift]);
         }),
-        // The table reads.
+        // The hardware reads the table in this microinstruction; no predicted register changes.
         idle(),
         step_by(&it, move |it, s| s[inverse] = it.root.inverse(s[mantissa])),
         scale(x, units[0]),
@@ -107,11 +108,11 @@ impl Formula for Normaliser {
         unit_vector([vector[0], vector[1], vector[2]]).into()
     }
 
-    /// Returns the terms of a component's error. The shifted component x has x² ≤ m, so the error of the product is at most
-    /// √m times the error of r: [`Root::error`]. The product is rounded once. It does not saturate: |x·f| ≤ 1, and the other
-    /// errors are far below 1.
+    /// Derives the terms of a component's error. Let m be the mantissa of v·v, r the table's value of 1/√m, and x the shifted
+    /// component. Since x² ≤ m, an error of r changes the product x·r by at most √m times that error; [`Root::error`] bounds
+    /// it. The product is rounded once. The product does not saturate, because |x|/√m ≤ 1 and the other errors are far below 1.
     ///
-    /// The zero vector gives zeros, as the formula defines here.
+    /// The result for the zero vector is the zero vector, as the formula defines.
     fn terms(&self) -> Vec<Term> {
         let [chord, root] = self.root.error();
         let units = exp2(self.keys.kept as i32);
@@ -123,19 +124,21 @@ impl Formula for Normaliser {
         terms.map(|(key, what, error)| Term { key, what, units: error * units }).into()
     }
 
-    /// Draws vectors of any length, each octave as often as any other: the shift goes by the length.
+    /// Returns a vector in a random direction. Its length is drawn evenly over octaves, because the shift depends on the
+    /// octave.
     fn hint(&self, unit: &mut dyn FnMut() -> f64) -> Option<Vec<i64>> {
         let most = exp2(1 + self.keys.fraction as i32)
             * libm::exp2(-unit() * f64::from(self.keys.fraction));
         Some((0..3).map(|_| ((2.0 * unit() - 1.0) * most).round() as i64).collect())
     }
 
-    /// Returns every sum of squares: it determines the inverse root, and the largest error of any component with it.
+    /// Returns every sum of squares. The sum determines the inverse root, and so the largest error of a component.
     fn sweep(&self) -> Option<Sweep> {
         Some(self.root.sweep())
     }
 
-    /// Returns the error of a component as long as the vector: that before it is rounded, and the rounding.
+    /// Returns an upper limit of the error, in units, of a component that is as long as the vector. It is the error of the
+    /// inverse root for this sum of squares, plus the error of the rounding.
     fn sweep_error(&self, place: &[i64]) -> Option<f64> {
         let error = self.root.relative_error(place[0]) + self.rounding_error();
         Some(error * exp2(self.keys.kept as i32))

@@ -27,7 +27,7 @@ impl<P> Occupancy<P> {
         self.moves(out_ready) && self.slot == 0
     }
 
-    /// Returns whether all points move on.
+    /// Returns whether all points move to the next stage at the next rising edge.
     fn moves(&self, out_ready: bool) -> bool {
         out_ready || self.last().is_none()
     }
@@ -49,7 +49,7 @@ impl<P> Occupancy<P> {
     }
 
     /// Performs a rising edge with `offered` as the offered point, if any. Returns the point whose results were taken at this
-    /// edge.
+    /// edge. If `rst_n` is low, the pipeline is empty after the edge.
     pub fn clock(&mut self, rst_n: bool, offered: Option<P>, out_ready: bool) -> Option<P> {
         let taken = if self.moves(out_ready) {
             self.stages.push_front(offered.filter(|_| self.slot == 0));
@@ -99,7 +99,7 @@ mod tests {
         assert!(stages.takes(false));
         assert_eq!(stages.clock(true, Some('a'), true), None);
         assert!(!stages.takes(true));
-        // Offered too soon, and lost.
+        // The pipeline does not accept a point in this clock, so `b` is lost.
         assert_eq!(stages.clock(true, Some('b'), true), None);
         assert_eq!(stages.clock(true, None, false), None);
         assert_eq!(stages.clock(true, None, true), Some('a'));

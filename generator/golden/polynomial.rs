@@ -11,12 +11,14 @@ use glint_approximate::Piecewise;
 /// The registers of the partial sums of a piecewise polynomial in a golden model.
 pub struct Polynomial {
     it: Arc<Piecewise>,
-    /// The slot of the partial sum from each coefficient on; the first is the whole polynomial.
+    /// The slots of the partial sums. Sum number k contains the coefficients from number k on, so sum 0 is the whole
+    /// polynomial.
     sums: Vec<Slot>,
 }
 
 impl Polynomial {
-    /// Adds the registers of the partial sums to `frame`. `names` starts with the name of the register of the whole polynomial.
+    /// Adds the registers of the partial sums to `frame`. `names` starts with the name of the register of the whole polynomial;
+    /// names beyond the degree are not used.
     pub fn new(frame: &mut Frame, names: &[&str], it: &Arc<Piecewise>) -> Self {
         let registers = names.iter().zip(&it.sums).take(it.degree().max(1));
         let sums = registers.map(|(name, format)| frame.register(name, *format)).collect();
@@ -28,7 +30,8 @@ impl Polynomial {
         self.sums[0]
     }
 
-    /// Returns the operations of Horner's rule in their order, one for each step. `raw` gives the raw operand of the polynomial.
+    /// Returns the operations of Horner's rule in their order, one for each register. `raw` computes the raw operand of the
+    /// polynomial from the state.
     pub fn steps<R>(
         &self,
         raw: R,
@@ -41,7 +44,7 @@ impl Polynomial {
             let (own, above) = (self.sums[k], self.sums.get(k + 1).copied());
             move |s: &mut State| {
                 let place = it.place(raw(s));
-                // The highest coefficient is a word of the table and no register.
+                // The highest coefficient is read from the table and has no register.
                 let sum_above = above.map_or(it.words[place.word][it.degree()], |above| s[above]);
                 let sum = it.sum(k, place, sum_above) >> if k == 0 { it.guard() } else { 0 };
                 s[own] = it.sums[k].raw(it.sums[k].bits(sum.into())) as i64;

@@ -19,8 +19,8 @@ use glint_base::fixed::Format;
 use glint_config::Config;
 use glint_keys::quad_cosine::Keys;
 
-/// Returns the power that serves n, as a number of a table: the seed's ranges. For example, n = 5 gives 2, the number of the
-/// table of cos⁴.
+/// Returns the number of the table that serves the exponent n, by the ranges of n in seed 000. For example, n = 5 gives 2, the
+/// number of the table of cos⁴.
 #[inline]
 fn range_of(n: i64) -> usize {
     match n {
@@ -31,10 +31,10 @@ fn range_of(n: i64) -> usize {
     }
 }
 
-/// The power k of each range.
+/// The power k of the table with each number.
 const POWERS: [i64; 4] = [1, 2, 4, 16];
 
-/// The arithmetic of the device, one operation a method.
+/// The arithmetic of the device, with one method for each operation.
 struct QuadCosineArithmetic {
     keys: Keys,
     /// The words of ROM 9, one for each n: the factor √(n/k).
@@ -55,20 +55,22 @@ impl QuadCosineArithmetic {
         }
     }
 
-    /// Returns the number that multiplier 11 takes of register 8; `None` where the surface faces away.
+    /// Returns the operand of multiplier 11: the leading bits of the magnitude of the angle in register 8. Returns `None` if
+    /// the surface faces away.
     #[inline]
     fn magnitude(&self, angle: i64) -> Option<i64> {
         magnitude(angle, self.keys.angle_fraction, self.keys.angle_multiplied)
     }
 
-    /// Returns the word of ROM 12 for n, the magnitude, and ROM 9's word.
+    /// Returns the word of ROM 12 for the exponent n. `magnitude` is the operand of multiplier 11, or `None` if the surface
+    /// faces away, and `root` the word of ROM 9.
     #[inline]
     fn cosine_of(&self, n: i64, magnitude: Option<i64>, root: i64) -> i64 {
         let scaled = magnitude.map_or(i64::MAX, |magnitude| magnitude * root);
         self.tables[range_of(n)].words[self.step_of(scaled)]
     }
 
-    /// Returns the step of a table for an angle times ROM 9's word.
+    /// Returns the step of a table, its address, for `scaled`, the product of multiplier 11.
     #[inline]
     fn step_of(&self, scaled: i64) -> usize {
         let fraction = self.keys.angle_multiplied + self.keys.root_fraction;
@@ -81,7 +83,8 @@ impl QuadCosineArithmetic {
     }
 }
 
-/// Returns `√(n/k)` rounded to the nearest word, by integers: the r with (r − ½)² ≤ n·2^2G/k < (r + ½)².
+/// Returns `√(n/k)` rounded to the nearest word with G = `fraction` fraction bits, by integer arithmetic. It is the r with (r −
+/// ½)² ≤ n·2^2G/k < (r + ½)².
 fn root(n: i64, k: i64, fraction: u32) -> i64 {
     let square = n << (2 * fraction);
     let floor = (square / k).isqrt();
@@ -115,7 +118,8 @@ pub fn model(config: &Config) -> Box<dyn Model> {
         });
         return Box::new(frame.model(program));
     }
-    // The magnitude of the angle, or nothing, and the word of ROM 9; the magnitude times the root, and whether there was one.
+    // The registers of the longer pipeline: the magnitude of the angle, whether the surface faces the viewer, and the word of
+    // ROM 9. Then the product of magnitude and root, and again whether the surface faces the viewer.
     let [magnitude, within, held_root, scaled, scaled_within] = [(); 5].map(|()| frame.hidden());
     // The address of ROM 12: the range of n, and the step. Then its word.
     let [range, step, held] = [(); 3].map(|()| frame.hidden());

@@ -20,7 +20,7 @@ use glint_base::fixed::{Format, exp2};
 use glint_config::Config;
 use glint_keys::quadratic::{Keys, Scheme};
 
-/// The arithmetic of the device, one operation a method.
+/// The arithmetic of the device, with one method for each operation.
 struct QuadraticArithmetic {
     keys: Keys,
     difference: Narrow,
@@ -56,7 +56,7 @@ impl QuadraticArithmetic {
         self.difference.apply(cosine * cosine - (cosine << self.keys.operands.cosine.fraction))
     }
 
-    /// Returns `c + a(n)·(c² − c)`, limited to a fraction.
+    /// Returns the raw f: `c + a(n)·(c² − c)`, rounded and limited to 0 … 1.0 − ulp.
     #[inline]
     fn intensity(&self, cosine: i64, exponent: i64, difference: i64) -> i64 {
         let product = difference * self.words[exponent as usize];
@@ -112,14 +112,16 @@ impl Reflectance for QuadraticArithmetic {
         Some(formulas::quadratic(cosine, self.exact[exponent as usize]))
     }
 
-    /// Limits the slope, 1 − a + 2·a·c where the formula is not clamped, to 1 + |a|; at a right angle the formula is 0.
+    /// Limits the slope to 1 + |a|. Where the formula is not clamped, the slope is 1 − a + 2·a·c. The formula has no jump: at a
+    /// right angle it is 0.
     fn variation(&self) -> Option<Variation> {
         let (least, most) = self.keys.domain.exponents();
         let exact = self.exact[least as usize..=most as usize].iter();
         Some(Variation { slope: 1.0 + exact.fold(0.0, |a: f64, it| a.max(it.abs())), jump: 0.0 })
     }
 
-    /// Returns the formula with ROM(n) for the coefficient of the least largest error, which has no closed form.
+    /// Returns the formula as a Python expression. With the scheme `minimax` it reads a(n) from the list `coefficient`, because
+    /// the minimax coefficient has no closed form.
     fn expressions(&self) -> Vec<String> {
         let coefficient = match self.keys.scheme {
             Scheme::Taylor => "(max(exponent, 1) - 1)",
@@ -129,12 +131,12 @@ impl Reflectance for QuadraticArithmetic {
         vec![contract::where_it_faces(&contract::clamped_at_0(&f))]
     }
 
-    /// Returns the error of `c − a·g`, with g = c − c² in 0 … 1/4. Where formula and hardware are both clamped there is
-    /// none; otherwise `a·g ≤ c`, that is `1 − c ≤ 1/a`, for one of the two, and g is at most 1/a.
+    /// Derives the terms of the error of `c − a·g`, with g = c − c² in 0 … 1/4. If formula and hardware are both clamped, the
+    /// error is 0. Otherwise `a·g ≤ c`, which means `1 − c ≤ 1/a`, holds for the exact a or for its word, and g is at most 1/a.
     ///
     /// - An error of the word a(n) is multiplied by g.
     /// - The rounding of g is multiplied by the word a(n).
-    /// - f is rounded; 1.0 is an ulp low.
+    /// - f is rounded, and 1.0 becomes the largest word, which is an ulp less.
     fn shares(&self) -> Vec<ErrorShare> {
         let f = self.keys.f.fraction;
         let scale = exp2(-(self.keys.coefficient_fraction() as i32));
@@ -156,7 +158,8 @@ impl Reflectance for QuadraticArithmetic {
         ]
     }
 
-    /// Compares the error of the formula with a(n) = n − 1 with its error with the minimax table.
+    /// Returns a remark if the scheme is `taylor` and `minimax` would approximate cⁿ better at the largest n of the domain. The
+    /// remark states both errors.
     fn remarks(&self) -> Vec<String> {
         if self.keys.scheme != Scheme::Taylor {
             return Vec::new();
@@ -175,7 +178,8 @@ impl Reflectance for QuadraticArithmetic {
     }
 }
 
-/// Returns the largest difference between the parabola and cⁿ, on a grid that the highlight fills.
+/// Returns the largest difference between the parabola with the coefficient `a` and cⁿ. The grid of cosines covers the
+/// highlight: 1 − c goes from 0 to 8/n.
 fn formula_error(n: i64, a: f64) -> f64 {
     const GRID: u32 = 2048;
     let n = n as f64;

@@ -44,7 +44,8 @@ impl Keys {
         exp2(-(self.operands.cosine.fraction as i32))
     }
 
-    /// Returns the domain of cos dγ: from the smallest cosine whose angle is within the deviation.
+    /// Returns the domain of cos dγ, as raw values: from the smallest cosine whose angle is within the deviation to the largest
+    /// cosine.
     fn cos_dgamma_domain(&self) -> (i64, i64) {
         let largest = self.largest_cosine();
         let cosine = libm::cos(self.deviation.to_radians());
@@ -118,7 +119,7 @@ impl Keys {
     }
 }
 
-/// The blocks between the registers, one a method. Words are raw values.
+/// The combinational blocks between the registers, with one method for each block. Words are raw values.
 struct RoughArithmetic {
     keys: Keys,
     sine: Sine,
@@ -189,9 +190,9 @@ impl RoughArithmetic {
 
     /// Computes adder 15: cos(γ ± dγ) − 1.0 from registers 11 and 12.
     ///
-    /// The patent's words lack the integer position, so the 1.0 is subtracted by dropping it. Mux 14 offers the inverse of
-    /// register 12 if `dgamma_negative` is 0; without a carry it subtracts an ulp too much. Otherwise (trigger 4) mux 14
-    /// offers the output of adder 31, an ulp too little. Trigger 4 as the carry-in adds that ulp again.
+    /// The patent's words have no integer bit, so dropping this bit subtracts the 1.0. If `dgamma_negative` is 0, mux 14 offers
+    /// the inverse of register 12; without a carry this subtracts an ulp too much. Otherwise (trigger 4) mux 14 offers the
+    /// output of adder 31, which is an ulp too small. Trigger 4 is also the carry-in, which adds this ulp again.
     #[inline]
     fn adder_15(&self, cos_cos: i64, sin_sin: i64, dgamma_negative: i64) -> i64 {
         match &self.kind {
@@ -212,9 +213,9 @@ impl RoughArithmetic {
     fn scaled(&self, adder_15: i64, exponent: i64, cos_gamma: i64) -> i64 {
         match &self.kind {
             RoughBlocks::Exact { result_one, .. } if cos_gamma == 0 => -result_one,
-            // n is read with its low bit behind the point.
+            // n is read with one fraction bit, which divides it by 2.
             RoughBlocks::Exact { scaled, .. } => scaled.apply(adder_15 * exponent),
-            // n is wired a place down, and loses its low bit.
+            // n is shifted right by one place, and loses its low bit.
             RoughBlocks::Patent { mask, .. } => (adder_15 * (exponent >> 1)) & mask,
         }
     }
@@ -228,7 +229,7 @@ impl RoughArithmetic {
                 let adder_16 = result + result_one;
                 square.apply(adder_16 * adder_16)
             }
-            // The carry-in of adder 16 is all that is left of the 1.0.
+            // The words have no integer bit, so only the carry-in of adder 16 remains of the 1.0.
             RoughBlocks::Patent { width, mask } => {
                 let adder_16 = (result + 1) & mask;
                 (adder_16 * adder_16) >> width
@@ -238,8 +239,8 @@ impl RoughArithmetic {
 
     /// Returns the word f that the colour multipliers see in register 13.
     ///
-    /// With the clamp, its low bits: the square is below 1.0. Without, register 13 has an integer bit,
-    /// and is brought to 0 … 1.0 − ulp.
+    /// With the clamp, f is the low bits of register 13, because the square is below 1.0. Without the clamp, register 13 has an
+    /// integer bit, and f is the register limited to 0 … 1.0 − ulp. In the patent's arithmetic, f is register 13 itself.
     #[inline]
     fn f_of(&self, result: i64) -> i64 {
         match &self.kind {

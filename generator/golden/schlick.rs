@@ -19,7 +19,7 @@ use glint_keys::schlick::Keys;
 struct SchlickArithmetic(Keys);
 
 impl SchlickArithmetic {
-    /// Returns `n − n·cos γ + cos γ`, and an ulp more for a surface that faces away.
+    /// Returns `n − n·cos γ + cos γ`, plus an ulp if cos γ is 0, so that the divisor is never 0.
     #[inline]
     fn divisor(&self, cosine: i64, exponent: i64) -> i64 {
         exponent * self.0.operands.cosine.one() - exponent * cosine
@@ -53,7 +53,7 @@ pub fn model(config: &Config) -> Box<dyn Model> {
     let products = products(&it.0);
     let mut frame = Frame::default();
     let [cosine, exponent] = highlight::slots(&it.0.operands, &mut frame);
-    // Up to 1.0 + n.
+    // The divisor and the remainder are at most n + 1.0.
     let format = Format::unsigned(it.0.operands.exponent_bits as i32 + 1, cosine_fraction as i32);
     let quotient = frame.register("quotient", it.0.f_format());
     let divisor = frame.register("quotient_divisor", format);
@@ -62,7 +62,7 @@ pub fn model(config: &Config) -> Box<dyn Model> {
     let remaining = frame.register("quotient_remaining", counter);
     // The number of bits found, and the value that the quotient's register held before the division.
     let (found, before) = (frame.hidden(), frame.hidden());
-    // The divider takes cos γ and n − n·cos γ + cos γ.
+    // The divider loads the dividend cos γ and the divisor n − n·cos γ + cos γ.
     let begin = step(move |s| {
         s[divisor] = it.divisor(s[cosine], s[exponent]);
         s[remainder] = s[cosine];
@@ -70,7 +70,7 @@ pub fn model(config: &Config) -> Box<dyn Model> {
         s[found] = 0;
         s[before] = s[quotient];
     });
-    // It finds a bit of the quotient, as often as the quotient has bits.
+    // The divider finds one bit of the quotient a clock, until the quotient is complete.
     let bit = step(move |s| {
         s[found] += 1;
         let (first, rest) = divide(s[cosine], s[divisor], s[found] as u32);
@@ -110,15 +110,15 @@ impl Reflectance for SchlickArithmetic {
         Some(formulas::schlick(cosine, exponent as f64))
     }
 
-    /// Limits the slope n/(n − nc + c)², largest at an end: n at 1, 1/n at 0. There the value is 0 as beyond, but for n = 0, with
-    /// which it is 1.
+    /// Limits the slope n/(n − n·c + c)², which is largest at an end: n at c = 1, and 1/n at c = 0. At c = 0 the formula is 0,
+    /// as it is beyond a right angle. With n = 0 the formula is 1 for every c above 0, and jumps to 0 at a right angle.
     fn variation(&self) -> Option<Variation> {
         let (least, most) = self.0.domain.exponents();
         Some(Variation { slope: most as f64, jump: if least > 0 { 0.0 } else { 1.0 } })
     }
 
-    /// Returns the one term. Dividend and divisor are exact, so that nothing but the quotient's own last bit is lost: it is
-    /// truncated, and 1.0 becomes the largest fraction. Both are at most an ulp below the formula.
+    /// Returns the only contribution: the truncation of the quotient. Dividend and divisor are exact. The truncated quotient is
+    /// at most an ulp below the formula, and so is the largest fraction, which replaces a quotient of 1.0.
     fn shares(&self) -> Vec<ErrorShare> {
         let ulp = exp2(-(self.0.fraction as i32));
         vec![("intensity.fraction", "truncation of the quotient", ulp)]

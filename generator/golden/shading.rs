@@ -1,11 +1,11 @@
 //! The golden model and the accuracy contract of the device `shading`, which computes a colour as
 //! ambient + Σ (diffuse·cos α + specular·f(cos γ)).
 //!
-//! The sum runs over the lights. α is the angle between the surface normal and the direction of a light, γ the angle between the
-//! normal and the half vector of the light; f is the highlight's formula, for example cⁿ with c = cos γ. `shading` consists of
-//! other devices, called its parts: for each light two `dot-product` devices compute the cosines from a normal of any length, and
-//! a highlight device such as `blinn` or `function` computes f. The golden model runs the golden models of the parts and adds
-//! their light. The contract combines the proved error bounds of the parts.
+//! The sum runs over the lights. α is the angle between the surface normal and the direction of a light, γ the angle between
+//! the normal and the half vector of the light; f is the highlight's formula, for example cⁿ with c = cos γ. `shading` consists
+//! of other devices, called its parts. For each light two `dot-product` devices compute the cosines from a normal of any
+//! length, and a highlight device such as `blinn` or `function` computes f. The golden model runs the golden models of the
+//! parts and adds their light, and the contract combines the proved error bounds of the parts.
 
 use std::sync::Arc;
 
@@ -94,7 +94,8 @@ fn vector(frame: &mut Frame, name: &str, suffix: &str, format: Format) -> [Slot;
     ["x", "y", "z"].map(|axis| frame.operand(&format!("{name}{axis}{suffix}"), format))
 }
 
-/// Returns an operand of a part: the value of a slot, shifted by `places` to the left.
+/// Returns the operand `name` of a part, with the function that computes its value: the value of `slot`, shifted left by
+/// `places` bits.
 fn left(
     name: &'static str,
     slot: Slot,
@@ -116,7 +117,7 @@ fn cosine(
     frame.part(name, &*dot_product::model(config), operands).out("cosine_out")
 }
 
-/// The golden side of a highlight.
+/// The functions that make the golden model and the accuracy contract of a highlight device.
 struct HighlightModels {
     model: fn(&Config) -> Box<dyn Model>,
     contract: fn(&Config) -> Box<dyn Contract>,
@@ -177,12 +178,12 @@ pub fn contract(config: &Config) -> Box<dyn Contract> {
     device.contract(Shading { highlight, errors, keys })
 }
 
-/// Returns the proved bound of a part, as a value.
+/// Returns the proved error bound of a part, as a value instead of in units.
 fn error(contract: &dyn Contract) -> f64 {
     contract.bound().units * exp2(-contract.outputs()[0].format.frac)
 }
 
-/// The proved errors of the parts.
+/// The proved error bounds of the parts.
 struct PartErrors {
     /// The error bound of the cosine between normal and light.
     facing: f64,
@@ -194,7 +195,7 @@ struct PartErrors {
     variation: Option<Variation>,
 }
 
-/// The formula.
+/// The formula of `shading`, with the error bounds of its parts.
 struct Shading {
     keys: Keys,
     /// The accuracy contract of the highlight device, which is a part of `shading`.
@@ -203,7 +204,7 @@ struct Shading {
 }
 
 impl Shading {
-    /// Returns the highlight's formula of a cosine that is not quantised.
+    /// Returns the exact f of the highlight at a cosine that is not quantised. Returns NaN if the highlight cannot compute it.
     fn f(&self, cosine: f64, exponent: i64) -> f64 {
         match self.highlight.highlight() {
             Some(highlight) => highlight.at_cosine(cosine, exponent).unwrap_or(f64::NAN),
@@ -252,11 +253,13 @@ impl Formula for Shading {
         colours
     }
 
-    /// Derives the terms of a colour's error. An error of an operand of a part grows by the part's slope in it, and the part adds
-    /// its own; each light adds its own.
+    /// Derives the terms of a colour's error. An error of an operand of a part is multiplied by the slope of the part, and the
+    /// part adds its own error. The errors of all lights add up. If nobody has stated how f changes with the cosine, there are
+    /// no terms and the bound is not stated.
     ///
-    /// - A colour is diffuse·cosine + specular·f(cosine), saturated: its slopes are at most the largest colour, and that times
-    ///   the slope of f. Where f jumps, cosine and exact cosine may lie on both sides.
+    /// - A colour is diffuse·cosine + specular·f(cosine), saturated. Its slope by the cosine of the light is at most the
+    ///   largest colour. Its slope by the cosine of the highlight is at most the largest colour times the slope of f.
+    /// - If f jumps, the computed and the exact cosine may be on different sides of the jump.
     fn terms(&self) -> Vec<Term> {
         let PartErrors { facing, cosine, highlight, variation } = self.errors;
         let Some(Variation { slope, jump }) = variation else { return Vec::new() };
@@ -287,7 +290,8 @@ impl Formula for Shading {
         terms
     }
 
-    /// Returns the formulas of the colours; none where the highlight's formula reads a table, or nobody wrote it.
+    /// Returns the formula of each colour as a Python expression. Returns an empty list if the highlight's formula reads a
+    /// table, or if nobody has written it as an expression.
     fn expressions(&self) -> Vec<String> {
         let (operand, f) = match self.highlight.highlight() {
             Some(highlight) => (COSINE, highlight.expressions()),
@@ -315,13 +319,14 @@ impl Formula for Shading {
         colours.into()
     }
 
-    /// Returns a unit of each light, and half a one that the result is rounded by.
+    /// Returns the bound that the contract demands: one unit for each light, plus half a unit for the rounding of the result.
+    /// For example, two lights may cause an error of up to 2.5 units.
     fn limit(&self) -> f64 {
         f64::from(self.keys.lights) + 0.5
     }
 
-    /// Returns a light anywhere, a half vector as near to the normal as the exponent asks for, and dull colours, whose
-    /// sum does not saturate.
+    /// Returns random operands. The lights are in any direction, and the half vectors are near the normal, the nearer the
+    /// larger the exponent is. The colours are so dark that their sum does not saturate.
     fn hint(&self, unit: &mut dyn FnMut() -> f64) -> Option<Vec<i64>> {
         let Keys { normal, light, colour_bits, most, lights, .. } = self.keys;
         let direction = unit_vector(centred(unit));
@@ -350,7 +355,7 @@ impl Formula for Shading {
         Some(operands)
     }
 
-    /// Returns normals of one plane under one light, which the viewer is at, with four exponents.
+    /// Returns normals in one plane, under lights and half vectors along the z axis, with fixed colours and four exponents.
     fn sweep(&self) -> Option<Sweep> {
         let Keys { normal, light, colour_bits, most, .. } = self.keys;
         let (one, to_light, white) = (1 << normal, 1 << light, (1 << colour_bits) - 1);
@@ -384,7 +389,7 @@ impl Formula for Shading {
     }
 }
 
-/// Returns the raw number of `fraction` fraction bits that is nearest to a value.
+/// Returns the raw number with `fraction` fraction bits that is nearest to `value`.
 fn raw(value: f64, fraction: u32) -> i64 {
     (value * exp2(fraction as i32)).round() as i64
 }
@@ -401,8 +406,8 @@ mod tests {
     use glint_config::Value;
     use glint_keys::shading::schema;
 
-    /// The largest error with a cosine of 12 fraction bits is beyond the bound that a part with a false claim would give, and
-    /// within the one that it gives.
+    /// The bound of the whole includes the bounds of the parts. With a cosine of 12 fraction bits, the largest error is above
+    /// the bound that falsely small bounds of the parts would give, and below the true bound.
     #[test]
     fn the_bound_of_the_whole_falls_with_that_of_a_part() {
         let keys = [("cosine.fraction", 12), ("domain.exponent_max", 1000)];

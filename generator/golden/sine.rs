@@ -15,13 +15,13 @@ pub enum TableScheme {
         address: u32,
     },
     /// Straight segments over u = 1.0 − x, interpolated linearly. The upper three quarters of the values of u are the first
-    /// range, the upper three quarters of the remaining quarter the second, and so on. Each range is cut into segments of equal
-    /// length; the values of u below all ranges have an entry each.
+    /// range. The upper three quarters of the remaining quarter are the second range, and so on. Each range is cut into
+    /// segments of equal length; the values of u below all ranges have an entry each.
     Segmented {
         /// log₂ of the number of prefixes (leading bits of u) in each range; a quarter of the prefixes belongs to the values
         /// below the range.
         segments: Vec<u32>,
-        /// Fraction bits of a slope, D; a slope is the rise over a whole segment.
+        /// The number D of fraction bits of a slope. A slope is the rise over a whole segment.
         slope_fraction: u32,
     },
 }
@@ -133,7 +133,7 @@ impl Sine {
                 }
             }
             SineTable::Segmented { curve, rest } => {
-                // x = 0 reads 1 − ulp.
+                // x = 0 gives 1 − ulp, an ulp less than the exact sine.
                 visit(ErrorRange { cosines: (0.0, 0.0), error: ulp, shape: 0.0 });
                 for piece in curve.pieces().iter().filter(|piece| piece.start as i64 >= *rest) {
                     let cosines =
@@ -151,20 +151,21 @@ impl Sine {
     }
 }
 
-/// Returns `√(1 − x²)` at u = 1.0 − x, an integer 0 … 2^C. The radicand is exact for C ≤ 26.
+/// Returns the sine `√(1 − x²)` as a value. `u` is the raw value of 1.0 − x, from 0 to 2^C, where C is `operand`. The radicand
+/// is exact for C ≤ 26.
 fn sine_of(operand: u32, u: i64) -> f64 {
     let one = 1i64 << operand;
     let x = one - u;
     ((one * one - x * x) as f64).sqrt() * exp2(-(operand as i32))
 }
 
-/// Returns the raw u0.S nearest to a sine, saturated.
+/// Returns the raw value with `fraction` fraction bits that is nearest to `sine`, at most 1.0 less an ulp.
 fn to_raw(sine: f64, fraction: u32) -> i64 {
     let raw = (sine * exp2(fraction as i32) + 0.5).floor() as i64;
     raw.clamp(0, (1 << fraction) - 1)
 }
 
-/// Returns the sine at the middle of bucket `a`.
+/// Returns the entry of bucket `a` in a direct table with `address` address bits: the raw sine at the middle of the bucket.
 fn direct_entry(a: i64, address: u32, fraction: u32) -> i64 {
     let x = (a as f64 + 0.5) * exp2(-(address as i32));
     to_raw((1.0 - x * x).sqrt(), fraction)
@@ -210,7 +211,7 @@ mod tests {
         assert_eq!(sines[16], 63);
     }
 
-    /// Every operand of several tables is within its piece's error, and the pieces cover them all.
+    /// The error of every operand is at most the error of the piece that contains it, and every operand is in a piece.
     #[test]
     fn pieces_bound_every_operand() {
         let tables = [
@@ -232,7 +233,7 @@ mod tests {
                     |piece: &&ErrorRange| piece.cosines.0 <= cosine && cosine <= piece.cosines.1;
                 let piece = pieces.iter().find(holds).expect("a piece");
                 assert!(error <= piece.error, "{x} of {it:?}: {error} > {}", piece.error);
-                // Not idle either: no piece allows more than the table could need.
+                // The bound is also not idle: no piece allows an error above ¼.
                 assert!(piece.error <= 0.25);
             }
         }

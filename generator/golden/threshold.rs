@@ -1,5 +1,5 @@
-//! The golden model and the accuracy contract of the device `threshold`, which computes f = (n/2·(c − 1) + 1)² where that reaches
-//! a level.
+//! The golden model and the accuracy contract of the device `threshold`, which computes f = (n/2·(c − 1) + 1)², or 0 if the
+//! square is below a level.
 //!
 //! c = cos γ, where γ is the angle between the surface normal and the half vector; n is the specular exponent; f is the
 //! reflectance, the factor by which the device multiplies colours. f is 0 if the square is below the level of n, a word of the
@@ -21,7 +21,7 @@ use glint_base::fixed::{Format, exp2};
 use glint_config::Config;
 use glint_keys::threshold::Keys;
 
-/// The arithmetic of the device, one operation a method.
+/// The arithmetic of the device, with one method for each operation.
 struct ThresholdArithmetic {
     keys: Keys,
     /// The value 1.0 in the fraction bits of the base.
@@ -52,10 +52,12 @@ impl ThresholdArithmetic {
         it
     }
 
-    /// Returns the least word of f that is shown, one entry for each octave of n: `levels / 100` units, rounded up to a word. A
-    /// word is at most 1.0 − ulp. For example, the level 100 gives 258 for colours of 8 bits and an f of 16 fraction bits.
+    /// Returns the words of ROM(n), one for each octave of n. A word is the smallest raw f at which the largest colour reaches
+    /// `level / 100` units, and at most 1.0 − ulp. For example, the level 100 gives 258 for colours of 8 bits and an f of 16
+    /// fraction bits.
     fn thresholds(keys: &Keys) -> Vec<i64> {
-        // 100 · largest · word ≥ level · 2^F, for the least word; less than 2^30 · 2^24.
+        // The smallest word with 100 · largest · word ≥ level · 2^F. The right side is less than 2^30 · 2^24, so that an `i64`
+        // holds it.
         let unit = 100 * ((1 << keys.operands.colours.bits) - 1);
         let largest = (1 << keys.f.fraction) - 1;
         let mut words = Vec::with_capacity(keys.levels.len());
@@ -67,20 +69,21 @@ impl ThresholdArithmetic {
         words
     }
 
-    /// Returns `n/2·(cos γ − 1)`, not below −1.0.
+    /// Returns `n/2·(cos γ − 1)`, rounded, and −1.0 if the product is less.
     #[inline]
     fn scaled(&self, cosine: i64, exponent: i64) -> i64 {
         self.scaled.apply((cosine - self.keys.operands.cosine.one()) * exponent)
     }
 
-    /// Returns the word of ROM(n).
+    /// Returns the word of ROM(n) for the octave of `exponent`. The last word serves all octaves beyond it.
     #[inline]
     fn threshold(&self, exponent: i64) -> i64 {
         let octave = exponent.max(1).ilog2() as usize;
         self.thresholds[octave.min(self.thresholds.len() - 1)]
     }
 
-    /// Returns the square of the base, if it is shown.
+    /// Returns the raw f: the square of the base, or 0 if the square is below the word of ROM(n), or if cos γ is 0. `scaled` is
+    /// the base less 1.0.
     #[inline]
     fn gated(&self, cosine: i64, exponent: i64, scaled: i64) -> i64 {
         let base = scaled + self.base_one;
@@ -88,7 +91,7 @@ impl ThresholdArithmetic {
         if cosine == 0 || square < self.threshold(exponent) { 0 } else { square }
     }
 
-    /// Returns the ungated parabola's square in f64, and ROM(n).
+    /// Returns the exact square of the base, before the comparison with the level, and the level in ROM(n), both as values.
     #[inline]
     fn square_and_level(&self, control: &[i64]) -> (f64, f64) {
         let ulp = exp2(-(self.keys.f.fraction as i32));
@@ -143,8 +146,9 @@ impl Reflectance for ThresholdArithmetic {
         Some(formulas::threshold(formulas::parabola(cosine, exponent as f64), level))
     }
 
-    /// Limits the slope n·base to n, since the base is at most 1. The formula jumps from ROM(n), where either side is right
-    /// within the margin, or at a right angle from (1 − n/2)² if that is more: since the base falls with the cosine, not at both.
+    /// Limits the slope n·base to n, since the base is at most 1. The formula jumps to 0 once, since the base falls with the
+    /// cosine. It jumps from the level in ROM(n), where either side is right within the margin. If (1 − n/2)² is above that
+    /// level, the formula jumps from this value at a right angle instead.
     fn variation(&self) -> Option<Variation> {
         let (least, most) = self.keys.domain.exponents();
         let mut jump: f64 = 0.0;
@@ -156,7 +160,8 @@ impl Reflectance for ThresholdArithmetic {
         Some(Variation { slope: most as f64, jump })
     }
 
-    /// Returns the square and 0 where the exact square is within the bound on its error of ROM(n): either is right there.
+    /// Returns the exact square and 0 if the square differs from the level in ROM(n) by at most `margin`: both results are
+    /// right then. Otherwise returns the formula twice.
     #[inline]
     fn references(&self, control: &[i64]) -> [f64; 2] {
         let (square, level) = self.square_and_level(control);
@@ -167,7 +172,8 @@ impl Reflectance for ThresholdArithmetic {
         }
     }
 
-    /// Returns the formula on either side of its jump, with the actual words of ROM(n).
+    /// Returns two Python expressions, one for each side of the jump. The first compares the square with the level less the
+    /// margin, the second with the level plus the margin. The level is the word of ROM(n).
     fn expressions(&self) -> Vec<String> {
         let square =
             format!("{} ** 2", contract::clamped_at_0("exponent / 2 * (cos_gamma - 1) + 1"));
@@ -183,9 +189,9 @@ impl Reflectance for ThresholdArithmetic {
     /// Derives the terms of f's error. Base, square and formula lie in 0 … 1, so that an error ε of the base is at most 2·ε in
     /// the square.
     ///
-    /// The product is rounded into the base, and limited to −1.0 where the formula is clamped. The square
-    /// is rounded; the square of 1.0 is an ulp low. The gates add nothing: within the sum of these of
-    /// ROM(n) either side is right.
+    /// The product is rounded into the base, and limited to −1.0 where the formula is clamped. The square is rounded; the
+    /// square of 1.0 is an ulp low. The comparison with ROM(n) adds no error: if the square differs from ROM(n) by at most the
+    /// sum of these errors, both outcomes are right.
     fn shares(&self) -> Vec<ErrorShare> {
         let f = self.keys.f.fraction;
         let base = rounding_error(self.keys.operands.cosine.fraction + 1, f, self.keys.f.rounding);

@@ -26,13 +26,13 @@ fresh_names!(Variables {
     write_microinstruction
 });
 
-/// An output and its place in the expected word.
+/// An output, with the Verilog expression that selects its value from the word of expected outputs.
 struct ExpectedOutput {
     name: String,
     select: String,
 }
 
-/// A microinstruction.
+/// A microinstruction: its name, and its address as a Verilog literal and as a number.
 struct StepLabel {
     label: String,
     address: usize,
@@ -42,7 +42,7 @@ struct StepLabel {
 /// Adds the test bench, its stimulus and the expected outputs to `files`.
 ///
 /// # Errors
-/// Fails if the vectors do not fit the ports.
+/// Fails if the design has no inputs or no outputs, if the vectors are empty, or if they do not fit the ports.
 pub fn files(job: &EmitJob, vectors: &Vectors, files: &mut OutputFiles) -> Result<()> {
     let design = job.design;
     let inputs: Vec<_> = design.inputs().collect();
@@ -131,7 +131,7 @@ fn bench(job: &EmitJob, vectors: &Vectors) -> Result<String> {
         // Only in a pipeline: whether the expected word says that a point's results are shown. In a bubble the results mean
         // nothing.
         shown: Option<String>,
-        // None without a microprogram.
+        // The path of the address register below the bench; `None` without a microprogram.
         address: Option<String> = address.map(|address| {
             let address = &design.net(address).name;
             format!("{}.{}.{address}", own.dut, job.naming.control_instance)

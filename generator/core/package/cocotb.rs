@@ -12,7 +12,7 @@ use super::output_files::OutputFiles;
 use super::seal::{Seal, sealed};
 use crate::observation::{ContractFacts, Quantity, WorkedExample};
 
-/// The tests of the driver for a core with a microprogram; the first needs a formula.
+/// The names of the driver's tests for a core with a microprogram. The first test needs the formula as a Python expression.
 const SEQUENTIAL: [&str; 5] = [
     "formula_holds_at_random_points",
     "computations_are_exact",
@@ -21,10 +21,10 @@ const SEQUENTIAL: [&str; 5] = [
     "writes_and_starts_while_busy_are_ignored",
 ];
 
-/// In place of the last, where operands have buffers.
+/// The test that replaces the last one of [`SEQUENTIAL`] if the operands have buffers.
 const BUFFERED: &str = "writes_while_busy_are_for_the_next_computation";
 
-/// The names for a pipeline.
+/// The names of the driver's tests for a pipeline. The first test needs the formula as a Python expression.
 const PIPELINE: [&str; 4] = [
     "random_points_follow_the_formula",
     "points_are_exact",
@@ -58,7 +58,7 @@ pub fn file(
         // The names that are imported from the driver, sorted.
         tests: Vec<&'static str>,
         pipeline: bool,
-        // The results of the example.
+        // The Python expression of the results in the example test.
         shown: &'a str = if pipeline { "shown" } else { "shown.results[0]" },
     })?;
     files.add(FileKind::CocotbBench, format!("test_{name}.py"), text);

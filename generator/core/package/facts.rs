@@ -119,7 +119,7 @@ pub struct RomFacts<'a> {
     pub synchronous: bool,
     #[serde(skip_serializing_if = "Option::is_none")]
     radix: Option<u8>,
-    /// Its words, where no file has them.
+    /// The words of the ROM, if the Verilog contains them; otherwise `None`.
     #[serde(skip_serializing_if = "Option::is_none")]
     words: Option<&'a [u64]>,
     /// The meaning of a word of the ROM, in one or more lines.

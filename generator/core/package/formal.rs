@@ -19,10 +19,10 @@ use glint_rtl::verilog::naming::Naming;
 use glint_rtl::verilog::rows::{Row, connections, separated};
 use glint_rtl::verilog::text::{Names, literal, range};
 
-/// Steps of an induction where the clocks depend on the data: more than a result takes through a pipeline.
+/// The smallest depth of the induction, in clocks, for a core whose number of clocks depends on the data.
 const UNROLLED: u32 = 8;
 
-/// The register that counts clocks since start.
+/// The register of the wrapper that counts the clocks since `start`.
 struct Age {
     name: String,
     width: u32,
@@ -34,37 +34,39 @@ impl Age {
     }
 }
 
-/// The age for the template.
+/// The register [`Age`] as strings for the template.
 struct AgeView {
     name: String,
     range: String,
     one: String,
 }
 
-/// When the events come, where that does not depend on the data.
+/// The clocks of `valid` and `done`, and the largest age of a computation, as Verilog literals. Only a core whose clocks do not
+/// depend on the data has them.
 struct EventClocks {
     valid: String,
     done: String,
     last: String,
 }
 
-/// The latest end, where the clocks depend on the data.
+/// The data for the proof that every computation ends in time, for a core whose clocks depend on the data.
 struct Bounded {
-    /// The declarations of the proof's view of the inside.
+    /// The Verilog declarations that make inner nets of the core visible to the proof.
     inside: Vec<String>,
     address: String,
     most: String,
     latest: Vec<Latest>,
-    /// In the clock of `done` there is a result.
+    /// Whether every computation shows a result in the clock of `done`.
     ends_with_result: bool,
-    /// The clock of the first result, where one follows another from then on to the end.
+    /// The clock of the first result, if every clock from then on to the end shows a result; otherwise `None`.
     first: Option<String>,
 }
 
-/// The latest end of a computation, seen from a microinstruction.
+/// An upper limit of the end of a computation, for one microinstruction that is executed.
 struct Latest {
     label: String,
-    /// The age at which the computation ends, if it takes as long as it can.
+    /// The age at which the computation ends if it takes as long as it can, as a Verilog expression. For example, the age plus
+    /// a counter plus 3 clocks.
     end: String,
 }
 
@@ -137,9 +139,9 @@ pub fn files(job: &EmitJob, files: &mut OutputFiles) -> Result<()> {
         None => termination::remaining(design).zip(termination::latest_done(design)),
     };
     let depth = match &exact_clocks {
-        // An induction that is longer than a computation has seen its start.
+        // An induction that is longer than a computation includes the computation's start.
         Some((_, start)) => start + 2,
-        // An induction longer than the registers before `valid` knows their outputs.
+        // The induction must be longer than the row of registers before `valid`, so that it knows their outputs.
         None => UNROLLED.max(valid_delay(design) + 3),
     };
     let largest_age = match (&exact_clocks, &remaining) {
@@ -153,8 +155,8 @@ pub fn files(job: &EmitJob, files: &mut OutputFiles) -> Result<()> {
         width: u32::BITS - largest.leading_zeros(),
     });
     let waits = design.control.microprogram.iter().any(|it| it.sequence == Sequence::WaitStart);
-    // If steps are unrolled, z3 solves a few steps with much state between them at once. The same holds for a device that
-    // begins a computation as another ends. It solves many steps faster if they are not unrolled.
+    // If the steps are unrolled, z3 proves a short induction over much state faster. The same holds for a device that accepts
+    // `start` in the last clock of a computation. z3 proves a long induction faster if the steps are not unrolled.
     let unroll = exact_clocks.is_none() || design.control.overlaps;
     let exact = exact_clocks.zip(age.as_ref()).map(|((clocks, start), age)| EventClocks {
         valid: age.literal(clocks[0]),
@@ -162,7 +164,7 @@ pub fn files(job: &EmitJob, files: &mut OutputFiles) -> Result<()> {
         last: age.literal(start - 1),
     });
     let bounded = remaining.zip(age.as_ref()).map(|((left, most), age)| Bounded {
-        // Results follow one another without a pause, once the first is there.
+        // With a distance of 1, every clock from the first result on shows a result.
         first: match timing.valid_to_valid {
             Some(1) => timing.start_to_valid.map(|first| age.literal(first)),
             _ => None,
@@ -183,9 +185,9 @@ pub fn files(job: &EmitJob, files: &mut OutputFiles) -> Result<()> {
         ports: Vec<String> = separated(inputs_of(design)),
         outputs: Vec<String> = outputs_of(design),
         connections: Vec<String> = connections(design),
-        // The program never waits for a second `start`: busy from start to done.
+        // Whether the microprogram never waits for a second `start`, so that `busy` is high from `start` to `done`.
         straight: bool = !waits,
-        // `start` is heard in the clock of `done` too.
+        // Whether the core also accepts `start` in the clock of `done`.
         overlaps: bool = design.control.overlaps,
         exact: Option<EventClocks>,
         bounded: Option<Bounded>,
@@ -222,8 +224,8 @@ pub(super) fn outputs_of(design: &Design) -> Vec<String> {
     Row::declarations(&rows)
 }
 
-/// Returns the proof that every computation ends: in each microinstruction, the age plus the largest number of remaining
-/// clocks is at most the whole.
+/// Returns the data for the proof that every computation ends. In each microinstruction, the age plus the largest number of
+/// remaining clocks must be at most `most`, the largest number of clocks of a computation.
 fn bounded_view(
     design: &Design,
     naming: &Naming,
@@ -232,7 +234,8 @@ fn bounded_view(
     (left, most): (&[Left], u32),
     age: &Age,
 ) -> Bounded {
-    // A net of the inside under a name of the wrapper; Yosys joins the two when it flattens.
+    // Makes an inner net of the core readable in the wrapper under the name `name`. Yosys joins the two nets when it flattens
+    // the design.
     let mut inside = Vec::new();
     let mut seen = |partition: Partition, net: NetId, name: String| {
         let range = range(design.width(net));
@@ -274,10 +277,10 @@ fn bounded_view(
     }
 }
 
-/// Returns the clocks of `valid` and `done`, and the clock of the next start. Returns `None` unless all are known and the
-/// result is there in one clock.
+/// Returns the clocks of `valid` and `done`, and the number of clocks from one start to the next. The latter is at least one
+/// more than the clock of `done`. Returns `None` if one of these numbers depends on the data.
 fn exact(timing: &HandshakeTiming) -> Option<([u32; 2], u32)> {
     let (valid, done) = (timing.start_to_valid?, timing.start_to_done?);
-    // The clocks of a computation are counted to the last, whether the next one follows at once or not.
+    // The next computation may start in the clock of `done`, but the age counts every computation to its last clock.
     Some(([valid, done], timing.start_to_start?.max(done + 1)))
 }

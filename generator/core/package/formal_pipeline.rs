@@ -16,17 +16,19 @@ use glint_rtl::verilog::naming::Naming;
 use glint_rtl::verilog::rows::{connections, separated};
 use glint_rtl::verilog::text::{Names, literal, range};
 
-/// Steps of the induction: every property follows from the clock before.
+/// The depth of the induction, in clocks. Every property follows from the state one clock earlier.
 const DEPTH: u32 = 2;
 
-/// The side channel.
+/// The side channel of the pipeline. `tag` is the register of the wrapper that holds the side value of the followed point.
+/// `stages` has the side value of each stage.
 struct SideChannel {
     range: String,
     tag: String,
     stages: Vec<SideStage>,
 }
 
-/// The counter of the slots of a pipeline that takes a point every few clocks, and one beside it.
+/// Two counters of a pipeline that accepts a point every few clocks. `slot` is the pipeline's own counter; `name` is the
+/// wrapper's counter, to which the proof compares it.
 struct Turn {
     range: String,
     name: String,
@@ -34,7 +36,7 @@ struct Turn {
     slot: String,
 }
 
-/// The side value of a stage.
+/// The number of a stage, and the net with its side value.
 struct SideStage {
     number: usize,
     value: String,
@@ -55,7 +57,8 @@ pub fn files(job: &EmitJob, pipeline: &Pipeline, files: &mut OutputFiles) -> Res
     if pipeline.side > 0 {
         ports.push(format!("input  wire {chosen}"));
     }
-    // A net of the inside under its path; Yosys joins the two when it flattens.
+    // Declares an inner net of the core by its path, and returns the path. Yosys joins the two nets when it flattens the
+    // design.
     let mut inside = Vec::new();
     let mut seen = |name: &str, range: &str| {
         let path = format!("\\{instance}.{name} ");
@@ -72,7 +75,7 @@ pub fn files(job: &EmitJob, pipeline: &Pipeline, files: &mut OutputFiles) -> Res
         let next = format!("({name} == {}) ? 0 : {name} + 1", pipeline.interval - 1);
         Turn { range, next, slot, name }
     });
-    // A point that is offered in its turn.
+    // The expression that is 1 if a point is offered in a clock in which the pipeline may accept one.
     let offered = match &turn {
         Some(turn) => format!("(in_valid & ({} == 0))", turn.name),
         None => "in_valid".to_owned(),
@@ -110,11 +113,11 @@ pub fn files(job: &EmitJob, pipeline: &Pipeline, files: &mut OutputFiles) -> Res
         // Declarations of the inner nets that the proof reads.
         inside: Vec<String>,
         stages: usize = latency,
-        // One bit a stage, under its path.
+        // The path of the net that has one bit for each stage: whether the stage holds a point.
         valid: String,
         stall: bool = pipeline.stall,
         moves_when: &'a str = if pipeline.stall { "out_ready | ~out_valid" } else { "1'b1" },
-        // No point in any stage.
+        // The literal for a pipeline without points.
         empty: String = literal(0, latency as u32),
         results: Vec<String> = results.map(|port| port_name(port.net)).collect(),
         present: String = names.fresh("present"),

@@ -12,7 +12,8 @@ use super::output_files::OutputFiles;
 use super::tops::{Face, Top};
 use glint_rtl::verilog::text::ascii;
 
-/// Adds `<name>.core`, with a simulation target if there is a bench, and then `<name>_tb.core`. File names are relative to them.
+/// Adds `<name>.core`, with a simulation target if there is a bench, and then `<name>_tb.core`. The file names in a core file
+/// are relative to its directory.
 ///
 /// # Errors
 /// Fails if a template fails to print.
@@ -28,15 +29,15 @@ pub fn files(job: &EmitJob, tops: &[Top], files: &mut OutputFiles) -> Result<()>
         name: &'a str,
         // A YAML string in single quotes; a quote in it is doubled.
         description: String = ascii(&job.design.about.title).replace('\'', "''"),
-        // The Verilog of the core for all targets: none that a target has its own of.
+        // The Verilog files of the core that are the same for all targets.
         common: Vec<&'a String> = rtl.iter().filter(|file| !replaced.contains(file)).collect(),
-        // The portable files that a target has its own of.
+        // The portable Verilog files that a target replaces by its own version.
         replaced: &'a [String] = &replaced,
         primitives: &'a [String] = &primitives,
         wrappers: Vec<String> =
             files.local_paths(&[FileKind::StreamWrapper, FileKind::BusWrapper]),
         memories: Vec<String> = files.local_paths(&[FileKind::Memory]),
-        // The benches beside the core's own, without `_tb`; none without it.
+        // The suffixes of the wrappers that have a bench; `None` if the core has no bench.
         benches: Option<Vec<&'static str>> = wrapper_benches(tops, files),
         // The clock of `<name>.xdc` and `<name>.sdc`, if these files exist.
         clock_mhz: Option<f64> = around.clock_mhz,
@@ -48,7 +49,7 @@ pub fn files(job: &EmitJob, tops: &[Top], files: &mut OutputFiles) -> Result<()>
     if let Some((bench, others)) = benches.split_first() {
         let text = fill!("testbench.core" {
             name: &'a str, vendor: &'a str = &around.vendor, version: &'a str, licence: &'a str, bench: &'a str,
-            // Its vectors, and the benches of wrappers with theirs.
+            // The vectors of the core's bench, and the benches of the wrappers with their vectors.
             others: &'a [String],
         })?;
         files.add(FileKind::BenchPackage, format!("{name}_tb.core"), text);

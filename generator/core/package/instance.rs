@@ -34,7 +34,7 @@ pub fn instances(design: &Design, inputs: &EmitInputs) -> Result<Vec<InstanceExa
     };
     let job = EmitJob { design, inputs, naming: &naming, registers };
     let modules = tops(&job, &OutputFiles::new(job.name()))?;
-    // The outermost module is what most systems use.
+    // Most systems use the outermost module, so it comes first.
     Ok(modules.into_iter().rev().map(|top| instance(design, top)).collect())
 }
 

@@ -135,8 +135,8 @@ fn fixed(format: Format) -> String {
     format!("{kind}({} downto {low})", low + format.width() as i32 - 1)
 }
 
-/// Returns a name as VHDL takes it: extended, which keeps upper and lower case, where a plain one does not do. For example,
-/// `signal` becomes `\signal\`.
+/// Returns a name for VHDL. A name that VHDL does not accept, or in which upper and lower case matter, becomes an extended
+/// identifier between backslashes. For example, the reserved word `signal` becomes `\signal\`.
 fn vhdl_name(name: &str) -> String {
     let reserved = VHDL_2008.split_ascii_whitespace().any(|word| word == name.to_ascii_lowercase());
     let plain = !name.starts_with('_') && !name.ends_with('_') && !name.contains("__");
@@ -146,8 +146,8 @@ fn vhdl_name(name: &str) -> String {
     if plain && !reserved && (small || generic) { name.to_owned() } else { format!("\\{name}\\") }
 }
 
-/// Returns the name of a module as the name of a component. It is an extended name too if the package uses the name or makes
-/// it visible.
+/// Returns the name of a module as the name of a VHDL component. A name that the emitted package uses itself, such as `ieee`,
+/// also becomes an extended identifier.
 fn module_name(name: &str) -> String {
     let used = ["ieee", "work", "std", "std_logic", "std_logic_vector", "std_ulogic", "string"];
     if used.contains(&name) { format!("\\{name}\\") } else { vhdl_name(name) }
@@ -166,11 +166,11 @@ const VHDL_2008: &str = "
     wait when while with xnor xor
 ";
 
-/// A number of SystemVerilog.
+/// An operand or a result as the SystemVerilog package declares it, with a type and conversion functions.
 struct VerilogConstant {
     name: String,
     constant: String,
-    /// Its type.
+    /// The name of the type in SystemVerilog. For example, `cos_gamma_t`.
     kind: String,
     doc: Vec<String>,
     format: Format,
@@ -185,7 +185,7 @@ impl VerilogConstant {
         format!("{:?}", exp2(self.format.frac))
     }
 
-    /// Returns the limits as reals.
+    /// Returns the smallest and the largest raw value as SystemVerilog reals.
     fn limits(&self) -> (String, String) {
         let (low, high) = self.format.range();
         (format!("{:?}", low as f64), format!("{:?}", high as f64))
@@ -200,7 +200,8 @@ impl VerilogConstant {
         }
     }
 
-    /// Returns the raw integer of `scaled`, which is within the limits. Verilator takes no real above 2^63.
+    /// Returns the expression that converts the real `scaled` to the raw integer. `scaled` must be within the limits. Verilator
+    /// cannot convert a real above 2^63 to an integer.
     fn whole(&self) -> String {
         let plain = format!("{}'(longint'(scaled))", self.kind);
         match (self.format.signed, self.format.width()) {
@@ -217,7 +218,7 @@ impl VerilogConstant {
     }
 }
 
-/// A transfer of a stream as a structure.
+/// A transfer of a stream as a packed structure of SystemVerilog, with the members from the top bits down.
 struct Structure {
     net: &'static str,
     members: Vec<String>,

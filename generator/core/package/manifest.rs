@@ -64,7 +64,7 @@ struct ComputationNames<'a> {
     operands: Vec<&'a str>,
     /// The results, in the order of the ports.
     results: Vec<&'a str>,
-    /// A computation a line.
+    /// The computations, each as JSON on a single line.
     points: Vec<Box<RawValue>>,
 }
 
@@ -96,7 +96,7 @@ fn file_names(files: &OutputFiles) -> serde_json::Map<String, Value> {
     let mut names = serde_json::Map::new();
     for (place, (list, kinds)) in lists.into_iter().enumerate() {
         let paths = files.local_paths(kinds);
-        // The first four are there even if they are empty.
+        // The first four lists are in the manifest even if they are empty.
         if place < 4 || !paths.is_empty() {
             names.insert(list.to_owned(), json!(paths));
         }
@@ -250,7 +250,8 @@ fn positions(ordered: &[(usize, &str)]) -> Vec<usize> {
     ordered.iter().map(|(place, _)| *place).collect()
 }
 
-/// Returns a computation in a line: raw values in the orders of operands and results that are stated.
+/// Returns a computation as JSON on a single line. `operands` and `results` give the order of the raw values: the indices into
+/// the values of `computation`.
 fn line(computation: &Computation, operands: &[usize], results: &[usize]) -> Result<Box<RawValue>> {
     let (mut valid, mut outputs) = (Vec::new(), Vec::new());
     for result in &computation.results {
@@ -265,7 +266,7 @@ fn line(computation: &Computation, operands: &[usize], results: &[usize]) -> Res
     }))?)
 }
 
-/// Returns the values at these places.
+/// Returns the elements of `values` with the indices `places`, in the order of `places`.
 fn in_order(places: &[usize], values: &[i64]) -> Vec<i64> {
     places.iter().map(|&place| values[place]).collect()
 }
@@ -286,8 +287,8 @@ fn control(design: &Design) -> Value {
     entry
 }
 
-/// Returns the entry of a pipeline. Latency and interval are in clocks; a register bit counts in each stage that it
-/// ends, and a bit of a delay line in each that it passes.
+/// Returns the entry of a pipeline. Latency and interval are in clocks. A register bit is counted in each stage that it ends,
+/// and a bit of a delay line in each stage that it passes.
 fn pipeline(pipeline: &Pipeline) -> Value {
     let stages = pipeline.stages.iter().map(|stage| {
         json!({

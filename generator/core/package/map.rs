@@ -14,7 +14,7 @@ use glint_base::key_error::KeyError;
 use glint_rtl::netlist::{Design, Port, Role};
 use glint_rtl::verilog::text::ascii;
 
-/// Bits of a register.
+/// The number of bits of a register.
 const WORD: u32 = 32;
 
 /// The number of bus registers with constant contents. They have the lowest addresses of a core's register map.
@@ -30,7 +30,7 @@ pub const INTERRUPT_ENABLE: u32 = 6;
 /// The word address of the register that shows whether an interrupt is pending.
 pub const INTERRUPT_PENDING: u32 = 7;
 
-/// The place of the first operand, in words.
+/// The word address of the first operand.
 const FIRST_OPERAND: u32 = 8;
 
 /// How software can access some bits of a register.
@@ -129,7 +129,8 @@ impl Map {
     /// Makes the register map of a core: assigns bus registers to its operands, results and status bits.
     ///
     /// # Errors
-    /// Fails if the core is no single computation of operands to results, or if names collide in the map.
+    /// Fails if the core is a pipeline, computes several results after one `start`, or lacks the handshake, operands or
+    /// results. Fails if two registers have the same name.
     pub fn new(design: &Design, inputs: &EmitInputs) -> Result<Self> {
         let name = design.name.as_str();
         if design.pipeline.is_some() {
@@ -217,7 +218,7 @@ fn last_place(ports: &[PortPlacement]) -> u32 {
     parts.map(|part| part.place).max().unwrap_or_default()
 }
 
-/// Returns a port in registers of its own.
+/// Places a port in registers that no other port uses, from the word address `place` on, and moves `place` behind them.
 fn placed(design: &Design, port: &Port, strobe: String, place: &mut u32) -> PortPlacement {
     let net = design.net(port.net);
     let width = net.format.width();
@@ -231,8 +232,9 @@ fn placed(design: &Design, port: &Port, strobe: String, place: &mut u32) -> Port
     PortPlacement { name: net.name.clone(), format: net.format, strobe, parts }
 }
 
-/// Returns the places of the results. All share one register, each in whole bytes, if they fit there; else each has its own.
-/// For example, three colours of 8 bits share a register, from bits 0, 8 and 16 on.
+/// Returns the placements of the results, and moves `place` behind them. If all results fit into one register, each in whole
+/// bytes, they share it; otherwise each result has its own registers. For example, three colours of 8 bits share a register,
+/// from bits 0, 8 and 16 on.
 fn results(design: &Design, place: &mut u32) -> Vec<PortPlacement> {
     let ports: Vec<&Port> = design.outputs().filter(|port| port.role == Role::Result).collect();
     let padded = |port: &Port| design.width(port.net).next_multiple_of(8);
@@ -262,7 +264,8 @@ struct CommonRegisters {
     register: Vec<BusRegister>,
 }
 
-/// Returns the registers that every core has, in this one.
+/// Returns the registers that every core has. Their constants are the version of Glint, the digest of the configuration, and
+/// the numbers of operands and results of this core. The last operand and the last register are given as word addresses.
 fn fixed(
     inputs: &EmitInputs,
     (operands, results): (usize, usize),
@@ -333,7 +336,7 @@ fn of_results(results: &[PortPlacement], design: &Design) -> Vec<BusRegister> {
     }]
 }
 
-/// Returns the registers of a port, which no other port has a part in.
+/// Returns the bus registers of a port that shares no register with another port. `access` says how software can access them.
 fn own(port: &PortPlacement, access: Access, doc: &str) -> Vec<BusRegister> {
     let mut registers = Vec::new();
     for (number, part) in port.parts.iter().enumerate() {
@@ -344,7 +347,7 @@ fn own(port: &PortPlacement, access: Access, doc: &str) -> Vec<BusRegister> {
                 format!("{doc}, bits {} to {}", part.low, part.low + part.width - 1),
             ),
         };
-        // A result is read with copies of its sign; an operand as it was written.
+        // Software reads a signed result with copies of its sign bit above it, and an operand as it was written.
         let (width, raw) = match access {
             Access::Read if port.format.signed => (WORD, "raw, with copies of the sign"),
             _ => (part.width, "raw"),

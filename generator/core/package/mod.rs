@@ -5,7 +5,8 @@
 //! plain struct, and a template in `templates/` prints the view. Templates make no decisions. Emission returns the files and
 //! writes nothing to disk, and the same design always gives the same bytes.
 
-/// Declares a structure of a bench's own names. No name is the name of a port.
+/// Declares a struct with the names that a test bench uses for its own variables. Its function `new` chooses names that no port
+/// has.
 macro_rules! fresh_names {
     ($all:ident { $($name:ident),* }) => {
         struct $all {
@@ -84,7 +85,8 @@ pub fn points_bench(design: &Design, limit: u32) -> Result<PointsBench> {
 /// Returns only the Verilog of a core and the contents of its ROMs, without wrappers, test benches and other files.
 ///
 /// # Errors
-/// Fails if [`Design::verify_structure`] finds mistakes, or if a net is named `clk`.
+/// Fails if [`Design::verify_structure`] finds mistakes, if a net is named `clk`, or if the name of a module is used for
+/// anything else.
 pub fn emit_core(design: &Design, inputs: &EmitInputs) -> Result<OutputFiles> {
     let naming = Naming::new(design).styled(inputs.around.style);
     let files = core_files(&EmitJob { design, inputs, naming: &naming, registers: None })?;
@@ -111,7 +113,9 @@ fn core_files(job: &EmitJob) -> Result<OutputFiles> {
 /// Returns all files of a core.
 ///
 /// # Errors
-/// Fails if [`Design::verify_structure`] finds mistakes, if a net is named `clk`, or if vectors do not fit the ports.
+/// Fails if [`Design::verify_structure`] finds mistakes, if a net is named `clk`, or if vectors do not fit the ports. Fails if
+/// the core cannot have a wrapper or a model that the configuration asks for, or if the name of a module is used for anything
+/// else.
 pub fn emit(design: &Design, inputs: &EmitInputs) -> Result<OutputFiles> {
     let naming = Naming::new(design).styled(inputs.around.style);
     let mut job = EmitJob { design, inputs, naming: &naming, registers: None };

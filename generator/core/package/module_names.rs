@@ -1,9 +1,9 @@
 //! Checks the module names in emitted Verilog: a module's name must not be used for anything else, and no two configurations may
 //! define the same module.
 //!
-//! Verilog allows a module to have the name of something inside it, but some tools fail. For example, if a bench reads a signal
-//! of the instance `control` of a module `control`, elaboration fails. Linters warn of a port that has the name of its module.
-//! Each file lists its modules in [`OutputFile::modules`].
+//! Verilog allows a module to have the name of something inside it, but some tools fail. For example, elaboration fails if a
+//! bench reads a signal of the instance `control` of a module `control`. Linters warn of a port that has the name of its
+//! module. Each file lists its modules in [`OutputFile::modules`].
 
 use std::collections::BTreeMap;
 

@@ -14,7 +14,7 @@ use glint_rtl::verilog::header;
 use glint_rtl::verilog::rows::separated;
 use glint_rtl::verilog::text::comment;
 
-/// Bits of a factor of the block.
+/// The number of bits of each factor of the DSP block.
 const WIDTH: usize = 18;
 
 const PORTABLE: &str = "The portable form, for simulators and synthesis alike. On ECP5 the file of the same name in \
@@ -51,7 +51,8 @@ pub fn files(job: &EmitJob, files: &mut OutputFiles) -> Result<()> {
     Ok(())
 }
 
-/// Returns every pin of factors, the unused one between them, and product, five a line.
+/// Returns the connections of all data pins of the DSP block, five on a line. The pins are the factors A and B, the unused
+/// input C, and the product P.
 fn pins() -> Vec<String> {
     let mut pins = Vec::new();
     for (pin, width, net) in [

@@ -71,7 +71,7 @@ impl OutputFiles {
         format!("{}/{}/{file}", kind.folder(), self.name)
     }
 
-    /// Inserts a file behind all files that are listed before it or together with it.
+    /// Inserts a file after all files that are listed before it or together with it.
     fn insert(&mut self, file: OutputFile) {
         let kind = file.kind.listed_with();
         let place = self.files.partition_point(|other| other.kind.listed_with() <= kind);

@@ -32,7 +32,7 @@ pub struct PointsBench {
     pub results: Vec<String>,
 }
 
-/// The view of a list of points in templates, whatever the architecture.
+/// The names and texts that the benches for a pipeline and for a core with a microprogram have in common.
 struct PointList {
     name: String,
     module: String,
@@ -45,13 +45,14 @@ struct PointList {
     valid: String,
     operands: Vec<String>,
     results: Vec<String>,
-    /// The format strings of a line.
+    /// The format string that reads a line of operands; `print` is the format string that prints a line of results.
     scan: String,
     print: String,
 }
 
 impl PointList {
-    /// Returns the list by the input ports that are operands; reset and `valid` are nets of the design.
+    /// Collects the names and texts of the bench for a design. `is_operand` says which roles are operands. The last parameter
+    /// has the net of the reset and the net of `valid`.
     fn new(
         design: &Design,
         limit: u32,

@@ -9,19 +9,16 @@ use glint_config::{Config, Schema, Shared};
 use glint_rtl::netlist::{Design, Pipeline};
 use glint_rtl::verilog::naming::Style;
 
-/// The clock of constraints for a sequential core, unless a key says another.
+/// The default clock frequency of the constraints for a sequential core, in MHz.
 const CLOCK_MHZ: f64 = 100.0;
 
-/// The key that says another.
+/// The key with the clock frequency of the constraints, in MHz.
 const CLOCK: &str = "package.clock_mhz";
 
-/// The key that says where ROMs are to be.
+/// The key that says whether ROMs should be in memory blocks or in look-up tables.
 const ROM_STYLE: &str = "package.rom_style";
 
-/// Checks that constraints do not ask for a faster clock than the pipeline is made for.
-///
-/// # Errors
-/// Fails if the clock of the constraints is faster than the clock of the stages.
+/// Checks that the constraints do not ask for a faster clock than the clock for which the pipeline is made.
 pub fn check_clock(config: &Config, pipeline: &Pipeline) -> Result<(), KeyError> {
     let (asked, made_for) = (config.number(CLOCK), pipeline.clock_mhz);
     if asked <= made_for {
@@ -94,7 +91,7 @@ pub struct Surroundings {
     pub style: Style,
     /// Whether to emit a module for LiteX.
     pub litex: bool,
-    /// The clock frequency of the constraint files, if they are asked for.
+    /// The clock frequency of the constraint files in MHz, or `None` if the configuration asks for no constraint files.
     pub clock_mhz: Option<f64>,
     /// Whether to emit Tcl for Vivado.
     pub vivado: bool,
@@ -114,7 +111,7 @@ pub struct Surroundings {
     pub licence: String,
 }
 
-/// The defaults of the keys.
+/// The values of a configuration that sets none of the keys.
 impl Default for Surroundings {
     fn default() -> Self {
         let schema = Schema { device: "", keys: Vec::new(), check: |_, _| () };
@@ -140,7 +137,8 @@ impl Surroundings {
                 case: keys.memories == "case",
                 rom_style: match keys.rom_style.as_str() {
                     "block" => Some("rom_style = \"block\""),
-                    // To Yosys, which reads the first, memory in look-up tables is one that can be written.
+                    // Yosys reads the first attribute. For Yosys, distributed memory is memory that can be written, so the
+                    // attribute of a ROM is "logic".
                     "distributed" => Some("ram_style = \"logic\", rom_style = \"distributed\""),
                     _ => None,
                 },

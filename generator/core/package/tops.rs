@@ -93,10 +93,7 @@ impl Top {
     }
 }
 
-/// Returns the modules of a configuration, the core first.
-///
-/// # Errors
-/// Fails if a stream surrounds a core without operands or results.
+/// Fails if the configuration asks for streams, and the core has no operands or no results.
 pub fn tops(job: &EmitJob, files: &OutputFiles) -> Result<Vec<Top>> {
     let (name, design) = (job.name(), job.design);
     let reset = design.port(|role| role == Role::Reset);
@@ -175,7 +172,7 @@ fn stream_ports(job: &EmitJob) -> Result<Vec<TopPort>> {
     };
     let (in_keep, out_keep) = (keep("in s", input), keep("out m", output));
     let user = job.inputs.around.user_bits;
-    // A line has its end in its length.
+    // A core that computes lines needs no `tlast`, because an operand states the length of the line.
     let last = if job.is_line() { "" } else { "in s_axis_tlast, " };
     Ok(listed(&format!(
         "in aclk, in aresetn, in s_axis_tdata {input}, {in_keep}in s_axis_tuser {user}, {last}\
@@ -184,7 +181,9 @@ fn stream_ports(job: &EmitJob) -> Result<Vec<TopPort>> {
     )))
 }
 
-/// Parses ports from text: directions and names, the widths of vectors, and signals of LiteX.
+/// Parses a list of ports: for each the direction, the name, the width of a vector, and the signal of LiteX. A width of `-`
+/// denotes a port of one bit. For example, `in s_axil_wdata 32 w.data, out irq` has an input of 32 bits and an output of one
+/// bit.
 fn listed(ports: &str) -> Vec<TopPort> {
     let mut listed = Vec::new();
     for port in ports.split(", ") {

@@ -3,7 +3,8 @@
 use super::*;
 use glint_keys::common::{Domain, Intensity, Operands};
 
-/// C = 4; the ratio and the decay with 6 fraction bits; y with 1 + 2 fraction bits; F = 6.
+/// Returns the arithmetic of a small configuration: cosines with 4 fraction bits, ratio and decay with 6, n·decay with 2, and f
+/// with 6.
 fn small(of: Decay) -> DecayArithmetic {
     let f = Intensity { fraction: 6, ..Intensity::small() };
     let degree = || "auto".to_owned();
@@ -54,7 +55,7 @@ fn tables_are_near_what_they_stand_for() {
             assert!((it.ratio.result(u) as f64 - exact).abs() < 1.0, "{of:?} {u}");
         }
     }
-    // For the middle of a quarter: 0.5, 1.5, … eighths.
+    // The table of 2^−x holds the value at the middle of each quarter: at 1/8, 3/8, 5/8 and 7/8.
     let it = small(Decay::Angle);
     for x in 0..4 {
         let exact = libm::exp2(-(x as f64 + 0.5) / 4.0) * 64.0;

@@ -10,18 +10,19 @@ use glint_base::fixed::mask;
 /// The signals of the handshake, which come before the signals of the device.
 const HANDSHAKE: [&str; 5] = ["valid", "busy", "done", "run", "word_address"];
 
-/// The constant part of a model.
+/// The part of a model that does not change from clock to clock.
 #[derive(Clone)]
 pub(super) struct ModelConstants {
     pub(super) program: Vec<FrameStep>,
     pub(super) operands: Vec<FrameOperand>,
-    /// The outputs first.
+    /// The slot of each predicted signal with a mask of its width, the outputs first.
     pub(super) shown: Vec<(Slot, u64)>,
+    /// The number of outputs in `shown`.
     pub(super) outputs: usize,
-    /// Outputs that are logic.
+    /// The outputs that are combinational logic, with the functions that compute them.
     pub(super) logic: Vec<(Slot, Value)>,
     pub(super) edges: Vec<Does>,
-    /// Results with the registers that take them.
+    /// Pairs of a result that is combinational logic and the register that loads it.
     pub(super) taken: Vec<(Slot, Slot)>,
     /// The slots that the operand strobes write: the operand registers, or the buffers in front of them.
     written: Vec<Slot>,
@@ -60,7 +61,8 @@ impl Frame {
     pub fn model(mut self, program: impl IntoIterator<Item = FrameStep>) -> ClockedModel {
         let program: Vec<_> = program.into_iter().collect();
         assert!(!program.is_empty(), "a device idles in its first microinstruction");
-        // Of signals that differ in one clock the first is reported: one that a user of the device sees.
+        // A comparison reports the first signal that differs in a clock, which should be an output: a user of the device sees
+        // it.
         self.shown.sort_by_key(|shown| !shown.output);
         let mut inputs: Vec<String> = ["rst_n", "start"].map(str::to_owned).into();
         let mut written = Vec::new();
@@ -95,7 +97,8 @@ impl Frame {
 }
 
 impl ModelConstants {
-    /// Loads the operand registers, or the buffers in front of them, from data and strobes. Returns whether anything was loaded.
+    /// Loads the operand registers, or the buffers in front of them. `ports` has the bits of the data and of the strobe for
+    /// each operand in turn. Returns whether anything was loaded.
     fn write(&self, state: &mut State, ports: &[u64]) -> bool {
         let mut taken = false;
         let registers = self.operands.iter().zip(&self.written);
@@ -110,7 +113,7 @@ impl ModelConstants {
 }
 
 impl ClockedModel {
-    /// Makes the device at power-up, with this number of slots, all 0.
+    /// Makes the model in the state after power-up: `slots` slots, all 0.
     fn at_power_up(fixed: ModelConstants, slots: usize) -> Self {
         let mut model = Self {
             run: false,
@@ -129,8 +132,12 @@ impl ClockedModel {
         self.values[0] == 1
     }
 
-    /// Returns the device with registers behind the results that are logic. These are taken in the microinstruction that was to
-    /// set `valid`, and one more sets it; where `valid` comes later than a microinstruction says, in every clock.
+    /// Returns the model of the device with a register behind each result that is combinational logic. The microinstruction
+    /// that raised `valid` loads these registers, and an added microinstruction after it raises `valid`. If `valid` is delayed,
+    /// the registers load the results in every clock, and `valid` is delayed by one clock more.
+    ///
+    /// Returns a copy of the model if no result is combinational logic. Returns `None` if a condition decides what follows a
+    /// microinstruction with `valid`, and `valid` is not delayed.
     pub(crate) fn registered(&self) -> Option<Self> {
         let mut it = ModelConstants::clone(&self.fixed);
         let mut slots = self.state.len();
@@ -159,7 +166,8 @@ impl ClockedModel {
         Some(Self::at_power_up(it, slots))
     }
 
-    /// Updates the visible values. If `still`, it skips the values that depend on the registers.
+    /// Updates the visible values. If `still`, it updates only the handshake, because neither registers nor outputs have
+    /// changed.
     #[inline]
     fn settle(&mut self, still: bool) {
         let it = &*self.fixed;
@@ -215,7 +223,7 @@ impl Model for ClockedModel {
             does(state);
         }
         let ends = matches!(here.next, Next::End);
-        // With buffers a start is heard in the last microinstruction too.
+        // With operand buffers, the device also accepts `start` in the last microinstruction.
         let starts = start && (!self.run || ends && it.buffered);
         let mut taken = (it.buffered || !self.run) && it.write(state, &inputs[2..]);
         if it.buffered && starts {
@@ -224,7 +232,8 @@ impl Model for ClockedModel {
                 state[operand.slot] = state[buffer];
             }
         }
-        // Registers and outputs change by loads alone where no edge and no flag changes them.
+        // Registers and outputs keep their values if nothing loads a register, no operation runs at every edge, and there are
+        // no flags.
         let still = here.does.is_none()
             && !(taken || here.takes_results)
             && it.edges.is_empty()
@@ -265,8 +274,9 @@ impl Model for ClockedModel {
     }
 }
 
-/// Returns the program with one microinstruction more after each that was to set `valid`; none where such a one goes on by a
-/// condition.
+/// Returns the program of a device with output registers. Each microinstruction that raised `valid` now loads these registers,
+/// and an added one after it raises `valid`. Returns `None` if a microinstruction with `valid` decides by a condition what
+/// follows.
 fn taking(program: &[FrameStep]) -> Option<Vec<FrameStep>> {
     let mut longer = Vec::new();
     for (at, step) in program.iter().enumerate() {

@@ -152,8 +152,8 @@ impl FrameStep {
     }
 }
 
-/// An operand register with its write strobe. It ignores writes while the device is busy, and does not know
-/// the reset.
+/// An operand register with its write strobe. The register ignores writes while the device is busy, and a reset does not change
+/// it.
 #[derive(Clone)]
 struct FrameOperand {
     name: String,
@@ -164,13 +164,13 @@ struct FrameOperand {
 }
 
 impl FrameOperand {
-    /// Returns the number that the register loads from the bits on the port.
+    /// Returns the raw value that the register loads for the bits on the port, limited to `min ..= max`.
     fn held(&self, bits: u64) -> i64 {
         (self.format.raw(bits) as i64).clamp(self.min, self.max)
     }
 }
 
-/// A predicted signal, with the bits of its net.
+/// A predicted register or output, with the slot of its value and the format of its net.
 struct FrameSignal {
     name: String,
     output: bool,
@@ -224,7 +224,8 @@ impl Frame {
     /// Adds an output that has the value of a register.
     ///
     /// # Panics
-    /// Panics if the slot is no register. An output that is logic must use [`Frame::output`].
+    /// Panics if `register` is not the slot of a predicted signal, for example a slot of [`Frame::hidden`]. An output that is
+    /// logic must use [`Frame::output`].
     pub fn shows(&mut self, name: &str, register: Slot) {
         let of = self.shown.iter().find(|shown| shown.slot == register);
         let format = of.expect("a register that is shown").format;

@@ -57,8 +57,8 @@ impl Frame {
     /// `twice_doubled`.
     ///
     /// # Panics
-    /// Panics if a [`Frame`] did not make the model. Panics if the model gives several results, or has no operand of one of the
-    /// names.
+    /// Panics if a [`Frame`] did not make `model`, if `model` delays `valid`, or if [`Model::with_output_registers`] returns
+    /// `None` for it. Panics if the part has no operand with one of the names in `operands`.
     pub fn part<V>(
         &mut self,
         name: &str,
@@ -106,7 +106,7 @@ impl Frame {
             }
         });
         if self.parts.is_empty() {
-            // The device waits for `start` in the first, and loads in the second.
+            // The device waits for `start` in the first microinstruction, and loads operands in the second.
             self.parts = vec![idle(), idle()];
         }
         let before = self.parts.pop().unwrap_or_else(idle);
@@ -128,13 +128,15 @@ impl Frame {
     }
 }
 
-/// Returns the operation of a part whose state begins at `base`.
+/// Converts an operation on the state of a part to an operation on the state of the whole device, in which the part's state
+/// begins at `base`.
 fn within(base: usize, does: &Does) -> Does {
     let of_part = does.clone();
     Arc::new(move |s| of_part(&mut s[base..]))
 }
 
-/// Returns the condition of a part whose state begins at `base`.
+/// Converts a condition on the state of a part to a condition on the state of the whole device, in which the part's state
+/// begins at `base`.
 fn condition_within(base: usize, holds: &Condition) -> Condition {
     let of_part = holds.clone();
     Arc::new(move |s| of_part(&s[base..]))

@@ -1,8 +1,8 @@
 use super::*;
 use crate::Model;
 
-/// Adds an operand that counts down by ones, or not at all if it is 0 (s1.2, clamped to 0 … 1.0). Returns the slots of the
-/// operand and of the count.
+/// Adds the operand `from` (s1.2, clamped to 0 … 1.0), the register `count` for a countdown, and the output `twice`, which is
+/// −2 · `count`. Returns the slots of `from` and `count`.
 fn countdown(frame: &mut Frame) -> (Slot, Slot) {
     let from = frame.clamped("from", Format::signed(1, 2), 0, 4);
     let count = frame.register("count", Format::unsigned(3, 0));
@@ -47,7 +47,7 @@ fn a_loop_runs_from_idle_to_the_end() {
 
 #[test]
 fn a_microinstruction_is_passed_over() {
-    // 1111 is −1/4, which the register takes for 0.
+    // The bits 1111 are −1/4, which the register clamps to 0. The microinstruction that counts is skipped.
     let course = [
         [1, 0, 0, 0, 0, 0, 0],
         [1, 1, 0, 0, 0, 0, 0],
@@ -88,11 +88,11 @@ fn an_operand_clamps_and_is_written_by_its_strobe() {
     assert_eq!(model.value("nothing"), None);
 }
 
-/// `valid` moves to a microinstruction more, and the result to a register that is loaded before it.
+/// An added microinstruction raises `valid`. The microinstruction before it loads the result into a register.
 #[test]
 fn results_in_registers() {
     let mut model = model(0).with_output_registers().expect("one result");
-    // The register shows −2 · 0 only after a load, and keeps it while `twice` itself would be −2 · 2.
+    // The register still shows 0 while `twice` itself would be −2 · 2. It shows −2 · 0 after the load.
     let course = [
         [1, 0, 0, 0, 0, 0, 0],
         [1, 1, 0, 0, 0, 0, 0],
@@ -105,7 +105,7 @@ fn results_in_registers() {
     assert_course(model.as_mut(), 2, &course);
 }
 
-/// A jump goes as far as before where a microinstruction was put in between; the result holds from one
+/// A skip also skips a microinstruction that was added inside the skipped ones. The register keeps its result from one
 /// computation to the next.
 #[test]
 fn a_jump_beyond_a_result_in_a_register() {
@@ -133,7 +133,7 @@ fn a_jump_beyond_a_result_in_a_register() {
         [1, 0, 0, 0, 0, 0, 0],
         [1, 1, 0, 0, 0, 0, 0],
         [1, 2, 3, 0, 0, 0, 0],
-        // It is taken here: −6 in five bits.
+        // The register loads the result at the end of this clock: −6, which is 26 in five bits.
         [1, 3, 3, 0, 1, 0, 0],
         [1, 4, 3, 26, 0, 1, 0],
         [1, 5, 3, 26, 0, 0, 1],
@@ -150,7 +150,7 @@ fn a_jump_beyond_a_result_in_a_register() {
     assert_eq!(course(0, 5), expected);
 }
 
-/// Where `valid` comes later than a microinstruction says, results are taken in every clock.
+/// If `valid` is delayed, the output registers load the results in every clock.
 #[test]
 fn results_in_registers_that_follow() {
     let mut model = model(2).with_output_registers().expect("one result");
@@ -167,7 +167,7 @@ fn results_in_registers_that_follow() {
     assert_course(model.as_mut(), 2, &course);
 }
 
-/// Before a microinstruction that decides where to go on, there is none that could load.
+/// A model cannot get output registers if the microinstruction with `valid` decides by a condition what follows.
 #[test]
 fn no_registers_behind_a_result_that_decides() {
     let mut frame = Frame::default();
@@ -177,8 +177,8 @@ fn no_registers_behind_a_result_that_decides() {
     assert!(model.with_output_registers().is_none());
 }
 
-/// A buffer takes writes at any time. A start in the last microinstruction is heard, and takes the value that is written in
-/// the same clock.
+/// A buffer accepts writes at any time. A `start` in the last microinstruction begins the next computation, with the value that
+/// is written in the same clock.
 #[test]
 fn operands_in_buffers() {
     let mut model = model(0).with_operand_buffers().expect("a frame's");

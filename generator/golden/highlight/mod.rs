@@ -134,7 +134,7 @@ pub trait Reflectance: Send + Sync {
 pub struct Variation {
     /// The largest slope of the formula, apart from the jump.
     pub slope: f64,
-    /// The largest jump of the formula. Most formulas jump at a right angle: there they have some value, and beyond it 0.
+    /// The largest jump of the formula. Most jumps are at a right angle, where the formula falls from some value to 0.
     pub jump: f64,
 }
 
@@ -223,7 +223,8 @@ impl Highlight {
         self.f(point)
     }
 
-    /// Appends [`Contract::exact`] at the control operands of one point.
+    /// Appends the values of [`Contract::exact`] for the control operands `point` of one result and the colour operands
+    /// `colours`.
     fn exact_at(&self, point: &[i64], colours: &[i64], exact: &mut Vec<[f64; 2]>) {
         let f = self.references(point);
         let pairs = self.products.operands.iter().zip(colours);

@@ -13,7 +13,7 @@ use crate::{Contract, Operand, Sweep};
 use glint_base::fixed::{Rounding, exp2};
 use glint_config::Config;
 
-/// The most that D² can be: each component is at least −2.0.
+/// The largest D² as a value: each of the three components is at least −2.0, so its square is at most 4.
 const FARTHEST: i64 = 12;
 
 /// Returns the accuracy contract of the device `lyon`. Its control operands are `dx`, `dy`, `dz`, and `shift` or `exponent`.
@@ -40,14 +40,14 @@ pub(super) fn of_keys(keys: Keys) -> Highlight {
 }
 
 impl LyonArithmetic {
-    /// Returns D² of the raw components.
+    /// Returns the exact D² of the raw components, as a value.
     #[inline]
     fn exact_distance(&self, vector: &[i64]) -> f64 {
         let squares = vector[..3].iter().map(|component| component * component);
         squares.sum::<i64>() as f64 * exp2(-2 * self.keys.vector_fraction as i32)
     }
 
-    /// Returns the formula at a D², with the β that the operand denotes.
+    /// Returns the exact f for `distance`, a value of D². β follows from the raw operand `shift` or `exponent`.
     #[inline]
     fn formula(&self, distance: f64, operand: i64) -> f64 {
         let power = self.keys.power;
@@ -78,7 +78,8 @@ impl Reflectance for LyonArithmetic {
         vec![format!("{} ** {power}", shared::clamped_at_0(&base))]
     }
 
-    /// Returns the operands for the normal (0, 0, 1) and the half vector (sin γ, 0, cos γ).
+    /// Returns the operands for the normal (0, 0, 1) and the half vector (sin γ, 0, cos γ). Returns `None` if `n` is not an
+    /// integer in the domain.
     fn at(&self, operands: &[Operand], gamma: f64, n: f64) -> Option<Vec<i64>> {
         let (first, last) = self.keys.domain.exponents();
         let exponent = n as i64;
@@ -96,13 +97,13 @@ impl Reflectance for LyonArithmetic {
         ])
     }
 
-    /// Returns the cosine of unit vectors at the distance D: 1 − D²/2.
+    /// Returns the cosine of the angle between two unit vectors at the distance D: 1 − D²/2, or 0 if that is negative.
     fn cosine(&self, _: &[Operand], control: &[i64]) -> Option<f64> {
         Some((1.0 - self.exact_distance(control) / 2.0).max(0.0))
     }
 
-    /// Returns every word of D² with every operand that scales it: they determine f, since adders 1 and 2 and multipliers 1 to 3
-    /// are exact.
+    /// Returns every word of D² with every operand `shift` or `exponent`. They determine f, since adders 1 and 2 and
+    /// multipliers 1 to 3 are exact.
     fn sweep(&self) -> Option<Sweep> {
         let most = FARTHEST << self.keys.distance_fraction;
         Some(Sweep::ranges([
@@ -111,8 +112,8 @@ impl Reflectance for LyonArithmetic {
         ]))
     }
 
-    /// Returns the largest error over every D² that is rounded to the word. The formula falls as D² grows, so that it is at an
-    /// end.
+    /// Returns the largest error over every D² that is rounded to the word. The formula falls as D² grows, so the error is
+    /// largest at an end of this interval.
     #[inline]
     fn sweep_error(&self, place: &[i64]) -> Option<f64> {
         let (operand, word) = (place[0], place[1]);
@@ -127,7 +128,7 @@ impl Reflectance for LyonArithmetic {
         };
         let formula = |at: f64| self.formula(at.max(0.0) * ulp, operand);
         let nearest = formula(low);
-        // Beyond the zero, where most places are.
+        // Most words are beyond the zero of the formula, where the error is 0.
         if f == 0.0 && nearest == 0.0 {
             return Some(0.0);
         }
@@ -137,13 +138,13 @@ impl Reflectance for LyonArithmetic {
     /// Derives the terms of f's error. Base and powers lie in 0 … 1, hardware's and formula's alike, so by the mean value theorem
     /// an error ε before a power p grows to at most p·ε.
     ///
-    /// - An error of D² is multiplied by β = n/(2·m), and raised to m: n/2 in all.
+    /// - An error of D² is multiplied by β = n/(2·m), and by at most m when the base is raised to m: n/2 in all.
     /// - Base: as in `cosine-power`, the hardware uses the inverse, 1.0 − ulp − t, instead of 1.0 − t. If t is truncated, the
-    ///   base is low by at most an ulp; if t is rounded to the nearest, by 3/2.
-    /// - The result of squaring number i is rounded, and then raised to m/2^i: m − 1 in sum.
+    ///   base is low by at most an ulp; if t is rounded to the nearest, by at most 3/2 ulp.
+    /// - The result of squaring number i is rounded, and then raised to m/2^i. The factors of these errors add up to m − 1.
     ///
-    /// If all of them truncate, D² makes f too large and the others make it too small, by so much at most. Only the larger of
-    /// the two counts then.
+    /// If every rounding truncates, the error of D² makes f too large, and the other errors make f too small. Only the larger
+    /// of these two sums counts then.
     fn shares(&self) -> Vec<ErrorShare> {
         let keys = &self.keys;
         let (f, power) = (keys.f.fraction, f64::from(keys.power));
@@ -173,7 +174,8 @@ impl Reflectance for LyonArithmetic {
         }
     }
 
-    /// Returns the cost of a β that is a power of two: largest where n is midway between two.
+    /// Returns a remark if `scale = "shift"` makes the formula worse for some n, because n is rounded to a power of two. The
+    /// remark states the worst n, which is midway between two powers of two.
     fn remarks(&self) -> Vec<String> {
         let (keys, (first, last)) = (&self.keys, self.keys.domain.exponents());
         if keys.scale == Scale::Multiplier {
@@ -201,8 +203,8 @@ impl Reflectance for LyonArithmetic {
     }
 }
 
-/// Returns the largest difference between the function with β = `rounded`/(2·m) and cosⁿγ, for unit vectors, on a
-/// grid that the highlight fills.
+/// Returns the largest difference between the formula with β = `rounded`/(2·m) and cosⁿγ, for unit vectors. The grid of cosines
+/// covers the highlight: 1 − cos γ goes from 0 to 8/n.
 fn formula_error(n: i64, rounded: i64, power: u32) -> f64 {
     const GRID: u32 = 1024;
     let beta = rounded as f64 / f64::from(2 * power);

@@ -6,7 +6,8 @@ use crate::Contract;
 use glint_base::fixed::Rounding;
 use glint_keys::common::{ColourKeys, Domain, Intensity};
 
-/// V = 4, D = 6, F = 4, K = 4, small enough to follow by hand.
+/// Returns keys with few bits, so that results can be worked out by hand. Components and f have 4 fraction bits, D² has 6, and
+/// colours have 4 bits.
 fn small(power: u32, scale: Scale) -> Keys {
     Keys {
         power,
@@ -42,11 +43,11 @@ fn operands_of_an_angle() {
     assert_eq!([0.0, 2.5, 16.0].map(|n| contract.at(third, n)), [const { None }; 3]);
 }
 
-/// The sweep's error is the worst error over all distances that round to a word.
+/// The error of a sweep's case is the largest error over all D² that are rounded to the word.
 #[test]
 fn a_word_stands_for_an_interval() {
     let contract = of_keys(small(2, Scale::Multiplier));
-    // Word 3 and n = 12: 10/16 is held against (1 − 3/64·3)² and (1 − 4/64·3)².
+    // Word 3 and n = 12: 10/16 is compared with (1 − 3/64·3)² and (1 − 4/64·3)².
     let ends: [f64; 2] = [55.0 / 64.0, 52.0 / 64.0];
     let worst = ends.map(|base| (base * base - 0.625).abs());
     assert_eq!(contract.sweep_error(&[12, 3]), worst[0].max(worst[1]));

@@ -31,8 +31,8 @@ pub fn contract(config: &Config) -> Box<dyn Contract> {
 }
 
 impl QuadCosineArithmetic {
-    /// Returns the largest error of the stretched angle for n, in right angles. The first error is that multiplier 11 takes
-    /// only the leading bits of the angle, and the second is ROM 9's rounding.
+    /// Returns two upper limits of the error of the stretched angle for n, in right angles. The first error comes from the low
+    /// bits that multiplier 11 does not read. The second comes from the rounding of ROM 9.
     ///
     /// The magnitude m denotes angles from m to m + u. With s = √(n/k) and s' = ROM 9's word, s'·m is less than s·(m + u) by
     /// at most s·u + (s − s')·m, and more than s·m by at most (s' − s)·m. An angle beyond 1/s is in the table's last word
@@ -53,7 +53,8 @@ impl Reflectance for QuadCosineArithmetic {
         self.cosine_of(n, self.magnitude(angle), self.root(n))
     }
 
-    /// Returns the formula; the surface faces from −90° to less than 90°, as two's complement has it.
+    /// Returns the exact f. The surface faces the viewer for angles from −90° to below 90°; the hardware treats these two ends
+    /// differently, as two's complement does.
     #[inline]
     fn reference(&self, control: &[i64]) -> f64 {
         let (angle, n) = (control[1], control[2]);
@@ -81,7 +82,7 @@ impl Reflectance for QuadCosineArithmetic {
         vec![line::interval(angle, last[1], length, first[0]), angle, first[2], length]
     }
 
-    /// Returns a line of one point.
+    /// Returns the operands of a line of one point, at the angle `gamma`.
     fn at(&self, operands: &[Operand], gamma: f64, n: f64) -> Option<Vec<i64>> {
         let angle = line::raw_angle(&operands[1], gamma);
         Some(vec![0, angle, shared::exponent_at(&operands[2], n)?, 0])
@@ -96,8 +97,8 @@ impl Reflectance for QuadCosineArithmetic {
         Some("length")
     }
 
-    /// Returns every angle that a line can reach, by the bits that multiplier 11 takes, and every n. If the surface faces away,
-    /// the word is the table's last, 0, for every n, and so is the formula.
+    /// Returns every n with every magnitude that multiplier 11 can read, which covers every angle that a line can reach. If the
+    /// surface faces away, the word of ROM 12 and the formula are both 0 for every n.
     fn sweep(&self) -> Option<Sweep> {
         let magnitudes = 1i64 << self.keys.angle_multiplied;
         Some(Sweep::ranges([
@@ -106,8 +107,8 @@ impl Reflectance for QuadCosineArithmetic {
         ]))
     }
 
-    /// Returns the largest error over the angles of either sign that have this magnitude: the formula falls from one end of them
-    /// to the other.
+    /// Returns the largest error over all angles with this magnitude, of either sign. The formula falls from one end of these
+    /// angles to the other, so the error is largest at an end.
     fn sweep_error(&self, place: &[i64]) -> Option<f64> {
         let (n, magnitude) = (place[0], place[1]);
         let word = self.cosine_of(n, Some(magnitude), self.root(n));
@@ -117,8 +118,9 @@ impl Reflectance for QuadCosineArithmetic {
         Some((end(magnitude) - f).max(f - end(magnitude + 1)))
     }
 
-    /// Returns the terms of the worst n: how far ROM 12 is from the formula within a step, and the error of the stretched angle
-    /// by the steepest slope of the power.
+    /// Returns the contributions for the n with the largest sum. They are the distance of ROM 12 from the formula within a
+    /// step, the rounding of ROM 12, and two errors of the stretched angle. The latter are multiplied by the steepest slope of
+    /// the power.
     fn shares(&self) -> Vec<ErrorShare> {
         let keys = &self.keys;
         let (low, high) = keys.domain.exponents();

@@ -24,7 +24,7 @@ fn minimax(n: f64) -> f64 {
         let x = summit(n, a);
         let above = (1.0 - x) * (1.0 - a * x) - libm::exp(n * libm::log1p(-x));
         let below = libm::exp(n * libm::log1p(-1.0 / a));
-        // At the summit h depends on a only directly, by −x·(1 − x).
+        // At its largest value h has the slope 0 in x, so a change of a changes h only directly, by −x·(1 − x).
         let slope = -x * (1.0 - x) - below * n / (a * (a - 1.0));
         let step = (above - below) / slope;
         a -= step;
@@ -35,7 +35,8 @@ fn minimax(n: f64) -> f64 {
     a
 }
 
-/// Returns where h is largest. From 0 on, h' falls and is convex, so that Newton's iteration comes from the left.
+/// Returns the x at which h is largest, by Newton's iteration from x = 0. From 0 on, h′ falls and is convex, so the iteration
+/// approaches the zero of h′ from the left.
 fn summit(n: f64, a: f64) -> f64 {
     let mut x = 0.0;
     for _ in 0..60 {

@@ -11,7 +11,8 @@ use crate::narrow::rounding_error;
 use crate::sine::{ErrorRange, Sine};
 use glint_base::fixed::{Rounding, exp2};
 
-/// Bins of the quarter circle: fine against the narrowest highlight, 3.6° at n = 1000.
+/// The number of bins of the quarter circle. A bin is small compared with the narrowest highlight, which is 3.6° wide at n =
+/// 1000.
 const BINS: usize = 512;
 /// The width of a bin, in radians.
 pub const BIN: f64 = FRAC_PI_2 / BINS as f64;
@@ -62,20 +63,22 @@ impl Errors {
 /// The weight n·b: the factor by which an error of cos(γ ± dγ) changes f. Here n is the exponent and b the base of the square in
 /// the formula. The weight belongs to bins of γ and dγ that are a certain number of bins apart.
 pub struct Weight {
-    /// The largest factor n·b by which an error of cos(γ ± dγ) changes f = b², for any n of the domain and any angles in the pairs
-    /// of bins (intervals of γ and of dγ) to which this weight belongs. b = n/2·(cos(γ ± dγ) − 1) + 1 is the base of the square.
+    /// The largest weight n·b for any n of the domain, and any angles in the pairs of bins to which this weight belongs. The
+    /// base is b = n/2·(cos(γ ± dγ) − 1) + 1, and an error of cos(γ ± dγ) changes f = b² by at most this factor.
     pub linear: f64,
-    /// The largest n for which the square is not constant.
+    /// The largest n of the domain for which the square is not constant; 0 if there is no such n.
     exponent: f64,
 }
 
 impl Weight {
-    /// Makes the weight for a number of bins; `anywhere` is the largest error of the base for whatever angles.
+    /// Makes the weight for pairs of bins that are `distance` bins apart. `anywhere` is the largest error of the base at any
+    /// angles. The weight is 0 if the square is constant for every n of the domain.
     fn new(keys: &Keys, distance: usize, anywhere: f64) -> Self {
         let (least, most) = exponents(keys);
         let sine = libm::sin((distance.saturating_sub(1)) as f64 * BIN / 2.0);
         let q = 2.0 * sine * sine;
-        // The square is constant beyond n·q/2 = 1 + E, or, where |b| counts, 2 + E.
+        // E is the largest error of the base. With the clamp, the square is constant if n·q/2 is above 1 + E; without the
+        // clamp, if it is above 2 + E.
         let reach = if keys.clamp { 1.0 } else { 2.0 };
         let limit = most.min(2.0 * (reach + anywhere) / q);
         if limit < least {

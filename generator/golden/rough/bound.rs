@@ -77,7 +77,7 @@ fn exact(it: &RoughArithmetic) -> Vec<ErrorShare> {
     shares
 }
 
-/// Returns the keys that govern the parts which [`split`] tells apart.
+/// Returns the key and the description of each part into which [`split`] divides an error.
 fn sine_terms(keys: &Keys) -> &'static [(&'static str, &'static str)] {
     match keys.scheme {
         RomLayout::Direct => &[

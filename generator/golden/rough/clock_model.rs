@@ -44,14 +44,14 @@ pub fn model(config: &Config) -> Box<dyn Model> {
         idle(),
         step_by(&it, move |it, s| s[reg12] = it.sin_sin(it.sine.at(s[cos_dgamma]), s[reg19])),
         idle(),
-        // n/2·(cos(γ ± dγ) − 1).
+        // Register 13 takes n/2·(cos(γ ± dγ) − 1).
         step_by(&it, move |it, s| {
             let adder_15 = it.adder_15(s[reg11], s[reg12], s[negative]);
             s[reg13] = it.scaled(adder_15, s[exponent], s[cos_gamma]);
             s[reflectance] = it.f_of(s[reg13]);
         }),
         idle(),
-        // The square of itself plus 1.0.
+        // Register 13 takes the square of its value plus 1.0.
         step_by(&it, move |it, s| {
             s[reg13] = it.squared(s[reg13], s[cos_gamma]);
             s[reflectance] = it.f_of(s[reg13]);

@@ -11,7 +11,8 @@ use crate::highlight::{Highlight, Reflectance};
 use crate::{Axis, Contract, Operand, Sweep, Values};
 use glint_config::Config;
 
-/// The settings of dγ, in degrees, that an exhaustive check visits beside the largest of the domain.
+/// The values of dγ, in degrees, that an exhaustive check visits in addition to the largest dγ of the domain. It visits only
+/// values below that.
 const SWEPT_DEVIATIONS: [f64; 4] = [0.0, 1.0, 5.0, 15.0];
 
 /// Returns the accuracy contract of the device `rough`. Its control operands are `cos_gamma`, `cos_dgamma`, `exponent` and
@@ -34,8 +35,8 @@ impl Reflectance for RoughArithmetic {
         it.f_of(it.squared(scaled, cos_gamma))
     }
 
-    /// Returns the formula. The patent's arithmetic is compared with the clamped formula too, so that its error shows the
-    /// cost of that arithmetic.
+    /// Returns the exact f. The patent's arithmetic is compared with the clamped formula too, so that its error shows the cost
+    /// of that arithmetic.
     #[inline]
     fn reference(&self, control: &[i64]) -> f64 {
         let cosine = |raw| self.keys.clamped(raw) as f64 * self.keys.ulp();
@@ -65,13 +66,13 @@ impl Reflectance for RoughArithmetic {
         shared::operands_at(operands, gamma, n, &no_deviation)
     }
 
-    /// Returns the operands where γ is dγ; where dγ is added to it, both are 0.
+    /// Returns the operands at which cos(γ ± dγ) is largest. If dγ is subtracted, γ is dγ; if dγ is added, both are 0.
     fn peak(&self, control: &[i64]) -> Option<Vec<i64>> {
         let deviation = if control[3] == 1 { control[1] } else { self.keys.largest_cosine() };
         Some(vec![deviation, deviation, control[2], control[3]])
     }
 
-    /// Returns every cos γ and every n, with some settings of dγ of the domain, of both signs.
+    /// Returns every cos γ and every n, with a few values of dγ from the domain and both signs of dγ.
     fn sweep(&self) -> Option<Sweep> {
         let (low, high) = self.keys.cos_dgamma_domain();
         let mut degrees = SWEPT_DEVIATIONS.to_vec();

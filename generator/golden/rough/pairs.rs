@@ -19,16 +19,16 @@ use super::{Derived as _, RoughArithmetic};
 use crate::highlight::Reflectance;
 use glint_base::fixed::exp2;
 
-/// Pairs of operands that are looked at, and exponents with them.
+/// The largest number of steps of the search. A step examines a pair of operands, or one exponent of a pair.
 const STEPS: u64 = 1 << 21;
 
-/// The part of the first bound below which nothing is looked for.
+/// The search ignores errors below this fraction of the first bound.
 const LEAST: f64 = 0.5;
 
-/// The rounding of f64 in the error of a sine.
+/// An upper limit of the rounding of f64 in the error of a sine.
 const F64: f64 = 1e-15;
 
-/// A raw cosine.
+/// A raw cosine, with its exact sine and the error of the table's sine.
 struct RawCosine {
     raw: i64,
     /// The exact sine of the operand, and the distance of the table's sine from it.
@@ -36,7 +36,7 @@ struct RawCosine {
     error: f64,
 }
 
-/// A pair of operands with the sign of dγ, and its bound.
+/// A pair of cosines with the sign of dγ, and a bound on the error of f for all exponents.
 struct OperandPair {
     bound: f64,
     control: [i64; 4],
@@ -77,7 +77,7 @@ pub fn largest_error(it: &RoughArithmetic, analysis: &Analysis) -> f64 {
             break;
         }
         if !search.look_into(i, j, negative, &mut open) {
-            // The bins that come later have no larger bound; pairs in those before may have.
+            // The remaining bins have no larger bound, but pairs from earlier bins may have.
             let largest = open.iter().map(|pair| pair.bound).fold(bound, f64::max);
             return (largest + SLACK).min(first);
         }
@@ -95,8 +95,8 @@ pub fn largest_error(it: &RoughArithmetic, analysis: &Analysis) -> f64 {
 }
 
 impl PairSearch<'_> {
-    /// Looks at the pairs of operands in two bins, and leaves those whose exponents matter in `open`; false when that takes
-    /// too many steps.
+    /// Examines all pairs of operands in bin `i` of γ and bin `j` of dγ. Appends the pairs to `open` for which other exponents
+    /// may give a larger error. Returns false if this takes too many steps.
     fn look_into(
         &mut self,
         i: usize,
@@ -130,7 +130,8 @@ impl PairSearch<'_> {
         within
     }
 
-    /// Returns the pair, if its bound is larger than the largest error that was met.
+    /// Returns the pair if its bound is larger than the largest error found so far. It also computes the error at the exponent
+    /// with the largest weight, and updates the largest error.
     fn pair(&mut self, x: &RawCosine, y: &RawCosine, negative: i64) -> Option<OperandPair> {
         let (it, keys) = (self.it, &self.it.keys);
         let ulp = exp2(-(keys.operands.cosine.fraction as i32));
@@ -151,7 +152,8 @@ impl PairSearch<'_> {
         Some(OperandPair { bound, control, distance, below })
     }
 
-    /// Computes the error for every n that may have a larger one; false when that takes too many steps.
+    /// Computes the error of the pair for every n whose bound is above the largest error found so far. Returns false if this
+    /// takes too many steps.
     fn go_through_exponents(&mut self, pair: &OperandPair) -> bool {
         let (least, most) = self.it.keys.domain.exponents();
         let [x, y, _, negative] = pair.control;
@@ -173,7 +175,8 @@ impl PairSearch<'_> {
         (f - self.it.reference(control)).abs()
     }
 
-    /// Returns the cosines of angles in a bin, and one more at each end.
+    /// Returns the raw cosines of the angles in a bin, and a few more at each end, from the largest error of their sine to the
+    /// smallest.
     fn cosines_of(&self, bin: usize) -> Vec<RawCosine> {
         let keys = &self.it.keys;
         let one = 1_i64 << keys.operands.cosine.fraction;
@@ -191,7 +194,7 @@ impl PairSearch<'_> {
     }
 }
 
-/// Returns n·b where cos(γ ± dγ) is this much below 1.
+/// Returns the weight n·b for the exponent `n` if cos(γ ± dγ) is `below` less than 1.
 fn weight(n: f64, below: f64) -> f64 {
     n * (1.0 - n * below / 2.0).max(0.0)
 }

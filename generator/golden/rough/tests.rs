@@ -5,7 +5,8 @@ use crate::highlight::Reflectance;
 use glint_base::fixed::Rounding;
 use glint_keys::common::{Domain, Intensity, Operands};
 
-/// C = 4, S = P = 6, F = 4, and the sine table that `sine.rs` works out by hand.
+/// Returns keys with few bits: 4 fraction bits for cosines and f, 6 for sines and products. The sine table is the one that a
+/// test in `sine.rs` works out by hand.
 fn small() -> Keys {
     Keys {
         arithmetic: Kind::Exact,

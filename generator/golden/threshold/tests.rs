@@ -3,7 +3,8 @@
 use super::*;
 use glint_keys::common::{Domain, Intensity, Operands};
 
-/// C = 4, F = 4, K = 4, small enough to follow by hand.
+/// Returns the arithmetic for cosines and an f with 4 fraction bits and colours of 4 bits, so that results can be worked out by
+/// hand.
 fn small(levels: &[u32]) -> ThresholdArithmetic {
     let (operands, f, domain) = (Operands::small(), Intensity::small(), Domain::small());
     ThresholdArithmetic::new(Keys { operands, f, levels: levels.to_vec(), domain })
@@ -23,7 +24,8 @@ fn either_side_of_the_level_is_right_and_no_other() {
     assert_eq!(contract.references(&[14, 8]), [0.0; 2]);
 }
 
-/// Half a unit hides nothing that could be seen; a whole unit does.
+/// A level of half a unit hides only outputs that round to 0, so the contract has no remark. A level of 3.2 units hides visible
+/// outputs, so the contract has a remark.
 #[test]
 fn levels_that_are_seen_are_remarked_on() {
     let remarks = |levels: &[u32]| {

@@ -33,7 +33,7 @@ pub fn points_bench(design: &Design, limit: u32) -> Result<PointsBench> {
     let ends = [of_role(Role::Reset)?.net, of_role(Role::Valid)?.net];
     let list = PointList::new(design, limit, |role| role == Role::Point, ends);
     let names = Variables::new(&mut Names::of_ports(design));
-    // A pipeline that takes one every few clocks says when.
+    // A pipeline that accepts a point only every few clocks shows with `in_ready` when it does.
     let slots = design.pipeline.as_ref().is_some_and(|it| it.interval > 1);
     let ready = design.port(|it| it == Role::InReady).filter(|_| slots);
     let text = fill!("points_pipeline.v" {

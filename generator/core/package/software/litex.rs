@@ -29,13 +29,13 @@ struct LitexOperand {
     width: u32,
 }
 
-/// A core between streams.
+/// A core between two streams, with the widths of the streams in bits.
 struct LitexStream<'a> {
     top: &'a Top,
     input: u32,
     output: u32,
     user: u32,
-    /// `tlast` goes in, too.
+    /// Whether the input stream has `tlast` too.
     last: bool,
 }
 
@@ -117,7 +117,7 @@ fn streamed(top: &Top) -> LitexStream<'_> {
     }
 }
 
-/// Returns the name of a class of Python, whatever the name: `CosinePower` for `cosine_power`.
+/// Converts a name to the name of a Python class. For example, `cosine_power` gives `CosinePower`, and `_1` gives `Core1`.
 fn camel(name: &str) -> String {
     let mut joined = String::new();
     for part in name.split('_') {

@@ -55,7 +55,7 @@ impl CField {
         }
     }
 
-    /// Returns the smallest raw integer as C writes it.
+    /// Returns the smallest raw integer as a C expression.
     fn least(&self) -> String {
         let (least, suffix) = (self.format.min_raw(), self.suffix());
         match (self.format.signed, self.format.width()) {
@@ -66,7 +66,7 @@ impl CField {
         }
     }
 
-    /// Returns the largest.
+    /// Returns the largest raw integer as a C literal.
     fn most(&self) -> String {
         format!("{}{}", self.format.max_raw(), self.suffix())
     }
@@ -86,23 +86,23 @@ impl CField {
         format!("{:?}", glint_base::fixed::exp2(self.format.frac))
     }
 
-    /// Returns the lowest bit, as a C double: 2^-F exactly.
+    /// Returns the weight of the lowest bit as a C double: exactly 2^-F, with F fraction bits.
     fn unit(&self) -> String {
         format!("{:?}", glint_base::fixed::exp2(-self.format.frac))
     }
 
-    /// Returns the limits as doubles.
+    /// Returns the smallest and the largest raw integer as C doubles.
     fn limits(&self) -> (String, String) {
         let (low, high) = self.format.range();
         (format!("{:?}", low as f64), format!("{:?}", high as f64))
     }
 
-    /// Returns the field of a structure in ctypes. For example, `c_uint32`.
+    /// Returns the type of the member in Python's ctypes. For example, `c_uint32`.
     fn ctype(&self) -> String {
         format!("c_{}", self.kind.trim_end_matches("_t"))
     }
 
-    /// Returns the field of a structure in NumPy.
+    /// Returns the type of the member in NumPy. For example, `u4` for `uint32_t`.
     fn dtype(&self) -> &'static str {
         match self.kind {
             "uint32_t" => "u4",
@@ -176,7 +176,8 @@ pub fn files(job: &EmitJob, files: &mut OutputFiles) -> Result<Vec<RomId>> {
     Ok(read)
 }
 
-/// Returns the worked example's raw operands in the order of the ports, which need not be its own.
+/// Returns the raw operands of the worked example as text, in the order of the ports. The example itself may have another
+/// order.
 fn example_values(design: &Design, example: &WorkedExample) -> Vec<String> {
     let mut values = Vec::new();
     for port in design.inputs() {
@@ -193,7 +194,8 @@ fn result_ports(design: &Design) -> impl Iterator<Item = &Port> {
     design.outputs().filter(|port| port.role == Role::Result)
 }
 
-/// Returns the body of the function of one point, and the ROMs that it reads.
+/// Returns the lines of the C function that computes one point, and the ROMs that the function reads. `tables` has the names of
+/// the arrays with their words.
 fn of_point(design: &Design, tables: &[String]) -> Result<(Vec<String>, Vec<RomId>)> {
     let unrolled = unroll_in_powers(design)?;
     let results: Vec<(&Port, NodeId)> = results_of(design, &unrolled).collect();
@@ -233,7 +235,8 @@ fn results_of<'a>(
     })
 }
 
-/// Returns the body of the function of a line, and the ROMs that it reads.
+/// Returns the lines of the C function that computes a line of points, and the ROMs that the function reads. The function
+/// executes the core clock by clock until `done` is 1.
 fn of_line(design: &Design, tables: &[String]) -> Result<(Vec<String>, Vec<RomId>)> {
     let Cycle { unrolled, held } = any_cycle(design);
     let graph = &unrolled.graph;
@@ -246,7 +249,7 @@ fn of_line(design: &Design, tables: &[String]) -> Result<(Vec<String>, Vec<RomId
     let (valid, done) = (port(Role::Valid)?, port(Role::Done)?);
     let results: Vec<(&Port, NodeId)> = results_of(design, &unrolled).collect();
 
-    // Registers and memories that the results of some clock depend on.
+    // The registers and memories on which the results, `valid` and `done` of any clock depend.
     let mut wanted: Vec<NodeId> = results.iter().map(|(_, value)| *value).collect();
     wanted.extend([valid, done]);
     let mut kept: Vec<StateValues> = Vec::new();
@@ -299,8 +302,7 @@ fn of_line(design: &Design, tables: &[String]) -> Result<(Vec<String>, Vec<RomId
     Ok((body, read))
 }
 
-/// Returns the statements of a rising edge, at which all registers take their new values at once. A value that depends on the
-/// state must be computed before the state changes.
+/// Returns the C statements of a rising edge, at which all registers take their new values at once.
 fn clocked(
     graph: &Graph,
     printer: &Printer,
@@ -329,7 +331,8 @@ fn clocked(
     lines
 }
 
-/// Returns the statement `red_out = …;`, which takes the value from a bit pattern.
+/// Returns the C statement that assigns the number of a bit pattern to the member of a result. For example, `red_out =
+/// pattern;`.
 fn assigned(design: &Design, port: &Port, pattern: &str) -> String {
     let net = design.net(port.net);
     let kind = CField::new(design, port).kind;
@@ -355,13 +358,13 @@ fn roms(graph: &Graph, wanted: &[NodeId]) -> Vec<RomId> {
     roms
 }
 
-/// Returns for each ROM the name of the C array with its words.
+/// Returns the name of the C array with the words of each ROM, in the order of the design's ROMs.
 pub fn table_names(design: &Design) -> Vec<String> {
     let mut names = Names::new(design.nets.iter().map(|net| net.name.as_str()));
     design.roms.iter().map(|rom| names.fresh(&format!("{}_table", rom.name))).collect()
 }
 
-/// Returns the arrays of the ROMs that are read.
+/// Returns the lines that define the C arrays of the ROMs in `read`.
 fn tables(design: &Design, names: &[String], read: &[RomId]) -> Vec<String> {
     let mut lines = Vec::new();
     for (at, rom) in design.roms.iter().enumerate() {

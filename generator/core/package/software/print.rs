@@ -45,7 +45,7 @@ pub fn literal(bits: u64, width: u32) -> String {
     }
 }
 
-/// An expression, and whether it needs no brackets beside any operator.
+/// A C expression, and whether it can be the operand of any operator without parentheses.
 struct CExpression(String, bool);
 
 impl CExpression {
@@ -77,7 +77,8 @@ pub struct CStatement {
 }
 
 impl<'a> Printer<'a> {
-    /// Makes a printer of the values of a computation. `states` names the values that registers and memories hold.
+    /// Makes a printer of the values of a computation. `tables` has the name of the C array of each ROM. `states` has a name
+    /// for each value in registers and memories.
     pub fn new(
         design: &'a Design,
         of: &'a Unrolled,
@@ -88,7 +89,8 @@ impl<'a> Printer<'a> {
         Self { graph, design, operands, tables, locals: BTreeMap::new(), states }
     }
 
-    /// Returns the statements that compute the values `wanted`.
+    /// Returns the C statements that the expressions of the values `wanted` need. An operand, a named value, and a value that
+    /// is used several times get a statement and a variable each, with a name from `names`.
     pub fn lines(&mut self, names: &mut Names, wanted: &[NodeId]) -> Vec<CStatement> {
         let graph = self.graph;
         let needed = graph.cone(wanted.iter().copied());
@@ -121,8 +123,8 @@ impl<'a> Printer<'a> {
         lines
     }
 
-    /// Returns whether a value no longer changes when the C statements assign to registers and memories, so that it may be read
-    /// afterwards.
+    /// Returns whether the expression of a value stays valid after C statements have assigned new values to registers and
+    /// memories. It does if the value is constant or has a variable of its own.
     pub fn is_settled(&self, id: NodeId) -> bool {
         self.locals.contains_key(&id) || self.graph.constant_of(id).is_some()
     }
@@ -139,7 +141,7 @@ impl<'a> Printer<'a> {
         }
     }
 
-    /// Prints a value in the type of `width` bits.
+    /// Prints a value, converted to the C type of a bit pattern with `width` bits.
     fn in_type(&self, id: NodeId, width: u32) -> CExpression {
         let (from, to) = (pattern_type(self.graph.width(id)), pattern_type(width));
         let text = self.value(id);

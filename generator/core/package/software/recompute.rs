@@ -1,8 +1,9 @@
 //! Writes a C program that computes the results of a core for every combination of operands, and compares them with the formulas.
 //!
-//! The program evaluates the formulas with the multiple-precision library MPFR. It is therefore evidence for the error bounds that
-//! does not depend on Glint's own arithmetic. A core of one operand gets a program that uses MPFR for every operand. A core of the
-//! device `expression` has up to 2^32 combinations, so that its program evaluates the formulas in double first.
+//! The program evaluates the formulas with the multiple-precision library MPFR. It is therefore evidence for the error bounds
+//! that does not depend on Glint's own arithmetic. A core of one operand gets a program that uses MPFR for every operand. A
+//! core of the device `expression` has up to 2^32 combinations, so its program evaluates the formulas in double precision
+//! first.
 
 use anyhow::Result;
 
@@ -20,10 +21,10 @@ use glint_rtl::netlist::{Design, RomId};
 use glint_rtl::verilog::naming::Naming;
 use glint_rtl::verilog::text::{ascii, statement};
 
-/// The most values that the program may make for a part of a formula.
+/// The largest number of intervals with MPFR limits that the program may create for each part of a formula.
 const VALUES: usize = 8;
 
-/// The most combinations of operands that a program computes.
+/// The largest number of combinations of operands that a program computes.
 pub const MOST_COMBINATIONS: u128 = 1 << 32;
 
 /// The contract of a core, as far as a program can recompute it.
@@ -83,8 +84,8 @@ fn recomputation_error(name: &str, why: &str) -> KeyError {
 /// Checks that the program can be written for a core.
 ///
 /// # Errors
-/// Fails if a result wraps, if the contract is neither one formula of one operand nor the formulas of an expression, or if there
-/// are more than 2^32 combinations of operands.
+/// Fails if a result wraps, or if the operands of an expression have more than 2^32 combinations. Fails if the contract is
+/// neither one formula of one operand nor the formulas of an expression.
 pub fn check(name: &str, facts: &ContractFacts) -> Result<(), KeyError> {
     RecomputedContract::new(name, facts).map(drop)
 }
@@ -140,7 +141,7 @@ impl CheckedMemories {
     }
 }
 
-/// Returns a port as a member of the model's structures.
+/// Returns the port `port` as a member of the C model's structures. Fails if the design has no such port.
 fn field(name: &str, design: &Design, port: &str) -> Result<CField, KeyError> {
     let mut ports = design.ports.iter();
     let found = ports.find(|found| design.net(found.net).name == port);
@@ -149,12 +150,12 @@ fn field(name: &str, design: &Design, port: &str) -> Result<CField, KeyError> {
         .ok_or_else(|| recomputation_error(name, "its contract names no port"))
 }
 
-/// Returns the number of parts of a formula.
+/// Returns the number of parts of a formula. For example, `x * x + 1` has five: the sum, the product, two times `x`, and `1`.
 fn part_count(formula: &Expression) -> usize {
     formula.count(&|_| true)
 }
 
-/// Returns a text that ends no comment of C.
+/// Returns `text` for a C comment: without `*/`, which would end the comment.
 fn in_comment(text: &str) -> String {
     ascii(text).replace("*/", "* /")
 }
@@ -195,9 +196,9 @@ struct ProgramOperand {
     field: CField,
     first: i64,
     last: i64,
-    /// The weight of the last place is two to the power of this.
+    /// The exponent of the weight of the last bit, which is 2^`exponent`.
     exponent: i32,
-    /// The weight of the last place, as a C double.
+    /// The weight of the last bit, as a C double.
     unit: String,
 }
 
@@ -229,7 +230,7 @@ impl ProgramFormula {
     }
 }
 
-/// Returns the lines of a C function that returns a value, which may depend on the operands x.
+/// Returns the lines of a C function that returns `value`, an expression that may read the operands `x`.
 fn c_return(value: &str) -> Vec<String> {
     let mut lines = Vec::new();
     if !value.contains("x[") {

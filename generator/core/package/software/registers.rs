@@ -19,7 +19,7 @@ struct Printed<'a> {
     fields: Vec<BitField<'a>>,
 }
 
-/// Bits of a register.
+/// A field of a register as the templates print it.
 struct BitField<'a> {
     bits: &'a RegisterBits,
     /// In upper case.
@@ -47,7 +47,7 @@ impl BitField<'_> {
     }
 }
 
-/// An operand and its conversion.
+/// An operand, for which the files have a function that converts a fixed-point number to its raw integer.
 struct OperandConversion {
     name: String,
     constant: String,
@@ -55,12 +55,12 @@ struct OperandConversion {
 }
 
 impl OperandConversion {
-    /// Returns the bits of the raw integer as the registers hold it.
+    /// Returns the number of bits, 32 or 64, of the registers that hold the raw integer.
     fn bits(&self) -> u32 {
         if self.format.width() <= 32 { 32 } else { 64 }
     }
 
-    /// Returns the smallest and the largest raw integer, as C writes 64 bits.
+    /// Returns the smallest and the largest raw integer as C expressions of 64 bits. The largest is at most 2^63 − 1.
     fn limits(&self) -> (String, String) {
         let least = match self.format.min_raw() {
             least if least == i64::MIN.into() => "(-9223372036854775807 - 1)".to_owned(),

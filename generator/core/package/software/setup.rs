@@ -14,21 +14,21 @@ use glint_base::fixed::exp2;
 use glint_rtl::netlist::Role;
 use glint_rtl::verilog::text::constant_name;
 
-/// The operands of a line, as far as a set-up knows them; `exponent` may be missing.
+/// The operands that the generated functions can compute. The device must have all of them; only `exponent` may be missing.
 const KNOWN: [&str; 5] = ["delta_zeta", "zeta_start", "exponent", "length", "amplitude"];
 
-/// The contents of the three files of a configuration.
+/// The data for the templates of the three files.
 struct LineSetup<'a> {
     name: &'a str,
     prefix: String,
     regenerate: &'a str,
     /// `zeta_start` and `delta_zeta`.
     angles: Vec<CField>,
-    /// The domain of the exponent; without it angles are taken times √(n/2).
+    /// The domain of the operand `exponent`. Without this operand, the functions multiply the angles by √(n/2).
     exponent: Option<(i64, i64)>,
-    /// The most intervals.
+    /// The largest number of intervals of a line.
     longest: i64,
-    /// The amplitude of full light, and 2^F of its format.
+    /// The amplitude of full light, as a value; `amplitude_scale` is 2^F of its format.
     full: f64,
     amplitude_scale: String,
     /// The largest stretched angle, in right angles.
@@ -37,7 +37,7 @@ struct LineSetup<'a> {
 }
 
 impl LineSetup<'_> {
-    /// Returns the number of raw angles in a turn.
+    /// Returns the number of raw values of an angle, which cover a full turn.
     fn turn(&self, angle: &CField) -> String {
         exp2(angle.format.width() as i32).to_string()
     }

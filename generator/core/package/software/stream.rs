@@ -13,12 +13,12 @@ use crate::package::output_files::OutputFiles;
 use crate::package::wrap::fields::Transfer;
 use glint_rtl::verilog::text::constant_name;
 
-/// A number in the bytes of a transfer.
+/// An operand or a result, with its position in the bytes of a transfer.
 struct TransferNumber {
     field: CField,
     port: String,
     first: u32,
-    /// Its bytes.
+    /// The number of bytes that it occupies.
     size: u32,
 }
 
@@ -27,12 +27,12 @@ impl TransferNumber {
         0..self.size
     }
 
-    /// Returns the type of its bit pattern.
+    /// Returns the C type of its bit pattern.
     fn unsigned(&self) -> &'static str {
         if self.size <= 4 { "uint32_t" } else { "uint64_t" }
     }
 
-    /// Returns the bit pattern of its bytes.
+    /// Returns the C expression that joins its bytes in `transfer` to a bit pattern.
     fn joined(&self) -> String {
         let kind = self.unsigned();
         let mut bytes = Vec::new();
@@ -46,7 +46,7 @@ impl TransferNumber {
         bytes.join("\n        | ")
     }
 
-    /// Returns the number of the bit pattern `raw`, where that is another.
+    /// Returns the C expression that converts the bit pattern `raw` to a signed number, or `None` if the number has no sign.
     fn value(&self) -> Option<String> {
         let kind = self.field.kind;
         let (sign, suffix) =
@@ -65,7 +65,7 @@ impl TransferNumber {
     }
 }
 
-/// A transfer, one way.
+/// The layout of the transfers in one direction, in bytes.
 struct Bytes {
     bytes: u32,
     filled: u32,
@@ -90,7 +90,7 @@ impl Bytes {
         Self { bytes: transfer.bits / 8, filled: transfer.filled() / 8, numbers }
     }
 
-    /// Returns the bytes above all numbers.
+    /// Returns the range of the unused bytes, which are above all numbers.
     fn above(&self) -> std::ops::Range<u32> {
         self.filled..self.bytes
     }

@@ -23,7 +23,7 @@ pub fn files(job: &EmitJob, tops: &[Top], clock_mhz: f64, files: &mut OutputFile
         ] {
             let text = fill!("constraints.sdc" {
                 top: &'a Top, regenerate: &'a str = job.regenerate(), clock_mhz: f64,
-                // In nanoseconds.
+                // The period of the clock in nanoseconds.
                 period: String = period(clock_mhz),
                 // Who reads the file, and how.
                 reader: &'a str,
@@ -34,8 +34,8 @@ pub fn files(job: &EmitJob, tops: &[Top], clock_mhz: f64, files: &mut OutputFile
     Ok(())
 }
 
-/// Returns the period in nanoseconds, with picoseconds. Rounding makes the clock faster, never slower. For example, 130 MHz
-/// gives 7.692.
+/// Returns the period of a clock in nanoseconds with three decimals. It is rounded down, so that the constraint is never slower
+/// than the clock. For example, 130 MHz gives 7.692.
 fn period(clock_mhz: f64) -> String {
     let picoseconds = libm::floor(1e6 / clock_mhz);
     format!("{:.3}", picoseconds / 1e3)

@@ -19,7 +19,7 @@ struct IpXactComponent<'a> {
     version: &'a str,
     buses: Vec<BusInterface>,
     registers: &'a [BusRegister],
-    /// Bytes that the registers take.
+    /// The number of bytes that the registers occupy.
     range: usize,
     memories: Vec<String>,
 }
@@ -33,9 +33,9 @@ struct BusInterface {
     bus: &'static str,
     version: &'static str,
     is_slave: bool,
-    /// It leads to the registers.
+    /// Whether the interface gives access to the registers.
     mapped: bool,
-    /// Name in the definition, and port.
+    /// Pairs of the name in the definition and the name of the port.
     ports: Vec<(String, String)>,
 }
 
@@ -61,7 +61,7 @@ impl IpXactComponent<'_> {
 }
 
 impl RegisterBits {
-    /// Returns the access of a program.
+    /// Returns how software can access the bits, as IP-XACT writes it.
     fn ip_xact_access(&self) -> &'static str {
         match self.access {
             Access::Read => "read-only",
@@ -144,7 +144,7 @@ fn escaped(text: &str) -> String {
     ascii(text).replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
 }
 
-/// Returns a part of an XML comment. XML forbids two adjacent hyphens in a comment.
+/// Returns `text` for an XML comment. Adjacent hyphens are separated by spaces, because XML forbids them in a comment.
 fn comment(text: &str) -> String {
     let mut apart = text.to_owned();
     while apart.contains("--") {

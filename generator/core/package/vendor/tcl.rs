@@ -9,16 +9,18 @@ use crate::package::output_files::OutputFiles;
 use crate::package::tops::{Top, TopPort};
 use glint_rtl::verilog::text::ascii;
 
-/// The device that a build is for, unless its user names one: small and common.
+/// The FPGA of the build script for Vivado, unless the user names another: a small and common one.
 const VIVADO_PART: &str = "xc7a35tcsg324-1";
+/// The FPGA family of the build script for Quartus, unless the user names another.
 const QUARTUS_FAMILY: &str = "Cyclone V";
+/// The FPGA of the build script for Quartus, unless the user names another.
 const QUARTUS_DEVICE: &str = "5CEBA4F23C7";
 
 /// An interface of Platform Designer.
 struct PlatformInterface<'a> {
     name: &'static str,
     kind: &'static str,
-    /// `end` takes, `start` offers.
+    /// The side of the interface, as Platform Designer names it: `end` receives, `start` sends.
     side: &'static str,
     /// The port and its role.
     ports: Vec<(&'a TopPort, String)>,
@@ -51,7 +53,7 @@ pub fn vivado(job: &EmitJob, tops: &[Top], files: &mut OutputFiles) -> Result<()
         title: String = quoted(&job.design.about.title),
         regenerate: &'a str = job.regenerate(),
         vendor: &'a str = &around.vendor,
-        // Major and minor, all that Vivado takes.
+        // The first two numbers of the version, because Vivado accepts no more.
         version: &'a str = version.rsplit_once('.').map_or(version, |(two, _)| two),
         tops: &'a [Top],
         memories: &'a [String] = &memories,
@@ -90,10 +92,11 @@ pub fn quartus(job: &EmitJob, tops: &[Top], files: &mut OutputFiles) -> Result<(
     Ok(())
 }
 
-/// Returns the interfaces of a module but for clock, reset and interrupt.
+/// Returns the interfaces of a module for Platform Designer, without clock and reset. A module without a standard interface has
+/// one conduit with all its other ports.
 fn interfaces(top: &Top) -> Vec<PlatformInterface<'_>> {
     if top.protocols.is_empty() {
-        // The type of interface for all that has none.
+        // A conduit is the interface for ports that no standard defines.
         let ports = top.signals().map(|port| (port, port.name.clone())).collect();
         return vec![PlatformInterface { name: "signals", kind: "conduit", side: "end", ports }];
     }

@@ -14,7 +14,8 @@ use crate::package::map::{Access, INTERRUPT_PENDING, Map, PortBits, PortPlacemen
 use crate::package::output_files::OutputFiles;
 use glint_base::fixed::mask;
 
-/// Points that a bench writes to registers, at most: those between are left out.
+/// The largest number of points that a bench writes to registers. If there are more points, the bench uses every second point,
+/// every third point, and so on.
 const ON_A_BUS: usize = 256;
 
 /// A register of an operand or of results, as a bench accesses it.
@@ -40,14 +41,15 @@ pub fn files(job: &EmitJob, vectors: &Vectors, files: &mut OutputFiles) -> Resul
     let clocks = vectors.inputs.len();
     if job.inputs.around.stream {
         let user_bits = job.inputs.around.user_bits;
-        // As long as three points, so that places behind the core fill up.
+        // The longest pause lasts as long as about three points, so that the registers behind the core fill up.
         let pause = 3 * clocks / points.len() + 16;
         let text = fill!("stream_tb.v" {
             name: &'a str,
             is_line: bool = job.is_line(),
             sent: usize = points.len(),
             received: usize = points.iter().map(|point| point.results.len()).sum(),
-            // Each of the four turns is there twice, of six pauses each.
+            // The bench has four kinds of turns: nobody pauses, the sender, the receiver, or both. The transfers last for at
+            // least two turns of each kind, and each turn is as long as six of the longest pauses.
             passes: usize = (8 * 6 * pause).div_ceil(clocks),
             pause: usize,
             limit: usize = clocks + 64,
@@ -76,7 +78,7 @@ pub fn files(job: &EmitJob, vectors: &Vectors, files: &mut OutputFiles) -> Resul
             points: usize = points.len(),
             every: usize = points.len().div_ceil(ON_A_BUS),
             words: u32 = map.last() + 1,
-            // Registers that addresses have room for.
+            // The number of registers that the bits of an address can select.
             places: u32 = 1 << (map.address_bits() - 2),
             limit: usize = clocks + 64,
             in_high: u32,
@@ -97,7 +99,7 @@ pub fn files(job: &EmitJob, vectors: &Vectors, files: &mut OutputFiles) -> Resul
     Ok(())
 }
 
-/// Adds the bench of a wrapper in Python, where the core has one.
+/// Adds the bench of a wrapper in Python, if the core has a bench in Python too.
 fn add_python(job: &EmitJob, wrapper: &str, tests: &[&str], files: &mut OutputFiles) -> Result<()> {
     if job.inputs.example.is_some() && job.inputs.accuracy.is_some() {
         let name = job.name();
@@ -128,7 +130,8 @@ fn fixed(map: &Map) -> (Vec<(String, String)>, Vec<String>) {
     (own, read_only)
 }
 
-/// Returns the registers of ports, each in the words of a point.
+/// Returns the bus registers of `ports`. `fields` gives the positions of the ports in the bench's variable `net`: a point or a
+/// result.
 fn accesses(ports: &[PortPlacement], fields: &[StreamField], net: &str) -> Vec<BenchRegister> {
     let mut accesses = Vec::new();
     for (port, field) in ports.iter().zip(fields) {
@@ -144,7 +147,8 @@ fn access(part: &PortBits, field: &StreamField, net: &str) -> BenchRegister {
     let low = field.low + part.low;
     let all = format!("{net}[{}:{low}]", low + bits - 1);
     let top = format!("{net}[{}]", low + bits - 1);
-    // Bits above an operand are anything; those above a result copies of its sign.
+    // The bits above an operand may have any value. The bits above a signed result are copies of its sign bit; the bits above
+    // any other result are 0.
     let above = match net {
         "point" => format!("{net}[0]"),
         _ if field.signed => top,
@@ -157,7 +161,8 @@ fn access(part: &PortBits, field: &StreamField, net: &str) -> BenchRegister {
     BenchRegister { at: address(part.place), word, mask: format!("32'h{:08x}", mask(part.width)) }
 }
 
-/// Returns the registers of the results. Results that share one register are side by side, as in a stream.
+/// Returns the bus registers of the results. If the results share one register, they are adjacent in it, each in whole bytes,
+/// as in a stream.
 fn of_results(map: &Map, fields: &[StreamField]) -> Vec<BenchRegister> {
     if map.last() > map.last_operand() + 1 || fields.len() == 1 {
         return accesses(&map.results, fields, "result");

@@ -38,7 +38,8 @@ impl StreamField {
         }
     }
 
-    /// Extends a value to whole bytes: lists the parts, the upper first, from a net of the given name.
+    /// Returns the parts of a Verilog concatenation that extends the net `net` to whole bytes, the upper part first. The
+    /// padding has copies of the sign bit, or zeros if the value has no sign.
     fn packed(&self, net: &str) -> Vec<String> {
         match (self.padded() - self.width, self.signed) {
             (0, _) => vec![net.to_owned()],
@@ -132,7 +133,7 @@ impl Transfer {
         self.fields.iter().find(|field| field.name == name)
     }
 
-    /// Returns whether a result is padded with copies of its sign bit.
+    /// Returns whether any field is padded with copies of its sign bit.
     pub fn has_signs(&self) -> bool {
         self.fields.iter().any(|field| field.signed && field.padded() > field.width)
     }

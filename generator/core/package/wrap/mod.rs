@@ -40,8 +40,8 @@ pub fn files(job: &EmitJob, files: &mut OutputFiles) -> Result<()> {
     bench::files(job, vectors, files)
 }
 
-/// Adds the properties of a wrapper, and the Yosys commands that make the problem, if there is a bench. `stubs` are the
-/// modules that `text` defines in place of the modules below the wrapper.
+/// Adds the properties of the module `wrapper`, and the Yosys commands that make them a problem for a solver. Adds nothing if
+/// there is no bench. `stubs` are the modules that `text` defines in place of the modules below the wrapper.
 fn add_proof(
     job: &EmitJob,
     wrapper: &str,
@@ -59,8 +59,8 @@ fn add_proof(
     Ok(())
 }
 
-/// Returns the connections of the core, the clock first: where `to` says nothing, inputs to 0, and outputs to the wire of
-/// [`core_wire`].
+/// Returns the port connections of the core's instance, the clock first. `to` gives the net for a port by its role and its
+/// name. If `to` gives `None`, an input is connected to 0, and an output to the wire that [`core_wire`] declares.
 fn connected(
     design: &Design,
     clock: &str,
@@ -83,7 +83,7 @@ fn core_wire(design: &Design, port: &Port) -> String {
     format!("wire {} core_{};", range(net.format.width()), net.name).replace("  ", " ")
 }
 
-/// Lets a solver choose the results of the stub, which replaces the core in a proof.
+/// Returns Verilog that lets a solver choose the results of the stub, which replaces the core in a proof.
 fn stub_free(design: &Design) -> Vec<String> {
     let mut lines = Vec::new();
     for port in &design.ports {
@@ -111,7 +111,8 @@ fn stub_ports(design: &Design) -> Vec<String> {
     separated(ports)
 }
 
-/// Returns the declaration of a net inside the module that is proved, with its width.
+/// Returns the declaration that makes a net inside the proved module readable. The parameter is the net's path below `dut` and
+/// its width.
 fn seen_inside((net, width): (String, u32)) -> String {
     format!("(* hierconn *) wire {} \\dut.{net} ;", range(width)).replace("  ", " ")
 }

@@ -57,7 +57,7 @@ pub fn modules(job: &EmitJob, pipeline: &Pipeline, files: &mut OutputFiles) -> R
         unused.push("core_side_out".to_owned());
     }
     let (stages, user_bits) = (pipeline.stages.len(), job.inputs.around.user_bits);
-    // Where the core has delay lines in memory, one more holds tlast and tuser.
+    // If the core has delay lines in memory, another delay line in memory holds tlast and tuser.
     let words = stages.saturating_sub(1);
     let in_memory = words > 1 && !design.delay_lines().is_empty();
     let memory = in_memory.then(|| usize::BITS - (words - 1).leading_zeros());
@@ -73,12 +73,12 @@ pub fn modules(job: &EmitJob, pipeline: &Pipeline, files: &mut OutputFiles) -> R
         in_high: u32,
         out_high: u32,
         stages: usize,
-        // Bits of the number of a slot in the memory for tlast and tuser.
+        // The number of address bits of the memory for tlast and tuser, if there is one.
         memory: Option<u32>,
         interval: usize = pipeline.interval,
-        // When the points in the core move.
+        // The signal that is 1 if the points in the core move at the next edge.
         moves: &'a str = if pipeline.interval > 1 { "moves" } else { "s_axis_tready" },
-        // Bits of the own side channel of the core, which is not used.
+        // The number of bits of the core's own side channel, which the wrapper does not use.
         side: u32 = pipeline.side,
         packed: Vec<String> = separated(results.packed("core_")),
         connections: Vec<String>,

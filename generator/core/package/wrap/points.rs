@@ -12,7 +12,7 @@ use crate::package::bench::packed;
 use glint_base::fixed::mask;
 use glint_rtl::netlist::{Design, Port, Role};
 
-/// Results in a list, at most: a line more would be beyond it.
+/// The largest number of results in the list. A computation with which the list would exceed it is left out.
 const RESULTS: usize = 4096;
 
 /// A finished computation from the vectors of a test bench: the bit patterns of its operands and results, in the order of the
@@ -23,7 +23,8 @@ pub struct BenchPoint {
     pub results: Vec<Vec<u64>>,
 }
 
-/// Returns the computations in `vectors` that run to their end, in the order in which they end.
+/// Returns the computations in `vectors` that run to their end, in the order in which they end. The list has at most 4096
+/// results; computations with more results than fit are left out.
 ///
 /// # Errors
 /// Fails if the design lacks its handshake.
@@ -47,7 +48,7 @@ pub fn points(design: &Design, vectors: &Vectors) -> Result<Vec<BenchPoint>> {
     Ok(points)
 }
 
-/// The ports in a clock.
+/// The values of all ports in one clock of the vectors.
 struct PortValues<'a> {
     design: &'a Design,
     inputs: &'a [u64],
@@ -55,7 +56,7 @@ struct PortValues<'a> {
 }
 
 impl PortValues<'_> {
-    /// Returns the ports of some roles with their values.
+    /// Returns the ports whose role satisfies `is`, with their values.
     fn all(&self, is: impl Fn(Role) -> bool) -> Vec<(&Port, u64)> {
         let inputs = self.design.inputs().zip(self.inputs);
         let mut ports = Vec::new();
@@ -71,7 +72,7 @@ impl PortValues<'_> {
         self.all(is).into_iter().map(|(_, value)| value).collect()
     }
 
-    /// Returns whether the one port of a role is high.
+    /// Returns whether the port of this role is 1, or `None` if the design has no such port.
     fn high(&self, role: Role) -> Option<bool> {
         self.values(|it| it == role).first().map(|value| *value == 1)
     }
@@ -81,8 +82,8 @@ impl PortValues<'_> {
     }
 }
 
-/// Returns the computations of a microprogram. Operands are written one by one, and `start` takes the values that are written
-/// by then.
+/// Returns the finished computations of a core with a microprogram. Strobes write the operands one by one, and `start` begins a
+/// computation with the operands that are written by then. Returns `None` if the design lacks a signal of the handshake.
 fn computed<'a>(
     design: &Design,
     rows: impl Iterator<Item = PortValues<'a>>,
@@ -129,7 +130,8 @@ fn computed<'a>(
     Some(done)
 }
 
-/// Returns a pipeline's: points leave it in their order.
+/// Returns the finished computations of a pipeline, whose results leave in the order in which the points entered. Returns
+/// `None` if the design lacks a signal of the handshake, or if a result has no point.
 fn streamed<'a>(rows: impl Iterator<Item = PortValues<'a>>) -> Option<Vec<BenchPoint>> {
     let mut done = Vec::new();
     let mut inside: VecDeque<Vec<u64>> = VecDeque::new();
@@ -188,7 +190,8 @@ pub fn received(points: &[BenchPoint], results: &Transfer, is_line: bool) -> Str
     text
 }
 
-/// Returns a line of a file for `$readmemh`; the bytes above all fields are filled with ones or zeros.
+/// Returns a line of a file for `$readmemh`. The bytes above all fields are filled with ones if `ones` is set, otherwise with
+/// zeros. `top` is a further digit in front.
 fn word(values: Vec<u64>, transfer: &Transfer, ones: bool, top: Option<u64>) -> String {
     let (mut row, mut widths) = (Vec::new(), Vec::new());
     for (value, field) in values.into_iter().zip(&transfer.fields) {

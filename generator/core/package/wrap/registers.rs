@@ -18,7 +18,7 @@ use crate::package::output_files::OutputFiles;
 use glint_rtl::netlist::Role;
 use glint_rtl::verilog::text::{comment, literal, range, statement};
 
-/// An operand where it is kept.
+/// An operand, with the byte lanes through which bus registers write it.
 struct OperandWords {
     name: String,
     strobe: String,
@@ -27,12 +27,12 @@ struct OperandWords {
     lanes: Vec<ByteLane>,
 }
 
-/// Bits that a byte of a register writes.
+/// The bits of an operand that one byte of a bus register writes.
 struct ByteLane {
     word: String,
     number: u32,
     byte: u32,
-    /// The bits of the operand, and of the data.
+    /// The part-select of the bits in the operand; `data` is their part-select in the written word.
     bits: String,
     data: String,
 }
@@ -49,7 +49,7 @@ pub fn modules(job: &EmitJob, bus: &Bus, map: &Map, files: &mut OutputFiles) -> 
     let bus = format!("{core}_{}", bus.suffix);
     files.add_verilog(FileKind::BusWrapper, vec![bus.clone()], module);
     files.add_verilog(FileKind::BusWrapper, vec![registers.clone()], block(job, map)?);
-    // The proof of the bus has a stub in place of the registers, and the proof of the registers in place of the core.
+    // In the proof of the bus, a stub replaces the registers. In the proof of the registers, a stub replaces the core.
     add_proof(job, &bus, vec![registers.clone()], module_proof, files)?;
     add_proof(job, &registers, vec![core], proof(job, map)?, files)
 }
@@ -85,7 +85,7 @@ fn block(job: &EmitJob, map: &Map) -> Result<String> {
         address_high: u32 = map.address_bits() - 1,
         word_high: u32 = word_bits - 1,
         operands: Vec<OperandWords> = operands(map),
-        // The values that a read of the first registers gives, and of all other registers.
+        // The words that a read returns: `constants` for the registers that never change, and `words` for all other registers.
         constants: Vec<String> = constants(map),
         words: Vec<Word> = words(design, map),
         last_number: u32 = map.last(),
@@ -104,7 +104,7 @@ fn block(job: &EmitJob, map: &Map) -> Result<String> {
     })
 }
 
-/// Returns a line a register, and one for each of its bits that have a name of their own.
+/// Returns the register map as lines of a Verilog comment: each register, and each of its fields that has a name of its own.
 fn described(map: &Map) -> Vec<String> {
     let mut lines = Vec::new();
     for register in &map.registers {
@@ -156,8 +156,8 @@ fn operands(map: &Map) -> Vec<OperandWords> {
     words
 }
 
-/// Returns the word that a read of a register gives, according to the map alone: each field at its place, and 0 between the
-/// fields.
+/// Returns the Verilog assertion for a read of a register. The word must have each field of the map at its place, and 0 between
+/// the fields. A register of a result reads as 0 until a computation has finished.
 fn read(map: &Map, register: &BusRegister) -> Vec<String> {
     let mut parts = Vec::new();
     let mut above = 32;
@@ -181,7 +181,7 @@ fn read(map: &Map, register: &BusRegister) -> Vec<String> {
     statement(12, &format!("assert (read_data == {value});"))
 }
 
-/// Returns the nets behind some bits, as wide as these.
+/// Returns the Verilog expression of the value of a field, as wide as the field.
 fn source(map: &Map, register: &BusRegister, bits: &RegisterBits) -> String {
     if register.place < map::CONSTANTS {
         return literal(bits.reset, bits.width);

@@ -13,18 +13,18 @@ use glint_rtl::netlist::Role;
 use glint_rtl::verilog::rows::separated;
 use glint_rtl::verilog::text::literal;
 
-/// The facts about a core that walks lines, which computes all points along a scan line after one `start`: the operand with the
-/// length of a line, and the width of the buffer.
+/// The facts about a core that walks lines: it computes all points along a scan line after one `start`. They are the operand
+/// with the length of a line, and the width of the buffer.
 struct LineStream {
     length: String,
     length_low: u32,
     length_high: u32,
-    /// Bits of the length.
+    /// The number of bits of the length, and of an address of the buffer.
     width: u32,
 }
 
 impl LineStream {
-    /// Returns the highest bit of a place in the buffer.
+    /// Returns the number of the highest bit of an address of the buffer.
     fn high(&self) -> u32 {
         self.width - 1
     }
@@ -38,7 +38,7 @@ impl LineStream {
         literal(1, self.width + 1)
     }
 
-    /// Returns how many points a line can have at most, as many as the buffer has places.
+    /// Returns the largest number of points of a line, which is the number of words in the buffer, as a Verilog literal.
     fn places(&self) -> String {
         literal(1 << self.width, self.width + 1)
     }
@@ -105,7 +105,7 @@ pub fn modules(job: &EmitJob, files: &mut OutputFiles) -> Result<()> {
         output: &'a str = if line.is_some() { "wire" } else { "reg " },
         line: Option<&'a LineStream> = line.as_ref(),
         unused: Vec<String> = sink(&unused),
-        // The core hears `start` in the clock of `done` too.
+        // Whether the core also accepts `start` in the clock of `done`.
         overlaps: bool,
     })?;
     files.add_verilog(FileKind::StreamWrapper, vec![format!("{name}_axis")], text);
@@ -143,7 +143,8 @@ pub fn modules(job: &EmitJob, files: &mut OutputFiles) -> Result<()> {
     add_proof(job, &format!("{name}_axis"), stubs, text, files)
 }
 
-/// Declares nets below the top, with their widths: with these Yosys finds them by their path.
+/// Returns the declarations of the nets inside the wrapper that the proof reads, with their widths. Yosys needs these
+/// declarations to find the nets by their paths.
 fn inside(
     operands: &Transfer,
     results: &Transfer,
