@@ -13,7 +13,7 @@ use glint_golden::Contract;
 use glint_rtl::netlist::Design;
 use glint_tools::{BuiltBench, VerilogSimulator, Waveform};
 
-/// More clocks than any computation takes.
+/// The limit of a computation in clocks. The bench fails if a computation takes more.
 const LIMIT: u32 = 1 << 16;
 
 /// An [`Engine`] that runs the emitted Verilog in an outside simulator, with a test bench that reads points from a file. Each
@@ -22,9 +22,9 @@ const LIMIT: u32 = 1 << 16;
 pub struct Verilog {
     bench: BuiltBench,
     limit: Duration,
-    /// For each operand of a line its place in the contract and its format.
+    /// For each operand in a line of the points file: its index in the contract, and its format.
     operands: Vec<(usize, Format)>,
-    /// For each output of the contract its place in a line and its format.
+    /// For each output of the contract: its index in a line of the results file, and its format.
     results: Vec<(usize, Format)>,
 }
 

@@ -12,7 +12,7 @@ use glint_base::interval::{self, Interval, common, wrap};
 use glint_rtl::netlist::{RomId, interval::of_cell};
 use glint_rtl::pipeline::{Cell, Graph, NodeId, NodeOp};
 
-/// The most ways that are looked at, including ways that turn out to be impossible.
+/// The largest number of cases that are examined, including cases that turn out to be impossible.
 const MOST: usize = 4096;
 
 /// Intervals of raw values for some nodes of a computation's graph. They narrow the intervals that follow from the operands alone.
@@ -45,7 +45,8 @@ pub struct UnrolledComputation<'a> {
 }
 
 impl UnrolledComputation<'_> {
-    /// Returns the nodes `roots` and every node that they need, in order. A quotient needs its operands and no bits.
+    /// Returns the nodes `roots` and every node that they depend on, in the order of the graph. The bits of a quotient are left
+    /// out: a quotient depends directly on its dividend and divisor.
     fn cone(&self, roots: &[NodeId]) -> Vec<NodeId> {
         let operands = |at| self.operands(NodeId(at as u32)).into_iter().map(NodeId::index);
         let roots = roots.iter().map(|root| root.index());
@@ -117,18 +118,19 @@ pub fn range(view: UnrolledComputation, node: NodeId, known: &NodeIntervals) -> 
     }
 }
 
-/// The extent to which the selections of a case are decided.
+/// The result of following a case through the graph.
 enum Decision {
-    /// Every selection is decided.
+    /// Every selection is decided, so the intervals of all nodes are known.
     Whole,
-    /// No operands lead here.
+    /// No operands satisfy the hypotheses of the case.
     Never,
-    /// This node decides, and has several values.
+    /// A selection depends on this node, which still has several values.
     Splits(NodeId, Interval),
 }
 
 impl Case {
-    /// Returns the raw values of the nodes of `cone`, as far as they are decided.
+    /// Computes the intervals of the nodes in `cone` and stores them in `ranges`, up to the first selection that is not
+    /// decided.
     fn follow(&mut self, view: UnrolledComputation, cone: &[NodeId]) -> Decision {
         let graph = view.graph;
         let mut polynomials: BTreeMap<NodeId, RawPolynomial> = BTreeMap::new();
@@ -163,7 +165,7 @@ impl Case {
         Decision::Whole
     }
 
-    /// Returns the raw values of a node by the raw values of its operands. Its selection is decided.
+    /// Returns the interval of a node, computed from the intervals of its operands. A selection at the node must be decided.
     fn computed(&self, view: UnrolledComputation, id: NodeId) -> Interval {
         let graph = view.graph;
         let node = graph.node(id);
@@ -194,8 +196,8 @@ impl Case {
     }
 }
 
-/// Returns the node that must be decided for a cell: the select of a mux, or the carry of a sum, which is a condition
-/// that is counted with.
+/// Returns the node whose value must be known before a cell is computed: the select of a mux, or the carry of a sum. Returns
+/// `None` for any other cell.
 fn selection(cell: &Cell) -> Option<NodeId> {
     match cell {
         Cell::Op(NodeOp::Mux { select, .. }) => Some(*select),
@@ -216,7 +218,8 @@ fn selected(select: NodeId, inputs: &[NodeId], ranges: &[Interval]) -> NodeId {
     inputs[(number as usize).min(inputs.len() - 1)]
 }
 
-/// Returns a node as a polynomial in an operand, if no bits are dropped on the way.
+/// Returns the value of a node as a polynomial in an operand. Returns `None` if the node has another form, or if bits are
+/// dropped on the way.
 fn polynomial(
     graph: &Graph,
     id: NodeId,
@@ -229,7 +232,7 @@ fn polynomial(
         (low, high) if low == high => Some(RawPolynomial::constant(low)),
         _ => polynomials.get(id).copied(),
     };
-    // All that comes to the node, with one multiple of the modulus added.
+    // The value is wrapped to the node's format: the same multiple of the modulus is added for the whole interval.
     let wrapped = |whole: Interval, polynomial: RawPolynomial| {
         polynomial.plus(RawPolynomial::constant(wrap(whole, node.format)?), 1)
     };
@@ -268,8 +271,8 @@ fn polynomial(
     }
 }
 
-/// Returns the node to split first, so that this undecided selection becomes known: a condition on which the selection
-/// depends. For example, if the select is `a & b` of one bit, and only `b` is open, it is `b`.
+/// Returns the node to split first, so that the undecided selection `id` becomes decided: a condition on which the selection
+/// depends. For example, if the select is `a & b` of one bit, and only `b` is undecided, it is `b`.
 fn decider(graph: &Graph, id: NodeId, ranges: &[Interval]) -> NodeId {
     let operands =
         match &graph.node(id).cell {
@@ -316,12 +319,12 @@ pub fn learn(
             let most = all(id).1;
             learn(graph, known, ranges, *a, (most - range.1, most - range.0))
         }
-        // The bits above all others.
+        // The slice contains the top bits of the value.
         (NodeOp::Slice { of, low }, _) if reaches_top(graph, *of, low + graph.width(id)) => {
             if unsigned(*of) && unsigned(id) {
                 learn(graph, known, ranges, *of, (range.0 << low, ((range.1 + 1) << low) - 1))
             } else if let (Some(bit), 1, false) = (is, graph.width(id), unsigned(*of)) {
-                // The sign.
+                // The slice is the sign bit.
                 let (least, most) = all(*of);
                 let half = if bit == 0 { (0, most) } else { (least, -1) };
                 learn(graph, known, ranges, *of, half)
@@ -329,7 +332,7 @@ pub fn learn(
                 true
             }
         }
-        // The bits below a sign that is known.
+        // The slice contains the bits below the sign, and the sign is known.
         (NodeOp::Slice { of, low }, _)
             if !unsigned(*of) && unsigned(id) && low + graph.width(id) + 1 == graph.width(*of) =>
         {
@@ -342,7 +345,7 @@ pub fn learn(
             let range = (base + (range.0 << low), base + ((range.1 + 1) << low) - 1);
             learn(graph, known, ranges, *of, range)
         }
-        // For a mux whose select is decided: the input that it passes on.
+        // If the select of a mux is decided, the interval narrows the input that the mux passes on.
         (NodeOp::Mux { select, inputs }, _) => match value(known, *select) {
             (low, high) if low == high => {
                 let input = inputs[(low as usize).min(inputs.len() - 1)];
@@ -378,7 +381,7 @@ pub fn learn(
     }
 }
 
-/// Returns whether a value has no bits that count from this one up.
+/// Returns whether all bits of a value from bit `from` up are 0, or do not exist.
 fn reaches_top(graph: &Graph, id: NodeId, from: u32) -> bool {
     let node = graph.node(id);
     from == graph.width(id) || !node.format.signed && node.range.1 < 1 << from

@@ -21,11 +21,12 @@ pub struct Branch {
     pub at_most: Vec<RealTermId>,
     /// The term that is the value of the formula if the branch applies.
     pub term: RealTermId,
-    /// The side of every choice, by the number that is compared with 0 and the comparison.
+    /// For every choice, whether the condition holds: the key is the term that is compared with 0, and the kind of comparison.
     chosen: BTreeMap<(RealTermId, Choice), bool>,
 }
 
-/// A comparison that decides between two sides. Choices of one kind about one number go to the same side everywhere.
+/// The kind of a comparison between two sides of the formula. A kind and a term are decided once: all choices with both have
+/// the same side.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum Choice {
     Larger,
@@ -72,7 +73,8 @@ impl Branch {
         Some(both)
     }
 
-    /// Returns the way with a choice made about the sign of a term.
+    /// Returns this branch with an additional condition: `difference` must be at least 0 if `taken` is set, and at most 0
+    /// otherwise. Returns `None` if the branch has decided this choice differently.
     fn choosing(&self, difference: RealTermId, choice: Choice, taken: bool) -> Option<Self> {
         let mut condition = Self { term: self.term, ..Self::default() };
         condition.chosen.insert((difference, choice), taken);
@@ -103,15 +105,15 @@ pub fn word_variable(rom: &str, variable: &str) -> String {
     format!("{rom}_at_{variable}")
 }
 
-/// Notes by which power of two each operand is divided in the formula: the exponent if it is the same everywhere, or
-/// 0. For example, `exponent` has 3 in `exponent / 8`, and 0 in `exponent / 8 + exponent`.
+/// Notes in `found` the power of two by which the formula divides each operand, or 0 if it is not the same everywhere. For
+/// example, `exponent` has 3 in `exponent / 8`, and 0 in `exponent / 8 + exponent`.
 pub fn divisors(formula: &Expression, found: &mut HashMap<String, Option<i32>>) {
     if let Some((name, power)) = quotient(formula) {
         return note_divisor(name, power, found);
     }
     match &formula.kind {
         Kind::Operand(name) => note_divisor(name, 0, found),
-        // The number of a word is no number of the formula.
+        // The address of a table word is not part of the arithmetic.
         Kind::Word(..) => {}
         _ => {
             for part in formula.parts() {
@@ -121,7 +123,7 @@ pub fn divisors(formula: &Expression, found: &mut HashMap<String, Option<i32>>) 
     }
 }
 
-/// Notes a power by which an operand is divided; 0 if another power was noted before.
+/// Notes a power by which an operand is divided, or 0 if another power was noted before.
 fn note_divisor(name: &str, power: i32, found: &mut HashMap<String, Option<i32>>) {
     let noted = found.entry(name.to_owned()).or_insert(Some(power));
     if *noted != Some(power) {
@@ -129,7 +131,8 @@ fn note_divisor(name: &str, power: i32, found: &mut HashMap<String, Option<i32>>
     }
 }
 
-/// Returns the operand that is divided by a power of two, and that power.
+/// Returns the operand and the power if a formula is an operand divided by a power of two. For example, `exponent / 8` gives
+/// `exponent` and 3.
 fn quotient(formula: &Expression) -> Option<(&str, i32)> {
     let Kind::Binary(Operator::Div, a, b) = &formula.kind else { return None };
     let (Kind::Operand(name), Kind::Number(by)) = (&a.kind, &b.kind) else { return None };
@@ -228,7 +231,7 @@ fn unconditional(term: RealTermId) -> Vec<Branch> {
     vec![Branch { term, ..Branch::default() }]
 }
 
-/// Returns every way that two formulas can go together, with the term of each.
+/// Returns every combination of a branch of each formula whose choices do not contradict each other, with the terms of both.
 fn pairs(
     [a, b]: [&Expression; 2],
     setting: &FormulaContext,
@@ -246,7 +249,7 @@ fn pairs(
     Ok(pairs)
 }
 
-/// Returns every way that an operation of two formulas can go. `make` returns the term of the operation.
+/// Returns the branches of an operation on two formulas. `make` returns the term of the operation.
 fn operation(
     operands: [&Expression; 2],
     make: fn(RealTermId, RealTermId) -> RealTerm,
@@ -261,7 +264,7 @@ fn operation(
     Ok(found)
 }
 
-/// Returns every way in which a comparison holds, or with `taken` false does not hold.
+/// Returns the branches in which a comparison holds, or does not hold if `taken` is false.
 fn conditions(
     comparison: &Comparison,
     taken: bool,
@@ -277,7 +280,10 @@ fn conditions(
     Ok(conditions)
 }
 
-/// Returns the word of a table: the number that it is wherever this case reads, or a variable.
+/// Returns the word of a table as a number if it is the same at all addresses of this case, otherwise as a variable.
+///
+/// # Errors
+/// Fails if the address is no number or operand with integer values, or if the table has no such word.
 fn word(
     rom: &str,
     place: &Expression,
@@ -337,13 +343,13 @@ fn variable_of(
     }
 }
 
-/// Returns the value of a formula that does not vary in this case.
+/// Returns the value of a number or operand with a single value in this case. Returns `None` for any other formula.
 fn constant(formula: &Expression, setting: &FormulaContext) -> Option<f64> {
     let (low, high) = known_range(formula, setting)?;
     if low == high { Some(low) } else { None }
 }
 
-/// Returns the lowest and the highest value of a number or an operand in this case.
+/// Returns the smallest and the largest value of a number or an operand in this case. Returns `None` for any other formula.
 fn known_range(formula: &Expression, setting: &FormulaContext) -> Option<(f64, f64)> {
     match &formula.kind {
         Kind::Number(literal) => Some((literal.nearest(), literal.nearest())),
@@ -352,8 +358,8 @@ fn known_range(formula: &Expression, setting: &FormulaContext) -> Option<(f64, f
     }
 }
 
-/// Returns whether a comparison of an operand with a number holds for all values of this case, or for none. For
-/// example, `x < 4` holds if x is from 0 to 3, and is open if x is from 0 to 5.
+/// Returns whether a comparison of numbers and operands holds for all values of this case, or for none. Returns `None` if it
+/// holds for some. For example, `x < 4` holds if x is from 0 to 3, and is undecided if x is from 0 to 5.
 fn decided(comparison: &Comparison, setting: &FormulaContext) -> Option<bool> {
     let left = known_range(&comparison.left, setting)?;
     let right = known_range(&comparison.right, setting)?;
@@ -366,7 +372,7 @@ fn decided(comparison: &Comparison, setting: &FormulaContext) -> Option<bool> {
     None
 }
 
-/// Writes a power as products, by squaring, as the hardware has it. For example, x⁵ is x times (x²)².
+/// Returns a power as products, by repeated squaring, as the hardware computes it. For example, x⁵ is x times (x²)².
 fn power(terms: &mut RealTerms, base: RealTermId, exponent: u32) -> RealTermId {
     let mut result = None;
     let (mut square, mut rest) = (base, exponent);
@@ -404,7 +410,7 @@ pub fn folded(terms: &mut RealTerms, term: RealTerm) -> RealTermId {
     }
 }
 
-/// Returns the value of a term that is a number.
+/// Returns the value of a term, or `None` if the term is no number.
 fn number_of(terms: &RealTerms, id: RealTermId) -> Option<f64> {
     match terms.get(id) {
         RealTerm::Number(value) => Some(*value),
@@ -416,7 +422,7 @@ fn is_number(terms: &RealTerms, id: RealTermId, value: f64) -> bool {
     number_of(terms, id) == Some(value)
 }
 
-/// Returns the value of an operation on numbers, if f64 holds it exactly.
+/// Returns the value of an operation on numbers, if an f64 can represent the value exactly.
 fn exact_value(terms: &RealTerms, term: &RealTerm) -> Option<f64> {
     let (RealTerm::Add(a, b) | RealTerm::Sub(a, b) | RealTerm::Mul(a, b) | RealTerm::Div(a, b)) =
         *term

@@ -13,10 +13,10 @@ use super::statement::{ASKED, Statement};
 use glint_tools::transient::Directory;
 use glint_tools::{LimitReached, Tool};
 
-/// An answer has six digits behind the point.
+/// The factor for six digits after the point, to which an answer is rounded up.
 const MILLIONTHS: f64 = 1e6;
 
-/// Bounds are searched in these steps, by proofs that take no longer.
+/// The precision of the search for a bound, in output units. `TRY` is the time limit of each proof during the search.
 const STEP: f64 = 1.0 / 2048.0;
 const TRY: Duration = Duration::from_secs(2);
 
@@ -58,8 +58,8 @@ pub fn bound(gappa: &Tool, asked: &[Statement], limit: Duration) -> Result<Resul
     Ok(Ok(bound))
 }
 
-/// Returns Gappa's answer to a statement: the least of the answers to its scripts. Returns `None` inside if the
-/// statement asks for nothing.
+/// Returns the bound that Gappa finds for a statement: the smallest bound among its scripts. Returns `None` inside if the
+/// statement does not ask for a bound, and a reason in words if Gappa finds none.
 fn answer(
     gappa: &Tool,
     statement: &Statement,
@@ -89,9 +89,9 @@ fn answer(
     })
 }
 
-/// Returns the upper end of the interval that Gappa gives, rounded up to six digits behind the point. Returns 0 if
-/// Gappa says that the hypotheses contradict each other. For example, `|d_1| in [0, 43998467b-26 {0.655628,
-/// 2^(-0.60905)}]` gives 0.655629.
+/// Returns the upper end of the interval in Gappa's output, rounded up to six digits after the point. Returns 0 if Gappa says
+/// that the hypotheses contradict each other. For example, `|d_1| in [0, 43998467b-26 {0.655628, 2^(-0.60905)}]` gives
+/// 0.655629.
 fn largest(output: &str) -> Option<f64> {
     if output.contains("anything can be proved") {
         return Some(0.0);
@@ -105,7 +105,7 @@ fn largest(output: &str) -> Option<f64> {
         }
         None => end.parse().ok()?,
     };
-    // A factor may have more bits than f64.
+    // The factor may have more bits than an f64, so the parsed value may be too small.
     let value = if value * MILLIONTHS == libm::floor(value * MILLIONTHS) {
         value
     } else {

@@ -78,8 +78,8 @@ impl<'a> Hardware<'a> {
         NodeValue::Term { id, scale }
     }
 
-    /// Returns the word of a table. If an operand addresses the table, it is the variable that a formula has for the
-    /// word too.
+    /// Returns the value of a read from a table, as a variable. If an operand addresses the table, it is the same variable that
+    /// a formula has for the word.
     fn read(
         &mut self,
         terms: &mut RealTerms,
@@ -96,7 +96,8 @@ impl<'a> Hardware<'a> {
         self.variable(terms, node, variable, scale)
     }
 
-    /// Returns a quotient: a variable that the real quotient exceeds by its last place at most.
+    /// Returns the result of a divider, as a variable. A fact says that the real quotient is larger than the variable by at
+    /// most one unit of its last bit.
     fn quotient(
         &mut self,
         terms: &mut RealTerms,
@@ -135,7 +136,7 @@ impl<'a> Hardware<'a> {
         };
         let difference = add(terms, a, b, RealTerm::Sub, "compared");
         let NodeValue::Term { id, .. } = difference else { return None };
-        // Both have their points at one place: they are compared as raw values.
+        // The nodes have the same binary point, so they are compared as raw values.
         if scale != other_scale {
             return None;
         }
@@ -225,7 +226,7 @@ impl<'a> Hardware<'a> {
                 let wrap = wrap_of(node, (from >> low, to >> low))?;
                 let whole = self.value(terms, *of)?;
                 if graph.width(id) == 1 && *low > 0 && from >= 0 && to < 2 << low {
-                    // The top bit of a fraction is the fraction to the nearest.
+                    // The bit is the top bit of a fraction below 1.0, so it is the fraction rounded to the nearest integer.
                     return Ok(cut(terms, whole, low + 1, RoundingDirection::Nearest, &name));
                 }
                 let upper = cut(terms, whole, *low, RoundingDirection::Down, &name);
@@ -248,7 +249,8 @@ impl<'a> Hardware<'a> {
             NodeOp::Not(a) => {
                 let most = if node.format.signed { -1 } else { node.format.range().1 };
                 let value = self.value(terms, *a)?;
-                // The inverse of an unsigned number is 1.0 minus the number, with the point at its top.
+                // The bitwise inverse of an unsigned number is 1.0 − ulp minus the number, if the binary point is above its top
+                // bit.
                 let inverted = match (value, node.format.signed) {
                     (NodeValue::Term { id, scale }, false) => {
                         let wanted = node.format.width() as i32;
@@ -323,13 +325,14 @@ impl<'a> Hardware<'a> {
         }
     }
 
-    /// Returns the number y for which `a` holds the bits from `low` up and `b` the bit below: their sum is y rounded
-    /// to the nearest, halves up, for ⌊y⌋ + (⌊2y⌋ − 2⌊y⌋) = ⌊y + 1/2⌋. Returns `None` if y may be negative.
+    /// Returns the number y whose rounding `a` + `b` computes, and the number of bits that it drops. One node has the bits of y
+    /// from `low` up, and the other has the bit below. Their sum is y rounded to the nearest, halves up: ⌊y⌋ + (⌊2y⌋ − 2⌊y⌋) =
+    /// ⌊y + 1/2⌋. Returns `None` if the nodes have another form, or if y may be negative.
     fn rounded(&self, a: NodeId, b: NodeId) -> Option<(NodeId, u32)> {
         self.upper_and_half(a, b).or_else(|| self.upper_and_half(b, a))
     }
 
-    /// Returns y and `low`, if `upper` holds the bits of y from `low` up, and `half` the bit below.
+    /// Returns y and `low` if `upper` has the bits of y from `low` up, and `half` has the bit below.
     fn upper_and_half(&self, upper: NodeId, half: NodeId) -> Option<(NodeId, u32)> {
         let (upper, half) = (unextended(self.graph, upper), unextended(self.graph, half));
         let (of, low) = sliced(self.graph, upper)?;
@@ -344,8 +347,8 @@ impl<'a> Hardware<'a> {
     }
 }
 
-/// Returns the amount to add to a node's value if bits above the format are dropped. Fails if it is not the same for
-/// the whole range.
+/// Returns the amount to add to a node's value because bits above the format are dropped. Fails if the amount is not the same
+/// for the whole range.
 fn wrap_of(node: &Node, range: Interval) -> Result<i128, String> {
     let Some(amount) = wrap(range, node.format) else {
         let ((low, high), format, name) = (range, node.format, &node.label.name);
@@ -364,7 +367,7 @@ fn unextended(graph: &Graph, id: NodeId) -> NodeId {
     }
 }
 
-/// Returns the number that a slice is cut from, and the lowest bit of the slice.
+/// Returns the node from which a slice is cut, and the lowest bit of the slice. Returns `None` if the node is no slice.
 fn sliced(graph: &Graph, id: NodeId) -> Option<(NodeId, u32)> {
     match &graph.node(id).cell {
         Cell::Op(NodeOp::Slice { of, low }) => Some((widened(graph, *of), *low)),
@@ -372,7 +375,8 @@ fn sliced(graph: &Graph, id: NodeId) -> Option<(NodeId, u32)> {
     }
 }
 
-/// Drops `low` bits. For example, the constant 14 without 2 bits is 3 rounded down, and 4 to the nearest.
+/// Returns a value without its lowest `low` bits. For example, the constant 14 without 2 bits is 3 rounded down, and 4 to the
+/// nearest.
 fn cut(
     terms: &mut RealTerms,
     value: NodeValue,
@@ -402,7 +406,8 @@ fn raised(value: NodeValue, position: i32) -> NodeValue {
     }
 }
 
-/// Returns the sum or the difference.
+/// Returns the sum or the difference of two values, with the larger number of fraction bits. `operation` is [`RealTerm::Add`]
+/// or [`RealTerm::Sub`].
 fn add(
     terms: &mut RealTerms,
     a: NodeValue,
@@ -431,7 +436,7 @@ fn add(
     NodeValue::Term { id: terms.insert(operation(a, b), name), scale }
 }
 
-/// Returns the value as a term whose raw values are its values times 2^`scale`.
+/// Returns a value as a term with `scale` fraction bits.
 fn pointed(terms: &mut RealTerms, value: NodeValue, scale: i32, name: &str) -> RealTermId {
     match value {
         NodeValue::Constant(raw) => terms.number(raw as f64 * exp2(-scale)),
@@ -448,8 +453,8 @@ pub fn scaled(terms: &mut RealTerms, id: RealTermId, power: i32, name: &str) -> 
     terms.insert(RealTerm::Mul(id, factor), name)
 }
 
-/// Returns the value as a term and its fraction bits, which are `frac` for a constant. For example, the constant 3 with
-/// a `frac` of 2 is the number 0.75.
+/// Returns a value as a term, and its number of fraction bits. A constant gets `frac` fraction bits. For example, the constant
+/// 3 with a `frac` of 2 is the number 0.75.
 pub fn placed(terms: &mut RealTerms, value: NodeValue, frac: i32) -> (RealTermId, i32) {
     match value {
         NodeValue::Constant(raw) => (terms.number(raw as f64 * exp2(-frac)), frac),

@@ -132,8 +132,8 @@ fn formulas(contract: &dyn Contract) -> Result<Vec<Expression>, String> {
             let rest: String = text.chars().skip(fault.span.start).take(40).collect();
             format!("{fault}, `{rest}`")
         })?;
-        // This comes before the ways through the hardware, which may be many. For a line, the cosine and the absolute
-        // value have a translation.
+        // This check comes before the cases of the hardware, which may be many. Only the formulas of lines may have a cosine
+        // and an absolute value.
         let mut refused = None;
         formula.walk(&mut |part| match part.kind {
             Kind::Unary(Function::Negate | Function::Abs | Function::Cos, _) => {}

@@ -16,9 +16,9 @@ use glint_formula::Expression;
 use glint_rtl::pipeline::{Cell, NodeId, NodeOp};
 
 impl Task<'_> {
-    /// Returns the variable and the divisor of each operand. If the formula divides an operand by a power of two
-    /// throughout, the variable is the quotient. For example, a formula that has `exponent` only in `exponent / 8` has
-    /// the variable `exponent_over_8` and the divisor 3.
+    /// Returns the variable of each operand, and the power of two by which it is divided. If the formula always divides an
+    /// operand by the same power of two, the variable is the quotient. For example, a formula that has `exponent` only in
+    /// `exponent / 8` has the variable `exponent_over_8` and the power 3.
     fn variables(&self) -> HashMap<String, (String, i32)> {
         let mut divisors = HashMap::new();
         for formula in self.formulas {
@@ -129,8 +129,8 @@ impl Task<'_> {
         Ok(())
     }
 
-    /// Returns the case's hypotheses on values that have a translation. It may leave out the others, because fewer
-    /// hypotheses only leave more to prove.
+    /// Returns the hypotheses of a case: the interval of each value that can be written as a term. It leaves out the other
+    /// values, which is safe, because a statement with fewer hypotheses is stronger.
     fn presupposed(
         &self,
         case: &Case,
@@ -139,7 +139,7 @@ impl Task<'_> {
         operands: &[(String, (f64, f64))],
     ) -> BTreeMap<RealTermId, (f64, f64)> {
         let mut presupposed = BTreeMap::new();
-        // The formula may read words that nothing in the hardware depends on any more.
+        // The formula may read words on which no result of the hardware depends in this case.
         for (at, node) in self.graph().nodes.iter().enumerate() {
             if let Cell::Read { address, .. } = node.cell
                 && matches!(self.graph().node(address).cell, Cell::Operand(_))
@@ -176,10 +176,10 @@ fn real_operand(
     Ok(branches[0].term)
 }
 
-/// Returns every way that the expressions can go together. For example, two expressions of two branches each have four
-/// ways, without the ways whose choices contradict each other.
+/// Returns every combination of one branch of each expression whose choices do not contradict each other. For example, two
+/// expressions of two independent branches each have four combinations.
 fn together(ways: &[Vec<Branch>]) -> Vec<Vec<Branch>> {
-    // The choices that are made together, and the branch of each expression.
+    // The choices of all branches together, and the branch of each expression.
     let mut combinations: Vec<(Branch, Vec<Branch>)> = vec![(Branch::default(), Vec::new())];
     for ways_of_expression in ways {
         let mut longer = Vec::new();

@@ -14,7 +14,7 @@ pub struct RawPolynomial {
     pub factors: [i128; 3],
 }
 
-/// Larger factors are not followed.
+/// The largest absolute value of a coefficient. A polynomial with a larger one is not computed.
 const MOST: i128 = 1 << 80;
 
 impl RawPolynomial {
@@ -28,7 +28,8 @@ impl RawPolynomial {
         Self { of: Some(id), factors: [0, 1, 0] }
     }
 
-    /// Makes the polynomial with these factors, if both are of one operand and no factor is too large.
+    /// Makes the polynomial with the coefficients `factors`, in the operand of `self` and `other`. Returns `None` if they have
+    /// different operands, or if a coefficient is too large.
     fn with(self, other: Self, factors: [i128; 3]) -> Option<Self> {
         let of = match (self.of, other.of) {
             (Some(a), Some(b)) if a != b => return None,
@@ -38,14 +39,15 @@ impl RawPolynomial {
         small.then_some(Self { of, factors })
     }
 
-    /// Returns this polynomial plus `times` times the other.
+    /// Returns this polynomial plus `times` times the polynomial `other`. Returns `None` if they have different operands, or if
+    /// a coefficient is too large.
     pub fn plus(self, other: Self, times: i128) -> Option<Self> {
         let sum = |at: usize| self.factors[at] + times * other.factors[at];
         self.with(other, [sum(0), sum(1), sum(2)])
     }
 
-    /// Returns the product of two polynomials in the same operand. Returns `None` if the product may have a degree above two, for
-    /// example x² times x.
+    /// Returns the product of two polynomials in the same operand. Returns `None` if the product may have a degree above two,
+    /// for example x² times x. Returns `None` also if the operands differ, or if a coefficient is too large.
     pub fn times(self, other: Self) -> Option<Self> {
         let ([a, b, c], [d, e, f]) = (self.factors, other.factors);
         let small = |factors: [i128; 3]| factors.iter().all(|factor| factor.abs() <= 1 << 60);
@@ -55,7 +57,8 @@ impl RawPolynomial {
         self.with(other, [a * d, a * e + b * d, a * f + b * e + c * d])
     }
 
-    /// Returns the smallest and the largest value of the polynomial for integers x in an interval.
+    /// Returns the smallest and the largest value of the polynomial for integers x in an interval. Returns `None` if the
+    /// interval or a coefficient is too large.
     pub fn range(self, (low, high): Interval) -> Option<Interval> {
         let [a, b, c] = self.factors;
         if low.abs().max(high.abs()) > 1 << 32 || [a, b, c].iter().any(|it| it.abs() > 1 << 62) {
@@ -80,11 +83,11 @@ mod tests {
     fn a_parabola_has_its_vertex() {
         let x = RawPolynomial::operand(NodeId(0));
         let square = x.times(x).unwrap();
-        // x² − 16·x: −64 at 8.
+        // x² − 16·x has its smallest value, −64, at 8.
         let parabola = square.plus(x, -16).unwrap();
         assert_eq!(parabola.range((0, 16)), Some((-64, 0)));
         assert_eq!(parabola.range((9, 20)), Some((-63, 80)));
-        // 7 − x²; x² − 3·x, least at 1 and 2.
+        // 7 − x² is largest at 0, and x² − 3·x is smallest at 1 and 2.
         let open = RawPolynomial::constant(7).plus(square, -1).unwrap();
         assert_eq!(open.range((-2, 3)), Some((-2, 7)));
         assert_eq!(square.plus(x, -3).unwrap().range((0, 3)), Some((-2, 0)));

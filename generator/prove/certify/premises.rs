@@ -61,8 +61,8 @@ struct PremiseTask<'a> {
 }
 
 impl PremiseTask<'_> {
-    /// Writes the statement that the values of a node, a quadratic polynomial, lie from `low` to `high`, with a hint
-    /// that completes the square. Returns `None` if the node or the variable of the polynomial is a constant.
+    /// Writes the statement that the value of a node lies from `low` to `high`. The value is a quadratic polynomial, and a hint
+    /// completes its square. Returns `None` if the node or the variable of the polynomial is a constant.
     fn parabola(
         &mut self,
         node: NodeId,
@@ -88,13 +88,14 @@ impl PremiseTask<'_> {
         Ok(Some(self.script(id, &goal, &[hint])))
     }
 
-    /// Writes the statement that the divisor is positive, and the dividend neither negative nor above it.
+    /// Writes the statement that the divisor of a divider is positive, and that the dividend is neither negative nor above the
+    /// divisor.
     fn dividend(&mut self, quotient: Quotient) -> Result<String, String> {
         let (dividend, divisor) = self.hardware.fraction(&mut self.terms, quotient)?;
         let rest = self.terms.insert(RealTerm::Sub(divisor, dividend), "rest");
         let [dividend_name, divisor_name, rest_name] =
             [dividend, divisor, rest].map(|id| self.terms.name(id));
-        // The other summand, if the divisor is a sum with the dividend.
+        // If the divisor is a sum with the dividend, `beside` is the other summand.
         let beside = match *self.terms.get(divisor) {
             RealTerm::Add(a, b) if a == dividend => Some(b),
             RealTerm::Add(a, b) if b == dividend => Some(a),
@@ -125,9 +126,9 @@ impl PremiseTask<'_> {
     }
 }
 
-/// Writes the statement that a step of a divider leaves a remainder between 0 and the divisor, whether the divisor fits
-/// into twice the remainder or not. The numbers are the shares of the divisor, which is 1. For example, a remainder of
-/// 0.75 is doubled to 1.5, and leaves 0.5.
+/// Writes the statement that a step of a divider leaves a remainder from 0 to the divisor. `fits` is whether the divisor fits
+/// into twice the remainder. All numbers are multiples of the divisor. For example, a remainder of 0.75 is doubled to 1.5, and
+/// leaves 0.5.
 fn step(fits: bool) -> String {
     let (condition, left) =
         if fits { ("doubled - 1 >= 0", "doubled - 1") } else { ("doubled - 1 <= 0", "doubled") };

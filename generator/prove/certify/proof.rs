@@ -56,7 +56,7 @@ pub fn prove(
         if run.status.code().is_none() {
             bail!("`{gappa}` failed ({}): {}", run.status, run.output.trim());
         }
-        // If Gappa cannot prove a rewriting, it says so and goes on.
+        // If Gappa cannot prove a rewriting of a hint, it assumes the rewriting, and says so.
         let assumed = run.output.contains("trivially equal");
         if !run.status.success() || assumed {
             let mut lines =
@@ -69,7 +69,7 @@ pub fn prove(
             if !proof.status.success() {
                 bail!("Gappa proves a statement, and cannot write it for Coq: {}", proof.output);
             }
-            // Warnings come in between.
+            // Gappa writes warnings between the lines of the proof.
             let lines = proof.output.lines().filter(|line| !line.starts_with("Warning:"));
             let proof: String = lines.flat_map(|line| [line, "\n"]).collect();
             fs::write(dir.path().join("statement.v"), proof)
@@ -86,7 +86,7 @@ pub fn prove(
     Ok(ProofOutcome::Open(why))
 }
 
-/// Returns the subject of an accepted script. If no point is found, it asks Gappa for a contradiction.
+/// Returns whether the hypotheses of an accepted script can hold. If no point is found, it asks Gappa for a contradiction.
 fn subject(gappa: &Tool, script: &str, limit: Duration) -> Result<ProofSubject> {
     if let Some(point) = witness::witness(script) {
         return Ok(ProofSubject::Point(point));

@@ -21,7 +21,7 @@ pub struct Quotient {
     pub bits: u32,
 }
 
-/// Returns the dividers that `results` depend on, each by the node that concatenates the bits of the quotient.
+/// Returns the dividers that `results` depend on. The key of a divider is the node that concatenates the bits of its quotient.
 pub fn quotients(graph: &Graph, results: &[NodeId]) -> BTreeMap<NodeId, Quotient> {
     let mut found = BTreeMap::new();
     let mut pending = results.to_vec();
@@ -41,7 +41,7 @@ pub fn quotients(graph: &Graph, results: &[NodeId]) -> BTreeMap<NodeId, Quotient
     found
 }
 
-/// Returns the quotient whose bits a node joins, the first on top.
+/// Returns the divider whose quotient bits a node concatenates, the top bit first. Returns `None` if the node is no such node.
 fn quotient(graph: &Graph, id: NodeId) -> Option<Quotient> {
     let Cell::Op(NodeOp::Concat(_)) = graph.node(id).cell else { return None };
     let mut bits = Vec::new();
@@ -55,7 +55,7 @@ fn quotient(graph: &Graph, id: NodeId) -> Option<Quotient> {
     follows.then_some(Quotient { dividend, divisor, bits: steps.len() as u32 })
 }
 
-/// Collects the nodes that are joined in a node, the top one first.
+/// Appends the nodes that a node concatenates to `parts`, the top one first. A concatenation inside it is resolved.
 fn joined(graph: &Graph, id: NodeId, parts: &mut Vec<NodeId>) {
     match &graph.node(id).cell {
         Cell::Op(NodeOp::Concat(inner)) => {
@@ -83,7 +83,7 @@ fn step(graph: &Graph, bit: NodeId) -> Option<DivisionStep> {
     let NodeOp::Not(negative) = op(bit)? else { return None };
     let NodeOp::Slice { of: trial, low } = op(*negative)? else { return None };
     let NodeOp::Sub(doubled, divisor) = op(*trial)? else { return None };
-    // The sign of a difference that has room for all its values.
+    // `negative` must be the sign bit of a difference whose format contains all its values.
     let ((least, most), (from, to)) = (graph.node(*trial).format.range(), {
         let (a, b) = (graph.node(*doubled).range, graph.node(*divisor).range);
         (a.0 - b.1, a.1 - b.0)
@@ -107,7 +107,7 @@ fn step(graph: &Graph, bit: NodeId) -> Option<DivisionStep> {
     })
 }
 
-/// Returns whether a node is the remainder after a step, with all bits that numbers up to the divisor have.
+/// Returns whether a node is the remainder after a step, and has at least as many bits as the divisor.
 fn is_left(graph: &Graph, id: NodeId, step: &DivisionStep) -> bool {
     let Cell::Op(NodeOp::Slice { of, low: 0 }) = graph.node(id).cell else { return false };
     let left = NodeOp::Mux { select: step.bit, inputs: vec![step.doubled, step.trial] };

@@ -11,7 +11,7 @@ use super::hardware::Variables;
 use super::terms::{RealTerm, RealTermId, RealTerms, number};
 use glint_base::fixed::exp2;
 
-/// Points by which terms are compared, and how often one is looked for.
+/// The number of points at which terms are compared. `TRIES` is the number of random points among which they are searched.
 const SAMPLES: usize = 24;
 const TRIES: usize = 2_000;
 
@@ -89,7 +89,7 @@ impl GappaScript<'_> {
             }
         }
         for (&id, &(low, high)) in self.presupposed {
-            // A variable of one value, which the program puts in its place, is a premise all the same.
+            // A variable with only one value does not occur in the terms, but the hypothesis about it is written too.
             let is_given = is_variable(terms, id) && low == high;
             if !is_number(terms, id) && (needed[id] || is_given) {
                 let name = terms.name(id);
@@ -109,10 +109,10 @@ impl GappaScript<'_> {
         hypotheses
     }
 
-    /// Writes hints, of four kinds. A value between a and 1 gets a form that shows its range (`blend`). A term of the
-    /// formula may be a line through a term of the hardware without roundings. It may equal a term of the hardware
-    /// without its roundings. It may be near a term of the hardware with roundings. Gappa proves each hint that it
-    /// uses.
+    /// Writes hints of four kinds. A sum a + (1 − a)·x gets a form that shows its range (`blend`). A term of the formula may be
+    /// a factor times a term of the hardware, plus an offset. It may equal a term of the hardware without its roundings. It may
+    /// be near a term of the hardware with roundings. The comparison of samples finds the last three kinds, and Gappa proves
+    /// each hint that it uses.
     fn hints(
         &self,
         terms: &mut RealTerms,
@@ -202,7 +202,7 @@ impl GappaScript<'_> {
                 None => 1.0,
             };
             let unit_share = (random.next_u32() as f64) / f64::from(u32::MAX);
-            // More near the lower end, and near the upper, than between.
+            // Two thirds of the values are near an end of the interval.
             let share = match random.next_u32() % 3 {
                 0 => unit_share,
                 1 => unit_share.powi(8),
@@ -214,8 +214,8 @@ impl GappaScript<'_> {
         variables
     }
 
-    /// Returns whether these values of all terms belong to the case: the formula goes its way, and every value is in
-    /// the interval that is presupposed.
+    /// Returns whether these values of all terms belong to the case: the conditions of the formula's branches hold, and every
+    /// value is in its presupposed interval.
     fn is_of_case(&self, values: &[f64]) -> bool {
         for way in self.ways {
             let is_way = way.at_least.iter().all(|&id| values[id] >= 0.0)
@@ -250,8 +250,8 @@ fn varies(values: &[f64]) -> bool {
     values.iter().any(|value| *value != values[0])
 }
 
-/// Writes a value between a and 1, a + (1 − a)·x, as 1 − (1 − a)·(1 − x), which shows its range. For example, `f_9 -> 1
-/// - rest_4 * (1 - x);`.
+/// Writes the hint that a + (1 − a)·x is 1 − (1 − a)·(1 − x). This form shows that the value is between a and 1. For example,
+/// `f_9 -> 1 - rest_4 * (1 - x);`. Returns `None` if the term has another form.
 fn blend(terms: &RealTerms, id: RealTermId) -> Option<String> {
     let RealTerm::Add(first, second) = *terms.get(id) else { return None };
     let (product, a) = match terms.get(first) {
@@ -275,8 +275,8 @@ fn is_rest(terms: &RealTerms, id: RealTermId, a: RealTermId) -> bool {
     }
 }
 
-/// Writes the hint that one term is factor times another and an offset. For example, the factor −1 and the offset 0.5
-/// give `f_9 -> 0.5 - cut_3;`.
+/// Writes the hint that the term `left` is `factor` times the term `right`, plus `offset`. For example, the factor −1 and the
+/// offset 0.5 give `f_9 -> 0.5 - cut_3;`.
 fn rewriting(
     terms: &RealTerms,
     left: RealTermId,
@@ -284,7 +284,7 @@ fn rewriting(
     (factor, offset): (f64, f64),
 ) -> String {
     let name = terms.name(right);
-    // Gappa sees through a plain difference, and not through a product by -1.
+    // Gappa simplifies a plain difference, but not a product by −1.
     let line = match (offset, factor) {
         (0.0, 1.0) => name,
         (_, 1.0) => format!("{} + {name}", number(offset)),
@@ -295,7 +295,7 @@ fn rewriting(
     format!("{} -> {line};", terms.name(left))
 }
 
-/// Returns the largest size of the values.
+/// Returns the largest absolute value.
 fn largest_size(values: &[f64]) -> f64 {
     values.iter().fold(0.0, |most, value| most.max(value.abs()))
 }
@@ -316,8 +316,8 @@ fn is_same(x: &[f64], y: &[f64]) -> bool {
     x.iter().zip(y).all(|(x, y)| (x - y).abs() <= limit)
 }
 
-/// Finds the line on which the values of `y` follow the values of `x`. Returns its factor and offset, both short
-/// numbers. For example, 0, 1, 2 and 1, 3, 5 give the factor 2 and the offset 1.
+/// Returns the factor and the offset with which `y` is a linear function of `x`, both short numbers. Returns `None` if there
+/// are none. For example, 0, 1, 2 and 1, 3, 5 give the factor 2 and the offset 1.
 fn line_through(x: &[f64], y: &[f64]) -> Option<(f64, f64)> {
     let other = x.iter().position(|value| *value != x[0])?;
     let factor = rounded((y[other] - y[0]) / (x[other] - x[0]), 16);

@@ -33,22 +33,21 @@ use glint_rtl::pipeline::{Cell, Graph, NodeId, NodeOp, WalkRegister};
 /// The number of words in a script: Gappa's time grows with its square.
 const WORDS: usize = 8;
 
-/// The last term of the polynomial for the cosine is y to the power of twice this number. The remainder is below
-/// 10⁻¹⁶ in a right angle.
+/// Twice this number is the exponent of y in the last term of the polynomial for the cosine. At a right angle, the remainder is
+/// below 10⁻¹⁶.
 const TERMS: u32 = 10;
 
-/// π/2 lies between these.
+/// Two numbers between which π/2 lies.
 const RIGHT: (&str, &str) = ("1.57079632679489661923", "1.57079632679489661924");
 
 /// The statements use the bound of f, rounded down to this number of fraction bits. It is a short number, so that its
 /// sum with a word is exact in f64.
 const PLACES: i32 = 42;
 
-/// The angle of a point, as a name in a formula. No operand has this name, because the first point's angle differs
-/// from the other angles.
+/// The name of the angle of a point in a formula. It is no operand, because the operand has only the angle of the first point.
 const POINT: &str = "angle of the point";
 
-/// The segment of a word's angles, in right angles.
+/// A word of the table, and the interval of the angles that read it, in right angles.
 struct WordSegment {
     value: f64,
     from: f64,
@@ -88,8 +87,8 @@ pub fn statements(task: &Task, walk: &[WalkRegister]) -> Result<Vec<Statement>, 
     Ok(statements.list)
 }
 
-/// Returns x and k of cos(pi / 2 · x)ᵏ. For example, `cos(pi / 2 * x) ** 16` gives x and 16; `cos(x) ** 2` gives
-/// `None`.
+/// Returns x and k if a formula has the form cos(pi / 2 · x)ᵏ. For example, `cos(pi / 2 * x) ** 16` gives x and 16; `cos(x) **
+/// 2` gives `None`.
 fn lobe(formula: &Expression) -> Option<(&Expression, u32)> {
     let Kind::Binary(Operator::Power, base, exponent) = &formula.kind else { return None };
     let Kind::Unary(Function::Cos, angle) = &base.kind else { return None };
@@ -103,17 +102,18 @@ fn lobe(formula: &Expression) -> Option<(&Expression, u32)> {
     Some((angle, power as u32))
 }
 
-/// An angle that is walked along, by names of operands.
+/// The angle along a line of points, in the names of operands.
 struct AngleWalk {
-    /// The angle of the first point.
+    /// The operand with the angle of the first point.
     start: String,
-    /// The angle as a point has it, as the formula of a point that is no first one says it: wrapped around. For
-    /// example, `(a + index * d + 2) % 4 - 2` for a signed format of four right angles.
+    /// The formula of the angle at any point, wrapped around in its format. For example, `(a + index * d + 2) % 4 - 2` for a
+    /// signed format of four right angles.
     wrapped: Expression,
 }
 
 impl AngleWalk {
-    /// Returns the walk whose only register begins with an operand, to which another is added modulo its format.
+    /// Returns the angle along a line if it is the only register that changes from point to point. The register must begin with
+    /// one operand, and another operand must be added to it modulo its format. Fails otherwise.
     fn new(task: &Task, walk: &[WalkRegister]) -> Result<Self, String> {
         let graph = task.graph();
         let is_more_than_a_sum = "its points walk on by more than a sum";
@@ -138,14 +138,14 @@ impl AngleWalk {
         Ok(Self { start: start.to_owned(), wrapped })
     }
 
-    /// Returns the expression with [`POINT`] in place of the angle of a point, start + index·step, wrapped around. By
-    /// induction, the walk's register holds this angle.
+    /// Returns `formula` with [`POINT`] in place of the angle of a point, start + index·step, wrapped around. By induction, the
+    /// register of the angle has this value.
     fn angle(&self, formula: &Expression) -> Expression {
         formula.substitute(&self.wrapped, &Expression::operand(POINT), &formula.span)
     }
 }
 
-/// Returns the name of the operand that a node is, if it is one.
+/// Returns the name of the operand that a node is, or `None` if the node is no operand.
 fn operand_name<'t>(task: &'t Task, id: NodeId) -> Option<&'t str> {
     match task.graph().node(id).cell {
         Cell::Operand(at) => Some(&task.design.net(task.unrolled.operands[at]).name),
@@ -153,7 +153,7 @@ fn operand_name<'t>(task: &'t Task, id: NodeId) -> Option<&'t str> {
     }
 }
 
-/// The colour operand of each output, the one word that all are made of, and the outputs.
+/// The colour operand of each output, the table word by which all outputs are multiplied, and the outputs.
 type ProductsByColour = (Vec<String>, NodeId, Vec<(String, NodeId)>);
 
 fn table(task: &Task) -> Result<ProductsByColour, String> {
@@ -171,7 +171,7 @@ fn table(task: &Task) -> Result<ProductsByColour, String> {
     let [table] = reads[..] else {
         return Err("its outputs are made of several words of tables".to_owned());
     };
-    // Behind the word nothing is selected, and there is nothing but colours.
+    // After the word is read, the outputs may depend on colours only, and nothing may be selected.
     let before = graph.cone([table]);
     while let Some(id) = pending.pop() {
         if id == table {
@@ -204,7 +204,8 @@ fn is_open(graph: &Graph, id: NodeId) -> bool {
     low != high
 }
 
-/// Returns the words of the table with the angles that read them, by address.
+/// Returns the words of the table that are read, in the order of their addresses, each with the interval of the angles that
+/// read it.
 fn words(
     task: &Task,
     table: NodeId,
@@ -223,7 +224,7 @@ fn words(
     }
     let start = task.contract.operands().iter().find(|operand| operand.name == walk.start);
     let (low, high) = start.ok_or("its contract has no angle")?.domain;
-    // Every angle of the register comes up in lines, whatever the domain says of the first.
+    // Along lines, the register takes every angle of its format, even if the domain of the first angle is smaller.
     let format = graph.node(operand).format;
     if (i128::from(low), i128::from(high)) != format.range() {
         return Err(format!("`{}` can leave its domain along a line", walk.start));
@@ -254,7 +255,7 @@ fn words(
     Ok(found.into_values().collect())
 }
 
-/// Returns the address that is read for all values of the operand in this range, if there is one such address.
+/// Returns the address that is read for all values of the operand in a range. Returns `None` if it is not the same for all.
 fn decided_address(
     task: &Task,
     (operand, range): (NodeId, (i128, i128)),
@@ -268,13 +269,13 @@ fn decided_address(
     if low == high { Some(low) } else { None }
 }
 
-/// Returns the enclosure of an angle if the angle of the point is in this range. Returns `None` if the angle depends
-/// on anything else.
+/// Returns an interval that contains the formula's angle if the angle of the point is in the given range. Returns `None` if the
+/// formula's angle depends on anything else.
 fn enclosed(angle: &Expression, (low, high): (f64, f64)) -> Option<Enclosure> {
     angle.enclose(&[(POINT, Enclosure::between(low, high))]).ok()
 }
 
-/// Writes the statement that words are within `bound` of the formula at both ends of their segments.
+/// Writes the statement that the formula is within `bound` of each word at both ends of the word's segment.
 fn about_words(words: &[WordSegment], first: usize, power: u32, bound: f64) -> String {
     let degree = 2 * TERMS + 2;
     let mut text = format!(
@@ -283,7 +284,7 @@ fn about_words(words: &[WordSegment], first: usize, power: u32, bound: f64) -> S
     let mut ends: Vec<f64> = Vec::new();
     let mut goals: Vec<String> = Vec::new();
     for (at, word) in (first..).zip(words) {
-        // The names of both ends: a word and its neighbour share the angle between them.
+        // A word and its neighbour share the angle between them, so both use the same name for it.
         let [high, low] = [word.from, word.to].map(|angle| {
             let known = ends.iter().position(|other| *other == angle);
             let name = first + known.unwrap_or(ends.len());
@@ -326,7 +327,7 @@ fn cosine(name: &str, angle: f64, power: u32) -> String {
     text
 }
 
-/// Writes the statement that an output is within the bound of a colour times whatever the word is near to.
+/// Writes the statement that an output is within `bound` of `colour` times f, for every f within `of_f` of the table word.
 fn about_output(
     task: &Task,
     (out, table): (NodeId, NodeId),
@@ -402,7 +403,7 @@ mod tests {
         assert_eq!(range(folded, (-0.5, -0.25)), Some((0.25, 0.5)));
         assert_eq!(range(folded, (-0.5, 0.25)), Some((0.0, 0.5)));
         assert_eq!(range(folded, (-3.0, -0.75)), Some((0.75, 1.0)));
-        // The first point's angle, another turn, no wrapping, another step.
+        // These formulas have the angle of the first point, another turn, no wrapping, and another step.
         for other in [
             "min(abs(a), 1)",
             "min(abs(((a + index * d + 4) % 8 - 4)), 1)",
@@ -423,7 +424,7 @@ mod tests {
         }
     }
 
-    /// cos 60 degrees is 1/2 and its square 1/4: by the definitions, at the digits of f64.
+    /// cos 60° is 1/2. The definitions must give this value in f64.
     #[test]
     fn the_definitions_are_those_of_a_cosine() {
         let square = (std::f64::consts::FRAC_PI_2 * 2.0 / 3.0).powi(2);

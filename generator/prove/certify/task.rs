@@ -9,11 +9,11 @@ use glint_golden::Contract;
 use glint_rtl::netlist::{Design, RomId};
 use glint_rtl::pipeline::{Cell, Graph, NodeId, Unrolled};
 
-/// The most values of an operand that is split value by value, because it is an exponent of the formula or addresses
-/// several tables.
+/// The largest number of values of an operand whose domain is split. An operand is split if it is an exponent of the formula,
+/// or if it addresses tables.
 const SPLIT: i64 = 1024;
 
-/// A table of at most this number of different words, one after the other, is gone through word by word.
+/// The largest number of runs of equal words for which a table is always split word by word.
 const RUNS: usize = 16;
 
 /// The subject of a proof by Gappa: a design, its contract with the error bound, and the unrolled computation as a graph.
@@ -25,7 +25,7 @@ pub(super) struct Task<'a> {
     pub(super) unrolled: &'a Unrolled,
     pub(super) view: UnrolledComputation<'a>,
     pub(super) tables: &'a [String],
-    /// The formulas of a highlight's f, or else of the outputs.
+    /// The formulas: for a highlight the formulas of f, otherwise one for each output.
     pub(super) formulas: &'a [Expression],
 }
 
@@ -84,10 +84,10 @@ impl Task<'_> {
         Ok(outputs)
     }
 
-    /// Returns the domain in parts. An operand in an exponent makes a part for each of its values. An operand that
-    /// addresses tables makes a part for each run of values with the same words. If there is one table with many words,
-    /// and the formula reads it too, its word is a variable. This cannot be done for several tables, because their
-    /// words depend on each other. For example, `x ** exponent` with exponents from 1 to 64 has 64 parts.
+    /// Splits the domain into parts. An operand in an exponent makes a part for each of its values. An operand that addresses
+    /// tables makes a part for each run of values with the same words. A single table with many words that the formula reads
+    /// too is not split, because its word can be a variable. Several tables are always split, because their words depend on
+    /// each other. For example, `x ** exponent` with exponents from 1 to 64 has 64 parts.
     pub(super) fn split(&self, known: &NodeIntervals) -> Vec<NodeIntervals> {
         let mut split = vec![known.clone()];
         for operand in self.contract.operands() {
@@ -135,20 +135,20 @@ impl Task<'_> {
         self.formulas.iter().any(|formula| formula.has(&is_power))
     }
 
-    /// Returns whether a formula reads a table too.
+    /// Returns whether a formula reads the table.
     fn formulas_read(&self, table: RomId) -> bool {
         let name = &self.tables[table.index()];
         let reads = |part: &Kind| matches!(part, Kind::Word(rom, _) if rom == name);
         self.formulas.iter().any(|formula| formula.has(&reads))
     }
 
-    /// Returns whether each of these tables has the same word at two addresses.
+    /// Returns whether every table in `tables` has the same word at the addresses `one` and `other`.
     fn have_same_words(&self, tables: &[RomId], one: i64, other: i64) -> bool {
         let words = self.view.words;
         tables.iter().all(|&rom| words(rom, one as u64) == words(rom, other as u64))
     }
 
-    /// Returns the tables that this node numbers the words of.
+    /// Returns the tables whose address is this node.
     fn tables_read_at(&self, node: NodeId) -> Vec<RomId> {
         let mut tables: Vec<RomId> = Vec::new();
         for reader in &self.graph().nodes {

@@ -91,7 +91,7 @@ impl RealTerms {
         order(a) > order(b)
     }
 
-    /// Returns the variables of a term that is new, and its degree in them.
+    /// Returns the variables of a new term, and the degree of the term in them.
     fn shape(&self, id: RealTermId) -> (Vec<RealTermId>, u32) {
         let operands = self.operands(id);
         let mut variables: Vec<RealTermId> =
@@ -248,7 +248,7 @@ impl RealTerms {
     }
 }
 
-/// Returns a number in decimal, to its last bit. For example, 2⁻²⁰ is `0.00000095367431640625`.
+/// Returns a number in decimal with all its digits. For example, 2⁻²⁰ is `0.00000095367431640625`.
 pub fn number(value: f64) -> String {
     let text = format!("{value:.1100}");
     let text = text.trim_end_matches('0').trim_end_matches('.');

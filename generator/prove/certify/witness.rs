@@ -13,16 +13,16 @@ use super::terms::{RealTerm, RealTermId, RealTerms, RoundingDirection, number};
 use glint_base::fixed::exp2;
 use glint_formula::{Expression, Function, Kind, Operator, parse};
 
-/// Points from which a descent begins.
+/// The number of random points from which a search begins.
 const STARTS: usize = 64;
 
-/// Fraction bits of a variable that has no place of the point.
+/// The number of fraction bits of a variable for which the script states none.
 const CONTINUOUS: i32 = 20;
 
-/// The largest absolute value at which a variable without an interval is looked for.
+/// The largest absolute value that is tried for a variable without an interval.
 const FREE: f64 = 1024.0;
 
-/// A goal that nothing satisfies, by which Gappa is asked for a contradiction.
+/// A goal that is never true. Gappa proves it only if the hypotheses contradict each other.
 const NEVER: &str = "1 in [2,3] }";
 
 /// The text between hypotheses and goal.
@@ -36,7 +36,7 @@ pub fn contradiction(script: &str) -> Option<String> {
     Some(format!("{hypotheses}{IMPLIES}{NEVER}{hints}"))
 }
 
-/// A variable of a script, with the values that it may have in units of its last place.
+/// A variable of a script. Its values are `unit` times the integers from `low` to `high`.
 struct Variable {
     name: String,
     unit: f64,
@@ -48,7 +48,7 @@ struct Variable {
 struct Hypotheses {
     terms: RealTerms,
     variables: Vec<Variable>,
-    /// The numbers between which terms lie.
+    /// For each hypothesis about a term, the interval in which the term must lie.
     intervals: Vec<(RealTermId, f64, f64)>,
 }
 
@@ -91,7 +91,7 @@ impl Hypotheses {
                 *of == id && low.is_finite() && high.is_finite()
             };
             let (_, low, high) = *intervals.iter().find(is_whole).unwrap_or(&(id, -FREE, FREE));
-            // A number that is no multiple of the unit is the only one.
+            // An interval of a single number is this number, even if the number is no multiple of the unit.
             let (unit, low, high) = match low == high && low != 0.0 {
                 true => (low, 1, 1),
                 false => (unit, (low / unit).ceil() as i64, (high / unit).floor() as i64),
@@ -101,7 +101,8 @@ impl Hypotheses {
         Some(Self { variables: variables.collect(), terms, intervals })
     }
 
-    /// Returns the distance of the hypotheses from holding: 0 if they hold.
+    /// Returns a measure of how far the hypotheses are from holding at a point: 0 if all hold, and infinity if a term is not a
+    /// number.
     fn violation(&self, point: &[i64]) -> f64 {
         let variables = self.variables.iter().zip(point);
         let variables = variables.map(|(it, &raw)| (it.name.clone(), raw as f64 * it.unit));
@@ -117,7 +118,7 @@ impl Hypotheses {
         self.intervals.iter().map(away).sum()
     }
 
-    /// Goes on as long as the hypotheses come nearer to holding.
+    /// Moves a point step by step as long as the violation becomes smaller. Returns whether all hypotheses hold at the end.
     fn descend(&self, point: &mut [i64]) -> bool {
         let mut away = self.violation(point);
         while away > 0.0 {
@@ -154,7 +155,7 @@ pub fn witness(script: &str) -> Option<String> {
         let mut point: Vec<i64> = Vec::new();
         for variable in &hypotheses.variables {
             let share = f64::from(random.next_u32()) / f64::from(u32::MAX);
-            // More near the ends than between.
+            // Two thirds of the values are near an end of the interval.
             let share = match random.next_u32() % 3 {
                 0 => share,
                 1 => share.powi(8),
@@ -203,7 +204,7 @@ fn term(
 ) -> Option<RealTermId> {
     let (make, a, b): (fn(RealTermId, RealTermId) -> RealTerm, _, _) = match &formula.kind {
         Kind::Number(literal) => return Some(terms.number(literal.nearest())),
-        // A script has names of its own alone.
+        // Every name in a script is a name of the script, even if it is a constant such as `pi` in formulas.
         Kind::Operand(_) | Kind::Constant(..) => {
             let name = formula.python();
             let known = names.get(&name).copied();
@@ -229,8 +230,8 @@ fn term(
 mod tests {
     use super::*;
 
-    /// x² ≥ 1/4 and x ≤ 0 in quarters, and down to integers −1: x is −1/2, −3/4 or −1. With x ≥ 1/4 in addition,
-    /// there is no such x.
+    /// The hypotheses allow quarters with x² ≥ 1/4 that are −1 when rounded down: x is −1/2, −3/4 or −1. With x ≥ 1/4 in
+    /// addition, no x is left.
     #[test]
     fn a_witness_satisfies_the_hypotheses() {
         let script = |more: &str| {

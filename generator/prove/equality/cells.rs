@@ -66,7 +66,8 @@ impl WireValues {
         word.unwrap_or_else(|| terms.constant(0, 1))
     }
 
-    /// Returns the lowest bits that lie side by side in one term, and their number.
+    /// Returns one term for the longest run of bits from the lowest one up that has a single source, and the number of its
+    /// bits. The sources are neighbouring bits of one term, constants, and unknown bits.
     fn run(&self, terms: &mut VectorTerms, bits: &[Bit]) -> (VectorTermId, usize) {
         let first = self.source(bits[0]);
         let mut width = 0;
@@ -93,7 +94,8 @@ impl WireValues {
         (id, width as usize)
     }
 
-    /// Returns the term and the place in it that a bit is.
+    /// Returns the term that contains a bit, and the position of the bit in the term. Returns `None` for a constant or unknown
+    /// bit.
     fn source(&self, bit: Bit) -> Option<(VectorTermId, u32)> {
         match bit {
             Bit::Wire(wire) => self.0[wire],
@@ -126,7 +128,7 @@ impl WireValues {
     /// `width` bits.
     ///
     /// # Errors
-    /// Fails if the cell is not known here, or wider than terms are.
+    /// Fails if the module does not know the cell, or if the cell is wider than 64 bits.
     pub fn cell(
         &self,
         terms: &mut VectorTerms,
@@ -253,7 +255,7 @@ impl WireValues {
         Ok((a, b))
     }
 
-    /// Returns a bit that is 1 if any of these bits is 1. Fails if there are no bits.
+    /// Returns a one-bit term that is 1 if any of the bits is 1. Fails if there are no bits.
     fn any_one(&self, terms: &mut VectorTerms, bits: &Connection) -> Result<VectorTermId> {
         let mut any = Vec::new();
         for column in self.columns(terms, bits) {

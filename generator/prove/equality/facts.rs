@@ -11,10 +11,10 @@ use super::term::{VectorTerm, VectorTermId, VectorTerms};
 use glint_base::fixed::{MAX_WIDTH, mask};
 use glint_base::interval::{self, Interval};
 
-/// A factor of so few bits is written out as rows of the product.
+/// The largest number of bits of a factor whose product is written out as a sum of rows, one for each bit.
 const ROWS: u32 = 8;
 
-/// A memory of so few words is written out.
+/// The largest number of words of a memory whose contents are written out word by word.
 const WORDS: usize = 16;
 
 /// Returns arithmetic facts about the products and memory words on which the terms `roots` depend. Each fact is a term of one bit
@@ -63,8 +63,8 @@ pub fn about(
     facts
 }
 
-/// Returns the facts about a product by 0, 1 and -1. For example, one says that the factor is not 1, or the product is
-/// the other factor.
+/// Returns the facts about a product with a factor 0, 1 or −1. For example, one fact says: the factor is not 1, or the product
+/// equals the other factor.
 fn by_one_or_none(
     terms: &mut VectorTerms,
     product: VectorTermId,
@@ -113,17 +113,17 @@ pub fn extended(terms: &VectorTerms, factor: VectorTermId) -> Option<(VectorTerm
     }
 }
 
-/// A product and the sum that it is.
+/// A product, and a sum of partial products that equals it.
 struct ProductSum {
     product: VectorTermId,
     sum: VectorTermId,
-    /// The lower part was there before.
+    /// Whether the terms already contain the product of the lower part, so the design computes the product in these parts.
     there: bool,
 }
 
-/// Divides a product if a factor is the upper bits of a larger term. The larger term times `other` is this product,
-/// shifted, plus the product of the lower bits and `other`. For example, if u is the bits from 4 up of w, then w·x is
-/// 16·(u·x) plus the lowest 4 bits of w times x.
+/// Returns a sum of partial products if `factor` is the upper bits of a larger term. The larger term times `other` is the
+/// product of `factor` and `other`, shifted, plus the product of the lower bits and `other`. For example, if u is the bits from
+/// 4 up of w, then w·x is 16·(u·x) plus the lowest 4 bits of w times x.
 fn in_parts(
     terms: &mut VectorTerms,
     factor: VectorTermId,
@@ -158,8 +158,8 @@ fn in_parts(
     Some(ProductSum { product, sum, there })
 }
 
-/// Returns the square of `u·2^r + l`, if `l` is multiplied by `u·2^(r+1) + l` somewhere. The sum has that product, and
-/// the square of u, shifted. For example, 13² with u = 3, l = 1 and r = 2 is 1·25 plus 9·16.
+/// Returns the square of `u·2^r + l` as a sum, if the terms contain the product of `l` and `u·2^(r+1) + l`. The sum is this
+/// product plus the square of u, shifted by 2r. For example, 13² with u = 3, l = 1 and r = 2 is 1·25 plus 9·16.
 fn square_in_parts(
     terms: &mut VectorTerms,
     factor: VectorTermId,
@@ -193,8 +193,8 @@ fn square_in_parts(
     Some(ProductSum { product, sum, there: true })
 }
 
-/// Returns `bits` joined with the bits of the same term below their lowest, and the number of the bits below. For
-/// example, bits 4 to 7 of a term give bits 0 to 7, and 4.
+/// Returns the larger term whose upper bits are `bits`, and the number of its bits below `bits`. Returns `None` if `bits` is
+/// not cut from a larger term. For example, bits 4 to 7 of a term give bits 0 to 7, and 4.
 fn whole(terms: &mut VectorTerms, bits: VectorTermId) -> Option<(VectorTermId, u32)> {
     match *terms.term(bits) {
         VectorTerm::Slice { of, low } if low > 0 => {
@@ -209,7 +209,8 @@ fn whole(terms: &mut VectorTerms, bits: VectorTermId) -> Option<(VectorTermId, u
     }
 }
 
-/// Returns whether there is the first row of the product of a few bits with 64.
+/// Returns whether the terms contain the first row of the product of `bits` and `other`: `other` if the lowest bit is 1,
+/// otherwise 0.
 fn has_row(terms: &mut VectorTerms, bits: VectorTermId, other: VectorTermId) -> bool {
     let narrow = match *terms.term(other) {
         VectorTerm::SignExtend(narrow) => narrow,
@@ -222,7 +223,7 @@ fn has_row(terms: &mut VectorTerms, bits: VectorTermId, other: VectorTermId) -> 
         || terms.has(&VectorTerm::And(narrow, all), width)
 }
 
-/// Returns the product of a few bits with 64.
+/// Returns the product of the few bits `bits` and the 64-bit term `other`, as a sum of rows, one for each bit.
 fn rows(terms: &mut VectorTerms, bits: VectorTermId, other: VectorTermId) -> VectorTermId {
     let zero = terms.constant(0, MAX_WIDTH);
     let mut sum = zero;
@@ -244,8 +245,8 @@ pub fn shifted(terms: &mut VectorTerms, id: VectorTermId, by: u32) -> VectorTerm
     terms.make(VectorTerm::Join(kept, zeros), MAX_WIDTH)
 }
 
-/// Returns the fact that the product is between the products at the ends of the ranges, if the factors are within
-/// their ranges.
+/// Returns the fact that a product lies in the product of the ranges, if its factors lie in their ranges. Returns `None` if a
+/// range does not fit into 64 bits.
 fn within(terms: &mut VectorTerms, product: &Product) -> Option<VectorTermId> {
     let [a, b] = product.factors;
     let [x, y] = product.ranges;
@@ -259,8 +260,8 @@ fn within(terms: &mut VectorTerms, product: &Product) -> Option<VectorTermId> {
     Some(terms.make(VectorTerm::Or(not, conclusion), 1))
 }
 
-/// Returns whether 64 bits are a number of an interval, two's complement. Returns `None` if the ends of the interval
-/// do not fit into 64 bits.
+/// Returns a one-bit term that is 1 if `value`, a two's complement number of 64 bits, lies in an interval. Returns `None` if
+/// the ends of the interval do not fit into 64 bits.
 fn between(terms: &mut VectorTerms, value: VectorTermId, range: Interval) -> Option<VectorTermId> {
     let low = i64::try_from(range.0).ok()?;
     let high = i64::try_from(range.1).ok()?;
@@ -272,8 +273,8 @@ fn between(terms: &mut VectorTerms, value: VectorTermId, range: Interval) -> Opt
     Some(terms.not(outside))
 }
 
-/// Returns facts about the values of a memory's word. A memory of at most 16 words has a fact for each word. A larger
-/// one has facts about the bits that any word has, and about the interval of all words.
+/// Returns facts about the value of a memory word. For a memory of at most 16 words, they give the value at each address. For a
+/// larger one, they name the bits that are 0 in all words, and the interval that contains all words.
 fn contents(
     terms: &mut VectorTerms,
     word: VectorTermId,
@@ -293,7 +294,7 @@ fn contents(
         return exact;
     }
     let mut used = 0;
-    // Beyond the contents there is 0.
+    // A word beyond the contents is 0.
     let (mut largest, mut least, mut greatest) = (0, 0, 0);
     let signed = |word: u64| (word << (MAX_WIDTH - width)) as i64;
     for &word in &words {

@@ -1,11 +1,10 @@
 //! Proves with an SMT solver that a pipeline and its sequential core compute the same outputs for every point (one set of
 //! operands).
 //!
-//! The module executes both netlists symbolically, one clock at a time. The core runs its microprogram from the clock in which it
-//! takes `start`; the pipeline carries one point, with arbitrary points before and behind it. Multiplications and memory reads
-//! are uninterpreted functions with some arithmetic facts (`facts`). If a pipeline stage carries the value of a core register,
-//! the solver proves this first, and the value is then replaced by the register's term. The code shares nothing with
-//! `hdl/pipeline`, which built the pipeline.
+//! The module executes both netlists symbolically, one clock at a time: the core from `start` to its results, and the pipeline
+//! with one point between arbitrary others. Multiplications and memory reads are uninterpreted functions with some arithmetic
+//! facts (`facts`). If the pipeline also carries the value of a core register, the solver proves this first, and both then
+//! share one term. The code shares nothing with `hdl/pipeline`, which built the pipeline.
 
 mod cells;
 mod facts;
@@ -39,10 +38,10 @@ use term::{VectorTerm, VectorTermId, VectorTerms};
 
 pub use text::{TextProof, TextVerdict, compare_text};
 
-/// Points that go through both cores before anything is proved.
+/// The number of random points at which both designs are compared before anything is proved.
 const TRIALS: usize = 400;
 
-/// More clocks than a computation takes.
+/// The largest number of clocks for which the sequential core is executed. If a computation takes more, the comparison fails.
 const MOST_CLOCKS: usize = 8192;
 
 /// The verdict on whether a pipeline computes the same as its sequential core.
@@ -114,7 +113,8 @@ impl fmt::Display for OutputDifference {
 /// limit of the solver.
 ///
 /// # Errors
-/// Fails if the designs have different ports or do not come to an end, or if the solver does not do its work.
+/// Fails if the designs have different operands, or if the core lacks an output of the pipeline. Fails also if a design shows
+/// no result, or if the solver fails.
 pub fn compare(
     sequential: &Design,
     pipeline: &Design,
@@ -128,7 +128,8 @@ pub fn compare(
     PipelineComparison::new(&pair, solver, limit)?.run()
 }
 
-/// Returns a point that differs among some at random; near one, some of whose operands each of them has.
+/// Compares the designs at random points, and returns the first difference. If `near` is given, each operand of a random point
+/// takes its value in `near` with a probability of one half.
 fn tried(pair: &DesignPair<'_>, near: Option<&[u64]>) -> Result<Option<OutputDifference>> {
     let mut random = ChaCha8Rng::seed_from_u64(1);
     for _ in 0..TRIALS {
@@ -146,7 +147,8 @@ fn tried(pair: &DesignPair<'_>, near: Option<&[u64]>) -> Result<Option<OutputDif
     Ok(None)
 }
 
-/// Returns a bit pattern, drawn evenly or around a power of two, which 1.0 is too.
+/// Returns a random bit pattern: one in four is any pattern, and the others are near a power of two. The value 1.0 of an
+/// operand is a power of two, too.
 fn drawn(random: &mut ChaCha8Rng) -> u64 {
     let bits = random.next_u64();
     let power = 1u64 << (random.next_u32() % 24);
@@ -158,7 +160,7 @@ fn drawn(random: &mut ChaCha8Rng) -> u64 {
     }
 }
 
-/// Returns how the cores differ at a point, if they do.
+/// Returns the first output that differs between the designs at a point, or `None` if all are equal.
 fn differs(pair: &DesignPair<'_>, operands: &[u64]) -> Result<Option<OutputDifference>> {
     let mut masked: Vec<u64> = Vec::new();
     for (name, bits) in pair.operands.iter().zip(operands) {
@@ -182,12 +184,12 @@ fn differs(pair: &DesignPair<'_>, operands: &[u64]) -> Result<Option<OutputDiffe
     Ok(None)
 }
 
-/// A way through the microprogram.
+/// A path through the microprogram, up to the present clock.
 struct MicroprogramPath {
-    /// The bits that operands decided, and their values.
+    /// The one-bit terms that decided the path at its jumps, each with the value that leads along this path.
     conditions: Vec<(VectorTermId, bool)>,
     state: SymbolicState,
-    /// How often each microinstruction was executed.
+    /// For each microinstruction, the number of times that it was executed.
     visits: Vec<usize>,
     clocks: usize,
 }
@@ -197,16 +199,16 @@ struct PipelineComparison<'p> {
     terms: VectorTerms,
     solver: Solver<'p>,
     products: Vec<Product>,
-    /// The sums that products are which the pipeline has in parts.
+    /// For each product that the pipeline computes in parts, the sum of the parts.
     divided: HashMap<VectorTermId, VectorTermId>,
-    /// Products that the pipeline has, at once or in parts.
+    /// The products that the pipeline computes, as a whole or in parts, in ascending order.
     parts: Vec<VectorTermId>,
     /// The operands of the point.
     operands: Vec<VectorTermId>,
     proof: EqualityProof,
 }
 
-/// The answer to a question.
+/// The answer to the question whether two terms are equal.
 enum EqualityAnswer {
     Equal,
     Different(OutputDifference),
@@ -255,14 +257,14 @@ impl<'p> PipelineComparison<'p> {
         Ok(Verdict::Equal(self.proof))
     }
 
-    /// Returns the term of every net of the pipeline in each clock from the one that takes the point on.
+    /// Returns the term of every net of the pipeline in each clock. Entry 0 is the clock in which the pipeline takes the point.
     fn pipeline(&mut self) -> Result<Vec<Vec<VectorTermId>>> {
         let pair = self.pair;
         let execution = Execution::new(&mut self.terms, pair.pipeline);
         let mut state = execution.power_up(&mut self.terms);
         let mut stages = Vec::new();
         for clock in 0..=pair.latency + 1 {
-            // Before the point there is a reset.
+            // Clock 0 is a reset, and clock 1 takes the point.
             let point = clock == 1;
             let values = self.settle(
                 &execution,
@@ -290,8 +292,8 @@ impl<'p> PipelineComparison<'p> {
         Ok(stages)
     }
 
-    /// Returns the term of every net, with inputs that are known, the operands of the point in the clock that takes it, and
-    /// anything else.
+    /// Returns the term of every net in a clock. An input for which `known` returns a number has this constant. If `point` is
+    /// set, the operands have the terms of the point. Every other input is a new unknown.
     fn settle(
         &mut self,
         execution: &Execution<'_>,
@@ -318,7 +320,7 @@ impl<'p> PipelineComparison<'p> {
         )
     }
 
-    /// Returns the core's branch after the clock that takes `start`, with all operands.
+    /// Returns the path of the core after the clock in which it takes `start` and all operands.
     fn start(&mut self, core: &Execution<'_>) -> MicroprogramPath {
         let mut state = core.power_up(&mut self.terms);
         for point in [false, true] {
@@ -339,8 +341,9 @@ impl<'p> PipelineComparison<'p> {
         MicroprogramPath { conditions: Vec::new(), state, visits, clocks: 0 }
     }
 
-    /// Executes the microprogram to the results, or to a point at which operands decide. The ways from there are added
-    /// to `ways`. For example, a loop whose trip count depends on an operand makes a way for each trip count.
+    /// Executes the microprogram along one path, up to the results or to a jump that depends on operands. It adds the paths
+    /// that continue from such a jump to `ways`. For example, a loop whose trip count depends on an operand makes a path for
+    /// each trip count.
     fn follow(
         &mut self,
         core: &Execution<'_>,
@@ -368,7 +371,7 @@ impl<'p> PipelineComparison<'p> {
             if let Some(visits) = way.visits.get_mut(address) {
                 *visits += 1;
             }
-            // Whatever the inputs do while the core is busy.
+            // The inputs are unknowns here, so the proof holds for all their values while the core is busy.
             let values =
                 self.settle(core, &way.state, |role| (role == Role::Reset).then_some(1), false);
             match self.terms.constant_of(values[valid.index()]) {
@@ -382,8 +385,8 @@ impl<'p> PipelineComparison<'p> {
         bail!("the sequential core shows no result")
     }
 
-    /// Adds both ways from a point at which a register of the sequencer depends on operands. It leaves out a way that
-    /// the solver proves impossible.
+    /// Splits a path at a register of the sequencer that depends on operands, and adds both paths to `ways`. It leaves out a
+    /// path that the solver proves impossible.
     fn fork(
         &mut self,
         way: MicroprogramPath,
@@ -410,7 +413,7 @@ impl<'p> PipelineComparison<'p> {
         Ok(EqualityAnswer::Equal)
     }
 
-    /// Returns terms that are 1 if the conditions hold.
+    /// Returns one-bit terms that are all 1 if and only if the conditions hold.
     fn holding(&mut self, conditions: &[(VectorTermId, bool)]) -> Vec<VectorTermId> {
         let mut holding = Vec::new();
         for &(condition, value) in conditions {
@@ -419,8 +422,8 @@ impl<'p> PipelineComparison<'p> {
         holding
     }
 
-    /// Puts values of the pipeline in the place of registers that are equal to them, at the beginning of a
-    /// microinstruction.
+    /// Proves the checkpoints at the beginning of a microinstruction: a register of the core equals a value of the pipeline.
+    /// Every register that is proved equal then holds the pipeline's term.
     fn lemmas(
         &mut self,
         core: &Execution<'_>,
@@ -449,7 +452,7 @@ impl<'p> PipelineComparison<'p> {
                 EqualityAnswer::Different(difference) => {
                     return Ok(EqualityAnswer::Different(difference));
                 }
-                // The results may be equal all the same.
+                // The results may be equal even if the solver does not decide this question.
                 EqualityAnswer::Open(_) => {}
             }
         }
@@ -479,7 +482,8 @@ impl<'p> PipelineComparison<'p> {
         self.pair.outputs.iter().map(|&(_, net, _)| last[net.index()]).collect()
     }
 
-    /// Notes how the pipeline divides products: as sums of their parts, or where it has the whole in turn, as that.
+    /// Finds the products that the pipeline computes in parts, and notes the sum of the parts of each in `divided`. If a net of
+    /// the pipeline contains the whole product too, the note uses this net for the low bits.
     fn divide(&mut self, stages: &[Vec<VectorTermId>]) -> Result<()> {
         let mut roots = self.results_of(stages);
         if let Some(pipeline) = &self.pair.pipeline.pipeline {
@@ -516,7 +520,7 @@ impl<'p> PipelineComparison<'p> {
             self.terms.replace(&self.divided, &mut replaced);
             let [mut whole] = replaced;
             if let Some(net) = wholes.of(sum) {
-                // This says nothing about the bits above, which bounds on the factors decide.
+                // The equality says nothing about the bits above the net, which follow from the bounds of the factors.
                 let width = self.terms.width(net);
                 let low = self.terms.slice(whole, 0, width);
                 let equal = self.terms.equal(low, net);
@@ -531,8 +535,8 @@ impl<'p> PipelineComparison<'p> {
         Ok(())
     }
 
-    /// Returns whether terms can all be 1. It first divides the products as the pipeline does. If that leaves the
-    /// question open, it asks again with all facts about parts.
+    /// Asks the solver whether the one-bit terms `wanted` can all be 1. It first replaces products by the sums in `divided`. If
+    /// that does not prove it impossible, it asks again with the original products and all facts about parts.
     fn ask(&mut self, wanted: Vec<VectorTermId>) -> Result<SolverAnswer> {
         self.divide_by_lowest(&wanted)?;
         let mut divided = wanted.clone();
@@ -567,7 +571,7 @@ impl<'p> PipelineComparison<'p> {
                         None => 0,
                     });
                 }
-                // The solver's products may be made up. Its operands may show a difference all the same.
+                // The solver's counterexample may assume wrong products. Its operands may show a real difference nevertheless.
                 let difference = match differs(self.pair, &operands)? {
                     None => tried(self.pair, Some(&operands))?,
                     found => found,

@@ -1,6 +1,7 @@
 //! Executes a Verilog module, which Yosys has flattened, clock by clock on symbolic terms.
 //!
-//! Every undetermined bit becomes a new unknown at each read. A read beyond the contents of a memory gives an unknown word.
+//! Every undetermined bit (`x` or `z`) becomes a new unknown at each read. A read beyond the contents of a memory gives an
+//! unknown word.
 
 use std::collections::HashMap;
 
@@ -11,7 +12,7 @@ use super::cells::{Bit, Connection, WireValues};
 use super::term::{VectorTermId, VectorTerms};
 use glint_base::fixed::MAX_WIDTH;
 
-/// The driver of wires in the same clock.
+/// The function of a combinational cell: an operation, or a read from a memory.
 enum What {
     Cell {
         kind: String,
@@ -19,7 +20,7 @@ enum What {
     },
     /// A word of a memory that is never written.
     Word(Vec<u64>),
-    /// A word of one that is.
+    /// A word of a memory that is written.
     Read(Read),
 }
 
@@ -86,7 +87,7 @@ fn bits(value: &Value) -> Result<Connection> {
     Ok(bits)
 }
 
-/// Returns a parameter of a cell, which Yosys writes in binary. For example, `00000101` is 5.
+/// Returns a parameter of a cell as a number. Yosys writes parameters in binary. For example, `00000101` is 5.
 fn parameter(cell: &Value, name: &str) -> Result<usize> {
     let value = &cell["parameters"][name];
     if let Some(text) = value.as_str()
@@ -111,7 +112,7 @@ fn optional_connection(cell: &Value, port: &str) -> Result<Connection> {
     }
 }
 
-/// Returns the bits that belong to one of several ports, whose bits a memory has side by side.
+/// Returns the bits of port number `port`. A memory lists the bits of all its ports side by side, `width` bits for each.
 fn port_bits(side_by_side: &Connection, port: usize, width: usize) -> Connection {
     side_by_side[port * width..(port + 1) * width].to_vec()
 }
@@ -120,7 +121,8 @@ impl Module {
     /// Parses a module from Yosys's JSON.
     ///
     /// # Errors
-    /// Fails if a cell is not known here, or if the module is no clocked circuit with the one clock `clk`.
+    /// Fails if the netlist is malformed, or if a register or memory does not change at the rising edge of `clk` only. Fails
+    /// also if a memory has clocked read ports or several write ports, or if the cells form a combinational loop.
     pub fn new(json: &Value) -> Result<Self> {
         let mut module = Self {
             inputs: Vec::new(),
@@ -252,7 +254,7 @@ impl Module {
         connections
     }
 
-    /// Puts each cell after the cells whose output it reads.
+    /// Sorts the cells so that each comes after the cells whose output it reads. Fails if there is a combinational loop.
     fn order(&mut self) -> Result<()> {
         let mut wires = 0;
         for bit in self.connections().into_iter().flatten() {
@@ -270,7 +272,7 @@ impl Module {
             }
         }
         let mut place = vec![0; self.cells.len()];
-        // A cell that is open waits for one that it reads.
+        // An open cell waits for a cell whose output it reads.
         let (mut open, mut done) = (vec![false; self.cells.len()], 0);
         for root in 0..self.cells.len() {
             let mut pending = vec![root];
@@ -309,7 +311,7 @@ impl Module {
     /// of memories.
     ///
     /// # Errors
-    /// Fails if a cell is not known here, or wider than terms are.
+    /// Fails if the module does not know a cell, or if a cell or a port is wider than 64 bits.
     pub fn settle(
         &self,
         terms: &mut VectorTerms,
@@ -361,8 +363,8 @@ impl Module {
     }
 }
 
-/// Returns the first cell that drives an input of `cell` and has no place in the order yet. The place of such a cell
-/// is 0.
+/// Returns the index of the first cell that drives an input of `cell` and has no position in the order yet. Such a cell has the
+/// position 0.
 fn unplaced_driver(cell: &ModuleCell, driver: &[Option<usize>], place: &[usize]) -> Option<usize> {
     for bit in cell.inputs.iter().flatten() {
         if let Bit::Wire(wire) = *bit
@@ -381,7 +383,7 @@ impl Memory {
         unknown(terms, self.width)
     }
 
-    /// Returns the values at the write port of the memory.
+    /// Returns the data at the write port of the memory, as terms of at most 64 bits, the lowest bits first.
     pub fn written(&self, terms: &mut VectorTerms, values: &WireValues) -> Vec<VectorTermId> {
         values.columns(terms, &self.write.data)
     }
@@ -398,7 +400,7 @@ impl Memory {
     }
 }
 
-/// Returns new unknowns of `width` bits together, the lowest first, each of at most 64 bits.
+/// Returns new unknowns with `width` bits in total, the lowest bits first, each of at most 64 bits.
 fn unknown(terms: &mut VectorTerms, width: usize) -> Vec<VectorTermId> {
     let mut columns = Vec::new();
     for lowest in (0..width).step_by(MAX_WIDTH as usize) {
@@ -408,8 +410,8 @@ fn unknown(terms: &mut VectorTerms, width: usize) -> Vec<VectorTermId> {
     columns
 }
 
-/// Returns the contents of a memory that is never written. The last digits of `INIT` are word 0. For example, `1101`
-/// with words of 2 bits has word 0 = 1 and word 1 = 3.
+/// Returns the contents of a memory that is never written. The last digits of the parameter `INIT` are word 0. For example,
+/// `1101` with words of 2 bits has word 0 = 1 and word 1 = 3.
 fn words(cell: &Value, width: usize) -> Result<Vec<u64>> {
     let contents = cell["parameters"]["INIT"].as_str().unwrap_or_default();
     ensure!(width <= MAX_WIDTH as usize, "its words have more than 64 bits");

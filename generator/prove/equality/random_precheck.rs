@@ -6,7 +6,7 @@ use anyhow::{Context, Result, bail};
 
 use glint_rtl::netlist::{Design, Interpreter, NetId, Role};
 
-/// More clocks than a computation takes.
+/// The largest number of clocks for which the sequential core is simulated. If a computation takes more, the comparison fails.
 const MOST_CLOCKS: usize = 8192;
 
 /// A pipeline and its sequential core, with the operands and outputs that both have.
@@ -15,17 +15,18 @@ pub struct DesignPair<'a> {
     pub pipeline: &'a Design,
     /// The names of the operands that both designs have.
     pub operands: Vec<String>,
-    /// The name of each output, with its net in the pipeline and in the core.
+    /// The name of each output of the pipeline, with its net in the pipeline and in the core.
     pub outputs: Vec<(String, NetId, NetId)>,
     /// The number of clocks from taking a point to its results.
     pub latency: usize,
 }
 
 impl<'a> DesignPair<'a> {
-    /// Pairs the cores, by the operands and the outputs that they have in common.
+    /// Pairs the ports of both designs by their names.
     ///
     /// # Errors
-    /// Fails if the second design is no pipeline, or if one design has a port that the other lacks.
+    /// Fails if `pipeline` is no pipeline, if the designs have different operands, or if the core lacks an output of the
+    /// pipeline.
     pub fn new(sequential: &'a Design, pipeline: &'a Design) -> Result<Self> {
         let stages = pipeline.pipeline.as_ref().context("the design is no pipeline")?;
         let mut operands = Vec::new();
@@ -107,7 +108,8 @@ impl<'a> DesignPair<'a> {
         Ok(self.outputs.iter().map(|&(_, net, _)| core.value(net)).collect())
     }
 
-    /// Returns the values of the inputs; `now` in the clock that takes the point.
+    /// Returns the values of a design's inputs in one clock. `now` is the value of `start`, `in_valid` and the strobes: 1 in
+    /// the clock that takes the point.
     fn inputs(&self, design: &Design, operands: &[u64], rst_n: u64, now: u64) -> Vec<u64> {
         let mut inputs = Vec::new();
         for port in design.inputs() {

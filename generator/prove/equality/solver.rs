@@ -17,8 +17,8 @@ use glint_tools::{LimitReached, Tool};
 pub enum SolverAnswer {
     /// The terms are never all 1.
     Unsatisfiable,
-    /// The terms are all 1 for these values of the unknowns. Products and memory words may have values that no hardware gives,
-    /// because the solver treats them as uninterpreted functions.
+    /// The terms are all 1 for these values of the unknowns. The values of products and memory words behind them may be
+    /// impossible in hardware, because the solver treats them as uninterpreted functions.
     Satisfiable(Vec<(VectorTermId, u64)>),
     /// The solver does not decide the question, for this reason.
     Undecided(Open),
@@ -43,11 +43,11 @@ impl<'a> Solver<'a> {
         Ok(Self { tool, end: Instant::now() + limit, dir, asked: 0 })
     }
 
-    /// Asks the SMT solver whether all `wanted` terms, of one bit each, can be 1 at once. The question contains arithmetic facts
-    /// about the products.
+    /// Asks the SMT solver whether all `wanted` terms, of one bit each, can be 1 at once. The question contains arithmetic
+    /// facts about the products; if `parts` is set, also the facts about their partial products.
     ///
     /// # Errors
-    /// Fails if the solver does not do its work.
+    /// Fails if the solver cannot be run, or if its output is not `sat`, `unsat` or `unknown`.
     pub fn ask(
         &mut self,
         terms: &mut VectorTerms,
@@ -161,8 +161,8 @@ fn expression(terms: &VectorTerms, id: VectorTermId) -> String {
     }
 }
 
-/// Returns the values that the solver gives to unknowns. For example, `((t1 #x0f) (t2 #b1))` gives 15 to term 1, and 1
-/// to term 2.
+/// Returns the values of the unknowns in the solver's output. For example, `((t1 #x0f) (t2 #b1))` gives 15 to term 1, and 1 to
+/// term 2.
 fn values(terms: &VectorTerms, output: &str) -> Vec<(VectorTermId, u64)> {
     let mut words = output.split(|c: char| c.is_whitespace() || c == '(' || c == ')');
     let mut values = Vec::new();

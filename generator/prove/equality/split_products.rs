@@ -11,13 +11,13 @@ use rand_chacha::rand_core::{RngCore, SeedableRng};
 use super::term::{VectorTermId, VectorTerms};
 use glint_base::fixed::MAX_WIDTH;
 
-/// Numbers at random by which terms that may be equal are found.
+/// The number of sets of random values at which terms are compared.
 const SAMPLES: usize = 4;
 
 /// The values of all terms when the unknowns are random numbers. Terms with the same values may be equal, and the solver decides.
 pub struct Candidates {
     values: Vec<HashMap<VectorTermId, u64>>,
-    /// The first net of these values, extended by zeros or by its sign bit.
+    /// For each list of values, the first net that has them, after the net is extended to 64 bits by zeros or by its sign bit.
     nets: HashMap<Vec<u64>, VectorTermId>,
 }
 
@@ -42,15 +42,15 @@ impl Candidates {
         Self { values, nets: known }
     }
 
-    /// Returns a net that has the same values as a term of 64 bits, after the net is extended to 64 bits. For example, a net of 20
-    /// bits may match after its sign is extended.
+    /// Returns a net that has the same values as a term of 64 bits, after the net is extended to 64 bits. Returns `None` if no
+    /// net has them. For example, a net of 20 bits may match after its sign is extended.
     pub fn of(&self, id: VectorTermId) -> Option<VectorTermId> {
         let key: Vec<u64> = self.values.iter().map(|values| values[&id]).collect();
         self.nets.get(&key).copied()
     }
 }
 
-/// Returns whether two terms of the same width have the same values at random numbers.
+/// Returns whether two terms have the same width, and the same values at random values of the unknowns.
 pub fn agree(terms: &VectorTerms, one: VectorTermId, other: VectorTermId) -> bool {
     let cone = terms.cone([one, other]);
     terms.width(one) == terms.width(other)

@@ -7,8 +7,8 @@ use glint_base::fixed::MAX_WIDTH;
 use glint_base::interval::Interval;
 use glint_rtl::netlist::{Design, Driver, NetId, Op, Role};
 
-/// A product of 64 bits, and the ranges that the design states for its factors. A range may be used only after the solver has
-/// proved that the factor stays in it.
+/// A product of two factors of 64 bits, and the ranges that the design states for the factors. The product may lie in the
+/// product of the ranges only if both factors lie in theirs, which the solver must prove first.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Product {
     pub factors: [VectorTermId; 2],
@@ -32,7 +32,7 @@ impl SymbolicState {
     }
 }
 
-/// A design that is executed symbolically: every net carries an expression of the unknown operands in place of a number.
+/// The symbolic execution of a design: every net carries an expression of the unknown operands in place of a number.
 pub struct Execution<'a> {
     pub design: &'a Design,
     order: Vec<NetId>,

@@ -63,7 +63,7 @@ pub enum VectorTerm {
 /// The number of bits of a memory address.
 pub const ADDRESS: u32 = 32;
 
-/// A collection of terms. Each is stored once, after its operands.
+/// A collection of terms. It stores every term once, after the term's operands.
 #[derive(Default)]
 pub struct VectorTerms {
     nodes: Vec<(VectorTerm, u32)>,
@@ -71,12 +71,12 @@ pub struct VectorTerms {
     unknowns: u32,
     /// The contents of the memories. Equal contents are stored once.
     pub memories: Vec<Vec<u64>>,
-    /// The word beyond the contents, by memory and address.
+    /// For each memory and address, the unknown word that a read beyond the contents gives.
     beyond: HashMap<(usize, VectorTermId), VectorTermId>,
 }
 
 impl VectorTerm {
-    /// Returns its operands, in order of writing.
+    /// Returns the operands of the term, in the order in which the variant lists them.
     fn operands_mut(&mut self) -> Vec<&mut VectorTermId> {
         match self {
             Self::Unknown(_) | Self::Constant(_) => Vec::new(),
@@ -102,7 +102,7 @@ impl VectorTerm {
     }
 }
 
-/// Returns a pattern of `width` bits as a number, two's complement. For example, 0b1110 of 4 bits is −2.
+/// Returns a bit pattern of `width` bits as a two's complement number. For example, 0b1110 of 4 bits is −2.
 fn signed(bits: u64, width: u32) -> i64 {
     let drop = MAX_WIDTH - width;
     (bits << drop) as i64 >> drop
@@ -244,7 +244,8 @@ impl VectorTerms {
         self.replace(&HashMap::from([(condition, constant)]), terms);
     }
 
-    /// Replaces some terms by others wherever `terms` contain them. The replacements themselves are not searched.
+    /// Replaces the terms that are keys of `by` by their values, everywhere in the expressions `terms`. It does not search the
+    /// replacements themselves.
     pub fn replace(
         &mut self,
         by: &HashMap<VectorTermId, VectorTermId>,
@@ -319,7 +320,7 @@ impl VectorTerms {
         bits & mask(width)
     }
 
-    /// Returns a simpler term of the same value, if there is one.
+    /// Returns a simpler term with the same value, or `None` if no rule applies.
     fn simpler(&mut self, term: &VectorTerm, width: u32) -> Option<VectorTermId> {
         let ones = mask(width);
         match *term {
@@ -422,8 +423,8 @@ impl VectorTerms {
         }
     }
 
-    /// Returns a sum or a difference for which the lowest bits of `b` are 0: the bits of `a` below them pass by the
-    /// adder.
+    /// Returns a simpler form of `op(a, b)`, a sum or a difference, if the lowest bits of `b` are 0. These bits of the result
+    /// are the bits of `a`, so only the upper bits are added. Returns `None` if no such bits are known.
     fn passed_by(
         &mut self,
         a: VectorTermId,
@@ -442,7 +443,7 @@ impl VectorTerms {
         Some(self.make(VectorTerm::Join(upper, lower), width))
     }
 
-    /// Returns how many of the lowest bits are known to be 0.
+    /// Returns the number of lowest bits of a term that are known to be 0.
     fn zeros(&self, id: VectorTermId) -> u32 {
         match *self.term(id) {
             VectorTerm::Constant(bits) => bits.trailing_zeros().min(self.width(id)),
@@ -534,7 +535,7 @@ impl VectorTerms {
     }
 }
 
-/// Brings the operands of a term that does not depend on their order into one order.
+/// Sorts the operands of a commutative term, such as a sum, so that equal terms have one form.
 fn ordered(mut term: VectorTerm) -> VectorTerm {
     if let VectorTerm::And(a, b)
     | VectorTerm::Or(a, b)

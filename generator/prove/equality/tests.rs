@@ -8,7 +8,7 @@ use super::symbolic::Product;
 use super::term::{ADDRESS, VectorTerm, VectorTermId, VectorTerms};
 use glint_base::fixed::mask;
 
-/// Unknowns of each term and some rounds of values for them.
+/// Returns values for 64 unknowns. Half of them are random, and the others are 0 or all ones.
 fn unknowns(random: &mut ChaCha8Rng) -> Vec<u64> {
     let of = |random: &mut ChaCha8Rng| match random.next_u32() % 4 {
         0 => 0,
@@ -18,7 +18,7 @@ fn unknowns(random: &mut ChaCha8Rng) -> Vec<u64> {
     (0..64).map(|_| of(random)).collect()
 }
 
-/// Returns a pattern of `width` bits as a number, two's complement.
+/// Returns a bit pattern of `width` bits as a two's complement number.
 fn signed(bits: u64, width: u32) -> i64 {
     (bits << (64 - width)) as i64 >> (64 - width)
 }
@@ -29,7 +29,7 @@ fn simpler_terms_have_the_values_of_those_that_were_asked_for() {
     for _ in 0..60 {
         let values = unknowns(&mut random);
         let mut terms = VectorTerms::default();
-        // Each term with its value.
+        // The terms that are made, each with its expected value.
         let mut made: Vec<(VectorTermId, u64)> = Vec::new();
         for value in &values[..6] {
             let width = 1 + random.next_u32() % 12;
@@ -78,7 +78,7 @@ fn simpler_terms_have_the_values_of_those_that_were_asked_for() {
     }
 }
 
-/// Products of factors that are cut, extended, or both, and words of memories.
+/// The test makes products of factors that are cut, extended, or both, and reads from memories.
 #[test]
 fn facts_hold_whatever_the_operands_are() {
     let mut random = ChaCha8Rng::seed_from_u64(5);

@@ -1,11 +1,10 @@
-//! Proves that the emitted Verilog of a pipeline and its netlist have the same outputs, for every point (one set of operands) and
-//! from any state.
+//! Proves that the emitted Verilog of a pipeline and its netlist have the same outputs, for every point (one set of operands)
+//! and from any state.
 //!
-//! Yosys reads the Verilog. The module executes both the netlist and the Verilog on symbolic terms, with unknown registers and
-//! memories at the beginning. A memory that the pipeline writes must be a delay line: each read returns the word that was written
-//! a fixed number of clocks before (`delays`). A clock in which the pipeline waits must change nothing (`stays`). It is therefore
-//! enough to execute the clocks from the one in which a point enters the pipeline to the one with its results, without waits. A
-//! register of the Verilog that equals a net takes the net's term, so that the solver only has to compare one clock at a time.
+//! Yosys reads the Verilog, and the module executes netlist and Verilog on symbolic terms, with unknown registers and memories
+//! at the beginning. `delays` proves that every memory is a delay line, and `stays` proves that a clock in which the pipeline
+//! waits changes nothing. It is therefore enough to compare both in the clocks from a point to its results. A register of the
+//! Verilog that equals a net takes the net's term, so the solver only has to compare one clock at a time.
 
 use std::collections::{HashMap, HashSet};
 use std::time::Duration;
@@ -122,11 +121,11 @@ impl From<TextVerdict> for EarlyEnd {
 
 type Roles = HashMap<String, Role>;
 
-/// Registers with the constants that they hold, and the constants at the ports of each memory.
+/// For each register that holds a constant, its value; and for each memory, the constants at its ports, write address first.
 type Constants = (HashMap<usize, u64>, Vec<Option<Vec<u64>>>);
 
-/// Finds for each memory the clocks from write to read, of each of its read ports, while all points move on. The number
-/// must be the same for all values of the counter that addresses the memory.
+/// Returns for each memory and each of its read ports the number of clocks from write to read, in a pipeline in which all
+/// points move. Fails if a memory is not addressed by a counter, or if a number is not the same for all values of the counter.
 fn delays(module: &Module, roles: &Roles) -> Result<Vec<Vec<usize>>> {
     let reset = constants(module, roles, 0, &HashMap::new())?.0;
     let mut delays = vec![None; module.memories.len()];
@@ -157,12 +156,12 @@ fn delays(module: &Module, roles: &Roles) -> Result<Vec<Vec<usize>>> {
     all.context("a memory of the text is no delay of a fixed number of clocks")
 }
 
-/// More values than a counter of slots has.
+/// The largest number of values of a counter that addresses a memory. A counter with more values is not recognised.
 const MOST_SLOTS: usize = 1024;
 
-/// Returns the clocks from write to read of each read port. `course` has the values at the write port and the read
-/// ports in each clock of a period, which repeats. Returns `None` if a read port has no fixed number of clocks. For
-/// example, write addresses 0, 1, 2, 3 and read addresses 2, 3, 0, 1 give 2 clocks.
+/// Returns the number of clocks from write to read for each read port. `course` has the write address and the read addresses in
+/// each clock of a period, which repeats. Returns `None` if a read port has no fixed number of clocks. For example, write
+/// addresses 0, 1, 2, 3 and read addresses 2, 3, 0, 1 give 2 clocks.
 fn lags(course: &[&[u64]], reads: usize) -> Option<Vec<usize>> {
     let period = course.len();
     let lag = |read: usize, now: usize| {
@@ -175,9 +174,9 @@ fn lags(course: &[&[u64]], reads: usize) -> Option<Vec<usize>> {
     (0..reads).map(of_read).collect()
 }
 
-/// Finds the registers that hold a constant after a clock, and the constants at the ports of each memory in that
-/// clock, if all bits are written. The clock is one of a reset, or one in which the results are taken. Some registers
-/// are known before.
+/// Returns the registers that hold a constant after a clock, and for each memory the constant addresses at its ports in that
+/// clock. A memory has none if not all bits are written. The clock is a reset (`rst_n` = 0) or a clock in which the results are
+/// taken. `known` are the values of some registers before the clock.
 fn constants(
     module: &Module,
     roles: &Roles,
@@ -221,14 +220,15 @@ struct TextComparison<'p> {
     delays: &'p [Vec<usize>],
     latency: usize,
     terms: VectorTerms,
-    /// The values of the inputs, by name and clock.
+    /// The terms of the inputs, by name and clock.
     inputs: HashMap<(String, usize), VectorTermId>,
     products: Vec<Product>,
     solver: Solver<'p>,
     proof: TextProof,
 }
 
-/// Returns the term of an input in a clock. Operands come with a point, and all other inputs belong to the handshake.
+/// Returns the term of an input in a clock after the point enters in clock 0. The handshake is fixed: no reset, `out_ready` is
+/// 1, and `in_valid` is 1 in clock 0. Every other input is an unknown.
 fn input(
     terms: &mut VectorTerms,
     inputs: &mut HashMap<(String, usize), VectorTermId>,
@@ -245,8 +245,8 @@ fn input(
 }
 
 impl TextComparison<'_> {
-    /// Shows that a clock in which `in_ready` is low changes nothing, and one in which it is high is one in which
-    /// `out_ready` is.
+    /// Proves that the pipeline may wait. A clock with `in_ready` = 0 must change no register and no memory, and a clock with
+    /// `in_ready` = 1 must do the same as a clock with `out_ready` = 1. A pipeline without `out_ready` never waits.
     fn stays(&mut self) -> Result<(), EarlyEnd> {
         let has = |role| self.roles.values().any(|it| *it == role);
         if !has(Role::OutReady) {
@@ -262,7 +262,7 @@ impl TextComparison<'_> {
             let input = |terms: &mut VectorTerms, name: &str, width: u32| match roles.get(name) {
                 Some(Role::Reset) => terms.constant(1, width),
                 Some(Role::OutReady) if out_ready.is_some() => terms.constant(1, width),
-                // Of no clock of the point.
+                // These inputs belong to no clock of the point.
                 _ => *inputs
                     .entry((name.to_owned(), usize::MAX))
                     .or_insert_with(|| terms.unknown(width)),
@@ -319,7 +319,7 @@ impl TextComparison<'_> {
         Ok(())
     }
 
-    /// Shows that the outputs of netlist and text are the same when the results of a point are shown.
+    /// Proves that the outputs of netlist and Verilog are the same when the results of a point are shown.
     fn follows_a_point(&mut self) -> Result<(), EarlyEnd> {
         let nets = self.netlist();
         let module = self.module;
@@ -349,7 +349,8 @@ impl TextComparison<'_> {
         Ok(())
     }
 
-    /// Returns the term of every net of the netlist in each clock of a point.
+    /// Returns the term of every net of the netlist in each clock, from the clock in which the point enters to the one with its
+    /// results.
     fn netlist(&mut self) -> Vec<Vec<VectorTermId>> {
         let design = self.design;
         let execution = Execution::new(&mut self.terms, design);
@@ -372,11 +373,11 @@ impl TextComparison<'_> {
         nets
     }
 
-    /// Replaces the terms that registers of the text hold by equal terms of the netlist.
+    /// Replaces the terms in registers of the Verilog by the terms of nets that the solver proves equal.
     fn register(&mut self, held: &mut RegisterContents, nets: &[VectorTermId]) -> Result<()> {
         let known: HashSet<VectorTermId> = nets.iter().copied().collect();
         let cone = self.terms.cone(held.iter().flatten().chain(nets).copied());
-        // A term that does not depend on the point is of no use.
+        // Terms that do not depend on the point need no comparison.
         let mut ours: HashSet<VectorTermId> =
             self.inputs.iter().filter(|((_, clock), _)| *clock == 0).map(|(_, id)| *id).collect();
         for &id in &cone {
@@ -425,8 +426,8 @@ impl TextComparison<'_> {
         Ok(())
     }
 
-    /// Ends the comparison unless two terms are equal whenever a bit has a value. For example, outputs must be equal
-    /// whenever `out_valid` is 1.
+    /// Ends the comparison with a verdict unless two terms are proved equal. With a `condition`, they need to be equal only if
+    /// its bit has its value. For example, a register must keep its value if `in_ready` is 0.
     fn must_equal(
         &mut self,
         condition: Option<(VectorTermId, bool)>,
@@ -472,8 +473,8 @@ impl TextComparison<'_> {
         }
     }
 
-    /// Finds values of the unknowns for which the `wanted` terms are 1, and describes them in words. It tries random
-    /// values and the values that the solver `found`.
+    /// Finds values of the unknowns for which all `wanted` terms are 1, and describes them in words. It tries random values,
+    /// and the values `found` by the solver. Returns `None` if the terms are not all 1 for any of them.
     fn difference(
         &self,
         wanted: &[VectorTermId],

@@ -12,8 +12,8 @@ use super::split_products::agree;
 use super::term::{VectorTerm, VectorTermId};
 use glint_base::fixed::MAX_WIDTH;
 
-/// The relation of a factor to a factor of the pipeline: they are the same, or the lowest bits of the first, in this
-/// number, are the second.
+/// How a factor of the core follows from a factor of the pipeline: both are the same, or the pipeline's factor is this number
+/// of the lowest bits of the core's factor.
 #[derive(Clone, Copy)]
 enum Factor {
     Same,
@@ -21,7 +21,7 @@ enum Factor {
 }
 
 impl PipelineComparison<'_> {
-    /// Notes how the products of a cone follow from the products of the pipeline.
+    /// Notes for each product on which `wanted` depends how it follows from a product of the pipeline, if it does.
     pub(super) fn divide_by_lowest(&mut self, wanted: &[VectorTermId]) -> Result<()> {
         for id in self.terms.cone(wanted.iter().copied()) {
             let VectorTerm::Product(a, b) = *self.terms.term(id) else { continue };
@@ -38,8 +38,8 @@ impl PipelineComparison<'_> {
         Ok(())
     }
 
-    /// Notes how a product follows from a product of the pipeline, if its factors are made of the factors of that
-    /// product. Returns whether they are.
+    /// Notes how the product a·b follows from the pipeline's product c·d, if a follows from c and b from d. Returns whether
+    /// both do.
     fn by_parts(&mut self, [a, b]: [VectorTermId; 2], [c, d]: [VectorTermId; 2]) -> Result<bool> {
         let (Some(first), Some(second)) = (self.made(a, c)?, self.made(b, d)?) else {
             return Ok(false);
@@ -59,7 +59,7 @@ impl PipelineComparison<'_> {
         Ok(self.same(low, bits)?.then_some(Factor::Lowest(width)))
     }
 
-    /// Returns whether two terms of one width are equal for all operands.
+    /// Returns whether the solver proves that two terms are equal for all operands.
     fn same(&mut self, one: VectorTermId, other: VectorTermId) -> Result<bool> {
         if one == other || !agree(&self.terms, one, other) {
             return Ok(one == other);
@@ -71,8 +71,9 @@ impl PipelineComparison<'_> {
         Ok(matches!(said, SolverAnswer::Unsatisfiable))
     }
 
-    /// Notes how the product of `factor` and `other` follows from the product of `part` and `other`. They are equal,
-    /// or they differ by the product of the bits above and `other`, which is a product by 0, 1 or -1.
+    /// Notes how the product of `factor` and `other` follows from the product of `part` and `other`. Either both are equal, or
+    /// they differ by the product of `other` and the bits of `factor` above `part`. If only the highest bit is above, this is a
+    /// product by 0, 1 or −1.
     fn note(
         &mut self,
         factor: VectorTermId,

@@ -10,7 +10,7 @@ use glint_core::cosim::Lockstep;
 use glint_rtl::netlist::{Design, Driver, NetId, NetlistRegister, RegisterKind, Role, RomId};
 use glint_rtl::sim::Simulator;
 
-/// Places that are kept of each word.
+/// The largest number of positions that are recorded for each word.
 const PLACES: usize = 6;
 
 /// Raw values of operands, by name.
@@ -24,21 +24,21 @@ pub(super) struct TestPlace {
     pub(super) seed: u64,
     /// The number of results of the stream before the position.
     pub(super) points: u64,
-    /// The contents of the operand registers.
+    /// The bit patterns in the operand registers at this position.
     operands: Vec<u64>,
 }
 
 /// For each word of each ROM, the first positions in a test at which the simulated hardware reads it.
 pub(super) struct Coverage {
     places: Vec<Vec<Vec<TestPlace>>>,
-    /// The operand registers.
+    /// The outputs of the operand registers.
     operands: Vec<NetId>,
 }
 
-/// The places of one stream.
+/// Records the positions at which one stream reads each ROM word.
 struct PlaceWatch<'a> {
     seed: u64,
-    /// For each ROM its address, and the word of the latest clock.
+    /// For each ROM, the net of its address, and the address in the latest clock.
     addresses: Vec<(NetId, u64)>,
     operands: &'a [NetId],
     places: Vec<Vec<Vec<TestPlace>>>,
@@ -67,7 +67,7 @@ impl<'a> PlaceWatch<'a> {
     }
 }
 
-/// Returns an empty list of places for each word of each ROM.
+/// Returns an empty list of positions for each word of each ROM.
 fn no_places(design: &Design) -> Vec<Vec<Vec<TestPlace>>> {
     design.roms.iter().map(|rom| vec![Vec::new(); rom.words.len()]).collect()
 }
@@ -105,7 +105,7 @@ impl Coverage {
         &self.places[rom.index()][word]
     }
 
-    /// Returns for each position at which the test reads a ROM word the operands of the computation that reads it.
+    /// Returns, for each position at which the test reads a ROM word, the operands of the computation that reads it.
     pub(super) fn operands(
         &self,
         design: &Design,

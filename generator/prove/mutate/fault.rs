@@ -10,13 +10,13 @@ use glint_base::fixed::mask;
 use glint_core::cosim::Random;
 use glint_rtl::netlist::{Design, Driver, Net, NetId, Op, RegId, Role, RomId};
 
-/// A ROM of at most so many words has all pairs of its words swapped, and one of at most so many bits
-/// each of them inverted.
+/// The largest number of words of a ROM for which all pairs of words are swapped. `ALL_BITS` is the largest number of bits of a
+/// ROM for which every bit is inverted.
 const ALL_WORDS: usize = 32;
 const ALL_BITS: usize = 1024;
 
-/// The number of pairs of words, and of bits, that are drawn of larger ROMs; about as many neighbours are
-/// swapped.
+/// The numbers of pairs of words, and of bits, that are drawn for larger ROMs. In addition, at most about `NEIGHBOURS` pairs of
+/// neighbouring words are swapped.
 const SAMPLE: usize = 200;
 const SAMPLED_BITS: usize = 200;
 const NEIGHBOURS: usize = 256;
@@ -81,7 +81,8 @@ impl Faults {
     /// Lists all faults of a netlist. For large ROMs it lists a sample, which is always the same.
     pub fn of(design: &Design) -> Self {
         let mut faults = Self::default();
-        // Left out: the reset, which is the environment's, and the control word, whose fields are nets of their own.
+        // Two nets are left out: the reset, which the environment drives, and the control word, because its fields are nets
+        // with faults of their own.
         let reset = design.port(|role| role == Role::Reset).map(|port| port.net);
         let control = design.roms.get(design.control.rom.index()).map(|rom| rom.data);
         let left_out = [reset, control];
@@ -139,9 +140,8 @@ impl Faults {
         self.0.push(NetlistFault { id, kind, site });
     }
 
-    /// Adds the faults of the bits of a net. A constant, which is at fault as a whole, and another name of a net have
-    /// no such faults. For example, a net `adder15` of 4 bits has 12 such faults, from `adder15[0]:stuck-at-0` to
-    /// `adder15[3]:inverted`.
+    /// Adds three faults for each bit of a net. Constants and renamed nets have no such faults. For example, a net `adder15` of
+    /// 4 bits has 12 such faults, from `adder15[0]:stuck-at-0` to `adder15[3]:inverted`.
     fn bits(&mut self, id: NetId, net: &Net) {
         if matches!(net.driver, Driver::Constant(_) | Driver::Undriven | Driver::Op(Op::Relabel(_)))
         {
@@ -228,8 +228,8 @@ impl Faults {
     }
 }
 
-/// Pairs of words that differ: all of a small ROM, neighbours and a sample of a large one. For example, a ROM of the
-/// words 7, 7 and 9 has the pairs (0, 2) and (1, 2).
+/// Returns pairs of addresses whose words differ: all pairs of a small ROM, and neighbours and a sample of a large one. For
+/// example, a ROM of the words 7, 7 and 9 has the pairs (0, 2) and (1, 2).
 fn pairs(words: &[u64], random: &mut Random) -> BTreeSet<(usize, usize)> {
     let mut pairs = BTreeSet::new();
     if words.len() <= ALL_WORDS {
@@ -238,7 +238,7 @@ fn pairs(words: &[u64], random: &mut Random) -> BTreeSet<(usize, usize)> {
         let step = words.len().div_ceil(NEIGHBOURS);
         pairs.extend((1..words.len()).step_by(step).map(|b| (b - 1, b)));
         let mut draw = || random.below(words.len() as u64) as usize;
-        // Words that are all alike have no such pair.
+        // If all words are equal, no pair differs; the limit of draws ends the search then.
         let sample = std::iter::repeat_with(|| (draw(), draw())).take(100 * SAMPLE);
         let differ = |&(a, b): &(usize, usize)| a < b && words[a] != words[b];
         pairs.extend(sample.filter(differ).take(SAMPLE));

@@ -15,17 +15,17 @@ use glint_tools::Tool;
 /// The file of the module with a fault, beside the fault-free one.
 pub(super) const MUTANT: &str = "glint_mutant.v";
 
-/// The file of the nets that may differ, one a line. [`STATUS`] is the file of Yosys's final answer.
+/// The file with the names of the nets that may differ, one in each line. [`STATUS`] is the file with Yosys's final answer.
 const FREE: &str = "glint_free.txt";
 const STATUS: &str = "glint_status.txt";
 
-/// Rounds of proofs, each with more nets that may differ.
+/// The largest number of attempts. Each attempt lets more nets differ.
 const ROUNDS: usize = 4;
 
-/// A net that differs, of either module.
+/// A line of Yosys's answer about a net for which the equality is not proved.
 static DIFFERS: LazyLock<Regex> = LazyLock::new(|| pattern(r"^  Unproven .*: \\(\w+)_gold\b"));
 
-/// The names that must not differ: ports and registers.
+/// The declarations of ports and registers, which must not differ.
 static KEPT: LazyLock<Regex> =
     LazyLock::new(|| pattern(r"(?m)^ *(?:input|output|reg)\b[^;,/]*?(\w+)(?:,|;| *(?://.*)?$)"));
 
@@ -33,15 +33,14 @@ fn pattern(text: &str) -> Regex {
     Regex::new(text).expect("a pattern of ours")
 }
 
-/// Returns whether Yosys proves that every port and register of the module `name` carries the same in the fault-free
-/// module and in the mutant, for all inputs. A proof that fails or takes more than `limit` proves nothing. For example,
-/// a wire `above_2` may differ, and the register `intervals` must not.
+/// Returns whether Yosys proves that every port and register of the module `name` carries the same values in the fault-free
+/// module and in the mutant, for all inputs. If the proof fails or takes more than `limit`, it returns false. For example, a
+/// wire `above_2` may differ, and the register `intervals` must not.
 ///
-/// The proof is temporal induction from a state in which the two agree. Cells with the same inputs, including
-/// multipliers and ROMs, are merged first. At first all other nets of the same name are shown to be equal too, which
-/// makes the proof short; nets that differ are then left free. The files of both are in `directory`: `gold` are the
-/// fault-free files, and in `gate` one file is [`MUTANT`]. Instances of a module in another file are taken as they
-/// are.
+/// The proof is temporal induction from a state in which both modules agree. Yosys first merges cells with the same inputs,
+/// including multipliers and ROMs. The first attempt proves all nets with the same name equal, which makes the proof short.
+/// Nets that differ are left out of the next attempt. The files of both modules are in `directory`: `gold` are the fault-free
+/// files, and in `gate` one file is [`MUTANT`]. Instances of a module in any other file are taken as they are.
 ///
 /// # Errors
 /// Fails if Yosys is missing, or if a file cannot be read or written.
@@ -96,7 +95,8 @@ fn commands(name: &str, [gold, gate]: [&[&str]; 2], is_free: bool) -> String {
             "read_verilog {files}; prep{flatten} -top {name}; opt; rename {name} {by}; design -stash {by}; "
         )
     };
-    // Going backward would compare the inputs of cells whose results are equal, including inputs that are free.
+    // With free nets, only the forward direction is right. Going backward would compare the inputs of cells with equal results,
+    // including inputs that are free.
     let (make, join) = if is_free {
         (format!("equiv_make -blacklist {FREE}"), "equiv_struct -fwonly -icells")
     } else {

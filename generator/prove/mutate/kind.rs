@@ -4,7 +4,7 @@ use std::fmt;
 
 use serde::{Deserialize, Serialize};
 
-/// The kinds in their order, each with its name in tables.
+/// Defines the enum of the kinds of faults, in the order of the list, each with its name in tables.
 macro_rules! kinds {
     ($($(#[$doc:meta])* $kind:ident = $name:literal,)*) => {
         /// The kind of a planted fault, such as a stuck bit. Tables of mutation tests count the faults by kind.
@@ -62,7 +62,7 @@ kinds! {
     ControlWords = "control words swapped",
     /// A bit of the lower half of a table's word is inverted.
     RomBit = "ROM bit inverted, lower half",
-    /// A bit of the upper half is.
+    /// A bit of the upper half of a table's word is inverted.
     RomHighBit = "ROM bit inverted, upper half",
     /// Two words of a table change places.
     RomWords = "ROM words swapped",

@@ -3,8 +3,8 @@
 use super::kind::FaultKind;
 use glint_rtl::netlist::{Design, Driver, NetId, Op};
 
-/// Returns faulty cells that can replace the cell `op`, the driver of net `id`: another operator, swapped operands, and so on. Each
-/// has a name and a kind of fault.
+/// Returns the faulty cells that can replace the cell `op`, the driver of net `id`: another operator, swapped operands, and so
+/// on. Each has a name and a kind of fault.
 pub(super) fn of(design: &Design, id: NetId, op: &Op) -> Vec<(String, FaultKind, Op)> {
     let width = design.width(id);
     match op {
@@ -37,8 +37,8 @@ fn swapped(op: Op) -> (String, FaultKind, Op) {
     ("operands-swapped".to_owned(), FaultKind::Operands, op)
 }
 
-/// Lists the faults of a mux: inputs that are different nets change places; one input is taken always. For example, a
-/// mux of two different inputs has the faults `inputs-0-1-swapped`, `input-0-always` and `input-1-always`.
+/// Returns the faults of a mux: two inputs that are different nets change places, or the mux always passes on the same input.
+/// For example, a mux of two different inputs has the faults `inputs-0-1-swapped`, `input-0-always` and `input-1-always`.
 fn mux(design: &Design, select: NetId, inputs: &[NetId]) -> Vec<(String, FaultKind, Op)> {
     let mut faults = Vec::new();
     for b in 0..inputs.len() {
@@ -65,8 +65,8 @@ fn mux(design: &Design, select: NetId, inputs: &[NetId]) -> Vec<(String, FaultKi
     faults
 }
 
-/// Returns a sum without its carry or without the bit that rounds, and a difference. For example, `a + b + carry`
-/// becomes `a - b` in the fault `sub` and `a + b` in the fault `no-carry`.
+/// Returns the faults of a sum: a difference in its place, the sum without its carry, or the sum without the bit that rounds.
+/// For example, `a + b + carry` becomes `a - b` in the fault `sub` and `a + b` in the fault `no-carry`.
 fn add(design: &Design, a: NetId, b: NetId, carry: Option<NetId>) -> Vec<(String, FaultKind, Op)> {
     let mut faults = vec![operator("sub", Op::Sub(a, b))];
     if carry.is_some() {
@@ -74,7 +74,7 @@ fn add(design: &Design, a: NetId, b: NetId, carry: Option<NetId>) -> Vec<(String
         faults.push(("no-carry".to_owned(), FaultKind::Rounding, op));
     }
     for (bit, rest) in [(a, b), (b, a)] {
-        // One unit in the last place or none: this is a rounding to nearest.
+        // An operand that is 0 or 1 rounds the other operand to the nearest.
         if design.net(bit).range == (0, 1) && carry.is_none() {
             faults.push(("truncated".to_owned(), FaultKind::Rounding, Op::Relabel(rest)));
         }
@@ -82,8 +82,8 @@ fn add(design: &Design, a: NetId, b: NetId, carry: Option<NetId>) -> Vec<(String
     faults
 }
 
-/// Returns the faults that take the bits one place lower or higher. For example, bits 2 to 5 of a net become bits 1 to
-/// 4 or bits 3 to 6.
+/// Returns the faults of a slice: the bits one position lower or higher are taken. For example, bits 2 to 5 of a net become
+/// bits 1 to 4 or bits 3 to 6.
 fn slice(of: NetId, low: u32, width: u32, have: u32) -> Vec<(String, FaultKind, Op)> {
     let mut faults = Vec::new();
     let mut shifted = |name: &str, low| {

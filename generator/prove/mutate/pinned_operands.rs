@@ -12,13 +12,13 @@ use glint_core::core::Core;
 use glint_core::cosim::exhaustive::Clocks;
 use glint_rtl::netlist::{Design, Driver, RegisterKind, RomId};
 
-/// Results that are looked at with operands held.
+/// The number of results that are compared if some operands are fixed.
 const POINTS: u64 = 1 << 17;
 
-/// And with all operands held.
+/// The number of results that are compared if all operands are fixed.
 const FEW_POINTS: u64 = 64;
 
-/// The seed with which the others are drawn.
+/// The seed for drawing the operands that are not fixed.
 const SEED: u64 = 3;
 
 /// The largest number of operand bits for which all values of the remaining operands are tried.
@@ -94,7 +94,7 @@ pub(super) fn all(
     if contract.length().is_some() {
         return Ok(Tried::Nothing);
     }
-    // A colour only shows f, and the register of f is compared.
+    // Only one value of each colour is tried: a colour only multiplies f, and the register of f is compared.
     let colours = contract.operands().iter().filter(|it| it.colour);
     held.extend(colours.map(|it| (it.name.clone(), it.domain.1)));
     let model = core.device.golden(&core.config);

@@ -38,8 +38,8 @@ pub(super) fn bare(design: &Design) -> Design {
     bare
 }
 
-/// Adds a net of the format of `like`. For example, the suffix `sound` names the net `product_sound` after `product`,
-/// and `product_sound_` if that name is taken.
+/// Adds a net with the format of `like`, and returns it. Its name is the name of `like` with `suffix`. For example, the suffix
+/// `sound` names the net `product_sound` after `product`, and `product_sound_` if that name is taken.
 fn add(design: &mut Design, like: NetId, suffix: &str, driver: Driver) -> NetId {
     let mut name = Cow::from(format!("{}_{suffix}", design.net(like).name));
     while design.find(&name).is_some() {
@@ -50,7 +50,7 @@ fn add(design: &mut Design, like: NetId, suffix: &str, driver: Driver) -> NetId 
     design.add_net(Net { name, driver, block: None, doc, named: false, ..like })
 }
 
-/// Returns a new net that carries `sound` with a bit at fault, as a driver.
+/// Returns the driver of a net that carries `sound` with a fault in one bit.
 fn at_fault(design: &mut Design, sound: NetId, bit: u32, how: BitChange) -> Driver {
     let ones = match how {
         BitChange::Stuck0 => glint_base::fixed::mask(design.width(sound)) & !(1 << bit),
@@ -66,7 +66,7 @@ fn at_fault(design: &mut Design, sound: NetId, bit: u32, how: BitChange) -> Driv
 
 fn plant_bit(design: &mut Design, net: NetId, bit: u32, how: BitChange) {
     match design.net(net).driver.clone() {
-        // The register of that name is compared, so the value that it takes is at fault.
+        // The checks compare the register's output, so the fault is in the value that the register takes.
         Driver::Register(id) => {
             if let Some(data) = design.register(id).data {
                 let driver = at_fault(design, data, bit, how);
@@ -76,14 +76,14 @@ fn plant_bit(design: &mut Design, net: NetId, bit: u32, how: BitChange) {
                 register.reset = register.reset.map(|reset| how.applied(reset, bit));
             }
         }
-        // The port keeps the value that the environment drives; the value that is read from it is at fault.
+        // The environment drives the port, so the fault is in the value that the design reads from the port.
         Driver::Input => {
             let driver = at_fault(design, net, bit, how);
             let read = add(design, net, "read", driver);
             let skip = [read];
             redirect(design, net, read, &skip);
         }
-        // All others: the net is at fault for everybody.
+        // For any other driver, all readers of the net read the faulty value.
         driver => {
             let sound = add(design, net, "sound", driver.clone());
             match driver {
@@ -97,7 +97,7 @@ fn plant_bit(design: &mut Design, net: NetId, bit: u32, how: BitChange) {
     }
 }
 
-/// Makes all that reads `from` read `to`, but the nets in `except`.
+/// Makes every reader of the net `from` read the net `to`, except the nets in `except`.
 fn redirect(design: &mut Design, from: NetId, to: NetId, except: &[NetId]) {
     let redirect = |net: &mut NetId| {
         if *net == from {

@@ -19,11 +19,12 @@ use glint_core::cosim::{Lockstep, Mismatch};
 use glint_golden::Model;
 use glint_rtl::netlist::{Design, RomId};
 
-/// The number of points of a first look. They are the first of the default test's first stream, so that a difference
-/// in them is a difference in the test.
+/// The number of points of the first check. They are the first points of the default test's first stream, so a difference in
+/// them is a difference in the default test.
 const FIRST_POINTS: u64 = 256;
 
-/// The longer test in which words are looked for that the default test does not read.
+/// The number of results of a longer test, and its seed. The longer test is searched for reads of words that the default test
+/// does not read.
 const BEYOND_POINTS: u64 = 1_000_000;
 const BEYOND_SEED: u64 = 2;
 
@@ -71,12 +72,12 @@ struct Bench<'a> {
     beside: Option<PointSearch>,
     model: Box<dyn Model>,
     prover: Option<Prover<'a>>,
-    /// The words that the default test reads, with the places.
+    /// The positions at which the default test reads each ROM word.
     tested: Coverage,
-    /// The words that a longer test reads, once one is asked for that the default test does not read.
+    /// The positions at which a longer test reads each ROM word. It is computed at the first need.
     beyond: OnceLock<Coverage>,
     shipped: Shipped,
-    /// Points that may be on their way together.
+    /// The number of stages of a pipeline, and so the largest number of points in it; 0 for a sequential core.
     latency: u64,
 }
 
@@ -111,7 +112,8 @@ impl Bench<'_> {
         }
     }
 
-    /// Searches for a point of a pipeline that differs beside the pipeline without a fault.
+    /// Searches for a point at which the mutant of a pipeline differs from the fault-free pipeline, and confirms it with the
+    /// golden model. A sequential core is undecided.
     fn searched(&self, mutant: &Design) -> Result<MutantVerdict> {
         let Some(beside) = &self.beside else {
             return Ok(MutantVerdict::Undecided);
@@ -122,7 +124,8 @@ impl Bench<'_> {
             .map_or(MutantVerdict::Undecided, |it| MutantVerdict::Caught(Detector::Directed, it)))
     }
 
-    /// Returns the beginning of the default test, or of its streams that read words at fault: there it shows, if anywhere.
+    /// Returns the first difference in a short part of the default test. If words of a table are faulty, the part consists of
+    /// the streams that read these words, because the fault can show only there.
     fn first_look(&self, mutant: &Design, site: &Site) -> Result<Option<Mismatch>> {
         let looks = match self.words(site) {
             Some(_) => self.places(site),
@@ -131,7 +134,7 @@ impl Bench<'_> {
         self.shown(mutant, looks)
     }
 
-    /// Returns the first difference in some streams, each a seed and how many results are looked at.
+    /// Returns the first difference in some streams. Each stream is a seed and the number of results to compare.
     fn shown(&self, mutant: &Design, streams: Vec<(u64, u64)>) -> Result<Option<Mismatch>> {
         for (seed, points) in streams {
             let mismatch = self.lockstep(mutant, seed)?.run_alone(points)?.mismatch;
@@ -142,7 +145,8 @@ impl Bench<'_> {
         Ok(None)
     }
 
-    /// Runs a mutant with operands held at the words at fault.
+    /// Runs a mutant whose faulty table words are read only for a few operands, with these operands fixed. It then tries all
+    /// operands if they are few enough.
     fn directed(
         &self,
         mutant: &Design,
@@ -188,8 +192,8 @@ impl Bench<'_> {
         })
     }
 
-    /// Returns the control operands of computations that read a word. They come from the default test, or else from a
-    /// longer one.
+    /// Returns the control operands of computations that read a word. They come from the default test, or from a longer test if
+    /// the default test does not read the word.
     fn readings(&self, rom: RomId, word: usize) -> Result<Vec<OperandValues>> {
         let design = &self.sound;
         let mut readings: Vec<OperandValues> = self.tested.operands(design, rom, word).collect();
@@ -204,8 +208,8 @@ impl Bench<'_> {
         Ok(readings)
     }
 
-    /// Runs the streams of a longer test that read a word, if the default test does not read it. This is for
-    /// pipelines alone, which have no registers that keep the operands of a reading.
+    /// Returns the first difference in the streams of a longer test that read a word, if the default test does not read it. It
+    /// does so only for pipelines, which have no registers that keep the operands of a read.
     fn beyond_shows(&self, mutant: &Design, rom: RomId, word: usize) -> Result<Option<Mismatch>> {
         if self.latency == 0 || !self.tested.places(rom, word).is_empty() {
             return Ok(None);
@@ -213,8 +217,8 @@ impl Bench<'_> {
         self.shown(mutant, self.ends(self.beyond()?.places(rom, word)))
     }
 
-    /// Returns the streams that read words, each up to the end of the computation after the one that does. For example,
-    /// a read after 40 results in a pipeline of 7 stages gives the seed and 49.
+    /// Returns the streams that read words: the seed of each, and the number of results up to the end of the computation after
+    /// the read. For example, a read after 40 results in a pipeline of 7 stages gives the seed and 49.
     fn ends<'p>(&self, places: impl IntoIterator<Item = &'p TestPlace>) -> Vec<(u64, u64)> {
         let end = |place: &TestPlace| (place.seed, place.points + 2 + self.latency);
         places.into_iter().map(end).collect()
@@ -225,7 +229,7 @@ impl Bench<'_> {
         Lockstep::new(mutant, self.model.boxed_clone(), contract, seed)
     }
 
-    /// Returns the words at fault of a table.
+    /// Returns the faulty words if the fault is in a table, but not if it is in the control ROM.
     fn words<'s>(&self, site: &'s Site) -> Option<(RomId, &'s [(usize, u64)])> {
         match site {
             Site::Words(rom, words) if *rom != self.sound.control.rom => Some((*rom, words)),
@@ -233,8 +237,8 @@ impl Bench<'_> {
         }
     }
 
-    /// Returns the places at which the default test reads the words at fault: a seed, and the results up to where it
-    /// shows.
+    /// Returns the streams in which the default test reads the faulty words, as `ends` does. The list is empty if the fault is
+    /// not in a table, or if the test never reads the words.
     fn places(&self, site: &Site) -> Vec<(u64, u64)> {
         let Some((rom, words)) = self.words(site) else {
             return Vec::new();

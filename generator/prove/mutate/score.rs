@@ -15,8 +15,8 @@ pub const TOLERATED: f64 = 0.01;
 /// a longer bench notices.
 pub const GOAL_TEXT: f64 = 0.98;
 
-/// The share of the bits in the upper half of the words of tables whose inversion the shipped bench should notice, among
-/// the bits whose inversion some check notices. Words that are never read are not counted.
+/// The share of inverted bits, in the upper half of table words, that the shipped bench should notice. It counts only
+/// inversions that some check notices, so words that are never read do not count.
 pub const GOAL_MEMORY: f64 = 0.95;
 
 /// The share of some planted faults that a check notices, such as "98 of 100 noticed".
@@ -117,8 +117,8 @@ impl Score {
         self.all.share_undecided() <= TOLERATED
     }
 
-    /// Returns the share of inverted bits, in the upper half of ROM words, that the shipped bench notices. Returns `None` for a
-    /// design without ROMs.
+    /// Returns the share of inverted bits, in the upper half of ROM words, that the shipped bench notices, among the inversions
+    /// that any check notices. Returns `None` for a design without ROMs.
     pub fn of_memory(&self) -> Option<Share> {
         self.kinds.get(&FaultKind::RomHighBit).map(Tally::of_shipped)
     }

@@ -14,13 +14,13 @@ use glint_core::registry::Registry;
 use glint_rtl::dsl::fixture::design;
 use glint_rtl::dsl::step;
 
-/// Returns n, so that one of n faults is planted. With `GLINT_TESTS=all`, n is smaller. It is no multiple of three,
-/// because each bit has three faults.
+/// Returns the number n for tests that plant only every n-th fault. With `GLINT_TESTS=all`, n is smaller. n must not be a
+/// multiple of three, because each bit has three faults.
 fn every() -> usize {
     if std::env::var("GLINT_TESTS").is_ok_and(|tests| tests == "all") { 29 } else { 211 }
 }
 
-/// A fault may replace an operand by a net that the part of the netlist around the fault does not contain.
+/// A fault may replace an operand by a net that the prover does not see around the fault.
 #[test]
 fn faults_that_read_other_nets_are_no_proof_and_no_panic() {
     let core = core("benches/small/rough_up5k_pipelined.toml");
@@ -31,10 +31,10 @@ fn faults_that_read_other_nets_are_no_proof_and_no_panic() {
     assert!(proved < wired.len(), "{proved} of {}", wired.len());
 }
 
-/// Points in which most faults show.
+/// The number of points with which most faults show.
 const POINTS: u64 = 200;
 
-/// Returns a file of the repository.
+/// Returns the path of a file in the repository.
 fn at(path: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../..").join(path)
 }
@@ -94,9 +94,9 @@ fn what_is_never_reached_is_never_noticed() {
         let lockstep = core.lockstep_of(&mutant, TEST_SEED).unwrap();
         assert_eq!(lockstep.run(2_000, &|_| ()).unwrap().mismatch, None, "{}", fault.id);
     }
-    // A bit that is inverted shows wherever it is looked at.
+    // An inverted bit shows whenever a signal reads it.
     assert!(unreached.iter().all(|fault| fault.kind != FaultKind::Inverted));
-    // The signal that says that the device runs is 0 and is 1.
+    // The signal `run`, which says that the device runs, is sometimes 0 and sometimes 1.
     let stuck = |fault: &&&NetlistFault| fault.id.starts_with("run[0]:stuck");
     assert!(faults.iter().any(|fault| stuck(&fault)), "no such fault");
     assert_eq!(unreached.iter().filter(stuck).count(), 0);
@@ -109,7 +109,8 @@ fn verdict(core: &Core, id: &str) -> MutantVerdict {
     run(core, fault, &|| ()).unwrap().remove(0).verdict
 }
 
-/// Only a cosine with no other bit set shows it, and only with an n for which the highlight is still lit there.
+/// The fault shows only with a cosine in which no other bit is set, and with an exponent n for which the highlight is still lit
+/// there.
 #[test]
 fn a_point_is_searched_for_that_shows_a_fault() {
     let core = core("configs/cosine_power_pipelined.toml");
@@ -131,7 +132,7 @@ fn lower_bits_do_not_decide_a_comparison() {
     assert!(matches!(verdict(&core, "beta_distance_s6[16]:inverted"), MutantVerdict::Caught(..)));
 }
 
-/// Whether a number is below 0 its sign says alone, though 0 ends in nothing but zeros.
+/// Only the sign decides whether a number is below 0, although the lower bits of 0 are all zeros.
 #[test]
 fn the_sign_decides_a_comparison_with_0() {
     let design = design(|d| {
@@ -152,7 +153,7 @@ fn the_sign_decides_a_comparison_with_0() {
     assert!(!proved("sum[4]:inverted") && !proved("sum[4]:stuck-at-0"));
 }
 
-/// The remainder of a dividend is the difference if that is not negative: it is no larger than before.
+/// After a step of a divider, the remainder is not larger than before: it is the difference if that is not negative.
 #[test]
 fn a_remainder_does_not_grow_by_a_subtraction() {
     let core = core("configs/schlick_pipelined.toml");

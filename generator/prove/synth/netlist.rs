@@ -13,9 +13,9 @@ use glint_show::figures::{PathPoint, rounded};
 
 /// The flat netlist of a core in its harness, after synthesis.
 pub struct Netlist {
-    /// By the name of a net's bit, `core.datapath.product[3]`: the name in the description.
+    /// The names in the description, by the name of a net's bit, such as `core.datapath.product[3]`.
     names: BTreeMap<String, String>,
-    /// By the name of a flip-flop, or of a DSP block: the name in the description.
+    /// The names in the description, by the name of a flip-flop or DSP block.
     registers: BTreeMap<String, String>,
     /// The cells, by name.
     cells: Map<String, Value>,
@@ -30,7 +30,7 @@ impl Netlist {
         let nets = part_of_top(json, "netnames")?;
         let cells = part_of_top(json, "cells")?;
         let known = known(design);
-        // One bit has several names, most of them made by tools.
+        // A bit has several names, most of them made by tools. The name with the lowest rank is taken.
         let mut best: BTreeMap<u64, (u8, &str)> = BTreeMap::new();
         for (name, net) in nets {
             let Some((rank, shown)) = known.get(own_name(name)) else {
@@ -58,7 +58,7 @@ impl Netlist {
                 names.insert(bit_name, (*shown).to_owned());
             }
         }
-        // A flip-flop, or a DSP block with a register at its output.
+        // The outputs of a flip-flop, and of a DSP block with a register at its output.
         let mut outputs = vec!["Q".to_owned()];
         for bit in 0..36 {
             outputs.push(format!("P{bit}"));
@@ -132,9 +132,9 @@ pub fn path(points: impl IntoIterator<Item = (String, f64)>) -> Vec<PathPoint> {
     steps
 }
 
-/// Returns the nets of a design by name, each with a rank and the text to show. If one wire has several names, a
-/// register's name comes first, then a ROM's, a product's, one that the author gave, any other. For example, the text
-/// for the output of the ROM `coefficient` is `ROM coefficient`.
+/// Returns the nets of a design by name, each with a rank and the text to show. If a wire has several names, the name with the
+/// lowest rank is shown. The order is: registers, ROMs, products, nets named by the author, other nets, and inputs. For
+/// example, the text for the output of the ROM `coefficient` is `ROM coefficient`.
 fn known(design: &Design) -> BTreeMap<&str, (u8, String)> {
     let mut known = BTreeMap::new();
     for net in &design.nets {
@@ -150,7 +150,7 @@ fn known(design: &Design) -> BTreeMap<&str, (u8, String)> {
     known
 }
 
-/// Returns a net's name without the instances that it lies in, and without the bit of one that was split. For example,
+/// Returns the name of a net in its module, without the names of instances and without the number of a bit. For example,
 /// `core.datapath.product[3]` is `product`.
 fn own_name(name: &str) -> &str {
     let inside = name.strip_prefix(CORE).and_then(|rest| rest.strip_prefix('.')).unwrap_or("");
@@ -159,7 +159,7 @@ fn own_name(name: &str) -> &str {
     inside.split('[').next().unwrap_or(inside)
 }
 
-/// Returns the bits of a net that are no constants.
+/// Returns the numbers of the bits of a net, without bits that are constants.
 fn bits(net: &Value) -> impl Iterator<Item = u64> {
     let bits = net["bits"].as_array().into_iter().flatten();
     bits.filter_map(Value::as_u64)

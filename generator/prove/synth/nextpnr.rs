@@ -12,15 +12,15 @@ use glint_base::target::Chip;
 use glint_show::figures::{Figures, PathPoint, Target};
 use glint_tools::Tool;
 
-/// How nextpnr measures a core of a family.
+/// The settings with which nextpnr measures a core on an FPGA family.
 pub struct Recipe {
-    /// The target.
+    /// The target that is measured.
     pub target: Target,
     /// The speed grade, in words, or an empty text. For example, `speed grade 6`.
     pub speed: &'static str,
     /// Further options of nextpnr; the chip and the frequency have options of their own.
     pub options: &'static str,
-    /// The frequency that is asked for, in MHz. It is out of reach, so that the placer tries hardest.
+    /// The frequency that nextpnr is asked for, in MHz. It must be out of reach, so that the placer tries hardest.
     pub goal: u32,
     /// Checks that nextpnr times every cell of the netlist, and prepares the files that nextpnr reads.
     pub prepare: fn(&Workspace, &Netlist) -> Result<()>,
@@ -42,7 +42,7 @@ pub fn measure(
     (recipe.prepare)(&workspace, &netlist)?;
     done();
     let family = recipe.target.family().context("nextpnr knows no such family")?;
-    // All chips of a family are as fast.
+    // All chips of a family are equally fast, so the first chip that is large enough is used.
     let fitting = family.chips.iter().find(|chip| chip.lack(usage.taken()).is_empty());
     let chip = fitting.unwrap_or(&family.chips[family.chips.len() - 1]);
     let mut name = format!("{} {}", family.title, chip.name);
@@ -72,7 +72,7 @@ fn route(
     }
     workspace.nextpnr(nextpnr, seed, &options)?;
     let report = workspace.sources.json(&report)?;
-    // Clock pins of DSP blocks that are tied to ground are listed as a clock too.
+    // The report also lists clock pins of DSP blocks that are tied to ground as a clock.
     let clocks = report["fmax"].as_object().into_iter().flatten();
     let clock = clocks
         .filter(|(name, _)| !name.contains("PACKER"))
@@ -82,7 +82,7 @@ fn route(
     Ok((frequency, steps(netlist, &report, &format!("posedge {clock}"))))
 }
 
-/// Returns the longest path from the clock to the clock.
+/// Returns the points of the longest path between two registers, by their names in the description.
 fn steps(netlist: &Netlist, report: &Value, clock: &str) -> Vec<PathPoint> {
     let paths = report["critical_paths"].as_array().into_iter().flatten();
     let path = paths.into_iter().find(|path| path["from"] == clock && path["to"] == clock);
@@ -90,7 +90,7 @@ fn steps(netlist: &Netlist, report: &Value, clock: &str) -> Vec<PathPoint> {
     let mut points = Vec::new();
     let mut time = 0.0;
     for piece in pieces {
-        // A net settles at the end of its route.
+        // The time of a net is the end of its route.
         time += piece["delay"].as_f64().unwrap_or(0.0);
         let name = match piece["type"].as_str() {
             Some("routing") => piece["net"].as_str().and_then(|net| netlist.name(net)),

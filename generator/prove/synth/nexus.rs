@@ -19,7 +19,8 @@ pub const RECIPE: Recipe = Recipe {
     prepare,
 };
 
-/// Places for the four pins of the harness, which nextpnr-nexus demands: a clock pin, and three others of the package CABGA400.
+/// The locations of the four pins of the harness, which nextpnr-nexus demands: a clock pin, and three others of the package
+/// CABGA400.
 const PINS: &str = "ldc_set_location -site {L5} [get_ports clk]\n\
                     ldc_set_location -site {N14} [get_ports in]\n\
                     ldc_set_location -site {G14} [get_ports take]\n\
@@ -32,9 +33,9 @@ fn prepare(workspace: &Workspace, _netlist: &Netlist) -> Result<()> {
     workspace.sources.write("pins.pdc", PINS)
 }
 
-/// Opens the carry input of the first cell of each carry chain. Yosys 0.70 ties this input to ground, and nextpnr-nexus 0.11 refuses
-/// a carry input that no carry cell drives. The first cell makes its carry from its other inputs, so that its carry input does
-/// not matter.
+/// Opens the carry input of the first cell of each carry chain. Yosys 0.70 ties this input to ground, and nextpnr-nexus 0.11
+/// refuses a carry input that no carry cell drives. The first cell makes its carry from its other inputs, so its carry input
+/// does not matter.
 fn open_carries(netlist: &mut Value) {
     let modules = netlist["modules"].as_object_mut().into_iter().flatten();
     for (_, module) in modules {

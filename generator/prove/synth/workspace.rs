@@ -38,14 +38,14 @@ impl<'a> Workspace<'a> {
     /// # Errors
     /// Fails if nextpnr fails or takes too long.
     pub fn nextpnr(&self, nextpnr: &Tool, seed: u32, options: &str) -> Result<()> {
-        // File names without a directory: the WebAssembly of nextpnr sees no other.
+        // The file names have no directory, because the WebAssembly build of nextpnr sees only the current directory.
         let arguments = format!("{options} --timing-allow-fail -q --seed {seed} --json {NETLIST}");
         nextpnr.run_to_success(arguments.split(' '), self.sources.path(), self.subject.limit)?;
         Ok(())
     }
 
-    /// Synthesises the core alone, and the core in its harness. Returns the area of the first and the netlist of the second, and
-    /// leaves this netlist in the file [`NETLIST`].
+    /// Synthesises the core alone, and the core in its harness. Returns the area of the core alone and the netlist of the core
+    /// in its harness, and leaves this netlist in the file [`NETLIST`].
     ///
     /// # Errors
     /// Fails if [`YosysSources::run`] fails.

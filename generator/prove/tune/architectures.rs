@@ -1,4 +1,5 @@
-//! Estimates a configuration in each of its architectures: the sequential core, and the pipelines with an interval.
+//! Estimates the cost of a configuration in each of its architectures: the sequential core, and pipelines with different
+//! intervals.
 
 use anyhow::{Context, Result};
 use rayon::prelude::*;
@@ -15,9 +16,10 @@ use glint_show::evidence::comparison::{EXPONENT, clocks_per_point};
 pub struct Architecture {
     /// The core.
     pub core: Core,
-    /// The clocks from a point to the next in a pipeline; `None` for a sequential core.
+    /// The number of clocks from one point to the next in a pipeline; `None` for a sequential core.
     pub interval: Option<u32>,
-    /// The clocks from a point to the next. A sequential core may take a fraction if it computes lines of points.
+    /// The number of clocks from one point to the next. For a sequential core that computes lines of points, it may be a
+    /// fraction.
     pub clocks_per_point: f64,
     /// The number of multipliers in the netlist.
     pub multipliers: usize,
@@ -104,14 +106,14 @@ pub fn longest_interval(
 /// The largest value of `pipeline.interval`.
 const LONGEST: u32 = 64;
 
-/// Returns the intervals that a pipeline can have at most: up to the clocks of its sequential core.
+/// Returns the intervals that are tried for a pipeline: from 1 to the clocks of its sequential core, at most [`LONGEST`].
 fn intervals(sequential: &Architecture) -> std::ops::RangeInclusive<u32> {
     let clocks = sequential.clocks_per_point.ceil() as u32;
     1..=clocks.min(LONGEST)
 }
 
-/// Returns a configuration as a pipeline. If the configuration is sequential, the pipeline is scheduled for the target, and if it
-/// cannot reach the default clock, for the fastest clock that it can reach.
+/// Returns a configuration as a pipeline with an interval. If the configuration is sequential, the pipeline is scheduled for
+/// the target. If such a pipeline cannot reach the default clock, it is scheduled for the fastest clock that it can reach.
 fn pipeline(device: &Device, base: &Config, target: Target, interval: u32) -> Result<Architecture> {
     let mut config = base.clone();
     config.set("architecture", Value::Text("pipelined".to_owned()));
@@ -128,9 +130,9 @@ fn pipeline(device: &Device, base: &Config, target: Target, interval: u32) -> Re
     Architecture::new(core, target)
 }
 
-/// Returns the sequential core of a configuration, and its pipelines from the longest interval to 1. A pipeline is left out if one
-/// with a shorter interval has no more multipliers, unless its interval is `kept`. For example, `cosine-power` has the intervals
-/// 8, 4, 3, 2 and 1: with 5, 6 and 7 it needs two multipliers, as with 4.
+/// Returns the sequential core of a configuration, and its pipelines from the longest interval to 1. It leaves out a pipeline
+/// if one with a shorter interval has no more multipliers, unless its interval is `kept`. For example, `cosine-power` has the
+/// intervals 8, 4, 3, 2 and 1: with 5, 6 and 7 it needs two multipliers, as with 4.
 ///
 /// # Errors
 /// Fails if the configuration makes no sequential core, or no pipeline.

@@ -45,8 +45,8 @@ pub struct Cost {
     pub mhz: f64,
 }
 
-/// Returns the family of a target. Standard cells have no model of their own and use ECP5, the nearest of the FPGAs,
-/// where a product is not split.
+/// Returns the FPGA family whose model estimates a target. Standard cells have no model of their own and use the model of ECP5,
+/// which is the most similar family.
 fn family(target: Target) -> &'static Family {
     target.family().unwrap_or(&ECP5)
 }
@@ -71,7 +71,7 @@ impl Cost {
             }
         }
         Self {
-            // A tenth of a look-up table is more than an estimate is worth.
+            // The estimate is not exact enough for more than one digit after the point.
             luts: (luts * 10.0).round() / 10.0,
             dsps,
             block_rams: block_rams(design, family),
@@ -86,8 +86,8 @@ impl Cost {
         area(target, self.luts, self.dsps, self.block_rams)
     }
 
-    /// Returns the resources that a usual chip of the target lacks, in words; empty if the core fits. For example, `it
-    /// does not fit the iCE40 UP5K: it takes 9 of 8 DSP blocks`.
+    /// Returns the resources that the usual chip of the target lacks, in words; empty if the core fits. For example, `it does
+    /// not fit the iCE40 UP5K: it takes 9 of 8 DSP blocks`.
     pub fn excess(&self, target: Target) -> String {
         let chip = &family(target).chips[0];
         let wanted = [self.luts.ceil() as u64, self.dsps, self.block_rams];
@@ -107,7 +107,7 @@ impl Cost {
 /// each such block.
 pub fn area(target: Target, luts: f64, dsps: u64, block_rams: u64) -> f64 {
     let [all_luts, all_dsps, all_blocks] = family(target).chips[0].has.map(|has| has as f64);
-    // A chip without DSP blocks needs none.
+    // On a chip without DSP blocks, a core takes none, so they cost nothing.
     let dsp = if all_dsps == 0.0 { 0.0 } else { (all_luts / all_dsps).round() };
     let block = (all_luts / all_blocks).round();
     luts + dsp * dsps as f64 + block * block_rams as f64
@@ -149,7 +149,7 @@ impl Features {
     }
 }
 
-/// Returns the number of DSP blocks for a product, with its operands in the order that takes fewer blocks.
+/// Returns the number of DSP blocks for a product. The operands are in the order that takes fewer blocks.
 fn dsps_of_product(design: &Design, family: &Family, a: NetId, b: NetId) -> u64 {
     let [a, b] = [a, b].map(|net| {
         let sign = if design.net(net).format.signed { family.estimate.sign } else { 0 };
@@ -173,8 +173,9 @@ fn dsps_one_way(family: &Family, first: u32, second: u32) -> u64 {
     blocks
 }
 
-/// Cuts an operand into slices of the width of a block, as Yosys does: whole slices and a rest. A rest of a single bit
-/// is a row of gates. For example, 35 bits for blocks of 16 are 16, 16 and 3, and 33 bits are 16 and 16.
+/// Returns the widths of the slices into which Yosys cuts an operand: slices of the width of a block, and a rest. A rest of a
+/// single bit is left out, because it becomes a row of gates. For example, 35 bits for blocks of 16 are 16, 16 and 3, and 33
+/// bits are 16 and 16.
 fn slices(operand: u32, block: u32) -> Vec<u32> {
     let mut slices = vec![block; (operand / block) as usize];
     let rest = operand % block;
@@ -184,7 +185,7 @@ fn slices(operand: u32, block: u32) -> Vec<u32> {
     slices
 }
 
-/// Returns the number of partial products of a product, with its operands in the order that has fewer of them. For example, on
+/// Returns the number of partial products of a product. The operands are in the order that has fewer of them. For example, on
 /// iCE40, whose blocks multiply 16 by 16 bits, a product of 20 by 12 bits has 2.
 fn blocks(family: &Family, a: u32, b: u32) -> u64 {
     let (wide, narrow) = family.timing.multiplier;
@@ -210,8 +211,8 @@ fn block_rams(design: &Design, family: &Family) -> u64 {
     blocks
 }
 
-/// Returns the number of block RAMs for a ROM. The word of a block shrinks as the number of words grows, by powers of
-/// two.
+/// Returns the number of block RAMs for a ROM. A block has fewer bits per word the more words it has: twice the words halve the
+/// bits.
 fn block_rams_of_rom(family: &Family, words: u64, width: u64) -> u64 {
     let (capacity, widest) = family.estimate.block;
     let mut block_width = widest;
@@ -230,7 +231,7 @@ fn period(design: &Design, family: &Family) -> f64 {
     let order = design.levelise().unwrap_or_default();
     let mut arrival = vec![0.0_f64; design.nets.len()];
     let mut longest = 0.0_f64;
-    // The products inside of multipliers with registers.
+    // The products that have a register directly behind them, in a registered multiplier.
     let mut registered: BTreeSet<NetId> = BTreeSet::new();
     for at in 0..design.registers.len() {
         if let Some(multiplier) = design.multiplier(RegId(at as u32)) {
@@ -263,7 +264,8 @@ fn cell_delay(design: &Design, family: &Family, id: NetId, driver: &Driver) -> f
         Driver::Op(Op::Mul(a, b)) if blocks(family, design.width(*a), design.width(*b)) > 1 => {
             delays.product + delays.chain(design.width(id) / 2)
         }
-        // As at the last fit: fewer levels than the schedules of pipelines count.
+        // The last fit of the model used these counts of levels. They are smaller than the counts for the schedules of
+        // pipelines.
         Driver::Op(Op::Equal(a, _)) => levels(2 * design.width(*a)),
         Driver::Op(Op::Any(a) | Op::All(a)) => levels(design.width(*a)),
         Driver::Op(Op::Mux { inputs, .. }) => levels(inputs.len() as u32),

@@ -1,4 +1,5 @@
-//! Searches for the smallest configuration: widens values until the error limit is kept, then narrows them as long as it is kept.
+//! Searches for the smallest configuration that keeps an error limit: it widens values until the limit is kept, and then
+//! narrows them as long as it stays kept.
 
 use std::cmp::Ordering;
 use std::collections::BTreeMap;
@@ -135,7 +136,7 @@ impl<'a> Search<'a> {
     fn compute(&self, config: &Config) -> Option<Candidate> {
         let contract = (self.device.contract)(config);
         let design = self.device.design(config).ok()?;
-        // A free key alone changes nothing in the interface, but two together may.
+        // A single free key never changes the interface, but two free keys together may.
         if !self.space.holds(&design, contract.as_ref()) {
             return None;
         }
@@ -155,7 +156,7 @@ impl<'a> Search<'a> {
         self.error(candidate) <= self.goal.error && self.is_possible(candidate)
     }
 
-    /// Returns whether the clock is fast enough, and there are no more DSP blocks than are allowed.
+    /// Returns whether a candidate has at most the allowed number of DSP blocks, and a clock that is fast enough.
     fn is_possible(&self, candidate: &Candidate) -> bool {
         self.has_dsps(candidate) && candidate.cost.mhz >= self.wanted_mhz(candidate)
     }
@@ -164,8 +165,8 @@ impl<'a> Search<'a> {
         self.goal.most_dsps.is_none_or(|most| candidate.cost.dsps <= most)
     }
 
-    /// Returns the clock that a candidate needs for the goal, in MHz. It is infinite if a rate is wanted and the
-    /// candidate shows no point. For example, 2 million points a second at 10 clocks a point need 20 MHz.
+    /// Returns the clock that a candidate needs for the goal, in MHz. It is infinite if a rate is wanted and the candidate
+    /// never shows a result. For example, 2 million points a second at 10 clocks a point need 20 MHz.
     fn wanted_mhz(&self, candidate: &Candidate) -> f64 {
         let of_rate = match (self.goal.rate, candidate.clocks) {
             (Some(rate), Some(clocks)) => rate * clocks,
@@ -175,7 +176,8 @@ impl<'a> Search<'a> {
         self.goal.clock.unwrap_or_default().max(of_rate)
     }
 
-    /// Returns the costs, the most important first. Candidates of equal costs differ in their text.
+    /// Returns the costs of a candidate, the most important first, and the text of its configuration. The text decides between
+    /// candidates with equal costs.
     fn order(&self, candidate: &Candidate) -> ([f64; 5], String) {
         (self.goal.order(candidate), candidate.config.to_toml(self.space.schema()))
     }
@@ -195,7 +197,7 @@ impl<'a> Search<'a> {
         smallest.map(|(_, candidate)| candidate)
     }
 
-    /// Returns the neighbours that differ by this number of changes.
+    /// Returns the candidates that differ from a candidate by the number `changes` of changed keys, 1 or 2.
     fn around(&self, candidate: &Candidate, changes: usize) -> Vec<Candidate> {
         let moves = self.space.moves(&candidate.config);
         let mut changed: Vec<Vec<(&'static str, Value)>> = Vec::new();
@@ -214,7 +216,10 @@ impl<'a> Search<'a> {
         all.filter_map(|values| self.look(&self.space.with(&candidate.config, values)?)).collect()
     }
 
-    /// Goes on to the neighbour with the smallest error until the goal is kept.
+    /// Moves from `base` to the neighbour that is nearest to the goal, again and again, until the goal is kept.
+    ///
+    /// # Errors
+    /// Fails if no neighbour is nearer to the goal.
     fn reach(&self, base: Candidate) -> Result<Candidate> {
         let mut here = base;
         while !self.keeps(&here) {
@@ -238,8 +243,8 @@ impl<'a> Search<'a> {
         Ok(here)
     }
 
-    /// Returns a number that is smaller for a candidate nearer to the goal. It is the error if `wants_error`. Otherwise
-    /// the error must be kept, and it is the number of DSP blocks if they are too many, and then the clock.
+    /// Returns a number that is smaller for a candidate nearer to the goal. If `wants_error` is set, it is the error. Otherwise
+    /// it is infinite if the error is too large, the number of DSP blocks if they are too many, and else the negative clock.
     fn distance(&self, candidate: &Candidate, wants_error: bool) -> f64 {
         if wants_error {
             self.error(candidate)
@@ -252,7 +257,7 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// Returns the clock that cannot be kept.
+    /// Fails with the fastest clock that was found, which is too slow for the goal.
     fn too_slow(&self, fastest: &Candidate) -> Result<Candidate> {
         let wanted = match (self.goal.rate, fastest.clocks) {
             (Some(rate), Some(clocks)) => {
@@ -268,7 +273,7 @@ impl<'a> Search<'a> {
         )
     }
 
-    /// Returns the number of DSP blocks that cannot be kept.
+    /// Fails with the smallest number of DSP blocks that was found, which is too large for the goal.
     fn too_many_dsps(&self, fewest: &Candidate) -> Result<Candidate> {
         bail!(
             "the fewest DSP blocks that were found with the error are {}, {} are allowed; a longer pipeline.interval has fewer",
@@ -277,7 +282,8 @@ impl<'a> Search<'a> {
         )
     }
 
-    /// Returns the error that says that the goal cannot be kept, and which term is in the way.
+    /// Fails with the smallest error that was found, which is too large for the goal. The message names the largest term of the
+    /// bound.
     fn out_of_reach(&self, nearest: &Candidate) -> Result<Candidate> {
         let unit = self.goal.unit;
         let mut largest: Option<&Term> = None;
@@ -301,7 +307,7 @@ impl<'a> Search<'a> {
         )
     }
 
-    /// Returns a smaller neighbour that keeps the goal.
+    /// Returns the smallest neighbour that keeps the goal, or `None` if it is not smaller than `here`.
     fn descend(&self, here: &Candidate, changes: usize) -> Option<Candidate> {
         let smallest = self.smallest(self.around(here, changes))?;
         let is_smaller = self.goal.order(&smallest) < self.goal.order(here);
@@ -350,8 +356,8 @@ impl TuningGoal {
     }
 }
 
-/// Returns a value with as many digits as show that it is above a limit, and six at least. For example, 0.5000001 and
-/// the limit 0.5 give `0.5000001`, and 0.75 gives `0.750000`.
+/// Returns a value with at least six digits after the point, and with as many more as show that it is above a limit. For
+/// example, 0.5000001 with the limit 0.5 gives `0.5000001`, and 0.75 gives `0.750000`.
 fn above(value: f64, limit: f64) -> String {
     for digits in 6..17 {
         let text = format!("{value:.digits$}");

@@ -11,14 +11,14 @@ use glint_core::registry::Device;
 use glint_golden::Contract;
 use glint_rtl::netlist::Design;
 
-/// Steps by which an integer is changed.
+/// The steps by which the value of an integer key is changed.
 const STEPS: [i64; 3] = [1, 2, 4];
 
-/// Tables of keys that define the computation and its domain.
+/// The tables of keys that define the computation and its domain.
 const STATEMENT: [&str; 2] = ["domain", "function"];
 
-/// The number of points at which formulas are compared. They are drawn like the points of a test: most of them where
-/// the formula is neither 0 nor flat.
+/// The number of points at which formulas are compared. They are drawn like the points of a test: at most of them the formula
+/// is neither 0 nor flat.
 const POINTS: u32 = 600;
 
 /// The configuration keys of a device that `glint tune` may change when it searches for better configurations: the core keeps its
@@ -27,7 +27,7 @@ pub struct SearchSpace {
     schema: Schema,
     free: Vec<&'static str>,
     outside: CoreInterface,
-    /// Whether microinstructions may be added.
+    /// Whether a changed configuration may have more microinstructions than the base.
     slower: bool,
 }
 
@@ -63,7 +63,7 @@ impl SearchSpace {
             return false;
         }
         for value in values {
-            // A value that does not go with the others says nothing.
+            // A value that is invalid together with the other values says nothing about the key.
             let Some(config) = self.with(base, &[(key.name, value)]) else { continue };
             let contract = (device.contract)(&config);
             let Ok(design) = device.design(&config) else { return false };
@@ -112,7 +112,7 @@ impl SearchSpace {
     }
 }
 
-/// Returns a configuration with values replaced; `None` if the device does not accept it.
+/// Returns a configuration with some values replaced, or `None` if the device does not accept the result.
 fn with(schema: &Schema, config: &Config, values: &[(&'static str, Value)]) -> Option<Config> {
     let mut all: Vec<(String, Value)> = Vec::new();
     for (name, before) in config.values() {
@@ -125,7 +125,8 @@ fn with(schema: &Schema, config: &Config, values: &[(&'static str, Value)]) -> O
     // A choice decides which other keys apply. The draft must not have keys that no longer apply.
     let mut draft = all.clone();
     draft.retain(|(name, _)| applies(schema, &all, name));
-    // Two keys that say the same thing: only one may be there.
+    // Two keys of the table `pipeline` may set the same thing, and only one of them may be given. Keys with their default are
+    // left out.
     draft.retain(|(name, value)| {
         schema.key(name).is_none_or(|key| !name.starts_with("pipeline.") || *value != key.default)
     });
@@ -135,8 +136,8 @@ fn with(schema: &Schema, config: &Config, values: &[(&'static str, Value)]) -> O
     values.iter().all(|(key, value)| config.value(key) == value).then_some(config)
 }
 
-/// Returns whether a key applies beside the other values: its condition holds, and the condition of the key that the
-/// condition names, and so on.
+/// Returns whether a key applies if the other keys have the values `values`. Its condition must hold, and so must the condition
+/// of the key that this condition names, and so on.
 fn applies(schema: &Schema, values: &[(String, Value)], name: &str) -> bool {
     let mut key = schema.key(name);
     while let Some(condition) = key.and_then(|key| key.condition) {
@@ -148,8 +149,7 @@ fn applies(schema: &Schema, values: &[(String, Value)], name: &str) -> bool {
     true
 }
 
-/// The interface of a core: its ports, its microinstructions, each at least a clock of a point, and its
-/// formula at some points.
+/// The interface of a core: its ports, its number of microinstructions, and the values of its formula at some points.
 struct CoreInterface {
     ports: Vec<String>,
     microinstructions: usize,
@@ -169,8 +169,8 @@ impl CoreInterface {
         }
     }
 
-    /// Returns whether `contract` has the same formula. At a jump of a formula, two values are right, and the widths
-    /// decide which. One of these must be a value of the other formula.
+    /// Returns whether `contract` has the same formula. At a jump of a formula, two values are right, and the widths decide
+    /// which one the hardware computes. One of the two values must be a value of the other formula.
     fn has_formula(&self, contract: &dyn Contract) -> bool {
         let others = formula(contract, &self.points);
         if others.len() != self.formula.len() {
@@ -185,7 +185,7 @@ impl CoreInterface {
     }
 }
 
-/// Returns the ports of a design as text. For example, `cos_gamma u0.20`.
+/// Returns the ports of a design as texts with name and format. For example, `cos_gamma u0.20`.
 fn ports(design: &Design) -> Vec<String> {
     let mut ports = Vec::new();
     for port in &design.ports {
@@ -195,7 +195,7 @@ fn ports(design: &Design) -> Vec<String> {
     ports
 }
 
-/// Returns the exact results at some points, with both sides of a jump.
+/// Returns the exact results at some points. Each result is a pair of values, which differ at a jump of the formula.
 fn formula(contract: &dyn Contract, points: &[Vec<i64>]) -> Vec<[f64; 2]> {
     let mut values = Vec::new();
     for point in points {
@@ -204,8 +204,7 @@ fn formula(contract: &dyn Contract, points: &[Vec<i64>]) -> Vec<[f64; 2]> {
     values
 }
 
-/// Returns the values that are tried to see the effect of a key: the values next to its own, and the ends of its
-/// range.
+/// Returns the values that are tried to find the effect of a key: the values next to its own, and the ends of its range.
 fn alternatives(key: &Key, value: &Value) -> Vec<Value> {
     let mut values = neighbours(&key.kind, value);
     match (&key.kind, value) {
@@ -220,8 +219,8 @@ fn alternatives(key: &Key, value: &Value) -> Vec<Value> {
     values
 }
 
-/// Returns the values next to one, inside the range. For example, the integer 8 has the neighbours 7, 9, 6, 10, 4 and
-/// 12. The list `[6, 6]` has `[5, 6]`, `[7, 6]`, `[6, 5]`, `[6, 7]`, `[6, 6, 6]` and `[6]`.
+/// Returns the values next to `value` that lie in the key's range. For example, the integer 8 has the neighbours 7, 9, 6, 10, 4
+/// and 12. The list `[6, 6]` has `[5, 6]`, `[7, 6]`, `[6, 5]`, `[6, 7]`, `[6, 6, 6]` and `[6]`.
 fn neighbours(kind: &KeyKind, value: &Value) -> Vec<Value> {
     match (kind, value) {
         (KeyKind::Integer { min, max }, Value::Integer(value)) => {

@@ -13,16 +13,16 @@ use glint_core::core::{TEST_POINTS, TEST_SEED};
 use glint_core::cosim::exhaustive::{Job, Proof, Record, Shard, ShardState};
 use glint_golden::{Contract, Sweep};
 
-/// Results that lock-step compares, and with full effort.
+/// The number of results that lockstep compares: without full effort, and with it.
 const POINTS: [u64; 2] = [TEST_POINTS, 100 * TEST_POINTS];
 
-/// Without full effort a proof has no more evaluations than some seconds allow.
+/// The largest number of evaluations of a proof without full effort. They take some seconds.
 const EVALUATIONS: u64 = 1 << 28;
 
-/// About how many evaluations of `f` of a recorded proof are made again.
+/// The approximate number of evaluations of `f` that are repeated for a recorded proof.
 const AGAIN: u64 = 1 << 24;
 
-/// Without full effort no more faults than this are planted, evenly from all: a minute or two.
+/// The largest number of faults that are planted without full effort, spread evenly over all faults. They take a minute or two.
 const MOST_FAULTS: usize = 1 << 11;
 
 /// Checks the design rules of the netlist that the description has built.
@@ -140,7 +140,8 @@ fn record(subject: &CheckSubject<'_>) -> Result<Option<Record>> {
     Record::find(subject.proofs, &digest, core.contract.as_ref())
 }
 
-/// Returns the whole proof. If the proof is long, it returns the proof's record, checked again in part.
+/// Runs the exhaustive check of the bound and returns its finding. If the check is long, it returns the finding of a record of
+/// the check, and repeats a part of the evaluations.
 fn contract(subject: &CheckSubject<'_>, progress: &(dyn Fn(u64) + Sync)) -> Result<Finding> {
     let contract = subject.core.contract.as_ref();
     if !contract.bound().is_stated() {
@@ -169,7 +170,7 @@ fn contract(subject: &CheckSubject<'_>, progress: &(dyn Fn(u64) + Sync)) -> Resu
     .open(job.f.sweep().omits.clone()))
 }
 
-/// Returns a sweep that leaves something out proves nothing.
+/// Returns the verdict of a sweep without failures. A sweep that leaves out combinations has only passed, and proves nothing.
 fn of_sweep(sweep: &Sweep) -> CheckVerdict {
     if sweep.omits.is_empty() { CheckVerdict::Proved } else { CheckVerdict::Passed }
 }
@@ -277,7 +278,7 @@ pub const MUTATION: Check = Check {
             let finding = Finding::new(CheckVerdict::Passed, domain, words);
             return Ok(finding.open(open));
         }
-        // The fault-free design passes the same test: that too little is noticed speaks of the test.
+        // The fault-free design passes the same test. Too few noticed faults therefore show a weak test, and not a wrong core.
         let unnoticed =
             found.iter().filter(|found| found.verdict == mutate::MutantVerdict::Undecided);
         let unnoticed: Vec<&NetlistFault> = unnoticed.map(|found| &found.fault).collect();
@@ -297,8 +298,8 @@ pub const MUTATION: Check = Check {
     },
 };
 
-/// Returns the faults to plant, and how many there are in all. For example, without full effort it returns 2048 of 10
-/// 457 faults.
+/// Returns the faults to plant, and the number of all faults. For example, without full effort it returns 2048 of 10 457
+/// faults, and 10 457.
 fn faults(subject: &CheckSubject<'_>) -> (Faults, usize) {
     let mut faults = Faults::of(&subject.core.design);
     let all = faults.len();
@@ -308,10 +309,10 @@ fn faults(subject: &CheckSubject<'_>) -> (Faults, usize) {
     (faults, all)
 }
 
-/// The most faults that are named.
+/// The largest number of faults that a finding names.
 const NAMED: usize = 20;
 
-/// Lists some of the faults, and says how many more there are. For example, 23 ids give 20 of them and `3 more`.
+/// Returns the ids of some faults as text, and the number of the others. For example, 23 ids give 20 of them and `3 more`.
 fn named(ids: &[String]) -> String {
     let named = ids[..ids.len().min(NAMED)].join(", ");
     match ids.len() - ids.len().min(NAMED) {

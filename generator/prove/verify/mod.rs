@@ -31,7 +31,7 @@ pub struct CheckSubject<'a> {
     pub path: &'a str,
     /// The core that is built from the configuration.
     pub core: &'a Core,
-    /// How much work the verification may do.
+    /// The amount of work that the verification may do.
     pub effort: Effort,
     /// The directory with the records that `glint cosim --exhaustive --json` writes.
     pub proofs: &'a Path,
@@ -44,7 +44,7 @@ impl<'a> CheckSubject<'a> {
         Self { path, core, effort, proofs, files: OnceLock::new() }
     }
 
-    /// Returns every file that `generate` writes.
+    /// Returns every file that `glint generate` writes. They are made at the first call.
     fn files(&self) -> Result<&OutputFiles> {
         if let Some(files) = self.files.get() {
             return Ok(files);
@@ -53,7 +53,7 @@ impl<'a> CheckSubject<'a> {
         Ok(self.files.get_or_init(|| files))
     }
 
-    /// Returns the core's files that tools read for a target, pairs of a plain name and contents.
+    /// Returns the files of the core that tools read for a target, as pairs of a file name without directories and contents.
     fn sources(&self, target: &str) -> Result<Vec<(String, String)>> {
         Ok(self.files()?.sources_for(FileKind::CORE_SOURCES, target))
     }
@@ -98,7 +98,7 @@ pub enum CheckVerdict {
     NotRun,
     /// The check is a second proof of a fact that another check shows, and it did not succeed. The finding says why.
     Unconfirmed,
-    /// The user left the check out on purpose.
+    /// The check was left out on purpose, by the user or because it would take long without `--full`.
     LeftOut,
     /// The check does not apply to this configuration. For example, a sequential core has no pipeline to compare.
     NotApplicable,
@@ -162,7 +162,7 @@ impl Finding {
         Self { domain: domain.into(), ..Self::without(verdict, words) }
     }
 
-    /// Makes the finding of a check that has nothing to say here.
+    /// Makes a finding that has only a verdict and a reason.
     fn without(verdict: CheckVerdict, why: impl Into<String>) -> Self {
         Self { verdict, words: why.into(), ..Self::default() }
     }
@@ -178,7 +178,8 @@ impl Finding {
     }
 }
 
-/// The function that runs a check, with its tools; it tells the steps that are done.
+/// The function that runs a check. It gets the subject, the check's tools and a function to call with the number of finished
+/// steps.
 type CheckFunction = fn(&CheckSubject<'_>, &[Tool], &(dyn Fn(u64) + Sync)) -> Result<Finding>;
 
 /// A check of a configuration, which asks one question.
@@ -192,9 +193,9 @@ pub struct Check {
     pub question: &'static str,
     /// The files or structures that the check reads, in words.
     pub reads: &'static str,
-    /// The tools outside Glint that it runs.
+    /// The names of the outside tools that the check runs.
     tools: &'static [&'static str],
-    /// How many steps its progress has.
+    /// Returns the number of steps of the check's progress.
     steps: fn(&CheckSubject<'_>) -> u64,
     run: CheckFunction,
 }
@@ -268,7 +269,7 @@ impl Check {
                 return (Vec::new(), why);
             }
         };
-        // A tool that does not tell its version will say more about it when it is run.
+        // A tool that does not tell its version is no error here. Its failure shows when the check runs the tool.
         let versions = tools.iter().filter_map(|tool| tool.version().ok());
         let versions = versions.collect();
         let limit = subject.effort.time_limit;
@@ -303,7 +304,7 @@ pub struct CheckAnswer {
     /// The finding of the check: its verdict and reasons.
     #[serde(flatten)]
     pub finding: Finding,
-    /// How long the check took. It is not serialised, because it differs from run to run.
+    /// The time that the check took. It is not serialised, because it differs from run to run.
     #[serde(skip)]
     pub timing: CheckTime,
 }
@@ -323,7 +324,7 @@ pub struct CheckTime {
 pub enum Conclusion {
     /// Every check that applies to the configuration ran, and every checked property holds.
     Verified,
-    /// The user left checks out on purpose. Every other check ran, and every checked property holds.
+    /// Checks were left out on purpose. Every other check ran, and every checked property holds.
     InPart,
     /// Nothing failed, but a check could not be run to its end, or could not decide.
     Incomplete,

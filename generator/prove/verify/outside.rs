@@ -23,19 +23,19 @@ use glint_tools::synthesis::synthesise;
 use glint_tools::transient::Directory;
 use glint_tools::{Limits, PROOF_LIMITS, VerilogSimulator, elaborate, lint, prove, run_bench};
 
-/// Results of a bench, and with full effort.
+/// The number of results of a bench: without full effort, and with it.
 const POINTS: [u64; 2] = [200, 20_000];
 
-/// How long it may take to write the statements for Gappa, and to prove one, but with full effort.
+/// Without full effort, the time limit for writing the statements for Gappa, and for proving one of them.
 const STATEMENT: Duration = Duration::from_secs(10);
 
-/// How long the solver may take to prove a pipeline equal to its sequential core, but with full effort.
+/// Without full effort, the time limit of the solver for the proof that a pipeline equals its sequential core.
 const EQUAL: Duration = Duration::from_secs(300);
 
 /// The version of cocotb that the benches in Python are written for.
 const COCOTB_VERSION: &str = "2.1.0";
 
-/// Results of a bench around a netlist.
+/// The number of results of a bench around a netlist.
 const GATE_POINTS: u64 = 40;
 
 /// Proves the error bound of the contract with Gappa.
@@ -70,7 +70,8 @@ pub const CERTIFICATE: Check = Check {
             }
             !matches!(outcome, Ok(ProofOutcome::Proved(..)))
         };
-        // The first that is open ends it, whichever is done first.
+        // The first statement without a proof ends the check. `find_first` takes the first one in the list, whichever proof
+        // ends first.
         if let Some((statement, outcome)) = statements.par_iter().map(outcome).find_first(open) {
             outcome?;
             let why = format!(
@@ -178,7 +179,7 @@ pub const TEXT: Check = Check {
     },
 };
 
-/// Returns the finding if the solver proves nothing and no differing point is found.
+/// Returns the finding if the solver does not decide, and no point with a difference is found.
 fn undecided(subject: &CheckSubject<'_>, open: equality::Open, limit: Duration) -> Finding {
     let limit = limit.as_secs();
     match open {
@@ -323,7 +324,7 @@ pub const FORMAL: Check = Check {
     tools: &["yosys", "yosys-smtbmc", "z3"],
     steps: |_| 1,
     run: |subject, _, _| {
-        // All files are in one directory. The forms of modules for one target are left out.
+        // All files are in one directory, without their folders. Modules for one target only are left out.
         let mut plain = Vec::new();
         for file in subject.files()? {
             if file.kind.folder() != "software" && file.target.is_none() {
@@ -391,12 +392,12 @@ pub const COCOTB: Check = Check {
     },
 };
 
-/// Writes everything that is emitted into a directory of its own.
+/// Writes all emitted files into a new temporary directory.
 fn written(subject: &CheckSubject<'_>) -> Result<Directory> {
     directory_of(subject.files()?.iter().chain([&package::driver()]))
 }
 
-/// Writes files into a directory of their own.
+/// Writes files into a new temporary directory, each at its path.
 pub(super) fn directory_of<'f>(
     files: impl IntoIterator<Item = &'f OutputFile>,
 ) -> Result<Directory> {

@@ -72,7 +72,7 @@ pub fn page(record: &VerificationRecord, timings: &[CheckTime]) -> Result<String
     Ok(text)
 }
 
-/// Returns the class of a verdict or a conclusion in the style sheet: its word for scripts. For example, the class of
+/// Returns the class of a verdict or a conclusion in the style sheet, which is also its name in JSON. For example, the class of
 /// [`super::CheckVerdict::LimitReached`] is `limit-reached`.
 fn class(verdict: impl Serialize) -> String {
     json!(verdict).as_str().unwrap_or_default().to_owned()

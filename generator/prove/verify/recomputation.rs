@@ -1,8 +1,9 @@
-//! Checks the error bounds by a generated C program that computes every combination of operands. The program evaluates the formulas
-//! with MPFR and with the C library, and not with Glint's arithmetic; the results are those that the C model of the core computes.
+//! Checks the error bound with a generated C program that computes every combination of operands. The program evaluates the
+//! formulas with MPFR and with the C library, and not with Glint's arithmetic. It compares them with the results of the core's
+//! C model.
 //!
-//! For example, the program for `x / y` with operands of 12 bits compares 2^24 results with the formula in about a second: it takes
-//! MPFR only where doubles with a margin for their rounding leave the answer open.
+//! For example, the program for `x / y` with operands of 12 bits compares 2^24 results with the formula in about a second. It
+//! uses MPFR only if doubles, with a margin for their rounding, cannot decide.
 
 use std::fs;
 use std::path::Path;
@@ -20,13 +21,14 @@ use glint_core::package::{FileKind, OutputFile};
 use glint_golden::Operand;
 use glint_tools::Tool;
 
-/// The most operands of a function that are recomputed without full effort. MPFR computes each of them.
+/// The largest number of operands of a function that are recomputed without full effort. MPFR computes each of them.
 const MOST_OPERANDS: u128 = 1 << 20;
 
-/// The most combinations of an expression's operands that are recomputed without full effort. Doubles decide most of them.
+/// The largest number of combinations of an expression's operands that are recomputed without full effort. Doubles decide most
+/// of them.
 const MOST_COMBINATIONS: u128 = 1 << 24;
 
-/// The exit code of the program if it decides all combinations but some.
+/// The exit code of the program if it finds no error but cannot decide some combinations.
 const SOME_UNDECIDED: i32 = 3;
 
 /// Checks the error bound with a generated C program, which computes every combination of operands and compares the results with
@@ -90,14 +92,14 @@ struct ProgramCompiler<'a> {
 }
 
 impl ProgramCompiler<'_> {
-    /// Compiles a source. Returns whether the compiler accepts it, and what the compiler prints.
+    /// Compiles the source file `source`. Returns whether the compiler accepts it, and the output of the compiler.
     fn compile(&self, source: &str) -> Result<(bool, String)> {
         let arguments = ["-std=c99", "-O2", "-o", "recompute", source, "-lmpfr", "-lgmp", "-lm"];
         let run = self.tool.run(arguments, self.dir, self.subject.effort.time_limit)?;
         Ok((run.status.success(), run.output))
     }
 
-    /// Returns whether a program that needs nothing but MPFR compiles.
+    /// Returns whether the compiler can compile a program that includes MPFR, so that MPFR is installed.
     fn has_mpfr(&self) -> Result<bool> {
         let probe = "#include <mpfr.h>\nint main(void) { return 0; }\n";
         fs::write(self.dir.join("probe.c"), probe)

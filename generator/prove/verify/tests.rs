@@ -1,4 +1,5 @@
-//! Plants a fault for each check of `glint verify`, and tests that this check finds it and no other check does.
+//! Tests `glint verify`: the worst verdict of its checks decides, and a fault in the design fails the check `lockstep` but not
+//! the check `contract`.
 
 use std::path::Path;
 use std::time::Duration;
@@ -8,7 +9,7 @@ use glint_config as config;
 use glint_core::core::Core;
 use glint_core::registry::Registry;
 
-/// Returns a narrow device for which every check has a finding.
+/// Returns the core of a narrow configuration of `rough`.
 fn core() -> Core {
     let registry = Registry::catalogue();
     let text = include_str!("../../../configs/reduced/rough.toml");
@@ -63,7 +64,7 @@ fn a_fault_in_the_design_fails_the_lockstep() {
     assert_eq!(record.conclusion, Conclusion::Failed);
     let lockstep = finding(&record, "lockstep");
     assert_eq!(lockstep.verdict, CheckVerdict::Failed);
-    // Its reproducer: seed, clock, microinstruction, signal, both values.
+    // The failure names the seed, the clock, the microinstruction, the signal and both values.
     for part in [
         "seed ",
         "after clock ",
@@ -73,6 +74,6 @@ fn a_fault_in_the_design_fails_the_lockstep() {
     ] {
         assert!(lockstep.failures[0].contains(part), "{:?}", lockstep.failures);
     }
-    // Its sweep leaves values of cos_dgamma out.
+    // This check does not read the netlist. Its verdict is not a proof, because its sweep leaves out some values of cos_dgamma.
     assert_eq!(finding(&record, "contract").verdict, CheckVerdict::Passed);
 }

@@ -1,6 +1,6 @@
 //! Finds the configuration keys that would reduce the error bound of a core.
 //!
-//! If the core does not keep its accuracy contract, the module looks for changes that make it do so. Otherwise it names the one
+//! If the core does not keep its accuracy contract, the module looks for changes with which it does. Otherwise it names the one
 //! key that reduces the bound most. For example, it suggests `intensity.fraction = 17` in place of 16.
 
 use std::fmt;
@@ -12,13 +12,13 @@ use glint_core::core::Core;
 use glint_core::registry::Device;
 use glint_golden::{Bound, Contract};
 
-/// Steps by which an integer is changed. A larger step is tried only if no smaller one helps.
+/// The steps by which the value of an integer key is changed. A larger step is tried only if no smaller one reduces the bound.
 const STEPS: [i64; 4] = [1, 2, 4, 8];
 
-/// The least gain that counts, in output units.
+/// The smallest reduction of the bound that counts, in output units.
 const GAIN: f64 = 1e-6;
 
-/// How many changes are tried one after the other to keep the contract.
+/// The largest number of changes that are tried one after the other until the core keeps its contract.
 const MOST: usize = 40;
 
 /// Changes of keys that make the error bound smaller. For example, as text: "`intensity.fraction = 17` in place of 16
@@ -41,7 +41,7 @@ impl fmt::Display for Advice {
     }
 }
 
-/// A configuration with a smaller bound.
+/// A changed configuration and its bound, which is smaller than before the change.
 struct Better {
     config: Config,
     bound: Bound,
@@ -69,8 +69,9 @@ pub fn of(core: &Core) -> Option<Advice> {
     Some(single)
 }
 
-/// Returns the change of one key that the bound depends on, by as little as helps, that brings the bound down most.
-/// Returns `None` if no change does. Domains stay as they are: to narrow a domain is to ask for less.
+/// Returns the configuration in which one key is changed so that the bound becomes smallest. Only keys on which the bound
+/// depends are changed, by the smallest of [`STEPS`] that reduces the bound. Returns `None` if no step does. Keys of the table
+/// `domain` are never changed, because a narrower domain promises less.
 fn better(device: &Device, config: &Config, bound: &Bound) -> Option<Better> {
     let schema = (device.schema)();
     for step in STEPS {
@@ -109,8 +110,8 @@ fn output_formats(contract: &dyn Contract) -> Vec<Format> {
     contract.outputs().iter().map(|output| output.format).collect()
 }
 
-/// Leaves out the changes without which the contract is kept too. For example, of two changes it keeps one, if that one
-/// is enough.
+/// Undoes the changes that are not needed: without them, the core keeps its contract too. For example, if one of two changes is
+/// enough, the other one is undone.
 fn needed(device: &Device, config: &Config, mut kept: Better) -> Better {
     let schema = (device.schema)();
     for (key, ..) in changes(device, config, &kept.config) {
@@ -143,7 +144,8 @@ fn changes(
     changes
 }
 
-/// Returns the keys that the bound's terms name and the choices beside them, each with the values next to its own.
+/// Returns the keys that the bound depends on, each with the values that differ from its own by `step`. These are the keys that
+/// the terms of the bound name, and the choices and flags in the tables of these keys.
 fn candidates(
     schema: &Schema,
     config: &Config,
@@ -174,7 +176,8 @@ fn table_of(key: &str) -> &str {
     }
 }
 
-/// Returns the values that differ from `value` by `step`. For example, the integer 8 and the step 2 give 6 and 10.
+/// Returns the values that differ from `value` by `step`. For example, the integer 8 and the step 2 give 6 and 10. A choice or
+/// a flag gives all its other values.
 fn neighbours(kind: &KeyKind, value: &Value, step: i64) -> Vec<Value> {
     match (kind, value) {
         (_, Value::Integer(value)) => [value - step, value + step].map(Value::Integer).to_vec(),
@@ -198,7 +201,7 @@ fn neighbours(kind: &KeyKind, value: &Value, step: i64) -> Vec<Value> {
     }
 }
 
-/// Returns the configuration with another value for a key; `None` if the device does not accept it.
+/// Returns the configuration with the value `value` for `key`, or `None` if the device does not accept it.
 fn with(schema: &Schema, config: &Config, key: &str, value: &Value) -> Option<Config> {
     let mut given = Vec::new();
     for (name, before) in config.values() {

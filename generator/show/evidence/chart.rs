@@ -8,7 +8,7 @@ use serde::Serialize;
 pub enum AxisScale {
     /// Values are spaced evenly.
     Linear,
-    /// Powers of ten are spaced evenly. Values that are not positive have no place on such an axis.
+    /// Powers of ten are spaced evenly. Such an axis cannot show 0 or a negative value.
     Logarithmic,
 }
 
@@ -35,8 +35,9 @@ impl ChartAxis {
         Self { scale: AxisScale::Logarithmic, ..Self::linear(label, low, high) }
     }
 
-    /// Returns the position of a value on the axis: the value itself, or its power of ten on a logarithmic axis. Returns `None`
-    /// if the value has no position. For example, 100 is at 2 on a logarithmic axis, and 0 has no position there.
+    /// Returns the position of a value on the axis: the value itself, or its logarithm to base 10 on a logarithmic axis.
+    /// Returns `None` if the value has no position. For example, 100 is at 2 on a logarithmic axis, and 0 has no position
+    /// there.
     pub fn place(&self, value: f64) -> Option<f64> {
         let place = match self.scale {
             AxisScale::Linear => value,
@@ -104,8 +105,9 @@ pub fn even(low: f64, high: f64, steps: u32) -> Vec<f64> {
     (0..=steps).map(|step| low + (high - low) * f64::from(step) / f64::from(steps)).collect()
 }
 
-/// Returns integers from `low` to `high` that a logarithmic axis shows evenly, about `per_decade` to a power of ten;
-/// both ends are among them. For example, 1 to 1000 with 4 for each power of ten begins with 1, 2, 3, 6 and 10.
+/// Returns the integers from `low` to `high` that are spaced evenly on a logarithmic axis, about `per_decade` of them for each
+/// power of ten. `low` and `high` are among them. For example, 1 to 1000 with 4 for each power of ten begins with 1, 2, 3, 6
+/// and 10.
 pub fn exponents(low: u32, high: u32, per_decade: u32) -> Vec<u32> {
     let value = |step: u32| {
         let value = f64::from(low) * libm::pow(10.0, f64::from(step) / f64::from(per_decade));

@@ -19,10 +19,10 @@ pub const ANGLES_PER_DEGREE: u32 = 100;
 /// The number of angles at which [`accuracy`] compares: 9001, from 0 to 90° in steps of 0.01°, both ends included.
 pub const ANGLES: u32 = 90 * ANGLES_PER_DEGREE + 1;
 
-/// The exponent n at which the clocks of a point are counted, if they depend on it.
+/// The exponent n at which the clocks per point are counted, for devices whose number of clocks depends on n.
 pub const EXPONENT: f64 = 35.0;
 
-/// An angle at which a device is timed, in degrees.
+/// The angle γ, in degrees, at which the clocks per point are counted.
 const TYPICAL: f64 = 10.0;
 
 /// The largest and the mean absolute error over all [`ANGLES`].
@@ -35,7 +35,7 @@ pub struct Spread {
 }
 
 impl Spread {
-    /// Takes the error at one angle of the grid.
+    /// Adds the error at one of the [`ANGLES`].
     fn take(&mut self, error: f64) {
         let error = error.abs();
         self.largest = self.largest.max(error);
@@ -75,7 +75,7 @@ pub fn accuracy(contract: &dyn Contract, n: f64) -> Option<Accuracy> {
     let mut accuracy = Accuracy::default();
     for step in 0..ANGLES {
         let gamma = (f64::from(step) / f64::from(ANGLES_PER_DEGREE)).to_radians();
-        // cos 90° is not 0 in f64, which n = 0 would show.
+        // In f64, cos 90° is not 0. For n near 0 the difference would be visible.
         let cosine = if step == ANGLES - 1 { 0.0 } else { libm::cos(gamma) };
         let control = highlight.at(gamma, n)?;
         let exact = formulas::blinn(cosine, n);
@@ -151,7 +151,7 @@ mod tests {
     use glint_golden::highlight::{Products, Reflectance};
     use glint_rtl::dsl::{Designer, end, fixture, loop_while, step, valid};
 
-    /// cosⁿγ itself, but for an eighth too much: one fraction bit of the cosine, eight of f.
+    /// A device that computes half of cosⁿγ plus an eighth. The cosine has one fraction bit, and f has eight.
     struct Line;
 
     impl Line {
@@ -205,21 +205,21 @@ mod tests {
 
     #[test]
     fn errors_are_told_apart() {
-        // n = 1: c is rounded to halves, f is half of it and an eighth.
+        // For n = 1, the cosine c is rounded to halves, the formula is c/2, and f is c/2 + 1/8.
         let found = accuracy(&Line::contract(), 1.0).expect("within the domain");
         assert_eq!(found.fixed_point, Spread { largest: 0.125, mean: found.fixed_point.mean });
         assert!((found.fixed_point.mean - 0.125).abs() < 1e-12);
         assert_eq!(found.formula.largest, 0.5);
-        // cos γ near 1/4 and 3/4 is rounded furthest.
+        // Cosines near 1/4 and 3/4 have the largest rounding error.
         assert!((found.operands.largest - 0.25).abs() < 1e-3, "{found:?}");
-        // At γ = 0: 1/2 + 1/8 for 1.
+        // At γ = 0, f is 1/2 + 1/8 instead of 1.
         assert_eq!(found.whole.largest, 0.375);
         assert_eq!(accuracy(&Line::contract(), 16.0), None);
     }
 
     #[test]
     fn a_line_counts_by_its_points() {
-        // The clock of `start`, words 0 and 1, 16 points, the last word.
+        // The clocks are: the clock of `start`, words 0 and 1, 16 points, and the last word.
         let clocks = clocks_per_point(&design(), &Line::contract(), 3.0).expect("it ends");
         assert_eq!(clocks, 20.0 / 16.0);
     }
@@ -233,7 +233,7 @@ mod tests {
             d.output("scaled_out", d.mul("scaled", a, b));
             Vec::new()
         });
-        // A sign bit each.
+        // Each operand of the second product has a sign bit.
         let sizes: Vec<String> =
             multipliers(&design).iter().map(MultiplierSize::to_string).collect();
         assert_eq!(sizes, ["9x5", "4x4"]);

@@ -19,15 +19,15 @@ pub const EXPONENTS: [u32; 20] =
 /// The exponents with a curve over the angle.
 const SHOWN: [u32; 5] = [2, 8, 35, 128, 1000];
 
-/// How far out the curves over the angle go, in `√n·γ`.
+/// The largest value of `√n·γ` on the curves over the angle.
 const REACH: f64 = 4.0;
 
-/// The number of places of a curve over the angle, and the number of angles about each place. The worst of these
-/// angles counts.
+/// The number of steps between the first and the last position of a curve over the angle. At each position, errors are measured
+/// in [`ANGLES`] steps from half a step before to half a step after it, and the largest one counts.
 const PLACES: u32 = 100;
 const ANGLES: u32 = 12;
 
-/// Smaller errors are shown at the bottom of a logarithmic axis.
+/// The lowest error on a logarithmic axis. Smaller errors are shown there.
 const FLOOR: f64 = 1e-6;
 
 /// The error curves of a device: its errors over the exponent n and over the angle γ, with the facts that a page shows next to
@@ -53,7 +53,7 @@ pub struct DeviceCurves {
 pub struct AtExponent {
     /// The exponent n of the highlight.
     pub n: u32,
-    /// The largest error of the device's formula against `cosⁿγ`, at this exponent.
+    /// The largest error of the device's formula against `cosⁿγ` at this exponent.
     pub formula: f64,
     /// The largest error of the fixed-point arithmetic at this exponent: the computed reflectance f against the formula at the
     /// quantised operands.
@@ -66,7 +66,8 @@ pub struct AtExponent {
 /// caller can show progress.
 pub const STEPS: usize = EXPONENTS.len() + SHOWN.len();
 
-/// Errors at one angle.
+/// The errors of `f` at one angle: the signed error of the formula against `cosⁿγ`, and the absolute error of the fixed-point
+/// arithmetic against the formula.
 #[derive(Clone, Copy, Default)]
 struct AtAngle {
     formula: f64,
@@ -132,14 +133,14 @@ pub fn configuration(
     }
 }
 
-/// Returns `√n·γ` at the places of a curve over the angle.
+/// Returns the values of `√n·γ` at which a curve over the angle has values: from 0 to 4 in 100 steps.
 fn places() -> Vec<f64> {
     even(0.0, REACH, PLACES)
 }
 
-/// Returns the signed formula error at each place, and the largest fixed-point error about it. Both are NaN beyond 90°,
-/// because nothing is reflected there. For example, the curve of n = 2 ends at √n·γ = 2.2. Returns `None` if the
-/// operands cannot denote `n`.
+/// Returns the signed formula error at each position, and the largest fixed-point error near it. Both are NaN beyond 90°,
+/// because nothing is reflected there. For example, the curve of n = 2 ends at √n·γ = 2.2. Returns `None` if the operands
+/// cannot represent `n`.
 fn over_angle(contract: &dyn Contract, n: f64) -> Option<Vec<AtAngle>> {
     let highlight = contract.highlight()?;
     let half = REACH / f64::from(PLACES) / 2.0;
@@ -159,7 +160,7 @@ fn over_angle(contract: &dyn Contract, n: f64) -> Option<Vec<AtAngle>> {
     Some(curve)
 }
 
-/// Returns the errors at the angle x/√n. Returns `None` if the operands cannot denote the angle and `n`.
+/// Returns the errors at the angle γ = x/√n. Returns `None` if the operands cannot represent the angle and `n`.
 fn at_angle(highlight: &Highlight, x: f64, n: f64) -> Option<AtAngle> {
     let gamma = (x / n.sqrt()).clamp(0.0, FRAC_PI_2);
     let control = highlight.at(gamma, n)?;
@@ -250,7 +251,7 @@ fn charts(
     vec![over_n, over_gamma, fixed_point]
 }
 
-/// Returns a round number that no value exceeds. For example, values up to 0.013 give 0.02.
+/// Returns a round number that is at least as large as every finite absolute value. For example, values up to 0.013 give 0.02.
 fn reach(series: &[Series]) -> f64 {
     let mut largest: f64 = 0.0;
     for value in series.iter().flat_map(|series| &series.values) {
@@ -286,10 +287,10 @@ mod tests {
         let found = curves();
         assert_eq!(found.largest_colour, 255.0);
         assert_eq!(found.exponents.len(), EXPONENTS.len());
-        // For n = 16 = m the formula is c to the 16th: nothing but the fixed point is left.
+        // For n = 16 = m, the formula is c to the 16th power, which is cosⁿγ itself. Only the fixed-point error remains.
         let at = |n| found.exponents.iter().find(|at| at.n == n).expect("measured");
         assert!(at(16).formula < 1e-12, "{:?}", at(16));
-        // The square's share beyond the peak: e^(-2) - 0 is far below, W(1000) misses by about 0.01.
+        // The square of the formula is nearly 0 beyond the peak, where e^(-2) would be right; W(1000) is wrong by about 0.01.
         assert!((0.005..0.02).contains(&at(1000).formula), "{:?}", at(1000));
         for at in &found.exponents {
             let units = 255.0 * at.fixed_point + 0.5;

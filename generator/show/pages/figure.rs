@@ -6,7 +6,7 @@ use rayon::prelude::*;
 use super::plots;
 use crate::evidence::chart::{AxisScale, Chart};
 
-/// The rows of the table beside a plot.
+/// The number of rows of the table beside a plot.
 const ROWS: usize = 11;
 
 /// A chart as a page shows it: plot, legend and table.
@@ -52,7 +52,8 @@ fn figure<'a>(chart: &'a Chart, source: &'a str) -> Result<Figure<'a>> {
     Ok(Figure { chart, source, svg: plots::svg(chart)?, legend, rows })
 }
 
-/// Returns a value in a table: errors on a logarithmic axis keep their magnitude.
+/// Returns a value as the table shows it: in scientific notation if the axis is logarithmic, otherwise with four digits after
+/// the point. NaN is a dash.
 fn cell(value: f64, scale: AxisScale) -> String {
     match scale {
         _ if value.is_nan() => "\u{2013}".to_owned(),

@@ -5,14 +5,14 @@
 
 use super::markup::html;
 
-/// Functions whose names may carry a power, and whose parentheses may go around a single name.
+/// The functions that may have an exponent after the name, such as `cos^2(x)`. Parentheses around a single name are not shown.
 const FUNCTIONS: [&str; 4] = ["cos", "sin", "tan", "log"];
 
-/// Words between formulas.
+/// The words that may occur between formulas. They are shown as text.
 const PROSE: [&str; 10] =
     ["by", "where", "stretched", "if", "for", "with", "when", "and", "or", "otherwise"];
 
-/// Letters by their names.
+/// The Greek letters that a formula writes by name.
 const GREEK: [(&str, &str); 12] = [
     ("alpha", "α"),
     ("beta", "β"),
@@ -44,7 +44,7 @@ pub fn mathml(text: &str) -> Option<String> {
     }
 }
 
-/// Typesets a formula, or returns the plain text as code.
+/// Returns a formula as HTML: typeset if the parser understands it, otherwise the plain text as code.
 pub fn typeset(text: &str) -> String {
     match mathml(text) {
         Some(formula) => format!("<div class=\"formula\">{formula}</div>"),
@@ -52,7 +52,8 @@ pub fn typeset(text: &str) -> String {
     }
 }
 
-/// Splits a formula into names, numbers and signs. For example, `n/2 + 1` has the tokens `n`, `/`, `2`, `+` and `1`.
+/// Splits a formula into names, numbers and signs. Returns `None` if the text has another character. For example, `n/2 + 1` has
+/// the tokens `n`, `/`, `2`, `+` and `1`.
 fn tokens(text: &str) -> Option<Vec<&str>> {
     let mut tokens = Vec::new();
     let mut rest = text.trim_start();
@@ -74,7 +75,7 @@ fn tokens(text: &str) -> Option<Vec<&str>> {
     Some(tokens)
 }
 
-/// A part of a formula: its MathML, and the MathML without the parentheses around it, if it has some.
+/// A part of a formula: its MathML, and, if it has parentheses around it, the MathML inside them.
 struct FormulaPart {
     mathml: String,
     inside: Option<String>,
@@ -85,7 +86,7 @@ impl FormulaPart {
         Self { mathml, inside: None }
     }
 
-    /// Returns the part as a numerator, a denominator, an exponent or under a root, which need no parentheses.
+    /// Returns the part without its parentheses, for a numerator, a denominator, an exponent or a root.
     fn bare(self) -> String {
         format!("<mrow>{}</mrow>", self.inside.unwrap_or(self.mathml))
     }
@@ -107,14 +108,14 @@ impl<'a> FormulaReader<'a> {
         Some(token)
     }
 
-    /// Goes over one of some signs.
+    /// Reads the next token if it is one of `signs`. Otherwise it reads nothing and returns `None`.
     fn sign(&mut self, signs: &[&str]) -> Option<&'a str> {
         let found = self.peek().filter(|token| signs.contains(token))?;
         self.at += 1;
         Some(found)
     }
 
-    /// Reads relations with words between them.
+    /// Parses relations with words of [`PROSE`] between them, up to a comma, a semicolon or the end.
     fn clause(&mut self) -> Option<String> {
         let mut clause = String::new();
         let mut after_relation = false;
@@ -168,8 +169,8 @@ impl<'a> FormulaReader<'a> {
         Some(sum)
     }
 
-    /// Reads products and quotients from the left. Everything before a `/` is the numerator. For example, `a * b / c`
-    /// is a fraction with a·b above c.
+    /// Parses products and quotients from left to right. The whole product before a `/` is the numerator. For example, `a * b /
+    /// c` is a fraction with a·b above c.
     fn product(&mut self) -> Option<String> {
         let mut product = self.power()?;
         while let Some(sign) = self.sign(&["*", "/"]) {
@@ -198,7 +199,8 @@ impl<'a> FormulaReader<'a> {
         self.at += 1;
         let mut exponent = None;
         if self.sign(&["^"]).is_some() {
-            // Parentheses after the exponent hold the argument of the cosine.
+            // Parentheses after the exponent contain the argument of the function: in `cos^n(gamma)`, n is not applied to
+            // gamma.
             exponent = Some(match self.peek()? {
                 "(" => self.parentheses()?.bare(),
                 _ => self.single()?.bare(),
@@ -238,7 +240,7 @@ impl<'a> FormulaReader<'a> {
         }))
     }
 
-    /// Returns a number or a name.
+    /// Parses a number or a name.
     fn single(&mut self) -> Option<FormulaPart> {
         let token = self.next()?;
         let first = token.chars().next()?;
@@ -249,7 +251,7 @@ impl<'a> FormulaReader<'a> {
         is_name.then(|| FormulaPart::new(name(token)))
     }
 
-    /// Returns one expression in parentheses, or several with commas between.
+    /// Parses parentheses with one expression, or with several and commas between them.
     fn parentheses(&mut self) -> Option<FormulaPart> {
         self.sign(&["("])?;
         let mut inside = self.sum()?;
@@ -257,8 +259,8 @@ impl<'a> FormulaReader<'a> {
             inside += &format!("<mo separator=\"true\">,</mo>{}", self.sum()?);
         }
         self.sign(&[")"])?;
-        // Parentheses around a fraction are as high as it is, by their size: few fonts have glyphs that a browser
-        // would stretch.
+        // The font size makes parentheses around a fraction as high as the fraction, because few fonts have glyphs that a
+        // browser can stretch.
         let around = |sign: &str| match inside.contains("<mfrac>") {
             true => format!(
                 "<mpadded voffset=\"-0.35em\"><mo class=\"tall\" stretchy=\"false\">{sign}</mo></mpadded>"
@@ -270,8 +272,8 @@ impl<'a> FormulaReader<'a> {
     }
 }
 
-/// Returns a name. Greek letters are written by their names, `delta_x` is a difference, and the part after `_`, or a
-/// number at the end, is a subscript. For example, `zeta_start` is ζ with the subscript "start", and `dgamma` is dγ.
+/// Returns a name as MathML. The name of a Greek letter becomes the letter, and `delta_x` becomes Δx. The part after `_`, or a
+/// number at the end, becomes a subscript. For example, `zeta_start` is ζ with the subscript "start", and `dgamma` is dγ.
 fn name(token: &str) -> String {
     if let Some(of) = token.strip_prefix("delta_") {
         return format!("<mrow><mi mathvariant=\"normal\">Δ</mi>{}</mrow>", name(of));
@@ -300,7 +302,7 @@ mod tests {
     use super::*;
     use glint_core::registry::Registry;
 
-    /// Returns a formula's text without markup.
+    /// Returns the text of a formula without markup, or `None` if the parser does not understand it.
     fn plain(text: &str) -> Option<String> {
         let mut plain = String::new();
         let mut markup = false;
@@ -321,15 +323,15 @@ mod tests {
         assert!(
             set("n/2").contains("<mfrac><mrow><mi>n</mi></mrow><mrow><mn>2</mn></mrow></mfrac>")
         );
-        // The parentheses of a denominator go; the parentheses of a base stay.
+        // A denominator loses its parentheses, and a base keeps them.
         let quotient = set("c / (n + c)");
         assert!(!quotient.contains("<mo>(</mo>"), "{quotient}");
         assert_eq!(set("(a + b)^2").matches("<mo>(</mo>").count(), 1);
-        // Everything before the stroke is the numerator.
+        // The whole product before the `/` is the numerator.
         assert!(set("a * b / c").contains("<mfrac><mrow><mi>a</mi><mo>⋅</mo><mi>b</mi></mrow>"));
         assert!(set("a / b * c").starts_with("<math displaystyle=\"true\"><mrow><mfrac>"));
         assert_eq!(set("cos(gamma)^n"), set("cos^n(gamma)"));
-        // They are higher around a fraction.
+        // Parentheses around a fraction are higher.
         let factor = set("(n/2 + (c - 1))^2");
         assert_eq!((factor.matches("tall").count(), factor.matches("<mo>(</mo>").count()), (2, 1));
         assert!(set("sqrt(n/k)").contains("<msqrt><mrow><mfrac>"));

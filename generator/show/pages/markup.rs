@@ -1,9 +1,10 @@
 //! Converts plain text with names in backquotes to HTML.
 
-/// Converts plain text with names in backquotes to HTML. For example, `` `a<b` `` becomes `<code>a&lt;b</code>`.
+/// Converts plain text with names in backquotes to HTML, and escapes `&`, `<`, `>` and `"`. For example, `` `a<b` `` becomes
+/// `<code>a&lt;b</code>`.
 pub fn html(text: &str) -> String {
     let mut html = String::with_capacity(text.len());
-    // An odd backquote is one.
+    // A last backquote without a partner remains a backquote.
     let names = text.matches('`').count() / 2;
     let mut quotes = 0;
     for sign in text.chars() {

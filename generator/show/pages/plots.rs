@@ -10,11 +10,13 @@ use crate::evidence::chart::{AxisScale, Chart, ChartAxis};
 /// The number of curves that the style sheet can distinguish, by colour and by dashes.
 pub const STYLES: usize = 10;
 
-/// The library places points on whole units: this many of them make one of the page's at full size.
+/// The number of the plotting library's units in a unit of the page at full size. The library rounds positions to whole units,
+/// so finer units make smoother curves.
 const FINE: u32 = 4;
 
-/// The width of a plot, in the plotting library's units.
+/// The width of a plot, in units of the plotting library.
 pub const WIDTH: u32 = 480 * FINE;
+/// The height of a plot, in units of the plotting library.
 pub const HEIGHT: u32 = 300 * FINE;
 
 /// Placeholder colours for the roles of lines and text; [`themed`] replaces them by classes.
@@ -43,7 +45,8 @@ pub fn svg(chart: &Chart) -> Result<String> {
     Ok(themed(&text, chart))
 }
 
-/// An axis as the library takes it: the places of values, with lines and labels at our ticks.
+/// An axis in the form that the plotting library takes: the positions of values, with lines and labels at the ticks from
+/// [`ticks`].
 struct AxisPlaces {
     range: std::ops::Range<f64>,
     ticks: Vec<f64>,
@@ -89,7 +92,7 @@ fn draw(chart: &Chart, text: &mut String) -> Result<(), Box<dyn std::error::Erro
         .x_label_area_size(44 * FINE)
         .y_label_area_size(58 * FINE)
         .build_cartesian_2d(AxisPlaces::new(&chart.x)?, AxisPlaces::new(&chart.y)?)?;
-    // The library's sizes are larger than the SVG's by a quarter.
+    // The library's font sizes are a quarter larger than the sizes in SVG.
     let font = ("sans-serif", 16 * FINE).into_font().color(&INK);
     plane
         .configure_mesh()
@@ -114,7 +117,7 @@ fn draw(chart: &Chart, text: &mut String) -> Result<(), Box<dyn std::error::Erro
             plane.draw_series(LineSeries::new(run, style))?;
         }
     }
-    // A series with a value at only one place is a point with its name.
+    // A series with only one value is drawn as a point with its name beside it.
     for (at, (x, y), left) in points(chart) {
         plane.draw_series([Circle::new((x, y), 4 * FINE, style(at).filled())])?;
         let (side, end) = if left { (-8, HPos::Right) } else { (8, HPos::Left) };
@@ -127,7 +130,8 @@ fn draw(chart: &Chart, text: &mut String) -> Result<(), Box<dyn std::error::Erro
     Ok(())
 }
 
-/// Returns the label of the tick at a place of an axis.
+/// Returns the label of the tick at a position of an axis. For example, the position 2 of a logarithmic axis has the label
+/// `100`.
 fn tick_label(axis: &ChartAxis, place: f64) -> String {
     match axis.scale {
         AxisScale::Linear => number(place),
@@ -135,7 +139,7 @@ fn tick_label(axis: &ChartAxis, place: f64) -> String {
     }
 }
 
-/// Returns the place of the only value of a series. Returns `None` if it has several, or none.
+/// Returns the position of the only value of a series. Returns `None` if the series has several values, or none.
 fn only_place(chart: &Chart, values: &[f64]) -> Option<(f64, f64)> {
     let mut known = chart.places.iter().zip(values).filter(|(_, value)| value.is_finite());
     let (x, y) = known.next()?;
@@ -146,13 +150,14 @@ fn only_place(chart: &Chart, values: &[f64]) -> Option<(f64, f64)> {
     }
 }
 
-/// Returns the places of the ends of an axis.
+/// Returns the positions of both ends of an axis, or `None` if the axis cannot show one of them.
 fn ends(axis: &ChartAxis) -> Option<(f64, f64)> {
     Some((axis.place(axis.range.0)?, axis.place(axis.range.1)?))
 }
 
-/// Finds the series of one value: number, place, and whether the name is left of it. A name is on the side with more
-/// room, unless the name of a neighbour above is there.
+/// Finds the series with one value. Returns for each the index of the series, its position, and whether its name is left of the
+/// point. The name is on the side of the point with more room. It is on the other side if the name of a point just above is in
+/// the way.
 fn points(chart: &Chart) -> Vec<(usize, (f64, f64), bool)> {
     let mut places: Vec<(usize, (f64, f64))> = Vec::new();
     for (at, series) in chart.series.iter().enumerate() {
@@ -176,8 +181,8 @@ fn points(chart: &Chart) -> Vec<(usize, (f64, f64), bool)> {
     points
 }
 
-/// Returns the stretches of a series that can be shown, as places; a line that leaves the range ends at its border. For
-/// example, a line from 3 to 5 in a range that ends at 4 ends half way.
+/// Returns the connected parts of a curve inside the range of the vertical axis, as positions. A line that leaves the range is
+/// cut at its border. For example, in a range that ends at 4, a line from 3 to 5 is cut half way.
 fn runs(chart: &Chart, values: &[f64]) -> Vec<Vec<(f64, f64)>> {
     let low = chart.y.place(chart.y.range.0).unwrap_or(f64::NEG_INFINITY);
     let high = chart.y.place(chart.y.range.1).unwrap_or(f64::INFINITY);
@@ -219,8 +224,8 @@ fn runs(chart: &Chart, values: &[f64]) -> Vec<Vec<(f64, f64)>> {
     runs
 }
 
-/// Returns round values within the range of an axis, in order. For example, an even axis from 0 to 10 has 0, 2, 4, 6, 8
-/// and 10. A logarithmic axis from 2 to 60 has 2, 5, 10, 20 and 50.
+/// Returns round values within the range of an axis, in order. A linear axis from 0 to 10 has 0, 2, 4, 6, 8 and 10, for
+/// example. A logarithmic axis from 2 to 60 has 2, 5, 10, 20 and 50.
 fn ticks(axis: &ChartAxis) -> Vec<f64> {
     let (low, high) = axis.range;
     match axis.scale {
@@ -237,7 +242,7 @@ fn ticks(axis: &ChartAxis) -> Vec<f64> {
         }
         AxisScale::Logarithmic => {
             let (first, last) = (libm::log10(low), libm::log10(high));
-            // Few decades have room for steps in between.
+            // An axis of less than three decades has room for steps between the powers of ten.
             let steps: &[f64] = if last - first < 3.0 { &[1.0, 2.0, 5.0] } else { &[1.0] };
             let (first, last) = (libm::floor(first) as i32, libm::ceil(last) as i32);
             (first..=last)
@@ -251,8 +256,8 @@ fn ticks(axis: &ChartAxis) -> Vec<f64> {
     }
 }
 
-/// Returns the label of a tick: at most six decimals, without trailing zeros; nearer to 0 than 0.001, two digits and an
-/// exponent. For example, `0.5`, or `1.5e−4`.
+/// Returns the label of a tick: at most six digits after the point, without trailing zeros. A number nearer to 0 than 0.001 has
+/// two digits and an exponent. For example, `0.5`, or `1.5e−4`.
 fn number(value: f64) -> String {
     if value != 0.0 && value.abs() < 0.001 {
         return format!("{value:.1e}").replace(".0e", "e").replace("e-", "e\u{2212}");
@@ -262,7 +267,7 @@ fn number(value: f64) -> String {
     if shortest == "-0" { "0" } else { shortest }.replace('-', "\u{2212}")
 }
 
-/// Returns a colour as the library writes it. For example, [`INK`] is `#010000`.
+/// Returns a colour in the notation of the library's SVG. For example, [`INK`] is `#010000`.
 fn hex(RGBColor(r, g, b): RGBColor) -> String {
     format!("#{r:02X}{g:02X}{b:02X}")
 }
@@ -329,7 +334,7 @@ mod tests {
     fn lines_end_where_the_range_does() {
         let chart = chart();
         let found = runs(&chart, &chart.series[0].values);
-        // 5 is outside: the line from 3 at 3 leaves at 4, half way.
+        // 5 is outside the range. The line from (3, 3) to (4, 5) leaves the range half way, at (3.5, 4).
         assert_eq!(found, [vec![(0.0, 0.0), (1.0, 1.0)], vec![(3.0, 3.0), (3.5, 4.0)]]);
         let found = runs(&chart, &[6.0, 2.0, 2.0, 6.0, 6.0]);
         assert_eq!(found, [vec![(0.5, 4.0), (1.0, 2.0), (2.0, 2.0), (2.5, 4.0)]]);

@@ -26,10 +26,10 @@ pub struct View {
     pub field: f64,
 }
 
-/// The direction from which things are seen by default: from the front, a little above.
+/// The default direction from the target to the camera: from the front and a little above.
 const DIRECTION: Vector = Vector::new(0.0, 0.28, 1.0);
 
-/// How much of the picture things fill, by default.
+/// The share of the picture's width or height that the objects fill by default.
 const FILLED: f64 = 0.92;
 
 impl Camera {
@@ -37,7 +37,7 @@ impl Camera {
     /// `view` says otherwise. `things` are balls, each with its middle and radius; `middle` is the middle of them all.
     ///
     /// # Errors
-    /// Fails if the camera's position is the point at which it looks.
+    /// Fails if the camera's position is the point at which it looks, or if the position is not finite.
     pub fn new(
         view: &View,
         aspect: f64,
@@ -49,7 +49,7 @@ impl Camera {
         let from = view.eye.map_or(DIRECTION, |eye| eye - target);
         let back = from.unit();
         let back = back.context("the camera stands where it looks at: --camera and --target")?;
-        // Looking straight up or down, the upper edge is to the back.
+        // If the camera looks straight up or down, the upper edge of the picture is toward −z.
         let upward = if back.0[0] == 0.0 && back.0[2] == 0.0 {
             Vector::new(0.0, 0.0, -1.0)
         } else {
@@ -71,7 +71,8 @@ impl Camera {
         Ok(camera)
     }
 
-    /// Returns how far the eye has to go back for it to see all of `things`.
+    /// Returns the distance from the target at which the camera sees all of `things`. The eye must be at the target when the
+    /// function is called.
     fn distance(&self, things: impl Iterator<Item = (Vector, f64)>) -> f64 {
         let slopes = [self.half.0 * FILLED, self.half.1 * FILLED];
         let needed = things.flat_map(|(middle, radius)| {
@@ -124,7 +125,7 @@ mod tests {
             View { eye: Some(Vector::new(5.0, 0.0, 0.0)), target: Some(Vector::default()), ..VIEW };
         let none = || std::iter::empty();
         let camera = Camera::new(&view, 2.0, Vector::default(), none()).unwrap();
-        // From +x, +z is to the left.
+        // For a camera on the +x axis, +z is to the left.
         assert_eq!(camera.place(Vector::new(0.0, 2.0, 1.0)), Vector::new(-1.0, 2.0, -5.0));
         assert_eq!(camera.outward(Vector::new(-1.0, 2.0, -5.0)), Vector::new(-5.0, 2.0, 1.0));
         assert!((camera.half().1 - 1.0).abs() < 1e-15);
@@ -141,7 +142,7 @@ mod tests {
             for (middle, radius) in things {
                 let [x, y, z] = camera.place(middle).0;
                 for (aside, half) in [(x, camera.half().0), (y, camera.half().1)] {
-                    // The tangent from the eye beside the ball, in the plane of this axis.
+                    // The angle of the line from the eye that touches the ball, in the plane of this axis.
                     let angle =
                         libm::atan(aside.abs() / -z) + libm::asin(radius / libm::hypot(aside, z));
                     fullest = fullest.max(libm::tan(angle) / half);

@@ -3,10 +3,10 @@
 use anyhow::{Context, Result, bail, ensure};
 use png::{BitDepth, ColorType, Decoder, Limits, Transformations};
 
-/// The most pixels along a side.
+/// The largest width or height of a map in pixels.
 const LARGEST_SIDE: u32 = 8192;
 
-/// The largest memory for a map and its decoding, in bytes.
+/// The largest amount of memory, in bytes, that the decoder may use.
 const MEMORY: usize = 512 << 20;
 
 /// The slopes of a height map. The map is repeated in all directions, like tiles.
@@ -14,11 +14,11 @@ const MEMORY: usize = 512 << 20;
 pub struct Relief {
     width: usize,
     height: usize,
-    /// The rise per pixel to the right and upward, if black to white is 1.
+    /// For each pixel, the rise per pixel to the right and upward, where the rise from black to white is 1.
     slopes: Vec<[f32; 2]>,
     /// The height of white above black, in the scene's unit.
     depth: f64,
-    /// How often the map is repeated over a unit of texture coordinates.
+    /// The number of copies of the map for each unit of the texture coordinates.
     repeat: f64,
 }
 
@@ -27,7 +27,8 @@ impl Relief {
     /// `repeat` is the number of copies of the map for each unit of the texture coordinates.
     ///
     /// # Errors
-    /// Fails if the file is no PNG, has colours or transparency, or is too large.
+    /// Fails if the file is not a whole PNG, has colours or transparency, has more than 8192 pixels along a side, or needs too
+    /// much memory.
     pub fn decode(png: &[u8], depth: f64, repeat: f64) -> Result<Self> {
         let limits = Limits { bytes: MEMORY };
         let mut decoder = Decoder::new_with_limits(std::io::Cursor::new(png), limits);
@@ -63,9 +64,8 @@ impl Relief {
         Ok(Self { slopes: slopes(&heights, width, height), width, height, depth, repeat })
     }
 
-    /// Returns the rise of the surface per unit of u and v, at the given texture coordinates.
-    ///
-    /// Slopes between the pixels are interpolated, so that no edges show.
+    /// Returns the slopes of the surface at the texture coordinates `u` and `v`: its rise, in units of the scene, per unit of u
+    /// and per unit of v. The slopes between the middles of pixels are interpolated, so no edges between pixels are visible.
     pub fn rise(&self, u: f64, v: f64) -> [f64; 2] {
         let (width, height) = (self.width as f64, self.height as f64);
         // The first row is the upper edge, v = 1.

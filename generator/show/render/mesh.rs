@@ -15,10 +15,10 @@ pub const CREASE: f64 = 40.0;
 /// The crease angle in degrees at which no edge is drawn as sharp.
 pub const SMOOTH: f64 = 180.0;
 
-/// The largest coordinate: areas and their squares are still numbers.
+/// The largest allowed absolute value of a coordinate. Up to this limit, the areas of triangles and their squares are finite.
 const FARTHEST: f64 = 1e30;
 
-/// Triangles with a normal and perhaps texture coordinates at each corner.
+/// A mesh of triangles. Every corner has a normal, and may have texture coordinates.
 #[derive(Clone, Debug, Default)]
 pub struct Mesh {
     /// The positions of the corners, in coordinates of the scene.
@@ -57,16 +57,16 @@ pub struct RawCorner {
 
 impl Mesh {
     /// Makes a mesh of positions, normals, texture coordinates and triangles. It leaves out triangles without area, and
-    /// counts them. Every index of a corner must exist.
+    /// counts them in `degenerate`. Every index of a corner must exist; otherwise the function panics.
     ///
-    /// A corner without a normal, or with one of length 0, gets a mean normal. It is the mean, weighted by area, of the
-    /// triangles that meet in the corner's position and hang together there by edges of at most `crease` degrees.
-    /// Sharper edges stay sharp. For example, a cube without normals keeps its edges of 90 degrees at a `crease` of 40,
-    /// and looks round at 90.
+    /// A corner without a normal, or with a normal of length 0, gets a mean normal. The function averages the normals of the
+    /// triangles that meet at the corner's position, weighted by their areas. It includes only triangles that are connected
+    /// to the corner's own triangle there by edges of at most `crease` degrees. For example, a cube without normals keeps its
+    /// edges of 90 degrees at a `crease` of 40, and looks round at 90.
     ///
     /// # Errors
-    /// Fails if no triangle has an area, or if there are too many. Fails if numbers are not finite, or coordinates
-    /// are beyond 10³⁰.
+    /// Fails if no triangle has an area, or if there are more than 20 million triangles. Fails if a number is not finite, or if
+    /// a coordinate is beyond ±10³⁰.
     pub fn new(
         positions: Vec<Vector>,
         mut normals: Vec<Vector>,
@@ -94,7 +94,7 @@ impl Mesh {
         kept.retain(|corners| area_vector(&positions, corners).unit().is_some());
         ensure!(all > 0, "there is no triangle");
         ensure!(!kept.is_empty(), "all {all} triangles are without area");
-        // The normals that are given; `None` for a normal of length 0.
+        // The given normals, scaled to length 1; `None` for a normal of length 0.
         let given: Vec<Option<Vector>> = normals.iter().map(|normal| normal.unit()).collect();
         let is_complete =
             kept.iter().flatten().all(|corner| usable_normal(corner, &given).is_some());
@@ -141,13 +141,13 @@ impl Mesh {
     }
 }
 
-/// Returns the normal of a triangle, as long as twice the triangle's area.
+/// Returns the normal of a triangle. Its length is twice the area of the triangle.
 fn area_vector(positions: &[Vector], corners: &[RawCorner; 3]) -> Vector {
     let [a, b, c] = corners.map(|corner| positions[corner.position as usize]);
     (b - a).cross(c - a)
 }
 
-/// Returns the index of a corner's normal, if the corner has one that is not of length 0.
+/// Returns the index of a corner's given normal. Returns `None` if the corner has no normal, or a normal of length 0.
 fn usable_normal(corner: &RawCorner, given: &[Option<Vector>]) -> Option<u32> {
     corner.normal.filter(|&normal| given[normal as usize].is_some())
 }
@@ -159,20 +159,21 @@ fn finite(what: &str, vectors: &[Vector]) -> Result<()> {
     }
 }
 
-/// Returns the first of the positions with the same coordinates, for each position.
+/// Returns, for each position, the index of the first position with the same coordinates. For example, four positions a, b,
+/// a, b give 0, 1, 0, 1.
 fn first_of_same(positions: &[Vector]) -> Vec<u32> {
     let mut first = HashMap::with_capacity(positions.len());
     let mut same = Vec::with_capacity(positions.len());
     for (at, position) in positions.iter().enumerate() {
-        // −0.0 is 0.0.
+        // Adding 0.0 turns −0.0 into 0.0, so that both have the same bits.
         let key = position.0.map(|component| (component + 0.0).to_bits());
         same.push(*first.entry(key).or_insert(at as u32));
     }
     same
 }
 
-/// Appends the normals of all corners to `normals`, three for each triangle, and returns the index of each. `areas`
-/// are the triangles' normals, as long as twice their areas.
+/// Computes the mean normals that [`Mesh::new`] explains, and appends them to `normals`. Returns the index of the normal of
+/// every corner, three for each triangle. `areas` are the triangles' normals, each as long as twice the triangle's area.
 fn creased_normals(
     positions: &[Vector],
     triangles: &[[RawCorner; 3]],
@@ -182,20 +183,20 @@ fn creased_normals(
 ) -> Vec<u32> {
     let same = first_of_same(positions);
     let point = |corner: usize| same[triangles[corner / 3][corner % 3].position as usize];
-    // The corners by their point; the corners of one point are in the order of the triangles.
+    // The indices of all corners, sorted by position. The corners at one position are in the order of their triangles.
     let mut corners: Vec<u32> = (0..3 * triangles.len() as u32).collect();
     corners.sort_by_key(|&corner| point(corner as usize));
     let flat = libm::cos(crease.to_radians());
     let is_smooth = |a: u32, b: u32| {
         let a_normal = areas[a as usize / 3].unit().unwrap_or_default();
         let b_normal = areas[b as usize / 3].unit().unwrap_or_default();
-        // To the last bit of a right angle, or of whatever the edge was meant to be.
+        // The margin makes an edge of exactly `crease` degrees smooth even if rounding makes its angle slightly larger.
         a_normal.dot(b_normal) >= flat - 1e-12
     };
     let mut found = vec![0; corners.len()];
     let (mut edges, mut group) = (Vec::new(), Vec::new());
     for around in corners.chunk_by(|&a, &b| point(a as usize) == point(b as usize)) {
-        // Each triangle has two edges here, which lead to its two other points.
+        // Each triangle has two edges at this position, which lead to its two other corners.
         edges.clear();
         for (at, &corner) in around.iter().enumerate() {
             let (triangle, own) = (corner as usize / 3 * 3, corner as usize % 3);
@@ -228,7 +229,7 @@ fn creased_normals(
             found[corner as usize] = (normals.len() + place[at]) as u32;
         }
         for (triangle, sum) in &sums {
-            // Where areas cancel, the first triangle's direction is as good as another.
+            // If the areas of opposite triangles cancel, the group takes the direction of its first triangle.
             let direction = sum.unit().or_else(|| areas[*triangle].unit());
             normals.push(direction.unwrap_or_default());
         }
@@ -236,7 +237,8 @@ fn creased_normals(
     found
 }
 
-/// Returns the representative of a group, to which all on the way are then tied; it is the least of its members.
+/// Returns the representative of the group that contains `at` (union-find): the smallest member of the group. It shortens the
+/// path from `at` to the representative.
 fn root(group: &mut [usize], at: usize) -> usize {
     let mut root = at;
     while group[root] != root {

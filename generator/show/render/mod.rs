@@ -1,9 +1,9 @@
 //! Renders pictures whose specular highlights are bit-exact results of a device.
 //!
 //! The host part in this module computes visibility, normals, half vectors, and the ambient and diffuse light in f64. An
-//! [`Engine`] computes the specular term of every sample and light, point by point or along lines of points. The same picture has
-//! the same bytes on every machine: they depend neither on the engine nor on the number of threads, and transcendental functions
-//! come from `libm`.
+//! [`Engine`] computes the specular term of every sample and light, point by point or along lines of points. The same picture
+//! has the same bytes on every machine. The bytes depend neither on the engine nor on the number of threads, and `libm`
+//! computes the transcendental functions.
 
 mod camera;
 mod height;
@@ -52,10 +52,10 @@ pub const MOST_LIGHTS: usize = 16;
 /// The default vertical field of view of a picture in degrees.
 pub const FIELD: f64 = 30.0;
 
-/// n by default, if the device takes so large a value.
+/// The default exponent n of a picture. A device whose domain does not contain it gets the nearest exponent of its domain.
 const EXPONENT: i64 = 80;
 
-/// Points, about, that are handed to the device at once.
+/// The approximate number of points that the renderer passes to the engine at once. It always passes whole rows of pixels.
 const PORTION: usize = 1 << 18;
 
 /// The settings for rendering a picture.
@@ -73,7 +73,8 @@ pub struct Settings {
     pub background: Vector,
     /// Whether to render also Blinn's function cosⁿγ in f64, for comparison.
     pub compare: bool,
-    /// Values of operands by name, for operands that a picture cannot supply or that are to be the same everywhere.
+    /// The names and values of operands that have the same value at every point. They must include the operands that a scene
+    /// cannot supply.
     pub operands: Vec<(String, f64)>,
 }
 
@@ -118,8 +119,8 @@ pub struct PictureComparison {
     pub units: f64,
 }
 
-/// Returns the default exponent n of a picture, which is inside the device's domain. For example, 80, or 64 for a device whose
-/// domain ends there.
+/// Returns the default exponent n of a picture: 80, or the nearest exponent in the device's domain. For example, it returns
+/// 64 for a device whose domain ends at 64.
 pub fn usual_exponent(contract: &dyn Contract) -> u32 {
     let (least, most) = exponents(contract).unwrap_or((0, i64::MAX));
     EXPONENT.clamp(least, most).max(0) as u32
@@ -171,8 +172,8 @@ pub fn check(settings: &Settings, scene: &Scene) -> Result<()> {
 /// Renders a scene. It calls `progress` with the number of finished rows.
 ///
 /// # Errors
-/// Fails if [`check`] does, if the camera sees nowhere, if a picture cannot supply an operand, or if the engine
-/// fails.
+/// Fails if [`check`] does, if the camera is at the point at which it looks, if a scene cannot supply an operand, or if the
+/// engine fails. Fails also if the scene has a height map and the device computes lines of points.
 pub fn render(
     core: &Core,
     engine: &mut dyn Engine,
@@ -235,17 +236,17 @@ pub fn render(
     Ok(result.finish(settings.compare))
 }
 
-/// A picture in progress, with the engine that computes the rest.
+/// A picture whose rows are added from top to bottom, and the engine that computes the highlights of the rows.
 struct Portions<'a> {
     core: &'a Core,
     feed: &'a Feed,
     engine: &'a mut dyn Engine,
-    /// Along each side of a pixel.
+    /// The number of samples along each side of a pixel.
     samples: usize,
     width: usize,
     picture: Picture,
     exact: Picture,
-    /// Whether there is a thing in the pixel.
+    /// For each pixel, whether the device computed a highlight for at least one of its samples. Filled only for a comparison.
     shown: Vec<bool>,
     points: u64,
     beyond: u64,
@@ -253,7 +254,8 @@ struct Portions<'a> {
 }
 
 impl Portions<'_> {
-    /// Adds some rows of pixels, given by rows of samples.
+    /// Computes the highlights of some rows of samples, and adds the finished rows of pixels to the picture. The number of
+    /// rows must be a multiple of the number of samples along a pixel.
     fn add(&mut self, rows: &[Shaded], compare: bool) -> Result<()> {
         let mut points = Points::new(self.feed.operand_count());
         for row in rows {
@@ -286,7 +288,8 @@ impl Portions<'_> {
         Ok(())
     }
 
-    /// Returns the colour of each sample, summed over its lights.
+    /// Returns the specular light of every sample and light, 0 … 255 in each channel. `outputs` are the device's results for
+    /// all of `rows`.
     fn specular(&self, rows: &[Shaded], outputs: &[i64]) -> Vec<Vector> {
         let width = self.core.contract.outputs().len();
         let result = |at: usize| &outputs[at * width..(at + 1) * width];
@@ -309,8 +312,8 @@ impl Portions<'_> {
         all
     }
 
-    /// Returns the mean of the samples of each pixel: each with the specular light that was computed for it, and
-    /// saturated, as a frame buffer of samples would be.
+    /// Returns the pixels of some rows of samples. The colour of a sample is its ambient and diffuse light plus the
+    /// `specular` light of each of its lights, limited to 255. The colour of a pixel is the mean of its samples.
     fn pixels(&self, rows: &[Shaded], specular: Vec<Vector>) -> Vec<[u8; 3]> {
         let mut sums = Vec::with_capacity(self.width * rows.len() / self.samples);
         let mut specular = specular.into_iter();

@@ -1,18 +1,19 @@
 //! Reads the geometry of a mesh from a file in Wavefront's OBJ format.
 //!
-//! The reader takes vertices, normals, texture coordinates and faces, and ignores everything else, such as groups, materials and
-//! curves. It reports a mistake with its line number. Some faces of a file may have normals at their corners, and others none.
+//! The reader takes vertices, normals, texture coordinates and faces. It ignores everything else, such as groups, materials and
+//! curves. It reports a mistake with its line number. Corners with and without normals may be mixed in one file.
 
 use anyhow::{Context, Result, anyhow, bail, ensure};
 
 use super::mesh::{Mesh, RawCorner};
 use super::vector::Vector;
 
-/// Parses a mesh from the text of an OBJ file. If the file has no normals, edges beyond `crease` degrees are drawn as sharp.
+/// Parses a mesh from the text of an OBJ file. At corners without normals, edges of more than `crease` degrees are drawn as
+/// sharp.
 ///
 /// # Errors
-/// Fails with the number of the line if a number is not one or not finite, or if a face has less than three corners
-/// or a corner that does not exist. Fails without it if [`Mesh::new`] fails.
+/// Fails with the line number if a coordinate is missing or not a finite number. Fails with it too if a face has less than
+/// three corners, or a corner that does not exist. Fails without a line number if [`Mesh::new`] fails.
 pub fn parse(text: &str, crease: f64) -> Result<Mesh> {
     let mut read = ObjReader::default();
     for (number, line) in text.lines().enumerate() {
@@ -34,11 +35,12 @@ impl ObjReader {
         let line = line.split('#').next().unwrap_or(line);
         let mut words = line.split_whitespace();
         match words.next() {
-            // A weight or a colour may follow the three coordinates.
+            // A weight or a colour may follow the three coordinates; the reader ignores it.
             Some("v") => self.positions.push(Vector(numbers("vertex", words)?)),
             Some("vn") => self.normals.push(Vector(numbers("normal", words)?)),
             Some("vt") => {
-                // One coordinate is a curve's, three a volume's.
+                // A texture of a curve has one coordinate, and a texture of a volume three. The reader takes u and v; a missing
+                // v is 0.
                 let [u] = numbers("texture coordinate", words.clone())?;
                 let v = match words.nth(1) {
                     Some(word) => number(word)?,
@@ -105,8 +107,8 @@ fn number(word: &str) -> Result<f64> {
     Ok(value)
 }
 
-/// Returns an index into the `count` entries so far: from 1, or from −1 backward. For example, of 4 entries `1` is
-/// index 0, and `-1` is index 3.
+/// Returns the index that a number in the file denotes, among `count` entries so far. Positive numbers count from 1, and
+/// negative ones count backward from the last entry. For example, of 4 entries `1` is index 0, and `-1` is index 3.
 fn index(part: &str, what: &str, count: usize) -> Result<u32> {
     let given: i64 = part.parse().map_err(|_| anyhow!("`{part}` is not an integer"))?;
     let index = match given {

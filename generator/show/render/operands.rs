@@ -55,7 +55,7 @@ enum OperandMeaning {
     CosDgamma,
     DgammaNegative,
     Exponent,
-    /// The exponent's logarithm to base 2, rounded.
+    /// The logarithm of the exponent to base 2, rounded to an integer.
     Shift,
     Difference(usize),
     Colour(usize),
@@ -69,7 +69,7 @@ enum OperandMeaning {
     Ambient(usize),
     Diffuse(usize),
     Specular(usize),
-    /// A constant for every point.
+    /// A value that is the same at every point.
     Given(f64),
 }
 
@@ -79,7 +79,7 @@ impl OperandMeaning {
     }
 }
 
-/// Every name that is understood of a device that computes a point.
+/// The operand names of a device that computes the highlight of one point, each with the quantity that supplies its value.
 const OF_POINTS: [(&str, OperandMeaning); 11] = [
     ("cos_gamma", OperandMeaning::CosGamma),
     ("exponent", OperandMeaning::Exponent),
@@ -94,7 +94,7 @@ const OF_POINTS: [(&str, OperandMeaning); 11] = [
     ("blue", OperandMeaning::Colour(2)),
 ];
 
-/// And of one that computes all of the light.
+/// The operand names of a device that computes ambient, diffuse and specular light of one point.
 const OF_SURFACES: [(&str, OperandMeaning); 19] = [
     ("nx", OperandMeaning::Normal(0)),
     ("ny", OperandMeaning::Normal(1)),
@@ -117,7 +117,7 @@ const OF_SURFACES: [(&str, OperandMeaning); 19] = [
     ("specular_blue", OperandMeaning::Specular(2)),
 ];
 
-/// And of one that walks a line of points, for a colour at a time.
+/// The operand names of a device that computes a line of points, in one colour channel at a time.
 const OF_LINES: [(&str, OperandMeaning); 5] = [
     ("zeta_start", OperandMeaning::ZetaStart),
     ("delta_zeta", OperandMeaning::DeltaZeta),
@@ -131,13 +131,13 @@ const OF_LINES: [(&str, OperandMeaning); 5] = [
 #[derive(Clone, Debug)]
 pub struct Feed {
     operands: Vec<(OperandMeaning, Format, (i64, i64))>,
-    /// For red, green and blue the place of its output.
+    /// For red, green and blue, the index of its output.
     channels: [usize; 3],
     /// For red, green and blue, the factor that makes an output 255 at full colour.
     scales: [f64; 3],
-    /// The most intervals of a line, if it computes lines.
+    /// The largest number of intervals of a line, or `None` if the device computes single points.
     longest: Option<usize>,
-    /// It computes all of the light.
+    /// Whether the device computes ambient and diffuse light too.
     surfaces: bool,
 }
 
@@ -158,16 +158,17 @@ impl Feed {
     /// messages.
     ///
     /// # Errors
-    /// Fails if the device has operands with unknown names, or lacks the colour operands.
+    /// Fails if a picture cannot supply an operand, or if the device lacks the colour operands or their outputs.
     pub fn new(device: &str, contract: &dyn Contract) -> Result<Self> {
         Self::with(device, contract, &[])
     }
 
-    /// Finds the quantities of the operands as [`Feed::new`] does. The operands in `given` have the same stated value at every
-    /// point.
+    /// Finds the quantities of the operands as [`Feed::new`] does. Every operand named in `given` has the value in `given` at
+    /// every point.
     ///
     /// # Errors
-    /// Fails as [`Feed::new`] does, if the device does not have a given operand, or if a value is beyond its domain.
+    /// Fails as [`Feed::new`] does. Fails also if the device has no operand with a name in `given`, if that operand is a
+    /// colour, or if its value is beyond its domain.
     pub fn with(device: &str, contract: &dyn Contract, given: &[(String, f64)]) -> Result<Self> {
         let surfaces = contract.operands().iter().any(|it| it.name == OF_SURFACES[10].0);
         let names: &[(&str, OperandMeaning)] = match (walks_lines(contract), surfaces) {
@@ -234,7 +235,7 @@ impl Feed {
             };
             let mut places = feed.operands.iter();
             let at = places.position(|(quantity, ..)| *quantity == wanted);
-            // Each output is of the colour operand of the same position.
+            // The outputs are in the order of the colour operands, which follow the control operands.
             let output = at.and_then(|at| at.checked_sub(control));
             let format = output.and_then(|at| contract.outputs().get(at)).map(|it| it.format);
             let (Some(at), Some(output), Some(format)) = (at, output, format) else {
@@ -269,8 +270,10 @@ impl Feed {
         self.takes(OperandMeaning::Exponent) || self.takes(OperandMeaning::Shift)
     }
 
-    /// Returns the index of the first operand whose value is outside its domain, or `None` if all are inside. `values` are not
-    /// quantised yet. A negative cosine counts as the smallest possible one, and angles of lines are taken modulo a full turn.
+    /// Returns the index of the first operand whose value is outside its domain by at least one unit of its last bit, or `None`
+    /// if all are inside. `values` are not quantised yet. A cosine `cos_gamma` is never outside, because a negative cosine
+    /// becomes the smallest one of the domain. The angles of lines are never outside either, because they are taken modulo a
+    /// full turn.
     pub fn outside(&self, values: &[f64]) -> Option<usize> {
         let mut operands = self.operands.iter().zip(values);
         operands.position(|(&(quantity, format, domain), &value)| match quantity {
@@ -310,7 +313,7 @@ impl Feed {
             OperandMeaning::Exponent => f64::from(exponent),
             OperandMeaning::Shift => libm::log2(f64::from(exponent)).round(),
             OperandMeaning::Difference(axis) => point.difference.0[axis],
-            // From 0 to the largest, which is full colour.
+            // The colour 1 becomes the largest value of the operand.
             OperandMeaning::Colour(channel) => {
                 point.colour.0[channel] * format.to_f64(i128::from(high))
             }
@@ -321,7 +324,7 @@ impl Feed {
             OperandMeaning::Diffuse(at) => point.surface.diffuse.0[at] * format.to_f64(high.into()),
             OperandMeaning::Specular(at) => point.colour.0[at] * format.to_f64(high.into()),
             OperandMeaning::Given(value) => value,
-            // Not of a point.
+            // Only devices that compute lines have these operands.
             OperandMeaning::Amplitude
             | OperandMeaning::ZetaStart
             | OperandMeaning::DeltaZeta
@@ -353,7 +356,7 @@ impl Feed {
         full.map_or(0.0, |(_, format, (_, most))| format.to_f64(i128::from(most)))
     }
 
-    /// Returns the factor by which the host multiplies a line's angles: √(n/2), or 1 if the device takes n as an
+    /// Returns the factor by which the host multiplies a line's angles: √(n/2), or 1 if the device takes the exponent n as an
     /// operand.
     fn stretch(&self, line: &LineParameters) -> f64 {
         if self.takes(OperandMeaning::Exponent) { 1.0 } else { line.stretch() }
@@ -369,7 +372,7 @@ impl Feed {
             OperandMeaning::Length => f64::from(line.length),
             OperandMeaning::Amplitude => line.amplitude,
             OperandMeaning::Given(value) => *value,
-            // Not of a line.
+            // Only devices that compute single points have the other operands.
             _ => 0.0,
         })
     }
@@ -377,13 +380,13 @@ impl Feed {
     /// Returns the raw operands for a line of points. Angles are taken modulo a full turn.
     ///
     /// # Errors
-    /// Fails if a device without an exponent cannot represent an angle times √(n/2), by which the host multiplies angles for such a
-    /// device.
+    /// Fails if the device has no exponent operand and the format of `zeta_start` cannot represent the angles of the line. For
+    /// such a device, the host multiplies the angles by √(n/2).
     pub fn line(&self, line: &LineParameters) -> Result<Vec<i64>> {
         if let Some((_, format, _)) = self.find(OperandMeaning::ZetaStart)
             && !self.takes(OperandMeaning::Exponent)
         {
-            // A right angle is kept for the errors that rounding may add along the line.
+            // One right angle of the format's range remains free for the rounding errors that add up along the line.
             let room = exp2(format.int) - 1.0;
             let ends = [line.zeta_start, line.zeta(line.length)];
             let mut ends = ends.map(|zeta| self.stretch(line) * zeta / FRAC_PI_2).into_iter();
@@ -410,19 +413,22 @@ impl Feed {
     }
 }
 
-/// Returns the raw value nearest to a number, in the domain. For example, 300 in a domain from 1 to 255 is 255.
+/// Returns the raw value nearest to a number, limited to the domain. For example, 300 in a domain from 1 to 255 is 255.
 fn number(value: f64, format: Format, (low, high): (i64, i64)) -> i64 {
     format.quantise(value).clamp(i128::from(low), i128::from(high)) as i64
 }
 
-/// Returns the raw value nearest to an angle in right angles. A format without room for the angle wraps around, modulo
-/// a turn. For example, 2.5 right angles in a signed format from −2 to 2 are −1.5.
+/// Returns the raw value nearest to an angle in right angles. An angle outside the format's range wraps around, which changes
+/// it by full turns. For example, 2.5 right angles in a signed format from −2 to 2 are −1.5.
 fn raw_angle(right_angles: f64, format: Format) -> i64 {
     let scaled = nearest(right_angles * exp2(format.frac)) as i128;
     format.narrow(scaled, format.frac, Rounding::Truncate, Overflow::Wrap) as i64
 }
 
-/// Returns an operand that is the same at every point.
+/// Returns the meaning of an operand that has the same `value` at every point.
+///
+/// # Errors
+/// Fails if the operand is a colour, or if `value` is outside its domain.
 fn fixed(operand: &Operand, value: f64) -> Result<OperandMeaning> {
     let name = &operand.name;
     let [low, high] =
@@ -435,8 +441,8 @@ fn fixed(operand: &Operand, value: f64) -> Result<OperandMeaning> {
     Ok(OperandMeaning::Given(value))
 }
 
-/// Returns the quantity that an operand takes. In a unit with several lights, only one is lit: vectors to the others
-/// are zero. For example, `lx2` is 0 at every point.
+/// Returns the quantity that supplies an operand, or `None` if `names` has none for it. If a device takes several lights, the
+/// renderer supplies one light per computation, and the operands of the others are 0. For example, `lx2` is 0 at every point.
 fn quantity(operand: &Operand, names: &[(&str, OperandMeaning)]) -> Option<OperandMeaning> {
     let of = |wanted: &str| {
         let mut names = names.iter();

@@ -6,16 +6,16 @@ use png::{BitDepth, ColorType, Compression, Encoder, Filter};
 
 use super::vector::Vector;
 
-/// The type of captions.
+/// The height of the letters of a caption.
 const LETTERS: RasterHeight = RasterHeight::Size16;
 
-/// Above and below a caption, in pixels.
+/// The number of empty rows of pixels above a caption, and below it.
 const AROUND: usize = 3;
 
-/// The ground of a caption.
+/// The background colour of a caption, as red, green and blue.
 const STRIP: [u8; 3] = [24, 26, 30];
 
-/// Its letters.
+/// The colour of the letters of a caption.
 const LETTER: [u8; 3] = [232, 233, 235];
 
 /// A picture: rows of pixels, from the top.
@@ -38,7 +38,8 @@ impl Picture {
         (self.pixels.len() / self.width as usize) as u32
     }
 
-    /// Returns the picture with a strip below it that has a caption in the middle. A caption that is too long is cut off.
+    /// Returns the picture with a strip of 22 rows below it, which shows the caption in the middle. A caption that is too long
+    /// is cut off.
     pub fn captioned(&self, caption: &str) -> Self {
         let letter = get_raster_width(FontWeight::Regular, LETTERS);
         let width = self.width as usize;
@@ -101,7 +102,8 @@ pub fn pixel(colour: Vector) -> [u8; 3] {
 pub struct PictureDifference {
     /// The largest difference of a colour channel, from 0 to 255.
     pub largest: u8,
-    /// The peak signal-to-noise ratio in decibels over the pixels that show objects; `None` if the pictures are equal there.
+    /// The peak signal-to-noise ratio in decibels over the pixels in `shown`, see [`PictureDifference::new`]. `None` if the
+    /// pictures are equal.
     pub psnr: Option<f64>,
     /// The factor by which [`PictureDifference::picture`] multiplies the differences to make them visible. For example, a largest
     /// difference of 30 has the factor 8.
@@ -111,7 +113,8 @@ pub struct PictureDifference {
 }
 
 impl PictureDifference {
-    /// Compares two pictures of the same size. `shown` says for each pixel whether it shows an object.
+    /// Compares two pictures of the same size. `shown` says for each pixel whether it counts for the mean in the
+    /// signal-to-noise ratio. A pixel that does not count should be equal in both pictures.
     pub fn new(a: &Picture, b: &Picture, shown: &[bool]) -> Self {
         let pairs = a.pixels.iter().zip(&b.pixels);
         let differences: Vec<[u8; 3]> =
@@ -138,7 +141,7 @@ impl PictureDifference {
     }
 }
 
-/// Mixes one colour over another; the coverage is in 255ths. For example, 255 over 0 with a share of 51 is 51.
+/// Returns the mix of two colours, in which `over` has the share `share`/255. For example, 255 over 0 with a share of 51 is 51.
 fn mix(ground: [u8; 3], over: [u8; 3], share: u8) -> [u8; 3] {
     let share = u32::from(share);
     let channel = |at: usize| {
@@ -184,11 +187,11 @@ mod tests {
             let strip = picture.pixels[80..].iter().enumerate();
             strip.filter(|(_, pixel)| **pixel != STRIP).map(|(at, _)| at % 40).collect()
         };
-        // A letter in the middle; a blank leaves the ground.
+        // A letter is drawn in the middle, and a blank leaves the background colour.
         let columns = lit(&captioned);
         assert!(!columns.is_empty() && columns.iter().all(|column| (14..26).contains(column)));
         assert_eq!(lit(&plain.captioned(" ")), Vec::<usize>::new());
-        // As much as there is room for.
+        // A caption of 17 letters is cut off, and the strip keeps its size.
         assert_eq!(plain.captioned("IIIIIIIIIIIIIIIII").pixels.len(), captioned.pixels.len());
         assert_eq!(mix([0, 100, 200], [255, 100, 0], 51), [51, 100, 160]);
     }

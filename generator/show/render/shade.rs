@@ -1,7 +1,7 @@
 //! Computes the host's part of shading: the surface at a point, its ambient and diffuse light, and the operands of the device.
 //!
-//! All arithmetic is f64. Most devices compute only the specular term; a device that takes normals computes the ambient and
-//! diffuse terms too.
+//! All arithmetic is f64. Most devices compute only the specular term. A device that takes normals as operands computes the
+//! ambient and diffuse terms too.
 
 use std::f64::consts::{PI, TAU};
 
@@ -52,40 +52,42 @@ pub struct Shader<'a> {
     pub compare: bool,
 }
 
-/// Some samples of a row, with all light except the results of the device.
+/// A shaded row of samples: all light except the light that the device computes.
 pub struct Shaded {
-    /// Ambient and diffuse light or the background, 0 … 255, of each sample, and the number of lights for
-    /// which the device computes a result.
+    /// The colour of each sample without the device's light, 0 … 255, and the number of lights for which the device computes a
+    /// result.
     pub samples: Vec<(Vector, u32)>,
     /// The points for which the device must compute the highlight.
     pub points: Points,
-    /// For each sample and each of its lights, the numbers of the results with its red, green and blue. `None` if
-    /// every computation has one result, with all three colours, and the results come in this order.
+    /// For each sample and each of its lights, the indices of the results with its red, green and blue. `None` if every
+    /// computation has one result with all three colours, and the results are in this order.
     pub places: Option<Vec<[usize; 3]>>,
-    /// For each sample and each of its lights Blinn's cosⁿγ times the light's colour, 0 … 255; empty unless
-    /// it is wanted.
+    /// For each sample and each of its lights, the light that the device should compute, in f64 and with Blinn's cosⁿγ as
+    /// reflectance, 0 … 255. Empty unless [`Shader::compare`] is set.
     pub exact: Vec<Vector>,
     /// The number of points whose roughness angle dγ (the deviation of the normal) is outside the device's domain.
     pub beyond: usize,
 }
 
-/// A point of a surface.
+/// A visible point of a surface: its colour, its unit normals and the direction to the eye. `smooth` is the normal without the
+/// height map, and `perturbed` the normal with it.
 struct SurfacePoint {
     colour: Vector,
     smooth: Vector,
     perturbed: Vector,
-    /// The normal of the shaded surface, of any length.
+    /// The perturbed normal as it was interpolated, of any length.
     interpolated: Vector,
     toward_eye: Vector,
 }
 
 impl SurfacePoint {
-    /// Returns whether a light falls on the surface. The device knows nothing about surfaces in their own shadow.
+    /// Returns whether a light falls on the surface. The renderer must check this, because the device would compute a highlight
+    /// on the side away from the light too.
     fn is_lit(&self, light: &Light) -> bool {
         self.smooth.dot(light.direction) > 0.0
     }
 
-    /// Returns the half vector H.
+    /// Returns the half vector H between the directions to the light and to the eye, of length 1.
     fn half(&self, light: &Light) -> Vector {
         let sum = light.direction + self.toward_eye;
         sum.unit().unwrap_or(self.smooth)
@@ -94,10 +96,10 @@ impl SurfacePoint {
 
 impl Shader<'_> {
     /// Shades a row of samples. Returns its ambient and diffuse light, and the points for which the device must compute the
-    /// highlight. `ray` gives the ray through each sample.
+    /// highlight. `hits` are the surfaces at the samples, and `ray` returns the ray through the sample of a column.
     ///
     /// # Errors
-    /// Fails if the device cannot take a line.
+    /// Fails if the operands of a line cannot be computed, or if the device cannot represent them.
     pub fn shade(&self, hits: &[Hit], ray: impl Fn(usize) -> Vector) -> Result<Shaded> {
         let mut shaded = Shaded {
             samples: Vec::with_capacity(hits.len()),
@@ -115,7 +117,7 @@ impl Shader<'_> {
                 continue;
             }
             let most = match self.feed.longest() {
-                // A line has a point more than intervals.
+                // A line has one point more than it has intervals.
                 Some(longest) => longest + 1,
                 None => run.len(),
             };
@@ -131,7 +133,7 @@ impl Shader<'_> {
         Ok(shaded)
     }
 
-    /// Shades samples beside each other on one triangle or ball.
+    /// Shades neighbouring samples of a row on one triangle or ball, and appends them to `shaded`.
     fn surfaces(&self, surfaces: &[SurfacePoint], shaded: &mut Shaded) -> Result<()> {
         let lines = match self.feed.longest() {
             None => Vec::new(),
@@ -162,7 +164,7 @@ impl Shader<'_> {
                         normal: surface.interpolated,
                         light: light.direction,
                         half,
-                        // It is computed with the first light.
+                        // The first light that falls on the surface carries the ambient light; `take` leaves 0 for the others.
                         ambient: surface.colour.times(std::mem::take(&mut ambient)),
                         diffuse: surface.colour.times(scattered),
                     };
@@ -192,10 +194,11 @@ impl Shader<'_> {
         Ok(())
     }
 
-    /// Adds the lines along some samples. Returns for each light the numbers of the first result of red, green and
-    /// blue. A light that falls on none of the samples has no line.
+    /// Adds the lines along some neighbouring samples to `points`: for each light one line in red, green and blue. Returns for
+    /// each light the indices of the first results of these three lines. A light that falls on none of the samples has no
+    /// lines.
     ///
-    /// The host's set-up is the set-up of seed 000, from normals and half vectors at both ends.
+    /// [`Arc`] computes the operands from the normals and half vectors at both ends.
     fn lines(&self, surfaces: &[SurfacePoint], points: &mut Points) -> Result<Vec<[usize; 3]>> {
         let (Some(first), Some(last)) = (surfaces.first(), surfaces.last()) else {
             return Ok(Vec::new());
@@ -229,8 +232,8 @@ impl Shader<'_> {
         SurfacePoint { colour: object.colour, smooth, perturbed, interpolated, toward_eye }
     }
 
-    /// Returns the normals of the smooth and of the perturbed surface, both toward the eye, and the perturbed normal as
-    /// it was interpolated, of any length.
+    /// Returns three normals on the side of the eye: the unit normal of the smooth surface, the unit normal of the perturbed
+    /// surface, and the perturbed normal as it was interpolated, of any length.
     fn normals(
         &self,
         object: &Object,
@@ -238,7 +241,8 @@ impl Shader<'_> {
         place: Vector,
         toward_eye: Vector,
     ) -> [Vector; 3] {
-        // The surface's own side, for the interpolated normal may lean away from the eye.
+        // The flat side of the triangle decides which direction is toward the eye, because the interpolated normal may lean
+        // away from the eye although the triangle is visible.
         let (normal, mixed, side) = match &object.shape {
             Shape::Ball { middle, .. } => {
                 let normal = (place - *middle).unit().unwrap_or(toward_eye);
@@ -270,11 +274,12 @@ impl Shader<'_> {
     }
 }
 
-/// Returns the values of a point from which operands are made. For example, cos dγ is 1 if both normals are the same.
+/// Returns the quantities of a point from which operands are made. `smooth` and `perturbed` are unit normals, and `half` is the
+/// half vector H. For example, `cos_dgamma` is 1 if both normals are the same.
 ///
-/// As the patent has it, roughness changes the angle γ between normal and half vector by dγ. With N′ the
-/// perturbed normal and γ′ its angle with H, dγ = γ′ − γ: cos dγ = cos γ·cos γ′ + sin γ·sin γ′, and dγ is
-/// negative when N′ is nearer to H.
+/// As in the patent that `rough` implements, roughness changes the angle γ between normal and half vector by dγ. N′ is the
+/// perturbed normal, and γ′ is its angle with H. Then dγ = γ′ − γ and cos dγ = cos γ·cos γ′ + sin γ·sin γ′. dγ is negative if
+/// N′ is nearer to H.
 pub fn point(smooth: Vector, perturbed: Vector, half: Vector, colour: Vector) -> Point {
     let cosine = |normal: Vector| normal.dot(half).clamp(-1.0, 1.0);
     let (cos_gamma, cos_shaded) = (cosine(smooth), cosine(perturbed));
@@ -295,13 +300,15 @@ pub fn point(smooth: Vector, perturbed: Vector, half: Vector, colour: Vector) ->
     }
 }
 
-/// Returns texture coordinates, and how each grows on the surface.
+/// Returns the texture coordinates (u, v) of a hit and their gradients: the vectors along the surface in which u and v grow, in
+/// texture units per unit of the scene.
 fn texture(object: &Object, hit: &Hit, normal: Vector) -> ([f64; 2], [Vector; 2]) {
     match &object.shape {
         Shape::Ball { radius, .. } => {
             let [x, y, z] = normal.0;
-            // Longitude, twice around, and latitude from pole to pole: both in the same scale at the
-            // equator. Toward the poles the meridians come together; a height map must not.
+            // u is the longitude, which runs from −1 to 1 once around; v is the latitude, from 0 to 1 between the poles. Both
+            // have the same scale at the equator. Near the poles the meridians come together, so `sine` is limited to keep the
+            // height map from doing so.
             let sine = (1.0 - y * y).max(0.02).sqrt();
             let u = libm::atan2(x, z) / PI;
             let v = 1.0 - libm::acos(y.clamp(-1.0, 1.0)) / PI;
@@ -320,7 +327,7 @@ fn texture(object: &Object, hit: &Hit, normal: Vector) -> ([f64; 2], [Vector; 2]
             let (first_edge, second_edge) = (q - p, r - p);
             let area = first_edge.cross(second_edge);
             let scale = 1.0 / area.dot(area);
-            // In the triangle's plane, across each edge.
+            // Vectors in the plane of the triangle: each is perpendicular to one of the two edges.
             let across = [second_edge.cross(area), area.cross(first_edge)];
             let along = |axis: usize| {
                 let (to_b, to_c) = (b[axis] - a[axis], c[axis] - a[axis]);
@@ -359,7 +366,7 @@ mod tests {
 
     #[test]
     fn texture_gradients_of_a_triangle() {
-        // In the plane z = 0: u = x/2, v = x/4 + y/3.
+        // The triangle lies in the plane z = 0, where u = x/2 and v = x/4 + y/3.
         let v = Vector::new;
         let corners =
             [0, 1, 2].map(|at| RawCorner { position: at, normal: None, texture: Some(at) });

@@ -7,8 +7,9 @@ use anyhow::Result;
 use super::mesh::{Mesh, RawCorner, SMOOTH};
 use super::vector::Vector;
 
-/// Makes a torus around the y axis. `major` is the distance from the middle to the tube's middle, and `minor` is the
-/// tube's radius. `steps` are the numbers of steps each way. For example, 96 by 48 steps make 9216 triangles.
+/// Makes a torus around the y axis. `major` is the distance from the middle of the torus to the middle of its tube, and `minor`
+/// is the radius of the tube. `steps` are the numbers of steps around the axis and around the tube. For example, 96 by 48 steps
+/// make 9216 triangles.
 ///
 /// # Errors
 /// Fails if [`Mesh::new`] fails.
@@ -24,14 +25,14 @@ pub fn torus(major: f64, minor: f64, steps: [u32; 2]) -> Result<Mesh> {
     })
 }
 
-/// Makes a ball, with this number of steps around and from pole to pole.
+/// Makes a ball. `steps` are the numbers of steps around the y axis and from pole to pole.
 ///
 /// # Errors
 /// Fails if [`Mesh::new`] fails.
 pub fn ball(middle: Vector, radius: f64, steps: [u32; 2]) -> Result<Mesh> {
     grid(steps, [true, false], |u, v| {
         let (around, down) = (u * TAU, v * PI);
-        // Exactly 0 at both poles.
+        // The sine of π is not exactly 0 in f64, but the distance from the axis must be 0 at both poles.
         let from_axis = if v == 0.0 || v == 1.0 { 0.0 } else { radius * libm::sin(down) };
         let offset = Vector::new(
             from_axis * libm::sin(around),
@@ -42,13 +43,14 @@ pub fn ball(middle: Vector, radius: f64, steps: [u32; 2]) -> Result<Mesh> {
     })
 }
 
-/// Makes a vase of height 2 around the y axis, open at the top: belly, neck and lip.
+/// Makes a vase around the y axis with belly, neck and lip, open at the top. It reaches from y = −1 to y = 1. `steps` are the
+/// numbers of steps around the axis and along the wall.
 ///
 /// # Errors
 /// Fails if [`Mesh::new`] fails.
 pub fn vase(steps: [u32; 2]) -> Result<Mesh> {
     grid(steps, [true, false], |u, v| {
-        // Outside from the foot to the lip, then down the inside.
+        // The first 0.6 of v go up the outside from the foot to the lip, and the rest goes down the inside.
         let wall = 0.035;
         let (height, inward) = match v {
             ..0.6 => (v / 0.6, 0.0),
@@ -61,9 +63,9 @@ pub fn vase(steps: [u32; 2]) -> Result<Mesh> {
     })
 }
 
-/// Returns the radius of the vase from the foot (0) to the lip (1).
+/// Returns the outer radius of the vase at a height from 0 (the foot) to 1 (the lip).
 fn vase_radius(height: f64) -> f64 {
-    // A foot that closes, a belly, a neck, and a lip that opens.
+    // The radius is 0 at the foot, so the vase has a closed bottom; the lip widens at the top.
     let foot = (height * 14.0).min(1.0);
     let foot = foot * (2.0 - foot);
     let belly = 0.36 + 0.27 * libm::sin(height * 5.1 - 0.35);
@@ -71,14 +73,16 @@ fn vase_radius(height: f64) -> f64 {
     (foot * belly + lip).max(0.0)
 }
 
-/// Makes the surface `at` over the unit square, in steps. The surface is `closed` in a direction if its ends meet.
+/// Makes a mesh whose corners are the values of `at` at evenly spaced (u, v) from 0 to 1. `steps` are the numbers of steps
+/// along u and v. If `closed` is set for a direction, `at` must repeat in it, and the last corners are the same as the first
+/// ones.
 fn grid(steps: [u32; 2], closed: [bool; 2], at: impl Fn(f64, f64) -> Vector) -> Result<Mesh> {
     let [columns, rows] = steps;
     let mut positions = Vec::new();
     let mut textures = Vec::new();
     for row in 0..=rows {
         for column in 0..=columns {
-            // Where the ends meet they are the same point to the last bit.
+            // In a closed direction, the last corner is computed at 0 and not at 1, so that both ends have the same bits.
             let fraction = |at: u32, steps: u32, closed: bool| {
                 f64::from(if closed { at % steps } else { at }) / f64::from(steps)
             };
@@ -96,7 +100,7 @@ fn grid(steps: [u32; 2], closed: [bool; 2], at: impl Fn(f64, f64) -> Vector) -> 
                 RawCorner { position: at, normal: None, texture: Some(at) }
             };
             let [a, b, c, d] = [corner(0, 0), corner(1, 0), corner(1, 1), corner(0, 1)];
-            // Where a row is a single point, there is one triangle instead of two.
+            // If a row is a single point, such as a pole, a cell of the grid is one triangle instead of two.
             let differ = |corners: &[RawCorner; 3]| {
                 let [p, q, r] = corners.map(|corner| positions[corner.position as usize]);
                 p != q && q != r && r != p

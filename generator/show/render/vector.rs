@@ -1,6 +1,7 @@
 //! Defines vectors of three f64 components, and their arithmetic.
 //!
-//! It uses only addition, subtraction, multiplication, division and square roots, so that every machine computes the same bits.
+//! The module uses only addition, subtraction, multiplication, division and square roots, so every machine computes the same
+//! bits.
 
 use std::ops::{Add, Mul, Neg, Sub};
 
@@ -35,13 +36,13 @@ impl Vector {
         self.dot(self).sqrt()
     }
 
-    /// Returns the vector of length 1 in its direction; `None` when it has none, or none that can be computed. For
-    /// example, (0, 3, −4) gives (0, 0.6, −0.8).
+    /// Returns the vector of length 1 with the same direction. Returns `None` if the vector has length 0 or a component that
+    /// is not finite. For example, (0, 3, −4) gives (0, 0.6, −0.8).
     #[inline]
     pub fn unit(self) -> Option<Self> {
         let [x, y, z] = self.0.map(f64::abs);
         let largest = x.max(y).max(z);
-        // Scaled, so that squares neither overflow nor vanish.
+        // The scaled vector has the largest component 1, so its squares neither overflow nor vanish.
         let scaled = self * (1.0 / largest);
         let length = scaled.length();
         (self.finite() && length.is_finite() && length > 0.0).then(|| scaled * (1.0 / length))

@@ -1,9 +1,10 @@
 //! Finds the visible surface at each sample of a picture with a z-buffer. Threads render horizontal bands of the picture in
 //! parallel.
 //!
-//! The barycentric coordinates of a sample are the products of its ray with the normals of three planes, each through the eye and
-//! an edge of the triangle. Triangles need no clipping. Two triangles that share an edge compute the same number for it, with
-//! opposite signs, and so leave no gap. If two triangles have the same depth, the first wins.
+//! Three planes go through the eye, one through each edge of a triangle. The scalar products of a sample's ray with the
+//! normals of these planes give the barycentric coordinates of the sample, so triangles need no clipping. Two triangles that
+//! share an edge compute the same product for it with opposite signs, so no gap is visible between them. If two surfaces have
+//! the same depth, the earlier one wins.
 
 use rayon::prelude::*;
 
@@ -11,7 +12,7 @@ use super::camera::Camera;
 use super::scene::{Scene, Shape};
 use super::vector::Vector;
 
-/// Rows of samples that are worked on together.
+/// The number of rows of samples in a band.
 const BAND: usize = 16;
 
 /// The first surface that the ray through a sample meets.
@@ -62,12 +63,14 @@ impl Raster {
         Vector::new(x * self.half.0, y * self.half.1, -1.0)
     }
 
-    /// Returns the samples whose middles may lie between two slopes, `x/−z` or −`y/−z`: one more on each side.
+    /// Returns the first and the end index of the samples whose middles may lie between two slopes, `x/−z` for columns or
+    /// `−y/−z` for rows. The range has one more sample on each side. `half` is half the width or height of the view at
+    /// distance 1.
     fn span(&self, low: f64, high: f64, half: f64, count: usize) -> (u32, u32) {
         let last = count as f64;
         let lowest = (low / half + 1.0) / 2.0 * last - 0.5;
         let highest = (high / half + 1.0) / 2.0 * last - 0.5;
-        // Saturating conversions.
+        // The limits keep the conversions inside the raster; NaN becomes 0.
         let first = (lowest - 1.0).clamp(0.0, last) as u32;
         let end = (highest + 2.0).clamp(0.0, last) as u32;
         (first, end)
@@ -81,9 +84,9 @@ pub struct Visibility<'a> {
     /// The corners of each mesh, by object.
     corners: Vec<Vec<Vector>>,
     balls: Vec<(u32, Vector, f64)>,
-    /// For each band of rows, the candidates that may be seen there: object, triangle, columns.
+    /// For each band of rows, the triangles that may be visible in it.
     bands: Vec<Vec<CandidateSurface>>,
-    /// The least distance at which a surface is seen.
+    /// The smallest depth at which a surface is visible.
     near: f64,
 }
 
@@ -124,7 +127,7 @@ impl<'a> Visibility<'a> {
         visibility
     }
 
-    /// Puts the triangles of an object into the bands, in their order.
+    /// Adds the triangles of an object to the bands in which they may be visible, in the order of the mesh.
     fn sort(&mut self, object: u32) {
         let Shape::Mesh(mesh) = &self.scene.objects[object as usize].shape else {
             return;
@@ -149,7 +152,7 @@ impl<'a> Visibility<'a> {
         }
     }
 
-    /// Returns the rows and columns in which a triangle may be seen, if there are any.
+    /// Returns a triangle with the rows and columns in which it may be visible. Returns `None` if it is visible nowhere.
     fn candidate(&self, object: u32, triangle: u32) -> Option<CandidateSurface> {
         let corners = self.corners(object, triangle);
         let distances = corners.map(|corner| -corner.0[2]);
@@ -172,7 +175,7 @@ impl<'a> Visibility<'a> {
                 self.raster.span(low[1], high[1], half.1, height),
             )
         } else {
-            // It reaches behind the eye: it may be seen anywhere.
+            // The triangle reaches behind the eye, so it may be visible anywhere.
             ((0, width as u32), (0, height as u32))
         };
         if columns.0 >= columns.1 || rows.0 >= rows.1 {
@@ -181,11 +184,11 @@ impl<'a> Visibility<'a> {
         Some(CandidateSurface { object, triangle, columns, rows })
     }
 
-    /// Returns the first surface at each sample of some rows, row by row.
+    /// Returns the nearest surface at each sample of the rows from `first` up to but excluding `end`, row by row.
     pub fn rows(&self, first: usize, end: usize) -> Vec<Hit> {
         let width = self.raster.columns;
         let mut hits = vec![NOTHING; width * (end - first)];
-        // Bands of the whole picture. The first and the last may be only partly among these rows.
+        // The bands divide the whole picture, so the first and the last band may be only partly among these rows.
         let mut parts = Vec::new();
         let (mut rest, mut row) = (hits.as_mut_slice(), first);
         while row < end {
@@ -198,7 +201,7 @@ impl<'a> Visibility<'a> {
         hits
     }
 
-    /// Finds the surfaces in the rows of one band. The first row has the number `first`.
+    /// Finds the nearest surfaces in rows of one band and writes them to `hits`. `first` is the number of the first row.
     fn band(&self, first: usize, hits: &mut [Hit]) {
         let width = self.raster.columns;
         let end = first + hits.len() / width;
@@ -241,22 +244,24 @@ impl<'a> Visibility<'a> {
     }
 }
 
-/// The planes through the eye and the edges of a triangle.
+/// The three planes through the eye and an edge of a triangle.
 struct Planes {
     normals: [Vector; 3],
-    /// Six times the volume of eye and triangle.
+    /// Six times the signed volume of the tetrahedron of eye and triangle.
     volume: f64,
 }
 
 impl Planes {
-    /// Makes the planes of a triangle. Returns `None` for one that is seen from its edge.
+    /// Makes the planes of a triangle, given its corners in the camera's coordinates. Returns `None` if the eye lies in the
+    /// plane of the triangle.
     fn new([a, b, c]: [Vector; 3]) -> Option<Self> {
         let normals = [b.cross(c), c.cross(a), a.cross(b)];
         let volume = a.dot(normals[0]);
         (volume != 0.0).then_some(Self { normals, volume })
     }
 
-    /// Returns the depth at which a ray meets the triangle, with the weights of the second and the third corner.
+    /// Returns the depth at which a ray meets the triangle, with the barycentric weights of the second and the third corner.
+    /// Returns `None` if the ray passes beside the triangle. The depth is negative if the triangle is behind the eye.
     #[inline]
     fn meet(&self, ray: Vector) -> Option<(f64, [f64; 2])> {
         let [a, b, c] = self.normals.map(|normal| ray.dot(normal));
@@ -270,8 +275,8 @@ impl Planes {
     }
 }
 
-/// Returns the place at which a ray enters a ball, as a multiple of the ray. For example, the ray (0, 0, −1) enters a
-/// ball of radius 2 around (0, 0, −5) at 3.
+/// Returns the depth at which a ray enters a ball, as a multiple of the ray; `None` if the ray misses the ball. For example,
+/// the ray (0, 0, −1) enters a ball of radius 2 around (0, 0, −5) at 3.
 #[inline]
 fn meet_ball(ray: Vector, middle: Vector, radius: f64) -> Option<f64> {
     let square = ray.dot(ray);
@@ -288,7 +293,7 @@ mod tests {
     fn a_triangle_is_met_with_its_weights() {
         let corners = [[0.0, 0.0, -2.0], [4.0, 0.0, -4.0], [0.0, 1.0, -1.0]].map(Vector);
         let planes = Planes::new(corners).unwrap();
-        // A quarter, a half, a quarter: (2, 1/4, −11/4), along the ray of z = −1.
+        // The weights 1/4, 1/2 and 1/4 give the point (2, 1/4, −11/4). Its ray has z = −1.
         let point = Vector::new(2.0, 0.25, -2.75);
         let (depth, [b, c]) = planes.meet(point * (1.0 / 2.75)).unwrap();
         assert!(

@@ -5,7 +5,7 @@ use super::table::TableView;
 use crate::figures::{Figures, Frequency, Rate, SynthesisRecord};
 use crate::pages::account::TextTable;
 
-/// The cell of a target without such a thing, or without a measurement.
+/// The text of a cell if the target has no such resource, or if nothing was measured.
 const NONE: &str = "–";
 
 /// The measurements of a core as the datasheet prints them.
@@ -101,7 +101,7 @@ fn count(number: Option<u64>) -> String {
     }
 }
 
-/// Returns the text of a number with this number of digits behind the point, or [`NONE`].
+/// Returns the text of a number with `digits` digits after the point, or [`NONE`].
 fn decimal(number: Option<f64>, digits: usize) -> String {
     match number {
         Some(number) => format!("{number:.digits$}"),

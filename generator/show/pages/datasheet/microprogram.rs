@@ -1,5 +1,5 @@
-//! Makes the datasheet's table of the microprogram, as the patents print it: a row for each microinstruction, a column for each
-//! control line.
+//! Makes the datasheet's table of the microprogram in the form that the patents use. It has a row for each microinstruction and
+//! a column for each control line.
 
 use crate::pages::account;
 use crate::pages::markup::html;
@@ -56,7 +56,7 @@ impl Microprogram {
         let page_rows = account::microprogram(design).rows;
         for (address, page_row) in page_rows.into_iter().enumerate() {
             let microinstruction = &control.microprogram[address];
-            // The column "then" of the page's table is the last.
+            // The last column of the page's table is "then", the microinstruction that follows.
             let then = page_row.last().map_or("", String::as_str);
             rows.push(MicroinstructionRow {
                 address,

@@ -25,10 +25,10 @@ use glint_core::cosim::exhaustive::{Backing, Record};
 use glint_core::package::{HandshakeTiming, LineClocks, WorkedExample};
 use waves::Waves;
 
-/// A side of the picture of a highlight, in pixels.
+/// The width and the height of the picture of a highlight, in pixels.
 const SIDE: u32 = 260;
 
-/// Samples along each side of a pixel.
+/// The number of samples along each side of a pixel of this picture.
 const SAMPLES: u32 = 2;
 
 /// The core that a datasheet describes, with the evidence and measurements that it shows.
@@ -56,30 +56,30 @@ pub struct Datasheet {
     pub wavedrom: String,
 }
 
-/// The results of a page that take work.
+/// The results for a page that simulation, rendering, measurement or synthesis must compute.
 struct DatasheetResults {
     timing: HandshakeTiming,
     example: WorkedExample,
     line: Option<LineClocks>,
     waves: Waves,
     curves: DeviceCurves,
-    /// The charts of a function of one operand over its domain.
+    /// The charts of a function of one operand over its domain; empty for other devices.
     over_domain: Vec<Chart>,
-    /// None of a device that a picture has not the operands for.
+    /// The picture of a highlight; `None` if a scene cannot supply the operands of the device.
     highlight: Option<HighlightPicture>,
     synthesis: Option<(String, Vec<FamilyUsage>)>,
 }
 
-/// A picture through the golden model, beside Blinn's in f64 and their difference.
+/// A picture that the golden model computes, beside the picture with Blinn's function in f64 and their difference.
 struct HighlightPicture {
-    /// Through the device, beside Blinn's function, and the difference.
+    /// The three pictures side by side, as a PNG file.
     png: Vec<u8>,
-    /// Through the device alone.
+    /// The picture of the golden model alone, as a PNG file.
     ball: Vec<u8>,
     exponent: u32,
-    /// In dB; none for the same picture.
+    /// The peak signal-to-noise ratio in decibels; `None` if the pictures are equal.
     psnr: Option<f64>,
-    /// The largest error, of 255.
+    /// The largest difference of a colour channel, from 0 to 255.
     largest: u8,
     gain: u8,
 }
@@ -133,7 +133,10 @@ pub fn timing_diagram(core: &Core) -> Result<(String, String)> {
     Ok((timing::drawing(&waves).file()?, waves.described()))
 }
 
-/// Returns a ball in the light that pictures have by default.
+/// Renders a ball in the default light, through the golden model and with Blinn's function.
+///
+/// # Errors
+/// Fails if the picture cannot be rendered.
 fn highlight(core: &Core) -> Result<HighlightPicture> {
     let contract = core.contract.as_ref();
     let exponent = render::usual_exponent(contract);

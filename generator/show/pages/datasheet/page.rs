@@ -63,7 +63,7 @@ struct Page<'a> {
     toml: String,
 }
 
-/// The control of a computation.
+/// The section of the page that explains how a computation is controlled.
 enum ControlSection {
     Microprogram {
         microprogram: Microprogram,
@@ -102,7 +102,7 @@ struct ProofView {
     evaluations: String,
     /// `None` if nothing multiplies colours.
     products: Option<String>,
-    /// The largest errors.
+    /// The largest errors that the check found, in words.
     found: String,
 }
 
@@ -207,7 +207,7 @@ pub fn page(subject: &Subject, measured: &DatasheetResults) -> Result<String> {
     Ok(package::sealed(text, Seal::Markup))
 }
 
-/// Returns the figures at a glance.
+/// Returns the rows of the summary at the head of the page: the name of a quantity, and its value with the unit.
 fn glance(subject: &Subject, measured: &DatasheetResults) -> Vec<(&'static str, String)> {
     let design = &subject.core.design;
     let contract = subject.core.contract.as_ref();
@@ -266,19 +266,20 @@ fn glance(subject: &Subject, measured: &DatasheetResults) -> Vec<(&'static str, 
     glance
 }
 
-/// Returns the target that a pipeline is scheduled for.
+/// Returns the target for which a pipeline is scheduled, or `None` if the design is no pipeline.
 fn target(design: &Design) -> Option<&str> {
     design.pipeline.as_ref().map(|pipeline| pipeline.target.as_str())
 }
 
-/// Returns the cells on the target, or on the first family if there is no target.
+/// Returns the cells on the FPGA family `target`, or on the first family if `target` is `None` or not among them.
 fn first_usage<'u>(usage: &'u [FamilyUsage], target: Option<&str>) -> Option<&'u FamilyUsage> {
     let family = FAMILIES.iter().find(|family| Some(family.name()) == target);
     let on_target = usage.iter().find(|it| family.is_some_and(|own| own.title == it.family));
     on_target.or_else(|| usage.first())
 }
 
-/// Returns how many there are of each size, the largest first. For example, `21 × 10, 3 of 10 × 8`, or `none`.
+/// Returns the multipliers of a design in words: the number of each size, the largest size first. For example, `21 × 10, 3 of
+/// 10 × 8`, or `none`.
 fn multipliers(design: &Design) -> String {
     let all = comparison::multipliers(design);
     let sizes = all.chunk_by(|a, b| a == b).map(|alike| {
@@ -294,14 +295,14 @@ fn multipliers(design: &Design) -> String {
     }
 }
 
-/// Returns the rate at the measured clock, if a clock was measured.
+/// Returns the number of points per second at the measured frequency, in words. Returns `None` if no frequency was measured.
 fn rate(subject: &Subject) -> Option<String> {
     let target = target(&subject.core.design);
     let (figures, frequency, rate) = measured::leading(subject.figures.as_ref()?, target)?;
     Some(format!("{:.1} million at {:.1} MHz ({})", rate.points, frequency.median, figures.device))
 }
 
-/// Returns how often a point can be computed, in a sentence.
+/// Returns a sentence that says how often the core can compute a point.
 fn throughput(subject: &Subject, timing: &HandshakeTiming) -> String {
     let often = match timing.clocks_per_point() {
         Some(1) => "A point takes a clock".to_owned(),
@@ -323,7 +324,7 @@ fn throughput(subject: &Subject, timing: &HandshakeTiming) -> String {
     }
 }
 
-/// Writes a number with a narrow space between thousands, which no line ends at.
+/// Returns a number with a narrow space between thousands, at which no line breaks.
 fn grouped(number: u64) -> String {
     text::grouped(number).replace(' ', "\u{202f}")
 }

@@ -3,14 +3,15 @@
 use crate::pages::account::{Align, TextTable};
 use crate::pages::markup::html;
 
-/// The width of a phone, in characters of a table; a wider one is shown there a row below the other.
+/// The width of a phone in characters of a table. On a phone, a wider table is shown with its cells below each other.
 const NARROW: usize = 36;
 
 /// A table as the template of the datasheet prints it.
 pub struct TableView {
     /// A description of the table for screen readers.
     pub label: &'static str,
-    /// Whether a narrow page shows each row as lines of its own. For example, a table with a sentence in a cell stacks.
+    /// Whether a narrow page shows the cells of a row below each other. For example, a table with a sentence in a cell is shown
+    /// so.
     pub stacks: bool,
     /// Class and heading of each column.
     pub columns: Vec<(&'static str, String)>,

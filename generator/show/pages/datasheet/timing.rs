@@ -5,19 +5,19 @@ use std::ops::Range;
 use super::waves::{Lane, LaneStyle, MICROINSTRUCTION, Waves};
 use crate::pages::drawing::{Drawing, Item, SIZE, text_width};
 
-/// From one lane to the next.
+/// The vertical distance from one lane to the next, in units of the drawing.
 const PITCH: i32 = 26;
 
-/// From low to high.
+/// The vertical distance from a low signal to a high one.
 const SWING: i32 = 16;
 
-/// Above the first lane: the numbers of the clocks.
+/// The height of the space above the first lane, which has the numbers of the clocks.
 const HEAD: i32 = 24;
 
-/// How wide a clock may be.
+/// The smallest and the largest width of a clock.
 const CLOCK: std::ops::RangeInclusive<i32> = 34..=104;
 
-/// How slanted edges are.
+/// The horizontal length of a slanted edge.
 const SLANT: i32 = 3;
 
 /// The space that a value needs in addition to its text.
@@ -26,7 +26,7 @@ const MARGIN: i32 = 10;
 /// The largest width of the drawing, which a page shows without scrolling.
 const ROOM: i32 = 1120;
 
-/// Between strips of a waveform that is wider.
+/// The vertical distance between two strips of a waveform that is too wide for one strip.
 const APART: i32 = 22;
 
 /// Draws a waveform. If it is too long for one strip, it is continued in strips below.
@@ -62,8 +62,8 @@ fn label(lane: &Lane) -> String {
     }
 }
 
-/// Returns the width that a clock should have, within limits. The first width has room for all texts. The second one
-/// is for drawings with addresses in place of the names of microinstructions.
+/// Returns two widths for a clock, both limited to [`CLOCK`]. With the first width, all texts fit. With the second one, all
+/// texts fit if the diagram shows addresses instead of the names of microinstructions.
 fn clock_widths(waves: &Waves) -> [i32; 2] {
     let (mut with_names, mut with_addresses) = (0, 0);
     for lane in &waves.lanes {
@@ -83,8 +83,8 @@ fn clock_widths(waves: &Waves) -> [i32; 2] {
     [with_names, with_addresses].map(|width| width.clamp(*CLOCK.start(), *CLOCK.end()))
 }
 
-/// Returns the stretches of some places in which a value stays, as half-open ranges. For example, the values 5, 5 and 6
-/// have the ranges from 0 to 2 and from 2 to 3.
+/// Returns the ranges of positions in `places` over which a value stays the same, as half-open ranges. For example, the values
+/// 5, 5 and 6 have the ranges from 0 to 2 and from 2 to 3.
 fn segments(lane: &Lane, places: Range<usize>) -> Vec<(usize, usize)> {
     let mut segments = Vec::new();
     let mut from = places.start;
@@ -96,7 +96,8 @@ fn segments(lane: &Lane, places: Range<usize>) -> Vec<(usize, usize)> {
     segments
 }
 
-/// A strip, with the place of its clocks.
+/// A strip of the drawing: `places` are the indices of its clocks, `left` and `top` its position, and `clock` the width of a
+/// clock.
 struct Grid<'a> {
     waves: &'a Waves,
     places: Range<usize>,
@@ -131,13 +132,13 @@ impl Grid<'_> {
         }
     }
 
-    /// Returns the x coordinate of the edge that begins a clock, by the clock's place among the shown ones.
+    /// Returns the x coordinate of the edge that begins the clock at index `at` of the shown clocks.
     fn x(&self, at: usize) -> i32 {
         self.left + self.clock * (at - self.places.start) as i32
     }
 
-    /// Returns the places before which the diagram leaves clocks out. For example, after clocks 0, 1, 7 and 8 it is the
-    /// place of clock 7.
+    /// Returns the indices before which the diagram leaves clocks out. For example, if it shows the clocks 0, 1, 7 and 8, it
+    /// returns 2, the index of clock 7.
     fn gaps(&self) -> impl Iterator<Item = usize> + '_ {
         let clocks = &self.waves.clocks;
         self.places.clone().filter(|&at| at > 0 && clocks[at] != clocks[at - 1] + 1)
@@ -169,7 +170,7 @@ impl Grid<'_> {
         d
     }
 
-    /// Returns the characters that a frame between two places has room for.
+    /// Returns the number of characters that fit into a frame from the index `from` to the index `to`.
     fn room(&self, from: usize, to: usize) -> usize {
         (f64::from(self.x(to) - self.x(from) - 2 * SLANT) / (SIZE * 0.6)) as usize
     }

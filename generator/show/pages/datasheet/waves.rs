@@ -1,4 +1,4 @@
-//! Records the waveform of one computation, or of some points in a pipeline, with the built-in simulator.
+//! Records the waveform of one computation, or of several points in a pipeline, with the built-in simulator.
 //!
 //! A waveform has one lane for each signal. It can be written as JSON for the drawing tool WaveDrom.
 
@@ -15,10 +15,10 @@ use glint_rtl::netlist::{Design, Driver, Handshake, NetId, Port, RegisterKind, R
 /// The largest number of clocks that can be shown. The diagram leaves out the middle of a longer computation.
 const MOST: usize = 40;
 
-/// Clocks that are shown of the beginning of a long computation.
+/// The number of clocks that the diagram shows of the beginning of a long computation.
 const HEAD: usize = 24;
 
-/// Clocks that are shown of its end.
+/// The number of clocks that the diagram shows of the end of a long computation.
 const TAIL: usize = 8;
 
 /// The name of the lane that shows which microinstruction is executed.
@@ -47,7 +47,7 @@ pub struct Lane {
     pub number: Option<u16>,
     /// The style in which the lane is drawn.
     pub shape: LaneStyle,
-    /// The value in each clock that is shown; `None` if it means nothing yet. For example, a result is `None` before
+    /// The value in each clock that is shown; `None` if the signal has no meaning yet. For example, a result is `None` before
     /// the first `valid`.
     pub values: Vec<Option<String>>,
 }
@@ -63,7 +63,7 @@ pub enum LaneStyle {
     Bus,
 }
 
-/// The source of a lane's waveform.
+/// A net that is recorded for a lane, and its meaning.
 struct Probe {
     net: NetId,
     kind: Meaning,
@@ -92,7 +92,8 @@ impl Waves {
         }
     }
 
-    /// Takes the waveform of a pipeline: the handshake, operands while they are offered, results while they are shown.
+    /// Records the waveform of a pipeline: the handshake, the operands while `in_valid` is 1, and the results while `out_valid`
+    /// is 1.
     fn points(core: &Core) -> Result<Self> {
         let design = &core.design;
         let groups: [&[Role]; 6] = [
@@ -113,7 +114,7 @@ impl Waves {
         let out_valid = ports.iter().position(|port| port.role == Role::Valid);
         let mut lanes = vec![clock_lane(clocks.len())];
         for (at, port) in ports.iter().enumerate() {
-            // Data mean something with their valid bit alone.
+            // Operands and results have a meaning only while their valid bit is 1.
             let valid = match port.role {
                 Role::Point => in_valid,
                 Role::Result | Role::Status => out_valid,
@@ -158,7 +159,7 @@ impl Waves {
         Ok(Self::cut(design, "one computation", clocks.len(), lanes))
     }
 
-    /// Cuts lanes of `clocks` clocks to the clocks that are shown.
+    /// Makes the waveform from lanes of `clocks` clocks, and keeps only the clocks that the diagram shows.
     fn cut(design: &Design, what: &'static str, clocks: usize, mut lanes: Vec<Lane>) -> Self {
         let shown = shown(clocks);
         for lane in &mut lanes {
@@ -168,7 +169,8 @@ impl Waves {
         Self { name: design.name.clone(), pipelined, what, clocks: shown, lanes }
     }
 
-    /// Returns the first clock in which the signal `name` is 1.
+    /// Returns the number of the first clock in which the signal `name` is 1. Returns `None` if the signal is not recorded, or
+    /// never 1.
     pub fn first(&self, name: &str) -> Option<u32> {
         let lane = self.lanes.iter().find(|lane| lane.name == name)?;
         let at = lane.values.iter().position(|value| value.as_deref() == Some("1"))?;
@@ -204,8 +206,8 @@ impl Waves {
         }
     }
 
-    /// Returns the waveform as WaveDrom's JSON, ending with a newline. For example, a bit that is 0, 1, and after a gap
-    /// 1 and 0 has the wave `01|.0`.
+    /// Returns the waveform as WaveDrom's JSON, ending with a newline. For example, a bit that is 0 and 1, and after a gap 1
+    /// and 0, has the wave `01|.0`.
     ///
     /// # Errors
     /// Fails only through a bug, not through anything that a user gives.
@@ -246,7 +248,7 @@ impl Waves {
     }
 }
 
-/// Lists the recorded nets: the handshake, the registers of the source's datapath, and the results.
+/// Lists the nets to record: the handshake, the architectural registers, and the results.
 fn probes(design: &Design, handshake: [NetId; 4]) -> Vec<Probe> {
     let mut probes = Vec::new();
     for net in handshake {
@@ -265,7 +267,7 @@ fn probes(design: &Design, handshake: [NetId; 4]) -> Vec<Probe> {
     probes
 }
 
-/// Returns the value of one recorded net in every clock.
+/// Returns the values of the recorded net at index `at`, one for each clock.
 fn column(clocks: &[Vec<u64>], at: usize) -> Vec<u64> {
     clocks.iter().map(|values| values[at]).collect()
 }
@@ -283,7 +285,8 @@ fn shape(format: Format) -> LaneStyle {
     if format.width() == 1 { LaneStyle::Bit } else { LaneStyle::Bus }
 }
 
-/// Returns the lane of a probe; none for a register that the computation leaves alone.
+/// Returns the lane of a probe. `bits` are its bit patterns in each clock, and `valid` is the first clock with results. Returns
+/// `None` for a register that never changes.
 fn lane(design: &Design, probe: &Probe, bits: &[u64], valid: usize) -> Option<Lane> {
     let net = design.net(probe.net);
     let known = match probe.kind {
@@ -305,7 +308,8 @@ fn lane(design: &Design, probe: &Probe, bits: &[u64], valid: usize) -> Option<La
     Some(Lane { name: net.name.clone(), number: net.block, shape: shape(net.format), values })
 }
 
-/// Returns the microinstruction that is executed, by its name. For example, `3 result`, or `idle`.
+/// Returns the lane with the address and name of the microinstruction that is executed. Its values are, for example, `3 result`
+/// and `idle`.
 fn microprogram_lane(design: &Design, addresses: &[u64], busy: &[u64]) -> Lane {
     let mut values = Vec::new();
     for (&address, &busy) in addresses.iter().zip(busy) {
@@ -319,7 +323,7 @@ fn microprogram_lane(design: &Design, addresses: &[u64], busy: &[u64]) -> Lane {
     Lane { name: MICROINSTRUCTION.to_owned(), number: None, shape: LaneStyle::Bus, values }
 }
 
-/// Returns a value in few digits.
+/// Returns the value of a bit pattern as text, rounded to five digits after the point.
 fn text(format: Format, bits: u64) -> String {
     let value = format.to_f64(format.raw(bits));
     match format.frac {
@@ -328,8 +332,8 @@ fn text(format: Format, bits: u64) -> String {
     }
 }
 
-/// Returns the clocks that are shown of a computation of `clocks` clocks. For example, 100 clocks are cut to the clocks
-/// 0 to 23 and 92 to 99.
+/// Returns the numbers of the clocks that the diagram shows of a computation with `clocks` clocks. For example, it shows the
+/// clocks 0 to 23 and 92 to 99 of 100 clocks.
 fn shown(clocks: usize) -> Vec<usize> {
     match clocks {
         0..=MOST => (0..clocks).collect(),

@@ -98,7 +98,7 @@ struct GraphBuilder<'a> {
     design: &'a Design,
     blocks: Blocks<'a>,
     graph: DiagramGraph,
-    /// The box whose output a net is.
+    /// For each net at the output of a box, the index of the box.
     driver: HashMap<NetId, usize>,
 }
 
@@ -114,7 +114,7 @@ impl<'a> GraphBuilder<'a> {
         }
     }
 
-    /// Adds a wire to an input of a block. A constant gets a box beside the block that takes it.
+    /// Adds a wire from the driver of `net` to the box `to`. A constant gets a box of its own beside the box that takes it.
     fn takes(&mut self, net: NetId, to: usize) {
         if self.driver.contains_key(&net)
             || !matches!(self.design.net(net).driver, Driver::Constant(_))
@@ -132,7 +132,7 @@ impl<'a> GraphBuilder<'a> {
         self.graph.wires.push(DiagramWire { from, to });
     }
 
-    /// Adds an empty box to each stage without a block: it has a place too.
+    /// Adds an empty box to each stage without a block, so that the stage has a column in the diagram too.
     fn fill(&mut self) {
         for stage in 0..self.graph.stages {
             if self.graph.boxes.iter().all(|it| it.stage != Some(stage)) {
@@ -154,8 +154,8 @@ impl<'a> GraphBuilder<'a> {
         })
     }
 
-    /// Returns a caption with the number of clocks for which registers hold a value that a stage makes, if they are
-    /// several. For example, `adder · u0.8 · held 3 clocks`.
+    /// Returns `caption` with the number of clocks for which registers hold the value of `net`, if they hold it for two clocks
+    /// or more. `stage` is the stage that computes the value. For example, `adder · u0.8 · held 3 clocks`.
     fn held(&self, caption: String, net: NetId, stage: usize) -> String {
         let Some(pipeline) = &self.design.pipeline else { return caption };
         let held = self.blocks.held(net);
@@ -166,8 +166,8 @@ impl<'a> GraphBuilder<'a> {
         }
     }
 
-    /// Adds operands, `start`, and the inputs that go with a point. Strobes are drawn at the registers that they
-    /// write.
+    /// Adds the input ports: operands, `start`, and the inputs that go with a point. Strobes get no port; they are drawn at the
+    /// registers that they write.
     fn inputs(&mut self) {
         for port in self.design.inputs() {
             if matches!(
@@ -180,7 +180,7 @@ impl<'a> GraphBuilder<'a> {
         }
     }
 
-    /// Adds results, and the handshake; that all points wait together is no flow of data.
+    /// Adds the output ports: the results and the handshake. It leaves out `in_ready`, which carries no data of a point.
     fn outputs(&mut self, control: Option<usize>) {
         for port in self.design.outputs().filter(|port| port.role != Role::InReady) {
             let at = self.port(port.net, BoxForm::Output);
@@ -259,7 +259,7 @@ impl<'a> GraphBuilder<'a> {
         added
     }
 
-    /// Returns the numbers or names of the lines that control a block, and of the port that writes an operand.
+    /// Returns the numbers or names of the control lines of a block, and of the strobe that writes it if it is an operand.
     fn turned_by(&self, block: &Block) -> String {
         let (fields, strobes) = self.blocks.controls(block);
         let mut lines: Vec<String> = fields.into_iter().map(|field| self.lines(field)).collect();
@@ -278,8 +278,8 @@ impl<'a> GraphBuilder<'a> {
     }
 }
 
-/// Returns a block's kind and format; the port above a register shows that it takes an operand. For example, `adder ·
-/// u0.8`.
+/// Returns a block's kind and format. An operand is called a register here, because the port above it shows that it is an
+/// operand. For example, `adder · u0.8`.
 fn caption(block: &Block) -> String {
     match block.kind {
         BlockKind::Operand => format!("{} · {}", BlockKind::Register, block.format),

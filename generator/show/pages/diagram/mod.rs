@@ -18,34 +18,34 @@ use graph::{BoxForm, DiagramBox, DiagramGraph};
 use place::Placement;
 use route::{Body, LANE, Routes, WireRoute, WireSegment};
 
-/// The height of a line of text in a box.
+/// The height of a line of text in a box, in units of the drawing.
 const LINE: i32 = 14;
 
-/// Above and below the text in a box.
+/// The space above, and below, the text in a box.
 const PADDING: i32 = 6;
 
-/// A caption that is longer, in characters, takes two lines.
+/// The largest number of characters of a caption on one line. A longer caption takes two lines.
 const LONG: usize = 17;
 
-/// The least distance of pins.
+/// The smallest distance between two pins of a box.
 const PIN: f64 = 9.0;
 
-/// The arrow of the control lines beside a box.
+/// The length of the arrow of the control lines beside a box.
 const STUB: f64 = 14.0;
 
-/// Beside the text in a box.
+/// The space on each side of the text in a box.
 const MARGIN: i32 = 10;
 
-/// The point of a port.
+/// The height of the point at the lower end of a port.
 const NECK: i32 = 8;
 
-/// Around the drawing.
+/// The width of the empty border around the drawing.
 const BORDER: i32 = 12;
 
 /// The width of the notes beside a stage.
 const ASIDE: i32 = 140;
 
-/// From the boxes of a stage to the registers at its end.
+/// The distance from the boxes of a stage to the registers at its end.
 const REGISTERS: f64 = 7.0;
 
 /// Draws the block diagram of a design: boxes for ports, blocks and control unit, and the wires between them.
@@ -117,7 +117,7 @@ pub fn svg(design: &Design) -> Result<String> {
     drawing(design).file()
 }
 
-/// The size of a box in the layout, which sees the page turned: its height there is the width on the page.
+/// The size of a box in the layout. The page shows the layout turned, so a height in the layout is a width on the page.
 struct Sizes {
     lanes: f64,
     stub: f64,
@@ -158,8 +158,8 @@ fn is_port(one: &DiagramBox) -> bool {
     matches!(one.form, BoxForm::Input | BoxForm::Output)
 }
 
-/// Returns the text of a box, with the class of each line; the lines that control it are the last. For example, the
-/// text may be `15 difference`, `adder · u0.8` and the control line `30`.
+/// Returns the lines of text of a box, each with its class. The line that names its control lines is the last one. For example,
+/// the text may be `15 difference`, `adder · u0.8` and the control line `30`.
 fn lines(one: &DiagramBox) -> Vec<(&'static str, String)> {
     let head = match one.number {
         Some(number) => format!("{number} {}", one.name),
@@ -191,19 +191,19 @@ fn coordinate(value: f64) -> i32 {
     value.round() as i32 + BORDER
 }
 
-/// The area of the drawing, to the right of the notes on stages.
+/// The area of the drawing to the right of the notes on stages, which begins at `left`. Its methods append to `items`.
 struct Page<'a> {
     left: i32,
     items: &'a mut Vec<Item>,
 }
 
 impl Page<'_> {
-    /// Returns a place of the layout on the page, which shows it turned.
+    /// Returns a position of the layout as SVG coordinates on the page, which shows the layout turned.
     fn point(&self, (x, y): (f64, f64)) -> String {
         format!("{} {}", self.left + coordinate(y), coordinate(x))
     }
 
-    /// Draws the stages, with the registers that end each.
+    /// Draws the stages of a pipeline, each with the registers at its end.
     fn stages(
         &mut self,
         pipeline: &Pipeline,
@@ -211,7 +211,7 @@ impl Page<'_> {
         place: &Placement,
         routes: &Routes,
     ) {
-        // The beginning of the first column, and the end of the last column, of each stage with boxes.
+        // For each stage with boxes, the beginning of its first column and the end of its last column.
         let mut extents: Vec<Option<(f64, f64)>> = vec![None; pipeline.stages.len()];
         for (one, column) in graph.boxes.iter().zip(&place.column) {
             let Some(stage) = one.stage else { continue };
@@ -226,7 +226,7 @@ impl Page<'_> {
         };
         let mut top = first - 2.0 * REGISTERS;
         for (number, stage) in pipeline.stages.iter().enumerate() {
-            // Where shared multipliers alone work there is no box.
+            // A stage in which only shared multipliers work has no box, and is not drawn.
             let Some((_, end)) = extents[number] else { continue };
             let bottom = end + REGISTERS;
             self.stage(number, stage, [top, bottom], routes);
@@ -312,7 +312,7 @@ impl Page<'_> {
     }
 }
 
-/// Returns the places, each once, at which wires cross the end of a stage.
+/// Returns the horizontal positions on the page at which wires cross the end of a stage, each once.
 fn crossings(routes: &Routes, end: f64) -> Vec<i32> {
     let mut places: Vec<i32> = Vec::new();
     for net in &routes.nets {
@@ -327,7 +327,7 @@ fn crossings(routes: &Routes, end: f64) -> Vec<i32> {
     places
 }
 
-/// Returns the class of a box, which gives it its colour; its caption says the same.
+/// Returns the class of a box in the style sheet, which selects its colour.
 fn class(form: BoxForm) -> &'static str {
     match form {
         BoxForm::Input | BoxForm::Output => "box port",

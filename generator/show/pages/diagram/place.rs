@@ -6,20 +6,20 @@ use dagre::{EdgeLabel, LayoutOptions, NodeLabel, RankDir, Ranker, layout};
 use super::graph::{BoxForm, DiagramGraph, DiagramWire};
 use crate::pages::account::blocks::BlockKind;
 
-/// Between boxes of a column.
+/// The distance between two boxes of a column.
 const BOXES: f64 = 12.0;
 
-/// Between wires that pass a column.
+/// The distance between two wires that pass a column.
 const WIRES: f64 = 8.0;
 
-/// The weight of a wire at a port when columns are chosen.
+/// The weight of a wire at a port. The layout keeps wires with a larger weight shorter.
 const PORT: i32 = 4;
 
-/// The weight of the rule that outputs are at the end. Inputs are placed where they are taken, so that no wire to a
-/// late one has to pass by everything else.
+/// The weight of the edges that pull outputs to the end of the diagram. Inputs have no such edge: the layout places an input
+/// near the blocks that read it, so that no long wire passes all other blocks.
 const LAST: i32 = 20;
 
-/// The end of the diagram, to which the outputs of the datapath are tied.
+/// The name of the node at the end of the diagram, which is not drawn. Edges pull the outputs of the datapath to it.
 const END: &str = "outputs";
 
 /// The positions of the boxes of a block diagram. Columns are numbered from the left.
@@ -38,8 +38,9 @@ pub struct Placement {
 }
 
 impl Placement {
-    /// Places boxes of these `heights` in columns; `back` marks the wires that lead back, as the function [`back`] does. It
-    /// computes four layouts and takes the lowest, because the turned diagram then has the smallest width.
+    /// Places boxes in columns. `heights` are their heights, and `back` marks the wires that lead back, as the function
+    /// [`back`] does. The function computes four layouts and takes the lowest one, because the turned diagram then has the
+    /// smallest width.
     pub fn new(graph: &DiagramGraph, heights: &[f64], back: &[bool]) -> Self {
         let variants = [
             (Ranker::NetworkSimplex, false),
@@ -54,7 +55,7 @@ impl Placement {
         narrowest.expect("there are four")
     }
 
-    /// Returns the height from the top of the highest box to the bottom of the lowest.
+    /// Returns the height of the layout, from the top of the highest box to the bottom of the lowest.
     fn height(&self, heights: &[f64]) -> f64 {
         let (mut top, mut bottom) = (f64::MAX, 0.0_f64);
         for (middle, height) in self.middle.iter().zip(heights) {
@@ -64,8 +65,8 @@ impl Placement {
         bottom - top
     }
 
-    /// Makes a layout by one way to rank boxes. With `handshake`, the outputs of the handshake are at the end;
-    /// otherwise they are placed where there is room.
+    /// Computes one layout, with the algorithm `ranker` that chooses columns. With `handshake`, the outputs of the handshake
+    /// are at the end too; otherwise they are placed where there is room.
     fn variant(
         graph: &DiagramGraph,
         heights: &[f64],
@@ -106,7 +107,7 @@ impl Placement {
         Self::read(graph, heights.len(), back, &layered)
     }
 
-    /// Reads the places of boxes and wires from a finished layout.
+    /// Reads the positions of boxes and wires from a finished layout.
     fn read(
         graph: &DiagramGraph,
         boxes: usize,
@@ -128,7 +129,7 @@ impl Placement {
             let (from, to, name) = edge_names(graph, back, wire);
             let mut passes: Vec<(usize, f64)> = Vec::new();
             if let Some(edge) = layered.edge(&from, &to, Some(&name)) {
-                // The first and the last are on the borders of the boxes.
+                // The first and the last point of an edge are on the borders of the boxes.
                 let last = edge.points.len().saturating_sub(1);
                 for point in edge.points.get(1..last).unwrap_or_default() {
                     if let Some(column) = nearest_column(&columns, point.x) {
@@ -163,8 +164,8 @@ fn is_port(graph: &DiagramGraph, at: usize) -> bool {
     matches!(graph.boxes[at].form, BoxForm::Input | BoxForm::Output)
 }
 
-/// Returns the names of a wire's ends and of its edge in the layout. A wire that leads back is turned around. Several
-/// wires between two boxes, which go side by side, are one edge.
+/// Returns the names of a wire's ends and of its edge in the layout. For a wire that leads back, the ends are swapped. Several
+/// wires from one box to another are one edge in the layout.
 fn edge_names(graph: &DiagramGraph, back: &[bool], wire: usize) -> (String, String, String) {
     let DiagramWire { from, to } = graph.wires[wire];
     let (start, end) = if back[wire] { (to, from) } else { (from, to) };
@@ -172,12 +173,13 @@ fn edge_names(graph: &DiagramGraph, back: &[bool], wire: usize) -> (String, Stri
     (start.to_string(), end.to_string(), first.to_string())
 }
 
-/// Returns the index of the column at `x`, if there is one.
+/// Returns the index of the column at `x`, or `None` if no column is there.
 fn nearest_column(columns: &[f64], x: f64) -> Option<usize> {
     columns.iter().position(|&column| (column - x).abs() < 1.5)
 }
 
-/// Ties the boxes of each stage between two nodes that are not drawn, so that a column is in one stage.
+/// Adds two nodes around each stage that are not drawn, and edges from them to the boxes of the stage. All boxes of a column
+/// are then in the same stage.
 fn stages(graph: &DiagramGraph, layered: &mut Layered<NodeLabel, EdgeLabel>) {
     if graph.stages == 0 {
         return;
@@ -205,14 +207,15 @@ fn stage_border(stage: usize) -> String {
     format!("stage {stage}")
 }
 
-/// Returns whether an output is the control unit's.
+/// Returns whether the control unit drives an output.
 fn driven_by_control(graph: &DiagramGraph, output: usize) -> bool {
     let mut drivers = graph.wires.iter().filter(|wire| wire.to == output);
     drivers.any(|wire| graph.boxes[wire.from].form == BoxForm::Control)
 }
 
-/// Marks the wires that lead back to an earlier column, one in each loop. If the loop has a mux, it is the wire into the mux with
-/// the most inputs. For example, in an accumulator it is the wire from the register to the mux in front of the adder.
+/// Returns for each wire whether it leads back to an earlier column. Every loop has such a wire. If a loop has a mux, the
+/// marked wire ends at the mux, and at the one with the most inputs if it has several. For example, in an accumulator it is the
+/// wire from the register to the mux in front of the adder.
 pub fn back(graph: &DiagramGraph) -> Vec<bool> {
     let mut order: Vec<usize> = (0..graph.wires.len()).collect();
     order.sort_by_key(|&wire| std::cmp::Reverse(back_weight(graph, graph.wires[wire].to)));
@@ -223,7 +226,7 @@ pub fn back(graph: &DiagramGraph) -> Vec<bool> {
     back
 }
 
-/// Returns how well a wire that leads back may end at a box: a larger number is better.
+/// Returns how suitable a box is as the end of a wire that leads back: a larger number is better.
 fn back_weight(graph: &DiagramGraph, at: usize) -> usize {
     match graph.boxes[at].form {
         BoxForm::Block(BlockKind::Mux(inputs)) if !graph.boxes[at].control.is_empty() => 2 + inputs,
@@ -233,7 +236,7 @@ fn back_weight(graph: &DiagramGraph, at: usize) -> usize {
     }
 }
 
-/// Returns whether there is a way from one box to another that does not lead back.
+/// Returns whether wires that do not lead back connect the box `from` with the box `to`, in their direction.
 fn reaches(graph: &DiagramGraph, back: &[bool], from: usize, to: usize) -> bool {
     let mut seen = vec![false; graph.boxes.len()];
     let mut pending = vec![from];

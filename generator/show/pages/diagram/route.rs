@@ -9,17 +9,17 @@ use super::graph::DiagramGraph;
 use super::place::Placement;
 use super::tracks::{Side, Trunk, assign};
 
-/// From one track to the next.
+/// The distance from one track to the next, in units of the drawing.
 const TRACK: f64 = 9.0;
 
-/// Beside the tracks of a gap.
+/// The space on each side of the tracks of a gap.
 const MARGIN: f64 = 14.0;
 
-/// From the border of a box to its first pin.
+/// The distance from the border of a box to its first pin.
 const EDGE: f64 = 8.0;
 
-/// The width that a wire takes on its way around a box, in units of the drawing. A wire that leads back to an earlier column needs
-/// such a way.
+/// The width of a lane, in which a wire runs around a box, in units of the drawing. Wires that lead back to an earlier column
+/// need lanes.
 pub const LANE: f64 = 10.0;
 
 /// The size and position of a box.
@@ -109,8 +109,9 @@ impl Routes {
     }
 }
 
-/// Returns the boxes around which wires lead back, with the nets that do; each takes a [`LANE`]. For example, a wire
-/// from box 5 back to box 2 gives both boxes a lane for the net of box 5.
+/// Returns for each box the nets whose wires run around it, because they lead back to an earlier column. A net is the index of
+/// the box that drives it, and takes one [`LANE`]. For example, a wire from box 5 back to box 2 gives both boxes a lane for the
+/// net 5.
 pub fn lanes(graph: &DiagramGraph, back: &[bool]) -> Vec<Vec<usize>> {
     let mut lanes = vec![Vec::new(); graph.boxes.len()];
     for (wire, leads_back) in graph.wires.iter().zip(back) {
@@ -142,7 +143,7 @@ pub fn routes(
         crossings: Vec::new(),
         passes: HashMap::new(),
     };
-    // The longest first: shorter wires of the net go with it.
+    // The longest wire of a net is first, so that the shorter wires of the net can follow its way.
     let mut order: Vec<usize> = (0..graph.wires.len()).collect();
     order.sort_by_key(|&wire| std::cmp::Reverse(placement.passes[wire].len()));
     let pins = router.pins(&order);
@@ -159,15 +160,15 @@ struct Router<'a> {
     lanes: &'a [Vec<usize>],
     /// Gap number k is left of column k.
     gaps: Vec<Vec<Trunk>>,
-    /// The net that crosses a column, and the place.
+    /// For each crossing of a column: the net, the column and the vertical position.
     crossings: Vec<(usize, usize, f64)>,
-    /// The place at which a net passes a column, to the right or back.
+    /// For a net, a column, and whether the wire leads back: the vertical position at which the net passes the column.
     passes: HashMap<(usize, usize, bool), f64>,
 }
 
 impl Router<'_> {
-    /// Returns the y coordinate of a box's output. It is in the middle of the box's place, where wires that pass
-    /// other columns begin.
+    /// Returns the y coordinate of a box's output. It is in the middle of the box and its lanes, where the layout begins the
+    /// wires.
     fn out(&self, at: usize) -> f64 {
         let body = &self.bodies[at];
         self.placement.middle[at].clamp(body.upper + EDGE, body.lower - EDGE)
@@ -178,20 +179,20 @@ impl Router<'_> {
         self.bodies[at].top + LANE * (lane.unwrap_or(0) as f64 + 0.5)
     }
 
-    /// Returns the heights at which a wire passes the columns between its ends, in its direction.
+    /// Returns the columns that a wire passes between its ends, each with the vertical position, in the direction of the wire.
     fn between(&mut self, wire: usize) -> Vec<(usize, f64)> {
         let (net, back) = (self.graph.wires[wire].from, self.placement.back[wire]);
         let mut between = Vec::new();
         for &(column, wanted) in &self.placement.passes[wire] {
-            // All wires of a net pass a column at the place of the first.
+            // All wires of a net pass a column at the same position, which its first wire sets.
             let y = *self.passes.entry((net, column, back)).or_insert(wanted);
             between.push((column, y));
         }
         between
     }
 
-    /// Returns the y coordinate at which each wire enters its box. Pins are from above, in the order in which the
-    /// wires come.
+    /// Returns the y coordinate at which each wire enters its box. The pins of a box are in the order in which its wires
+    /// arrive, from above.
     fn pins(&mut self, order: &[usize]) -> Vec<f64> {
         let mut coming: Vec<Vec<(f64, usize)>> = vec![Vec::new(); self.graph.boxes.len()];
         for &at in order {
@@ -234,7 +235,7 @@ impl Router<'_> {
             self.hop(net, to, (y, Side::Left), (pin, Side::Right));
             return;
         }
-        // Out to the right, over the box, and back.
+        // The wire goes out to the right, runs over its own box in a lane, and leads back to the left.
         let (over, into) = (self.lane(wire.from, net), self.lane(wire.to, net));
         self.hop(net, from + 1, (y, Side::Left), (over, Side::Left));
         self.crossings.push((net, from, over));
@@ -252,7 +253,8 @@ impl Router<'_> {
         self.hop(net, to, (y, Side::Right), (pin, Side::Right));
     }
 
-    /// Adds an exit to a trunk: a net that enters a gap goes to all its exits along one trunk.
+    /// Adds the way of a net through a gap. If the net already enters the gap at `entry`, the way becomes a further exit of its
+    /// trunk.
     fn hop(&mut self, net: usize, gap: usize, entry: (f64, Side), exit: (f64, Side)) {
         let trunks = &mut self.gaps[gap];
         let found = trunks.iter_mut().find(|it| it.net == net && it.entry == entry);
@@ -270,7 +272,7 @@ impl Router<'_> {
         for (body, &column) in self.bodies.iter().zip(&self.placement.column) {
             widest[column] = widest[column].max(body.width);
         }
-        // The borders of gaps; a column is between one gap and the next.
+        // The left and the right border of each gap. A column is between one gap and the next.
         let mut borders: Vec<(f64, f64)> = Vec::new();
         let mut x = 0.0;
         for (gap, &tracks) in tracks.iter().enumerate() {
@@ -315,7 +317,7 @@ impl WireRoute {
         }
     }
 
-    /// Adds the vertical line of a trunk, and its taps.
+    /// Adds the vertical piece of a trunk and its taps, in a gap from `left` to `right`.
     fn trunk(&mut self, trunk: &Trunk, (left, right): (f64, f64)) {
         if trunk.is_straight() {
             self.piece((left, trunk.entry.0), (right, trunk.entry.0));
@@ -331,7 +333,7 @@ impl WireRoute {
             }
             let inside = low < y && y < high;
             let taps = trunk.taps().filter(|(other, _)| (other - y).abs() < 0.5);
-            // Ways from here: taps, and the trunk to one side or both.
+            // The wires that meet at this point are its taps, and the trunk to one side or both.
             if taps.count() + 1 + usize::from(inside) >= 3 {
                 self.junctions.push((x, y));
             }

@@ -2,10 +2,11 @@
 //!
 //! Two pieces that would overlap get different tracks. The order of the tracks is chosen so that few wires cross.
 
-/// Nearer than this, lines seem to touch.
+/// The smallest distance at which two parallel lines do not seem to touch, in units of the drawing.
 const NEAR: f64 = 5.0;
 
-/// Worse than any number of crossings: two wires would lie upon each other.
+/// The cost of two wires that would lie upon each other, as a number of crossings. It exceeds the crossings that occur in a
+/// gap.
 const OVERLAP: usize = 1000;
 
 /// The side of the gap between two columns at which a wire enters or leaves the gap.
@@ -46,7 +47,7 @@ impl Trunk {
         (low, high)
     }
 
-    /// Returns whether a place is between the ends.
+    /// Returns whether the vertical position `y` is between the ends of the vertical piece.
     fn reaches(&self, y: f64) -> bool {
         let (low, high) = self.reach();
         (low..=high).contains(&y)
@@ -58,7 +59,8 @@ impl Trunk {
         high - low < 0.5
     }
 
-    /// Counts crossings and overlaps when it is left of another.
+    /// Returns the cost of placing this trunk to the left of `other`: the number of crossings, plus [`OVERLAP`] for each pair
+    /// of horizontal taps that would lie upon each other.
     fn left_of(&self, other: &Self) -> usize {
         let (mut crossings, mut overlaps) = (0, 0);
         for (y, side) in self.taps() {
@@ -82,18 +84,19 @@ impl Trunk {
         crossings + OVERLAP * overlaps
     }
 
-    /// Returns whether the two cannot share a track. For example, trunks from 0 to 20 and from 50 to 80 can share one.
+    /// Returns whether two trunks overlap, so that they cannot share a track. For example, trunks from 0 to 20 and from 50 to
+    /// 80 can share one.
     fn meets(&self, other: &Self) -> bool {
         let ((low, high), (from, to)) = (self.reach(), other.reach());
         from < high + NEAR && low < to + NEAR
     }
 }
 
-/// Orders the trunks of a gap so that few wires cross, gives each its track, and returns the number of tracks. For
+/// Orders the trunks of a gap so that few wires cross, sets the track of each trunk, and returns the number of tracks. For
 /// example, two trunks that go down from 0 to 40 and from 20 to 60 take two tracks.
 pub fn assign(trunks: &mut [Trunk]) -> usize {
     trunks.sort_by(|a, b| a.reach().0.total_cmp(&b.reach().0));
-    // As long as it helps to exchange neighbours; each exchange lessens the sum.
+    // Exchange neighbours as long as an exchange reduces the cost. Every exchange reduces the total cost, so the loop ends.
     let mut better = true;
     while better {
         better = false;
@@ -146,7 +149,7 @@ mod tests {
 
     #[test]
     fn parallel_wires_do_not_cross() {
-        // Both go down: the lower one must turn first.
+        // Both wires go down, so the lower wire must turn first.
         let mut trunks = [trunk(0, 0.0, 40.0), trunk(1, 20.0, 60.0)];
         assert_eq!(assign(&mut trunks), 2);
         assert_eq!(tracks(&trunks), [(0, 1), (1, 0)]);
@@ -155,7 +158,7 @@ mod tests {
 
     #[test]
     fn wires_never_lie_upon_each_other() {
-        // One ends at the right where the other begins at the left.
+        // The first wire leaves the gap on the right at the height at which the second one enters on the left.
         let mut trunks = [trunk(0, 0.0, 50.0), trunk(1, 50.0, 100.0)];
         assert_eq!(assign(&mut trunks), 2);
         let track = |net| trunks.iter().find(|it| it.net == net).map(|it| it.track);

@@ -35,9 +35,9 @@ struct Page<'a> {
     config: &'a str,
 }
 
-/// The control of a computation, as tables.
+/// The tables that explain how a computation is controlled.
 enum ControlTables {
-    /// With the fate of writes while the device is busy.
+    /// The tables of a microprogram. `writes` says what happens to operands that the user writes while the device is busy.
     Microprogram {
         blocks: String,
         fields: String,

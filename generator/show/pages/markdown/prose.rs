@@ -35,7 +35,7 @@ pub fn table(table: &TextTable) -> String {
     lines.join("\n")
 }
 
-/// Returns one line of a table, with its cells padded to these widths.
+/// Returns one row of a table in Markdown, with its cells padded to `widths`.
 fn line(table: &TextTable, widths: &[usize], cells: &[String]) -> String {
     let mut padded: Vec<String> = Vec::new();
     for ((cell, column), &width) in cells.iter().zip(&table.columns).zip(widths) {
@@ -47,8 +47,8 @@ fn line(table: &TextTable, widths: &[usize], cells: &[String]) -> String {
     format!("| {} |", padded.join(" | "))
 }
 
-/// Escapes the characters of a text that Markdown would interpret, except inside backquotes. For example, `a*b` outside of
-/// backquotes becomes `a\*b`.
+/// Escapes the characters of a text that Markdown would interpret. Inside backquotes, it escapes only `|`, which would end the
+/// cell of a table. For example, `a*b` outside of backquotes becomes `a\*b`.
 pub fn prose(text: &str) -> String {
     let mut plain = String::with_capacity(text.len());
     let mut name = false;
@@ -60,7 +60,7 @@ pub fn prose(text: &str) -> String {
         let markup = match sign {
             '|' => true,
             '*' | '[' | '\\' => !name,
-            // Between letters it means nothing.
+            // Markdown does not interpret `_` between letters or digits.
             '_' => !(name || before.is_alphanumeric() && after.is_alphanumeric()),
             '<' => !name && (after.is_ascii_alphabetic() || matches!(after, '/' | '!' | '?')),
             _ => false,

@@ -22,17 +22,17 @@ use std::fmt;
 
 use super::vector::Vector;
 
-/// A cosine below which two normals count as opposite: a rotation of half a turn.
+/// Two normals whose cosine is at most this count as opposite: the rotation between them is half a turn.
 const OPPOSITE: f64 = -1.0 + 1e-12;
 
-/// A larger γ, in radians, means opposite half vectors.
+/// If γ, in radians, is larger than this, the half vectors count as opposite.
 const LARGEST_GAMMA: f64 = PI - 1e-6;
 
-/// Up to this γ, in radians, the half vector does not move. After rounding, so short a way has no direction, and the
-/// angle changes by less than half an ulp of the usual operand.
+/// If γ, in radians, is at most this, the half vector counts as constant. After rounding, so short an arc has no direction, and
+/// the angle changes by less than half an ulp of the usual operand.
 const STILL: f64 = 1e-8;
 
-/// By how much the cosine of the least angle to the normal may exceed 1 through rounding.
+/// The amount by which rounding may make the cosine of the smallest angle to the normal exceed 1.
 const ROUNDING: f64 = 1e-6;
 
 /// The reason why the operands of a line cannot be computed.
@@ -106,8 +106,8 @@ impl Arc {
         let normal_2 = direction("normal_2", normal_2)?;
         let half_2 = direction("half_2", half_2)?;
         let turned_half = turned(normal_1, normal_2, half_2);
-        // (cos θ₂ − cos θ₁·cos γ)/sin γ is the cosine from N₁ to where H has turned a right angle: without differences
-        // of cosines, in which a small γ would leave little.
+        // (cos θ₂ − cos θ₁·cos γ)/sin γ is the cosine between N₁ and the direction in which the half vector turns. Computed as
+        // a scalar product, it needs no difference of cosines, which would be inexact for a small γ.
         let aside = half_1.cross(turned_half).cross(half_1).unit();
         Self::new_of(
             [angle(normal_1, half_1), angle(normal_1, turned_half)],
@@ -130,7 +130,11 @@ impl Arc {
         if arc.peak > 1.0 + ROUNDING || still { Err(Error::NoSuchAngles) } else { Ok(arc) }
     }
 
-    /// Sets up an arc from θ₁ and θ₂, γ, cos θ₁ and the rise, which counts only if the half vector moves.
+    /// Sets up an arc from θ₁ and θ₂, γ, cos θ₁ and the rise. The rise is ignored if γ is so small that the half vector counts
+    /// as constant.
+    ///
+    /// # Errors
+    /// Fails with [`Error::OppositeHalves`].
     fn new_of(
         [theta_1, theta_2]: [f64; 2],
         gamma: f64,
@@ -140,7 +144,7 @@ impl Arc {
         if gamma > LARGEST_GAMMA {
             return Err(Error::OppositeHalves);
         }
-        // cos δ = cos θ₁·cos x + rise·sin x at x from H₁, that is A·cos(x − λ).
+        // At the angle x from H₁, cos δ = cos θ₁·cos x + rise·sin x, which is A·cos(x − λ).
         let (rise, peak, lambda) = match gamma > STILL {
             true => (rise, libm::hypot(cosine_1, rise), libm::atan2(rise, cosine_1)),
             false => (0.0, cosine_1.max(0.0), 0.0),
@@ -189,16 +193,18 @@ pub fn direction(name: &'static str, vector: Vector) -> Result<Vector, Error> {
     vector.unit().ok_or(Error::NoDirection(name))
 }
 
-/// Returns the half vector (L + V)/|L + V| of the directions toward the light and the viewer, whose names come first.
+/// Returns the half vector (L + V)/|L + V| of the directions `light` and `view` toward the light and the viewer. `names` are
+/// the names of light, view and half vector in an error.
 ///
 /// # Errors
-/// Fails with [`Error::NoDirection`] if a direction, or their sum, has none.
+/// Fails with [`Error::NoDirection`] if `light` or `view` has no direction, or if they are opposite.
 pub fn half(names: [&'static str; 3], light: Vector, view: Vector) -> Result<Vector, Error> {
     let [of_light, of_view, of_both] = names;
     direction(of_both, direction(of_light, light)? + direction(of_view, view)?)
 }
 
-/// Returns H₂′: H₂ turned as N₂ is turned into N₁ about the normal of both; all unit vectors.
+/// Returns H₂′: `half_2` rotated by the rotation that turns N₂ into N₁ about their common perpendicular. All vectors must have
+/// length 1.
 fn turned(normal_1: Vector, normal_2: Vector, half_2: Vector) -> Vector {
     let cosine = normal_1.dot(normal_2);
     if cosine <= OPPOSITE {
@@ -209,7 +215,7 @@ fn turned(normal_1: Vector, normal_2: Vector, half_2: Vector) -> Vector {
     half_2 - once + v.cross(once) * (1.0 / (1.0 + cosine))
 }
 
-/// Returns the angle between unit vectors. It is exact for small angles too, unlike the arc cosine.
+/// Returns the angle between two unit vectors in radians. Unlike the arc cosine, it is exact for small angles too.
 fn angle(a: Vector, b: Vector) -> f64 {
     libm::atan2(a.cross(b).length(), a.dot(b))
 }

@@ -18,7 +18,7 @@ fn close(a: f64, b: f64) -> bool {
     (a - b).abs() < 1e-12
 }
 
-/// In the plane of x and z, `degrees` from z toward x.
+/// Returns the unit vector in the plane of x and z that is `degrees` away from z toward x.
 fn tilted(degrees: f64) -> Vector {
     let (sin, cos) = degrees.to_radians().sin_cos();
     Vector([sin, 0.0, cos])
@@ -28,7 +28,7 @@ fn random(random: &mut ChaCha8Rng) -> Vector {
     Vector([(); 3].map(|()| f64::from(random.next_u32()) / f64::from(u32::MAX) - 0.5))
 }
 
-/// Returns the spherical interpolation between unit vectors.
+/// Returns the spherical interpolation between two unit vectors, at the part `t` of the way from `a` to `b`.
 fn slerp(a: Vector, b: Vector, t: f64) -> Vector {
     let gamma = angle(a, b);
     let weight = |part: f64| (part * gamma).sin() / gamma.sin();
@@ -62,13 +62,13 @@ fn angles_to_the_normal_are_kept_and_the_cosine_is_that_of_the_interpolation() {
             let t = f64::from(step) / 16.0;
             let direct = n1.dot(slerp(h1, turned_half, t));
             assert!((arc.cosine(t) - direct).abs() < 1e-9, "{arc:?} at {t}");
-            // ζ itself: within three right angles, and the lit part of the way within one.
+            // ζ is always within three right angles of 0. It is within one right angle if and only if the point is lit.
             let zeta = arc.zeta_start() + t * arc.gamma;
             assert!(zeta.abs() <= 3.0 * FRAC_PI_2 + 1e-12);
             assert!(direct.abs() < 1e-9 || (direct > 0.0) == (zeta.abs() < FRAC_PI_2));
         }
         if n1.dot(h1) > 0.0 {
-            // The seed's own formulas.
+            // The formulas of document 000, the source of these devices.
             let (c1, c2) = (arc.theta_1.cos(), arc.theta_2.cos());
             let p = (c2 - c1 * arc.gamma.cos()) / (c1 * arc.gamma.sin());
             assert!((arc.p() - p).abs() < 1e-9 * p.abs().max(1.0));
@@ -91,14 +91,12 @@ fn a_line_by_hand() {
     assert!(close(line.delta_zeta, PI / 180.0) && close(line.zeta_start, -FRAC_PI_6));
     assert!(close(line.zeta(90), FRAC_PI_3));
 
-    // s1.26: a right angle is 2²⁶; 60° of 90 intervals.
-    // 2²⁶/90 = 745654.04, −2²⁶/3; n, l, C.
+    // In s1.26 a right angle is 2²⁶: 2²⁶/90 = 745654.04 and −2²⁶/3. Then follow n, l and C.
     assert_eq!(quad(&line), [745_654, -22_369_621, 8, 90, 200]);
 
-    // s7.22: both times √(8/2) = 2.
-    // 2²³/90 = 93206.76, −2²³/3 = −2796202.67.
+    // In s7.22 both angles are multiplied by √(8/2) = 2: 2²³/90 = 93206.76 and −2²³/3 = −2796202.67.
     assert_eq!(squared("", &line).unwrap(), [93_207, -2_796_203, 90, 200]);
-    // The same by its angles.
+    // The same line, set up from its angles instead of vectors.
     let [thirty, sixty, right] = [FRAC_PI_6, FRAC_PI_3, FRAC_PI_2];
     let same = Arc::of_angles(thirty, sixty, right).unwrap().line(200.0, 8, 90);
     assert_eq!(quad(&same), quad(&line));
@@ -115,12 +113,12 @@ fn a_half_vector_that_stands_still() {
     let line = arc.line(100.0, 2, 10);
     assert_eq!((line.delta_zeta, line.zeta_start), (0.0, 0.0));
     assert!(close(line.amplitude, 100.0 * 20f64.to_radians().cos().powi(2)));
-    // Rounding alone moves it: the formulas would divide some ulps by each other.
+    // Only rounding moves the half vector. The formulas of the document would divide some ulps by each other.
     for by in [1e-16, 3e-16, 1e-12, 1e-9] {
         let arc = Arc::new(Z, tilted(20.0), Z, tilted(20.0) + X * by).unwrap();
         assert!((arc.peak - 20f64.to_radians().cos()).abs() < 1e-7, "{arc:?}");
     }
-    // Facing away.
+    // The surface faces away from the light.
     let arc = Arc::new(Z, tilted(120.0), Z, tilted(120.0)).unwrap();
     assert_eq!((arc.peak, arc.line(100.0, 2, 10).amplitude), (0.0, 0.0));
 }
@@ -134,15 +132,15 @@ fn a_line_of_one_point() {
 
 #[test]
 fn a_first_point_that_faces_away() {
-    // From 120° through 90° to 20°, H stays in the plane of N: ζ is its angle to N.
+    // From 120° through 90° to 20°, H stays in one plane with N, so ζ is the angle between H and N.
     let arc = Arc::new(Z, tilted(120.0), Z, tilted(20.0)).unwrap();
     assert!(close(arc.peak, 1.0));
     assert!(close(arc.zeta_start(), -120f64.to_radians()));
-    // At 90° the seed's P is infinite.
+    // At 90° the quantity P of the document is infinite.
     let arc = Arc::new(Z, X, Z, tilted(20.0)).unwrap();
     assert!(close(arc.zeta_start(), -FRAC_PI_2));
     assert!(close(arc.peak, 1.0));
-    // From 170° the other way round, 170° far: λ = −170°, so ζ would run from 170° to 340°.
+    // From 170° the other way round, H turns by 170°: λ = −170°, so ζ would run from 170° to 340°.
     let arc = Arc::new(Z, tilted(170.0), Z, tilted(340.0)).unwrap();
     assert!(close(arc.zeta_start(), -190f64.to_radians()));
 }
@@ -157,13 +155,13 @@ fn opposite_normals_and_half_vectors() {
     assert!(Arc::new(Z, Vector([f64::NAN, 0.0, 1.0]), Z, X).is_err());
 }
 
-/// Returns the raw operands for the default of `quad-cosine`.
+/// Returns the raw operands of a line for the default configuration of `quad-cosine`.
 fn quad(line: &LineParameters) -> Vec<i64> {
     let config = Config::defaults(&keys::quad_cosine::schema(), "line");
     operands(golden::quad_cosine::contract(&config).as_ref(), line).unwrap()
 }
 
-/// And for a configuration of `cosine-squared`.
+/// Returns the raw operands of a line for a configuration of `cosine-squared`. `keys` are lines of TOML.
 fn squared(keys: &str, line: &LineParameters) -> anyhow::Result<Vec<i64>> {
     let text = format!("device = \"cosine-squared\"\n{keys}");
     let config = config::parse("line.toml", &text, &[keys::cosine_squared::schema()]).unwrap();
@@ -177,7 +175,7 @@ fn operands(contract: &dyn Contract, line: &LineParameters) -> anyhow::Result<Ve
 #[test]
 fn what_a_configuration_has_no_room_for() {
     let arc = Arc::new(Z, tilted(-30.0), Z, tilted(60.0)).unwrap();
-    // Brighter than the operand holds: it saturates.
+    // The light is brighter than the largest value of the operand, so the operand saturates.
     assert_eq!(quad(&arc.line(300.0, 5, 5))[4], 255);
     assert!(squared("", &arc.line(1.0, 1000, 5)).is_ok());
     // −30° times √500 is −7.45 right angles.
