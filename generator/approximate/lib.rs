@@ -336,6 +336,21 @@ impl Piecewise {
         self.restored(raw, self.sums_of(raw)[0])
     }
 
+    /// Returns the polynomial behind a range reduction, as a function of the reduction's number. Without a range reduction it is the
+    /// same polynomial. The bound of the error is infinite, because it is proved for the whole alone.
+    pub fn behind_reduction(&self) -> Self {
+        let Some(reduction) = &self.reduction else { return self.clone() };
+        Self {
+            operand: reduction.operand,
+            domain: (0, (1 << reduction.bits) - 1),
+            outside: Outside::Anything,
+            reduction: None,
+            result: self.sums[0],
+            bound: f64::INFINITY,
+            ..self.clone()
+        }
+    }
+
     /// Returns the raw result for a raw operand, given the raw value of the polynomial. With a range reduction, the function undoes
     /// the reduction.
     pub fn restored(&self, raw: i64, polynomial: i64) -> i64 {

@@ -47,6 +47,10 @@ pub struct Reduction {
     pub bits: u32,
     /// The number of fraction bits that the polynomial has more than the result.
     pub guard: u32,
+    /// The function that the polynomial approximates, as a formula of the number's value.
+    pub formula: Expression,
+    /// The format of the number's value.
+    pub operand: Format,
 }
 
 /// The rule by which a range reduction maps an operand x to a number.
@@ -205,15 +209,16 @@ impl Reduction {
             Rule::Size(_) if wider => function.domain.0.abs().max(function.domain.1),
             _ => (1 << bits) - 1,
         };
+        let operand = Format::unsigned(bits as i32 - fraction, fraction);
         let inner = TargetFunction {
-            curve: Curve::Formula(reduced),
+            curve: Curve::Formula(reduced.clone()),
             domain: (0, last),
-            operand: Format::unsigned(bits as i32 - fraction, fraction),
+            operand,
             outside: Outside::Anything,
             fraction: function.fraction + guard,
             error: function.error * exp2(guard as i32),
         };
-        Ok((Self { rule, bits, guard }, inner))
+        Ok((Self { rule, bits, guard, formula: reduced, operand }, inner))
     }
 }
 

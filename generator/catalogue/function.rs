@@ -1,18 +1,18 @@
 //! The hardware description of the device `function`, which computes y = g(x) for one operand x.
 //!
 //! A configuration states g as a formula, such as `sqrt(x)`, or as samples of a curve. A table gives the coefficients of a
-//! polynomial for the segment of x, and Horner's rule evaluates the polynomial with one multiplier.
+//! polynomial for the segment of x, and Horner's rule evaluates the polynomial with one multiplier. The hardware is built from a plan
+//! with this one function, as the hardware of `expression` is.
 
-mod reduction;
-
-use glint_approximate::{Outside, Piecewise};
+use glint_approximate::Piecewise;
 use glint_base::text;
 use glint_config::{Config, Shared};
-use glint_keys::function::{Keys, found};
-use glint_rtl::dsl::{Designer, end, step, valid};
+use glint_keys::function::{Keys, found, operand};
+use glint_plan::ExpressionPlan;
+use glint_rtl::dsl::Designer;
 use glint_rtl::netlist::About;
 
-use crate::piecewise::{PolynomialDatapath, StepMultiplier, Tables, number};
+use crate::plan::describe_plan;
 
 /// Describes the hardware of `function`: a table of coefficients, and Horner's rule with one multiplier.
 ///
@@ -21,45 +21,10 @@ use crate::piecewise::{PolynomialDatapath, StepMultiplier, Tables, number};
 pub fn describe(d: &Designer, config: &Config) {
     let (function, it) = found(config).expect("a configuration that is checked");
     d.about(about(&Keys::of(config), function.proof(), &it));
-    let (first, last) = it.domain;
-    let operand = match it.outside {
-        Outside::Clamp => {
-            let [first, last] = [first, last].map(|raw| it.operand.to_f64(raw.into()));
-            d.operand_clamped("x", it.operand, first, last)
-        }
-        Outside::Wrap | Outside::Anything => d.operand("x", it.operand),
-    };
-    let x = operand.doc("the operand").q();
-    let (number, restoring) = match &it.reduction {
-        None => (number(d, "number", x, &it), None),
-        Some(reduction) => {
-            let (number, restoring) = reduction::reduced(d, x, &it, reduction);
-            (number, Some(restoring))
-        }
-    };
-    let tables = Tables::of(&it, Shared::of(config).architecture == "pipelined");
-    let polynomial = PolynomialDatapath::new(d, "", &it.registers(), number, &it, tables);
-    let names = ["factors_select", "factor", "offset_of_step", "product"];
-    let multiplier = StepMultiplier::new(d, names, &[&polynomial], &[]);
-    let mut steps = vec![step("operand; table addressed", [])];
-    for k in polynomial.steps() {
-        let name = match k {
-            0 if it.reduction.is_some() => "polynomial <- all coefficients".to_owned(),
-            0 => "result <- the polynomial".to_owned(),
-            _ => format!("sum{k} <- coefficients from {k} on"),
-        };
-        steps.push(step(&name, multiplier.step(&polynomial, k)));
-    }
-    let mut result = polynomial.q();
-    if let Some(restoring) = restoring {
-        let register = d.register("result", it.result);
-        register.takes(restoring.result(d, result, it.result));
-        steps.push(step("result <- the polynomial", [register.load()]));
-        result = register.q();
-    }
-    steps.push(step("result", [valid(), end()]));
-    d.output("result_out", result);
-    d.microprogram(steps);
+    let plan = ExpressionPlan::of_function(&function, &it).expect("a plan that was checked");
+    let operand = operand(&it);
+    let is_pipelined = Shared::of(config).architecture == "pipelined";
+    describe_plan(d, &[operand], &plan, &["result_out".to_owned()], is_pipelined);
 }
 
 fn about(keys: &Keys, proof: &str, it: &Piecewise) -> About {

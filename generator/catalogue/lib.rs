@@ -14,6 +14,7 @@ pub mod lyon;
 mod mirror;
 pub mod normaliser;
 pub mod piecewise;
+mod plan;
 pub mod quad_cosine;
 pub mod quadratic;
 pub mod rough;

@@ -1,128 +1,24 @@
 //! The golden model and the accuracy contract of the device `expression`, which computes formulas of several operands.
 //!
 //! A configuration states the formulas; for example, `a / b` or `sqrt(x*x + y*y)`. The planner ([`glint_plan`]) translates them
-//! into a plan, a list of fixed-point operations with formats, and proves a bound on its error against the formulas. The golden
-//! model executes the operations of the plan in integers. It takes the plan from the planner, because that proof covers the plan.
+//! into a plan and proves a bound on its error against the formulas. [`super::plan`] executes the plan in integers.
 
 use std::sync::Arc;
 
 use super::device::{self, Formula};
-use super::frame::{Frame, FrameStep, Slot, State, idle, step_by};
-use super::polynomial::Polynomial;
+use super::plan::plan_device;
 use super::{ComputedPart, Contract, Model, Term};
 use glint_base::fixed::{Format, exp2};
 use glint_config::Config;
 use glint_formula::{Comparison, Enclosure, RBig};
 use glint_keys::expression::found;
-use glint_plan::{
-    ExpressionPlan, NodeId, Operation, PlanStep, ProvedPlan, StatedOverflow, StatedWidth,
-};
+use glint_plan::{NodeId, Operation, ProvedPlan, StatedOverflow, StatedWidth};
 
-/// A plan with the places of its values in the state of the model.
-struct PlanModel {
-    found: Arc<ProvedPlan>,
-    operands: Vec<Slot>,
-    /// The slot of the register of each node of the plan, or `None` for a node without a register.
-    registers: Vec<Option<Slot>>,
-}
-
-impl PlanModel {
-    fn plan(&self) -> &ExpressionPlan {
-        &self.found.plan
-    }
-
-    /// Returns the raw value of a node, from the registers before it.
-    fn value(&self, id: NodeId, state: &State) -> i128 {
-        match self.registers[id.0] {
-            Some(slot) => state[slot].into(),
-            None => self.computed(id, state),
-        }
-    }
-
-    /// Returns the raw value that a node has now: its register takes this value at the next clock.
-    fn computed(&self, id: NodeId, state: &State) -> i128 {
-        let operands: Vec<i64> = self.operands.iter().map(|slot| state[*slot]).collect();
-        // Between a product and its register, nodes are computed anew.
-        self.plan().value(id, &operands, &|input| self.value(input, state))
-    }
-}
-
-/// Makes the device: a register for each value that the schedule of the plan holds.
-fn device(found: &Arc<ProvedPlan>) -> device::Device {
-    let plan = &found.plan;
-    let schedule = plan.schedule();
-    let mut frame = Frame::default();
-    let mut operands = Vec::new();
-    for operand in &found.statement.operands {
-        operands.push(frame.operand(&operand.name, operand.format));
-    }
-    let mut registers = Vec::with_capacity(plan.nodes.len());
-    let mut polynomials = Vec::with_capacity(plan.nodes.len());
-    for (node, is_held) in plan.nodes.iter().zip(&schedule.held) {
-        let mut polynomial = None;
-        registers.push(match &node.operation {
-            Operation::Polynomial(_, approximation) => {
-                let it = approximation.polynomials.as_ref().expect("polynomials that are found");
-                let name = &node.name;
-                let names = [name.clone(), format!("{name}_sum1"), format!("{name}_sum2")];
-                let names: Vec<&str> = names.iter().map(String::as_str).collect();
-                let sums = Polynomial::new(&mut frame, &names, it);
-                let q = sums.q();
-                polynomial = Some(sums);
-                Some(q)
-            }
-            _ if *is_held => Some(frame.register(&node.name, node.format)),
-            _ => None,
-        });
-        polynomials.push(polynomial);
-    }
-    for (result, node) in found.statement.results.iter().zip(&plan.results) {
-        let register = registers[node.0].expect("a result is held");
-        frame.shows(&format!("{}_out", result.name), register);
-    }
-    let model = Arc::new(PlanModel { found: found.clone(), operands, registers });
-    let mut program = vec![idle()];
-    for plan_step in &schedule.steps {
-        match plan_step {
-            PlanStep::Product { held, .. } => program.push(loads(&model, vec![*held])),
-            PlanStep::Hold(nodes) => program.push(loads(&model, nodes.clone())),
-            PlanStep::Address(polynomial) => {
-                program.push(idle());
-                let sums = polynomials[polynomial.0].as_ref().expect("a polynomial");
-                program.extend(sum_steps(&model, *polynomial, sums));
-            }
-            // All sums of a polynomial follow its address.
-            PlanStep::Sum { .. } => {}
-        }
-    }
-    program.push(idle().valid().end());
-    let mut device = frame.device(program);
-    for operand in &found.statement.operands {
-        device = device.domain(&operand.name, operand.domain.0, operand.domain.1);
-    }
-    device
-}
-
-/// Returns the microinstruction that loads the registers of some nodes.
-fn loads(model: &Arc<PlanModel>, nodes: Vec<NodeId>) -> FrameStep {
-    step_by(model, move |model, state| {
-        let mut loaded = Vec::with_capacity(nodes.len());
-        for node in &nodes {
-            let slot = model.registers[node.0].expect("a register of a node that is held");
-            loaded.push((slot, model.computed(*node, state) as i64));
-        }
-        for (slot, value) in loaded {
-            state[slot] = value;
-        }
-    })
-}
-
-/// Returns the microinstructions of a polynomial's sums.
-fn sum_steps(model: &Arc<PlanModel>, id: NodeId, sums: &Polynomial) -> Vec<FrameStep> {
-    let inputs = model.plan().node(id).operation.inputs();
-    let reader = model.clone();
-    let operand = move |state: &State| reader.value(inputs[0], state) as i64;
-    sums.steps(operand).map(super::frame::step).collect()
+/// Makes the device of a plan that was found.
+fn device(found: &ProvedPlan) -> device::Device {
+    let results = found.statement.results.iter();
+    let outputs: Vec<String> = results.map(|result| format!("{}_out", result.name)).collect();
+    plan_device(&found.statement.operands, &found.plan, &outputs)
 }
 
 /// Returns the golden model of the device `expression` for a configuration.
@@ -162,7 +58,7 @@ impl ProvedFormulas {
     fn enclosed(&self, operands: &[f64]) -> Vec<(&str, Enclosure)> {
         let mut named = Vec::with_capacity(operands.len());
         for (operand, value) in self.found.statement.operands.iter().zip(operands) {
-            named.push((operand.name.as_str(), Enclosure::exactly(*value)));
+            named.push((operand.name.as_str(), Enclosure::exactly(operand.computed(*value))));
         }
         named
     }
@@ -171,7 +67,8 @@ impl ProvedFormulas {
     fn rational(&self, operands: &[f64]) -> Vec<(&str, RBig)> {
         let mut named = Vec::with_capacity(operands.len());
         for (operand, value) in self.found.statement.operands.iter().zip(operands) {
-            let value = RBig::try_from(*value).expect("an operand is a finite number");
+            let value =
+                RBig::try_from(operand.computed(*value)).expect("an operand is a finite number");
             named.push((operand.name.as_str(), value));
         }
         named
@@ -206,12 +103,16 @@ impl Formula for ProvedFormulas {
 
     /// Appends the results within the domain. No value leaves its format there, which was proved.
     fn results(&self, operands: &[i64], raw: &mut Vec<i64>) -> bool {
-        let domain = self.found.statement.domain();
-        let is_inside = |(raw, (low, high)): (&i64, &(i64, i64))| (low..=high).contains(&raw);
-        if !operands.iter().zip(&domain).all(is_inside) {
-            return false;
+        let mut computed = Vec::with_capacity(operands.len());
+        for (operand, raw) in self.found.statement.operands.iter().zip(operands) {
+            let (low, high) = operand.domain;
+            let raw = operand.computed_raw(*raw);
+            if !(low..=high).contains(&raw) {
+                return false;
+            }
+            computed.push(raw);
         }
-        let values = self.found.plan.values(operands);
+        let values = self.found.plan.values(&computed);
         for result in &self.found.plan.results {
             raw.push(values[result.0] as i64);
         }

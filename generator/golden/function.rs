@@ -6,40 +6,22 @@
 use std::sync::Arc;
 
 use super::device::{self, Formula};
-use super::frame::{Frame, idle, step, step_by};
-use super::polynomial::Polynomial;
+use super::plan::plan_device;
 use super::{Contract, Model, Term};
-use glint_approximate::{Curve, Outside, Piecewise, TargetFunction};
+use glint_approximate::{Curve, Piecewise, TargetFunction};
 use glint_base::fixed::exp2;
 use glint_config::Config;
 use glint_formula::{Enclosure, parse};
-use glint_keys::function::found;
+use glint_keys::function::{found, operand};
+use glint_plan::ExpressionPlan;
 
 /// The pieces of a domain in which a slope is enclosed: a power of two, so that their ends are exact.
 const PIECES: u32 = 4096;
 
-/// Makes the device. Its registers are the operand and the sums from each coefficient on. The first sum is the result, or the
-/// polynomial from which the result is restored.
-fn device(it: &Arc<Piecewise>) -> device::Device {
-    let (first, last) = it.domain;
-    let mut frame = Frame::default();
-    let x = match it.outside {
-        Outside::Clamp => frame.clamped("x", it.operand, first, last),
-        Outside::Wrap | Outside::Anything => frame.operand("x", it.operand),
-    };
-    let sums = Polynomial::new(&mut frame, &it.registers(), it);
-    let polynomial = sums.q();
-    let restored = it.reduction.is_some().then(|| frame.register("result", it.result));
-    frame.shows("result_out", restored.unwrap_or(polynomial));
-    let adds = sums.steps(move |s| s[x]).map(step);
-    let restores = restored.map(|own| {
-        step_by(it, move |it, s| {
-            let result = it.restored(s[x], s[polynomial]);
-            s[own] = it.result.raw(it.result.bits(result.into())) as i64;
-        })
-    });
-    let program = [idle()].into_iter().chain(adds).chain(restores).chain([idle().valid().end()]);
-    frame.device(program.collect::<Vec<_>>()).domain("x", first, last)
+/// Makes the device of the plan of the function.
+fn device(function: &TargetFunction, it: &Arc<Piecewise>) -> device::Device {
+    let plan = ExpressionPlan::of_function(function, it).expect("a plan that was checked");
+    plan_device(&[operand(it)], &plan, &["result_out".to_owned()])
 }
 
 /// Returns the golden model of the device `function` for a configuration.
@@ -47,7 +29,8 @@ fn device(it: &Arc<Piecewise>) -> device::Device {
 /// # Panics
 /// Panics if the check of the schema has not accepted the configuration. The caller must check it first.
 pub fn model(config: &Config) -> Box<dyn Model> {
-    device(&found(config).expect("a configuration that is checked").1).model()
+    let (function, it) = found(config).expect("a configuration that is checked");
+    device(&function, &it).model()
 }
 
 /// Returns the accuracy contract of the device `function` for a configuration.
@@ -57,7 +40,7 @@ pub fn model(config: &Config) -> Box<dyn Model> {
 pub fn contract(config: &Config) -> Box<dyn Contract> {
     let (function, it) = found(config).expect("a configuration that is checked");
     let bound = it.bound;
-    device(&it).contract(Stated { function, bound, polynomials: it.clone() })
+    device(&function, &it).contract(Stated { function, bound, polynomials: it.clone() })
 }
 
 /// Returns the value of a formula of x, in f64.
@@ -92,7 +75,8 @@ struct Stated {
 impl Formula for Stated {
     /// Returns the formula's value, no number where it has none.
     fn exact(&self, operands: &[f64]) -> Vec<f64> {
-        let raw = (operands[0] * exp2(self.function.operand.frac)) as i64;
+        let x = operand(&self.polynomials).computed(operands[0]);
+        let raw = (x * exp2(self.function.operand.frac)) as i64;
         let value = self.function.limits(raw).map_or(f64::NAN, |limits| limits.middle());
         vec![value * exp2(-(self.function.fraction as i32))]
     }
@@ -100,9 +84,10 @@ impl Formula for Stated {
     /// Appends the result within the domain. No sum leaves its format there: that was proved at every operand.
     fn results(&self, operands: &[i64], raw: &mut Vec<i64>) -> bool {
         let (first, last) = self.polynomials.domain;
-        let inside = (first..=last).contains(&operands[0]);
+        let x = operand(&self.polynomials).computed_raw(operands[0]);
+        let inside = (first..=last).contains(&x);
         if inside {
-            raw.push(self.polynomials.result(operands[0]));
+            raw.push(self.polynomials.result(x));
         }
         inside
     }

@@ -30,6 +30,7 @@ pub mod lyon;
 pub mod narrow;
 pub mod normaliser;
 pub mod pipeline;
+mod plan;
 mod polynomial;
 pub mod quad_cosine;
 pub mod quadratic;

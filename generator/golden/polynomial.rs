@@ -30,6 +30,25 @@ impl Polynomial {
         self.sums[0]
     }
 
+    /// Returns the operation of Horner's rule that adds coefficient number `coefficient`, for one of the registers. `raw` computes
+    /// the raw operand of the polynomial from the state.
+    pub fn step<R>(&self, coefficient: usize, raw: R) -> impl Fn(&mut State) + use<R>
+    where
+        R: Fn(&State) -> i64 + Send + Sync + 'static,
+    {
+        let it = self.it.clone();
+        let (own, above) = (self.sums[coefficient], self.sums.get(coefficient + 1).copied());
+        move |s: &mut State| {
+            let place = it.place(raw(s));
+            // The highest coefficient is read from the table and has no register.
+            let sum_above = above.map_or(it.words[place.word][it.degree()], |above| s[above]);
+            let sum = it.sum(coefficient, place, sum_above);
+            let shortened = sum >> if coefficient == 0 { it.guard() } else { 0 };
+            let format = it.sums[coefficient];
+            s[own] = format.raw(format.bits(shortened.into())) as i64;
+        }
+    }
+
     /// Returns the operations of Horner's rule in their order, one for each register. `raw` computes the raw operand of the
     /// polynomial from the state.
     pub fn steps<R>(
@@ -39,16 +58,6 @@ impl Polynomial {
     where
         R: Fn(&State) -> i64 + Clone + Send + Sync + 'static,
     {
-        (0..self.sums.len()).rev().map(move |k| {
-            let (it, raw) = (self.it.clone(), raw.clone());
-            let (own, above) = (self.sums[k], self.sums.get(k + 1).copied());
-            move |s: &mut State| {
-                let place = it.place(raw(s));
-                // The highest coefficient is read from the table and has no register.
-                let sum_above = above.map_or(it.words[place.word][it.degree()], |above| s[above]);
-                let sum = it.sum(k, place, sum_above) >> if k == 0 { it.guard() } else { 0 };
-                s[own] = it.sums[k].raw(it.sums[k].bits(sum.into())) as i64;
-            }
-        })
+        (0..self.sums.len()).rev().map(move |coefficient| self.step(coefficient, raw.clone()))
     }
 }

@@ -7,6 +7,7 @@
 use std::ops::Range;
 use std::sync::Arc;
 
+use glint_approximate::Outside;
 use glint_base::fixed::{Format, MAX_WIDTH, exp2};
 use glint_base::identifier;
 use glint_base::key_error::KeyError;
@@ -46,6 +47,12 @@ fn operand_fields() -> Vec<Key> {
         Key::text("from", "-1", TextPattern::Formula, "The smallest operand."),
         Key::text("to", "1", TextPattern::Formula, "The end of the domain."),
         Key::flag("to_included", false, "Whether the end belongs to the domain."),
+        Key::choice(
+            "outside",
+            "anything",
+            &["anything", "clamp"],
+            "What operands outside the domain give: any result, or the result of its nearer end.",
+        ),
     ]
 }
 
@@ -299,10 +306,24 @@ fn operand(record: &TableEntry) -> Result<StatedOperand, StatementError> {
             let remedy = "keep bits and signed, or from and to";
             return Err(StatementError::new(key("bits"), message, remedy));
         }
+        if record.field("outside").is_some() {
+            let message =
+                format!("`outside` has no effect on `{name}`: its domain is the whole format");
+            return Err(StatementError::new(
+                key("outside"),
+                message,
+                "remove it, or give from and to",
+            ));
+        }
         let signed = record.flag("signed");
         let format = Format { signed, int: bits as i32 - i32::from(signed) - frac, frac };
         let (low, high) = format.range();
-        return Ok(StatedOperand { name, format, domain: (low as i64, high as i64) });
+        return Ok(StatedOperand {
+            name,
+            format,
+            domain: (low as i64, high as i64),
+            outside: Outside::Anything,
+        });
     }
     let (Some(from), Some(to)) = (from, to) else {
         let message = format!("`{name}` has neither `bits` nor `from` and `to`");
@@ -343,8 +364,12 @@ fn operand(record: &TableEntry) -> Result<StatedOperand, StatementError> {
         );
         return Err(StatementError::new(key("to"), message, "a larger end, or more fraction bits"));
     }
+    let outside = match record.text("outside") {
+        Some("clamp") => Outside::Clamp,
+        _ => Outside::Anything,
+    };
     let format = Format::holding(low, high, frac);
-    Ok(StatedOperand { name, format, domain: (low as i64, high as i64) })
+    Ok(StatedOperand { name, format, domain: (low as i64, high as i64), outside })
 }
 
 fn end(text: &str, fraction: u32, key: String) -> Result<End, StatementError> {

@@ -11,6 +11,7 @@ use glint_approximate::{
 use glint_base::fixed::{Format, MAX_WIDTH};
 use glint_config::{Config, Key, Problems, Schema, TextPattern};
 use glint_formula::{Fault, parse};
+use glint_plan::{ExpressionPlan, StatedOperand};
 
 glint_config::keys! {
     /// The values of a configuration of the device `function`, one field for each of its keys.
@@ -87,7 +88,20 @@ pub fn found(config: &Config) -> Result<(TargetFunction, Arc<Piecewise>), Refusa
         least_words: 0,
     };
     let it = find(&function, wish)?;
+    if let Err(refusal) = ExpressionPlan::of_function(&function, &it) {
+        return Err(Refusal::new("operand.fraction", refusal.message, "fewer fraction bits"));
+    }
     Ok((function, it))
+}
+
+/// Returns the operand of the device.
+pub fn operand(polynomials: &Piecewise) -> StatedOperand {
+    StatedOperand {
+        name: "x".to_owned(),
+        format: polynomials.operand,
+        domain: polynomials.domain,
+        outside: polynomials.outside,
+    }
 }
 
 fn function(keys: &Keys) -> Result<TargetFunction, Refusal> {

@@ -354,6 +354,15 @@ impl ErrorAnalysis<'_> {
                 let own = if own_errors { own } else { NOTHING };
                 NodeError::new(scaled(ideal, factor), scaled(error, factor) + own)
             }
+            Operation::Lookup { address, words } => {
+                let value = |raw: &i128| Enclosure::exactly(node.format.to_f64(*raw));
+                let known = input(*address).known();
+                let limits = match known.and_then(|place| words.get(place as usize)) {
+                    Some(word) => value(word),
+                    None => words.iter().map(value).reduce(Enclosure::hull).unwrap_or(NOTHING),
+                };
+                NodeError::exactly(limits)
+            }
             Operation::Polynomial(a, approximation) => {
                 approximated(id, approximation, input(*a), own_errors)?
             }

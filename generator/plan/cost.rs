@@ -9,6 +9,9 @@ use super::plan::ExpressionPlan;
 use glint_approximate::Piecewise;
 use glint_base::fixed::Rounding;
 
+/// The words of a bit that a look-up table holds.
+const WORDS_OF_CELL: usize = 16;
+
 /// The bits of a multiplier's factor.
 const FACTOR_BITS: u32 = 18;
 
@@ -56,6 +59,7 @@ impl ExpressionPlan {
             Operation::ShiftLeft(_, places) | Operation::ShiftRight(_, places) => {
                 width * f64::from(width_of(places))
             }
+            Operation::Lookup { words, .. } => width * words.len().div_ceil(WORDS_OF_CELL) as f64,
             Operation::Polynomial(_, approximation) => {
                 approximation.polynomials.as_deref().map_or(0.0, cells_of_polynomials)
             }

@@ -80,6 +80,10 @@ impl ExpressionPlan {
             }
             Operation::ShiftLeft(a, places) => known(*a) << known(*places),
             Operation::ShiftRight(a, places) => known(*a) >> known(*places),
+            Operation::Lookup { address, words } => {
+                let place = usize::try_from(known(*address)).expect("an address has no sign");
+                words.get(place).copied().unwrap_or(0)
+            }
             Operation::Polynomial(a, approximation) => {
                 let polynomials = approximation.polynomials.as_ref();
                 let polynomials = polynomials.expect("a plan whose polynomials are known");

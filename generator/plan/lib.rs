@@ -5,12 +5,18 @@
 //! hardware description, the golden model and the proof all read the same plan.
 //!
 //! ```
+//! use glint_approximate::Outside;
 //! use glint_base::fixed::Format;
 //! use glint_formula::parse;
 //! use glint_plan::{StatedOperand, StatedResult, ExpressionStatement, find};
 //!
 //! let byte = Format::unsigned(0, 8);
-//! let operand = |name: &str| StatedOperand { name: name.to_owned(), format: byte, domain: (0, 255) };
+//! let operand = |name: &str| StatedOperand {
+//!     name: name.to_owned(),
+//!     format: byte,
+//!     domain: (0, 255),
+//!     outside: Outside::Anything,
+//! };
 //! let length = StatedResult {
 //!     name: "length".to_owned(),
 //!     formula: parse("sqrt(x^2 + y^2)").unwrap(),
@@ -32,6 +38,7 @@ mod allocate;
 mod analyse;
 mod boxes;
 mod cost;
+mod curve;
 mod describe;
 mod evaluate;
 mod exhaust;

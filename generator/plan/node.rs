@@ -95,8 +95,16 @@ pub enum Operation {
     Places(NodeId),
     /// a · 2^b, where b is the second node. High bits are dropped, as by [`Operation::Narrow`].
     ShiftLeft(NodeId, NodeId),
-    /// a / 2^b, where b is the second node, rounded down to the fraction bits of a. a is unsigned.
+    /// a / 2^b, where b is the second node, rounded down to the fraction bits of a.
     ShiftRight(NodeId, NodeId),
+    /// A constant for each value of an unsigned integer, beginning with the value 0. For example, the words 5, 7 give 7 for the
+    /// address 1. An address without a word gives any value.
+    Lookup {
+        /// The integer.
+        address: NodeId,
+        /// The raw constants.
+        words: Vec<i128>,
+    },
     /// A function of one number, computed by a table of polynomials.
     Polynomial(NodeId, Box<Approximation>),
 }
@@ -124,7 +132,8 @@ impl Operation {
     /// inputs.
     pub(super) fn identity(&self) -> Option<(Discriminant<Self>, Vec<NodeId>, u32)> {
         let more = match self {
-            Self::Operand(_) | Self::Constant { .. } | Self::Polynomial(..) => return None,
+            Self::Operand(_) | Self::Constant { .. } => return None,
+            Self::Lookup { .. } | Self::Polynomial(..) => return None,
             Self::Narrow(..) | Self::Middle(_) | Self::ShiftRight(..) | Self::ShiftLeft(..) => {
                 return None;
             }
@@ -148,6 +157,7 @@ impl Operation {
             | Self::Bit(a, _)
             | Self::Normalise { word: a, .. }
             | Self::Places(a)
+            | Self::Lookup { address: a, .. }
             | Self::Polynomial(a, _) => vec![*a],
             Self::Add(a, b)
             | Self::Subtract(a, b)

@@ -70,6 +70,26 @@ impl ExpressionPlan {
         widths
     }
 
+    /// Returns what stands before the names of the nets of a node's table. It is the name of the node, so that each table has nets of
+    /// its own. The nets of a plan of a single function of `x` have no prefix.
+    pub fn table_prefix(&self, id: NodeId) -> String {
+        let mut operands = Vec::new();
+        for node in &self.nodes {
+            if matches!(node.operation, Operation::Operand(_)) {
+                operands.push(node.name.as_str());
+            }
+        }
+        let is_single = operands == ["x"] && self.approximations().len() == 1;
+        if is_single { String::new() } else { format!("{}_", self.node(id).name) }
+    }
+
+    /// Returns the names of the registers of a node's polynomial: the register of the polynomial itself, and those of the sums before
+    /// the last one.
+    pub fn sum_names(&self, id: NodeId) -> [String; 3] {
+        let prefix = self.table_prefix(id);
+        [self.node(id).name.clone(), format!("{prefix}sum1"), format!("{prefix}sum2")]
+    }
+
     /// Returns for each node the number of operations that read it.
     pub fn readers(&self) -> Vec<usize> {
         let mut readers = vec![0; self.nodes.len()];
@@ -399,13 +419,17 @@ impl ExpressionPlan {
         self.insert(name, Operation::Bit(a, number), Format::BIT, (0, 1))
     }
 
-    /// Adds the integer part and the fraction part of a, which must have fraction bits.
-    pub(super) fn split(&mut self, name: &str, a: NodeId) -> Result<[NodeId; 2], PlanRefusal> {
+    /// Adds the greatest integer that is not above a, which must have fraction bits.
+    pub(super) fn integer_part(&mut self, name: &str, a: NodeId) -> Result<NodeId, PlanRefusal> {
         let node = self.node(a);
         let (frac, range) = (node.format.frac, node.range);
-        let integers = (range.0 >> frac, range.1 >> frac);
-        let integer_name = format!("{name}_integer");
-        let integer = self.exact(&integer_name, Operation::IntegerPart(a), integers, 0)?;
+        self.exact(name, Operation::IntegerPart(a), (range.0 >> frac, range.1 >> frac), 0)
+    }
+
+    /// Adds the integer part and the fraction part of a, which must have fraction bits.
+    pub(super) fn split(&mut self, name: &str, a: NodeId) -> Result<[NodeId; 2], PlanRefusal> {
+        let integer = self.integer_part(&format!("{name}_integer"), a)?;
+        let frac = self.node(a).format.frac;
         let format = Format::unsigned(0, frac);
         let fraction = self.insert(
             &format!("{name}_fraction"),
@@ -452,9 +476,21 @@ impl ExpressionPlan {
         places: NodeId,
     ) -> Result<NodeId, PlanRefusal> {
         let node = self.node(a);
-        assert!(!node.format.signed, "`{name}` shifts a number with a sign to the right");
-        let (format, range) = (node.format, (0, node.range.1));
+        let (format, range) = (node.format, (node.range.0.min(0), node.range.1.max(0)));
         self.insert(name, Operation::ShiftRight(a, places), format, range)
+    }
+
+    /// Adds a constant for each value of an address, with `frac` fraction bits.
+    pub(super) fn lookup(
+        &mut self,
+        name: &str,
+        address: NodeId,
+        words: Vec<i128>,
+        frac: i32,
+    ) -> Result<NodeId, PlanRefusal> {
+        let low = words.iter().copied().min().unwrap_or(0);
+        let high = words.iter().copied().max().unwrap_or(0);
+        self.exact(name, Operation::Lookup { address, words }, (low, high), frac)
     }
 
     /// Adds a function of one number. `values` are limits of its raw values, within the allowed error.

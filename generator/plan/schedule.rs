@@ -64,7 +64,10 @@ impl ExpressionPlan {
                     let polynomials = approximation.polynomials.as_ref();
                     let degree = polynomials.expect("a plan whose polynomials are known").degree();
                     schedule.held[at] = true;
-                    schedule.steps.push(PlanStep::Address(node));
+                    // In the first clock the operands are there already, and address the tables.
+                    if !schedule.steps.is_empty() {
+                        schedule.steps.push(PlanStep::Address(node));
+                    }
                     for coefficient in (0..degree.max(1)).rev() {
                         schedule.steps.push(PlanStep::Sum { polynomial: node, coefficient });
                     }

@@ -1,6 +1,7 @@
 //! Defines the statement of an expression: the operands with their domains, and the results with their formulas and allowed
 //! errors.
 
+use glint_approximate::Outside;
 use glint_base::fixed::{Format, exp2};
 use glint_base::interval;
 use glint_formula::{Comparison, Enclosure, Expression, Fault, RBig};
@@ -23,6 +24,8 @@ pub struct StatedOperand {
     pub format: Format,
     /// The smallest and the largest raw operand for which results are promised.
     pub domain: (i64, i64),
+    /// The results that operands outside the domain get.
+    pub outside: Outside,
 }
 
 /// A result: its formula, and its allowed error.
@@ -106,6 +109,29 @@ impl ExpressionStatement {
     /// Returns the number of combinations of operands in the domain.
     pub fn combinations(&self) -> u128 {
         interval::combinations(self.domain())
+    }
+}
+
+impl StatedOperand {
+    /// Returns the value with which results are computed for an operand. It is the nearer end of the domain if the operand is outside
+    /// a domain that clamps. For example, 0.9 becomes 0.5 if the domain ends at 0.5.
+    pub fn computed(&self, value: f64) -> f64 {
+        match self.outside {
+            Outside::Clamp => {
+                let [low, high] =
+                    [self.domain.0, self.domain.1].map(|raw| self.format.to_f64(raw.into()));
+                value.clamp(low, high)
+            }
+            Outside::Wrap | Outside::Anything => value,
+        }
+    }
+
+    /// Returns the raw value with which results are computed for a raw operand.
+    pub fn computed_raw(&self, raw: i64) -> i64 {
+        match self.outside {
+            Outside::Clamp => raw.clamp(self.domain.0, self.domain.1),
+            Outside::Wrap | Outside::Anything => raw,
+        }
     }
 }
 

@@ -1,19 +1,25 @@
 //! Tests that expressions get plans, and that the errors of the plans are as proved.
 
+use glint_approximate::{Curve, Identity, Outside, TargetFunction, Wish};
 use glint_base::fixed::{Format, Rounding};
 use glint_formula::{Comparison, Enclosure, Expression, Kind, parse};
 
 use super::exhaust::largest_errors;
 use super::find::{DIVISIONS, enclosed_errors};
 use super::{
-    ExpressionStatement, Operation, ProofKind, StatedOperand, StatedOverflow, StatedResult,
-    StatedWidth, find, least_size,
+    ExpressionPlan, ExpressionStatement, Operation, ProofKind, StatedOperand, StatedOverflow,
+    StatedResult, StatedWidth, find, least_size,
 };
 
 /// Returns an operand with a whole format as its domain.
 fn operand(name: &str, format: Format) -> StatedOperand {
     let (low, high) = format.range();
-    StatedOperand { name: name.to_owned(), format, domain: (low as i64, high as i64) }
+    StatedOperand {
+        name: name.to_owned(),
+        format,
+        domain: (low as i64, high as i64),
+        outside: Outside::Anything,
+    }
 }
 
 fn result(name: &str, formula: &str, fraction: u32) -> StatedResult {
@@ -413,4 +419,50 @@ fn least_sizes_by_hand() {
     assert!(sizes[0] <= exact && sizes[0] > exact - 1e-9, "{sizes:?}");
     assert!(sizes[1] <= exact && sizes[1] > exact - 1e-9, "{sizes:?}");
     assert_eq!(sizes[2], 0.0);
+}
+
+/// Functions with a range reduction: the formula, the raw domain, the fraction bits of the operand and of the result, and the
+/// identity.
+type ReducedFunction = (&'static str, (i64, i64), i32, u32, Identity);
+
+const REDUCED: [ReducedFunction; 16] = [
+    ("2^x", (-2048, 2047), 8, 8, Identity::Exponent),
+    ("2^-x", (-700, 1301), 8, 7, Identity::Exponent),
+    ("exp(x)", (-1024, 1023), 7, 6, Identity::Exponent),
+    ("log2(x)", (1, 4095), 4, 10, Identity::Octaves),
+    ("ln(x)", (3, 2047), 5, 9, Identity::Octaves),
+    ("1 / x", (1, 4095), 6, 6, Identity::Octaves),
+    ("1 / sqrt(x)", (1, 4095), 6, 9, Identity::Octaves),
+    ("1 / sqrt(x)", (1, 8191), 6, 9, Identity::Octaves),
+    ("sqrt(x)", (0, 4095), 6, 9, Identity::Octaves),
+    ("sin(2 * pi * x)", (0, 4095), 12, 11, Identity::Quadrants),
+    ("cos(2 * pi * x)", (-2048, 2047), 12, 11, Identity::Quadrants),
+    ("-sin(2 * pi * x)", (0, 1023), 10, 11, Identity::Quadrants),
+    ("sigmoid(x)", (-1024, 1023), 8, 12, Identity::Odd),
+    ("tanh(x)", (-1000, 700), 8, 12, Identity::Odd),
+    ("atan(x)", (-300, 2047), 8, 12, Identity::Odd),
+    ("exp(-x^2)", (-512, 511), 8, 12, Identity::Even),
+];
+
+/// The proof of a range reduction relies on its definition in `glint_approximate`; the hardware and the golden model rely on the plan.
+#[test]
+fn plans_of_reduced_functions_compute_the_proved_results() {
+    for (formula, domain, frac, fraction, identity) in REDUCED {
+        let function = TargetFunction {
+            curve: Curve::Formula(parse(formula).expect("a formula")),
+            domain,
+            operand: Format::holding(domain.0.into(), domain.1.into(), frac),
+            outside: Outside::Anything,
+            fraction,
+            error: 1.0,
+        };
+        let wish = Wish { identity, ..Wish::default() };
+        let polynomials = glint_approximate::find(&function, wish)
+            .unwrap_or_else(|refusal| panic!("{formula}: {refusal:?}"));
+        let plan = ExpressionPlan::of_function(&function, &polynomials).expect("a plan");
+        for raw in domain.0..=domain.1 {
+            let result = plan.values(&[raw])[plan.results[0].0];
+            assert_eq!(result, polynomials.result(raw).into(), "{formula} at {raw}");
+        }
+    }
 }

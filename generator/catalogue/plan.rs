@@ -1,0 +1,439 @@
+//! Builds the hardware of a plan: logic between registers for each operation, and a microprogram.
+//!
+//! The devices `function` and `expression` use it. A plan is a list of fixed-point operations ([`glint_plan`]). All products of a
+//! plan share one multiplier, each in a microinstruction of its own. A pipeline unrolls the microprogram, so that each product gets a
+//! multiplier of its own.
+
+use glint_approximate::{Outside, Piecewise};
+use glint_base::fixed::{Format, Overflow, Rounding};
+use glint_plan::{
+    ExpressionPlan, NodeId, Operation, PlanNode, PlanSchedule, PlanStep, StatedOperand,
+};
+use glint_rtl::blocks::shift::{normalise, normalise_by_pairs, right_by};
+use glint_rtl::dsl::{Designer, Register, Signal, Step, end, step, valid};
+
+use crate::mirror::MirrorChain;
+use crate::piecewise::{PolynomialDatapath, StepMultiplier, Tables, number};
+
+/// Describes the hardware of a plan. The result number k of the plan goes to the port with the name number k of `outputs`.
+/// `is_pipelined` says how tables store their coefficients.
+pub(super) fn describe_plan(
+    d: &Designer,
+    operands: &[StatedOperand],
+    plan: &ExpressionPlan,
+    outputs: &[String],
+    is_pipelined: bool,
+) {
+    let schedule = plan.schedule();
+    let mut datapath = PlanDatapath::new(d, operands, plan, &schedule, is_pipelined);
+    datapath.build();
+    let steps = datapath.microprogram();
+    for (name, node) in outputs.iter().zip(&plan.results) {
+        d.output(name, datapath.signal(*node));
+    }
+    d.microprogram(steps);
+}
+
+/// A plan in the making as a datapath.
+struct PlanDatapath<'d, 'p> {
+    d: &'d Designer,
+    operands: &'p [StatedOperand],
+    plan: &'p ExpressionPlan,
+    schedule: &'p PlanSchedule,
+    is_pipelined: bool,
+    /// The register of each node of the plan, or `None` for a node without one. Polynomials have their own registers.
+    registers: Vec<Option<Register<'d>>>,
+    /// The value of each node as later nodes read it; `None` for a product until its register is made.
+    signals: Vec<Option<Signal<'d>>>,
+    polynomials: Vec<Option<PolynomialDatapath<'d, 'p>>>,
+    /// The two factors of each product, or `None` for a node that is no product.
+    factors: Vec<Option<[Signal<'d>; 2]>>,
+    /// The chain of mirrors that ends at each node, if one does.
+    chains: Vec<Option<MirrorChain>>,
+    /// Whether each node is inside a chain of mirrors, and so not built itself.
+    is_inner: Vec<bool>,
+}
+
+impl<'d, 'p> PlanDatapath<'d, 'p> {
+    fn new(
+        d: &'d Designer,
+        operands: &'p [StatedOperand],
+        plan: &'p ExpressionPlan,
+        schedule: &'p PlanSchedule,
+        is_pipelined: bool,
+    ) -> Self {
+        let count = plan.nodes.len();
+        let mut registers = Vec::with_capacity(count);
+        for (node, is_held) in plan.nodes.iter().zip(&schedule.held) {
+            let has_own = matches!(node.operation, Operation::Polynomial(..));
+            let is_register = *is_held && !has_own;
+            registers.push(is_register.then(|| d.register(&node.name, node.format)));
+        }
+        let (chains, is_inner) = mirror_chains(plan, schedule);
+        Self {
+            d,
+            operands,
+            plan,
+            schedule,
+            is_pipelined,
+            chains,
+            is_inner,
+            registers,
+            signals: vec![None; count],
+            polynomials: (0..count).map(|_| None).collect(),
+            factors: vec![None; count],
+        }
+    }
+
+    /// Builds the nodes in their order, except for what follows from products: these need the multiplier.
+    fn build(&mut self) {
+        for at in 0..self.plan.nodes.len() {
+            if self.is_inner[at] {
+                continue;
+            }
+            let node = &self.plan.nodes[at];
+            if let Operation::Multiply(a, b) = node.operation {
+                self.factors[at] = Some(self.distinct_factors(&node.name, [a, b]));
+            }
+            let is_behind_product =
+                node.operation.inputs().iter().any(|it| self.signals[it.0].is_none());
+            let value = if self.chains[at].is_some() {
+                Some(self.mirrored(NodeId(at)))
+            } else if matches!(node.operation, Operation::Multiply(..)) || is_behind_product {
+                None
+            } else {
+                Some(self.logic(NodeId(at)))
+            };
+            self.signals[at] = match (self.registers[at], value) {
+                (Some(register), Some(value)) => {
+                    register.takes(value);
+                    Some(register.q())
+                }
+                (Some(register), None) => Some(register.q()),
+                (None, value) => value,
+            };
+        }
+    }
+
+    /// Returns the factors of a product. A first factor that another product has, too, gets a net of its own, by which the
+    /// microprogram selects this product.
+    fn distinct_factors(&self, name: &str, inputs: [NodeId; 2]) -> [Signal<'d>; 2] {
+        let [first, second] = inputs.map(|input| self.signal(input));
+        let mut others = self.factors.iter().flatten();
+        let is_first = others.any(|[other, _]| other.name() == first.name());
+        if !is_first {
+            return [first, second];
+        }
+        let own = format!("{name}_first");
+        let first = self.d.narrow(&own, first, first.format(), Rounding::Truncate, Overflow::Wrap);
+        [first, second]
+    }
+
+    /// Returns the value of a node as later nodes read it.
+    fn signal(&self, id: NodeId) -> Signal<'d> {
+        self.signals[id.0].unwrap_or_else(|| panic!("`{}` is built", self.plan.node(id).name))
+    }
+
+    /// Returns a signal in the format of a node, with the bits above dropped.
+    fn in_format(&self, name: &str, signal: Signal<'d>, format: Format) -> Signal<'d> {
+        if signal.format() == format {
+            return signal;
+        }
+        // The plan knows narrower limits of the value than the signal's.
+        let name = format!("{name}_kept");
+        self.d.narrow(&name, signal, format, Rounding::Truncate, Overflow::Wrap)
+    }
+
+    /// Builds the chain of mirrors that ends at a node.
+    fn mirrored(&self, id: NodeId) -> Signal<'d> {
+        let PlanNode { name, format, .. } = self.plan.node(id);
+        let chain = self.chains[id.0].as_ref().expect("a chain that ends at the node");
+        let name = match self.registers[id.0] {
+            Some(_) => format!("{name}_next"),
+            None => name.clone(),
+        };
+        let value = chain.build(self.d, self.plan, &name, &|input| self.signal(input));
+        self.in_format(&name, value, *format)
+    }
+
+    /// Builds a node as logic.
+    fn logic(&mut self, id: NodeId) -> Signal<'d> {
+        let d = self.d;
+        let plan = self.plan;
+        let node = plan.node(id);
+        let PlanNode { name, format, .. } = node;
+        // The register has the name of the node.
+        let name = &match self.registers[id.0] {
+            Some(_) => format!("{name}_next"),
+            None => name.clone(),
+        };
+        let input = |id: &NodeId| self.signals[id.0].expect("a node that is built");
+        let value = match &node.operation {
+            Operation::Operand(number) => {
+                let StatedOperand { name, format, domain, outside } = &self.operands[*number];
+                let register = match outside {
+                    Outside::Clamp => {
+                        let [first, last] =
+                            [domain.0, domain.1].map(|raw| format.to_f64(raw.into()));
+                        d.operand_clamped(name, *format, first, last)
+                    }
+                    Outside::Wrap | Outside::Anything => d.operand(name, *format),
+                };
+                let doc = if self.operands.len() == 1 { "the operand" } else { "an operand" };
+                return register.doc(doc).q();
+            }
+            Operation::Constant { raw, .. } => d.raw_constant(name, *raw, *format),
+            Operation::Add(a, b) => match is_above(input(a), input(b)) {
+                true => d.join(name, &[input(a), input(b)], *format),
+                false => d.add(name, input(a), input(b)),
+            },
+            Operation::Subtract(a, b) => d.sub(name, input(a), input(b)),
+            Operation::Multiply(..) => unreachable!("a product needs the multiplier"),
+            Operation::Absolute(a) => {
+                // −a is ~a and a carry. A choice behind the sum would become one large function with the choices that follow it.
+                let a = input(a);
+                let is_negative = a.bit(a.format().width() - 1);
+                let inverted = d.not(&format!("{name}_inverted"), a);
+                let mirrored = d.choose(&format!("{name}_mirrored"), is_negative, [a, inverted]);
+                let zero = d.raw_constant("zero", 0, a.format());
+                d.add_carry(&format!("{name}_sum"), zero, mirrored, is_negative)
+            }
+            Operation::Minimum(a, b) => {
+                let (a, b) = (input(a), input(b));
+                let is_first = d.less(&format!("{name}_is_first"), a, b);
+                d.choose(&format!("{name}_chosen"), is_first, aligned([b, a]))
+            }
+            Operation::Maximum(a, b) => {
+                let (a, b) = (input(a), input(b));
+                let is_second = d.less(&format!("{name}_is_second"), a, b);
+                d.choose(&format!("{name}_chosen"), is_second, aligned([a, b]))
+            }
+            Operation::Less(a, b) => {
+                let zero = matches!(plan.node(*b).operation, Operation::Constant { raw: 0, .. });
+                let format = input(a).format();
+                return match zero && format.signed {
+                    // A number below 0 shows its sign.
+                    true => input(a).bit(format.width() - 1),
+                    false => d.less(name, input(a), input(b)),
+                };
+            }
+            Operation::NonZero(a) => return d.any(name, input(a)),
+            Operation::Choose { condition, cases } => {
+                let cases = aligned(cases.map(|it| input(&it)));
+                d.choose(&format!("{name}_chosen"), input(condition), cases)
+            }
+            Operation::Scale(a) => input(a).read_as(*format),
+            Operation::Narrow(a, rounding) => {
+                return d.narrow(name, input(a), *format, *rounding, Overflow::Wrap);
+            }
+            Operation::Middle(a) => return middle(d, name, input(a), *format),
+            Operation::Bit(a, number) => {
+                let a = input(a);
+                let top = a.format().width() - 1;
+                // Above its sign a number has copies of the sign, or zeros.
+                return match *number <= top || a.format().signed {
+                    true => a.bit((*number).min(top)),
+                    false => d.raw_constant(name, 0, Format::BIT),
+                };
+            }
+            Operation::IntegerPart(a) => {
+                return d.narrow(name, input(a), *format, Rounding::Truncate, Overflow::Wrap);
+            }
+            Operation::FractionPart(a, _) => {
+                // A number below 1 can have fewer bits than its fraction.
+                return d.narrow(name, input(a), *format, Rounding::Truncate, Overflow::Wrap);
+            }
+            Operation::Lookup { address, words } => {
+                return d.rom(name, input(address), *format, words, false).out();
+            }
+            Operation::Normalise { word, by_pairs } => {
+                let found = match by_pairs {
+                    true => normalise_by_pairs(d, name, input(word)),
+                    false => normalise(d, name, input(word)),
+                };
+                // The node of the places follows the word.
+                self.signals[id.0 + 1] = Some(found.zeros);
+                found.word.read_as(*format)
+            }
+            Operation::Places(_) => {
+                return self.signals[id.0].expect("the places of a normalised word");
+            }
+            Operation::ShiftLeft(a, places) => left_by(d, name, input(a), input(places), *format),
+            Operation::ShiftRight(a, places) => right_by(d, name, input(a), input(places)),
+            Operation::Polynomial(a, approximation) => {
+                let polynomials = approximation.polynomials.as_deref();
+                let it = polynomials.expect("polynomials that are found");
+                return self.polynomial(id, input(a), it);
+            }
+        };
+        self.in_format(name, value, *format)
+    }
+
+    /// Builds a table of polynomials and its registers, and returns the last of them.
+    fn polynomial(&mut self, id: NodeId, operand: Signal<'d>, it: &'p Piecewise) -> Signal<'d> {
+        let prefix = self.plan.table_prefix(id);
+        let number = number(self.d, &format!("{prefix}number"), operand, it);
+        let registers = self.plan.sum_names(id);
+        let registers: Vec<&str> = registers.iter().map(String::as_str).collect();
+        let tables = Tables::of(it, self.is_pipelined);
+        let datapath = PolynomialDatapath::new(self.d, &prefix, &registers, number, it, tables);
+        let q = datapath.q();
+        self.polynomials[id.0] = Some(datapath);
+        q
+    }
+
+    /// Returns the microinstructions, and connects the registers of products to the multiplier.
+    fn microprogram(&mut self) -> Vec<Step> {
+        let polynomials: Vec<&PolynomialDatapath> = self.polynomials.iter().flatten().collect();
+        let mut others = Vec::new();
+        for (node, factors) in self.plan.nodes.iter().zip(&self.factors) {
+            others.extend(factors.map(|factors| (node.name.clone(), factors)));
+        }
+        let names = match others.is_empty() {
+            true => ["factors_select", "factor", "offset_of_step", "product"],
+            false => ["factors_select", "first_factor", "second_factor", "product_of_factors"],
+        };
+        let multiplier = StepMultiplier::new(self.d, names, &polynomials, &others);
+        let addresses_table = matches!(self.schedule.steps.first(), Some(PlanStep::Sum { .. }));
+        let first = match addresses_table {
+            true => format!("{}; table addressed", noun(self.operands.len(), "operand")),
+            false => noun(self.operands.len(), "operand"),
+        };
+        let mut steps = vec![step(&first, [])];
+        for plan_step in &self.schedule.steps {
+            steps.push(self.microinstruction(plan_step, &multiplier));
+        }
+        steps.push(step(&noun(self.plan.results.len(), "result"), [valid(), end()]));
+        steps
+    }
+
+    fn microinstruction(&self, plan_step: &PlanStep, multiplier: &StepMultiplier<'d>) -> Step {
+        let name_of = |id: NodeId| self.plan.node(id).name.as_str();
+        let register =
+            |id: NodeId| self.registers[id.0].expect("a register of a node that is held");
+        match plan_step {
+            PlanStep::Product { product, held } => {
+                let factors = self.factors[product.0].expect("the factors of a product");
+                let register = register(*held);
+                register.takes(self.following(multiplier.product(factors), *product, *held));
+                let mut settings = vec![register.load()];
+                settings.extend(multiplier.pick(factors));
+                step(&format!("{} <- a product", name_of(*held)), settings)
+            }
+            PlanStep::Hold(nodes) => {
+                let names: Vec<&str> = nodes.iter().map(|node| name_of(*node)).collect();
+                let loads: Vec<_> = nodes.iter().map(|node| register(*node).load()).collect();
+                step(&format!("{} loaded", names.join(", ")), loads)
+            }
+            PlanStep::Address(polynomial) => {
+                step(&format!("{}: table addressed", name_of(*polynomial)), [])
+            }
+            PlanStep::Sum { polynomial, coefficient } => {
+                let datapath = self.polynomials[polynomial.0].as_ref().expect("a polynomial");
+                let settings = multiplier.step(datapath, *coefficient);
+                let register = &self.plan.sum_names(*polynomial)[*coefficient];
+                let sum = match coefficient {
+                    0 if self.plan.results.contains(polynomial) => "the polynomial".to_owned(),
+                    0 => "all coefficients".to_owned(),
+                    _ => format!("coefficients from {coefficient} on"),
+                };
+                step(&format!("{register} <- {sum}"), settings)
+            }
+        }
+    }
+
+    /// Returns the value of `held` from that of a product: the nodes between the two only scale and shorten it.
+    fn following(&self, product: Signal<'d>, from: NodeId, held: NodeId) -> Signal<'d> {
+        let node = self.plan.node(held);
+        if held == from {
+            return self.in_format(&format!("{}_next", node.name), product, node.format);
+        }
+        let inputs = node.operation.inputs();
+        let before = self.following(product, from, inputs[0]);
+        match node.operation {
+            Operation::Narrow(_, rounding) => {
+                let name = format!("{}_next", node.name);
+                self.d.narrow(&name, before, node.format, rounding, Overflow::Wrap)
+            }
+            Operation::Middle(_) => {
+                middle(self.d, &format!("{}_next", node.name), before, node.format)
+            }
+            _ => before.read_as(node.format),
+        }
+    }
+}
+
+/// Returns a signal with its low bits replaced by a 1, which is the lowest bit of the format.
+fn middle<'d>(d: &'d Designer, name: &str, signal: Signal<'d>, format: Format) -> Signal<'d> {
+    let kept = Format { frac: format.frac - 1, ..format };
+    let name_of_kept = format!("{name}_kept");
+    let upper = d.narrow(&name_of_kept, signal, kept, Rounding::Truncate, Overflow::Wrap);
+    let one = d.raw_constant("middle", 1, Format::BIT);
+    d.join(name, &[upper, one], format)
+}
+
+/// Returns the chain of mirrors that ends at each node of a plan, and whether each node is inside a chain.
+fn mirror_chains(
+    plan: &ExpressionPlan,
+    schedule: &PlanSchedule,
+) -> (Vec<Option<MirrorChain>>, Vec<bool>) {
+    let count = plan.nodes.len();
+    let mut chains = vec![None; count];
+    let mut is_inner = vec![false; count];
+    // Of two chains, the one that ends later is the longer one.
+    for at in (0..count).rev() {
+        if is_inner[at] {
+            continue;
+        }
+        let Some(chain) = MirrorChain::ending_at(plan, NodeId(at), &schedule.held) else {
+            continue;
+        };
+        for node in chain.inner() {
+            is_inner[node.0] = true;
+        }
+        chains[at] = Some(chain);
+    }
+    (chains, is_inner)
+}
+
+/// Returns two signals with as many fraction bits as the finer one has.
+fn aligned(signals: [Signal<'_>; 2]) -> [Signal<'_>; 2] {
+    let [first, second] = signals.map(|signal| signal.format().frac);
+    signals.map(|signal| signal.with_fraction(first.max(second)))
+}
+
+/// Returns x · 2^places in a format, with the bits above the format dropped.
+fn left_by<'d>(
+    d: &'d Designer,
+    name: &str,
+    x: Signal<'d>,
+    places: Signal<'d>,
+    format: Format,
+) -> Signal<'d> {
+    let integer = |bits: u32| Format::unsigned(bits as i32, 0);
+    let width = format.width();
+    let wide = d.narrow(&format!("{name}_wide"), x, format, Rounding::Truncate, Overflow::Wrap);
+    let mut row = wide.read_as(integer(width));
+    for bit in 0..places.format().width() {
+        let shift = 1u32.checked_shl(bit).unwrap_or(u32::MAX);
+        let moved = if shift < width {
+            let kept = row.bits(0, integer(width - shift));
+            kept.with_fraction(shift as i32).shift_left(shift as i32)
+        } else {
+            d.raw_constant("zeros", 0, integer(width))
+        };
+        row = d.choose(&format!("{name}_by{shift}"), places.bit(bit), [row, moved]);
+    }
+    row.read_as(format)
+}
+
+/// Returns whether two numbers have no bits of the same weight, so that their sum needs no adder: all bits of the first are above the
+/// bits of the second, which has no sign.
+fn is_above(first: Signal<'_>, second: Signal<'_>) -> bool {
+    !second.format().signed && second.format().int == -first.format().frac
+}
+
+/// Returns a noun in the singular or in the plural. For example, `operands` for two of them.
+fn noun(count: usize, noun: &str) -> String {
+    if count == 1 { noun.to_owned() } else { format!("{noun}s") }
+}
