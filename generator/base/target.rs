@@ -86,11 +86,43 @@ pub struct Timing {
     /// The extra delay of the wire to the address of a block memory, compared with a wire to a register: block memories
     /// occupy only a few columns of the chip.
     pub address: f64,
-    /// The smallest size of a synchronous ROM, in bits, that synthesis puts into a block memory.
-    pub block_bits: u64,
+    /// The size of a block memory, and the ROMs that synthesis puts into block memories.
+    pub blocks: BlockMemory,
     /// A memory of look-up tables that is read without a clock. `None` if the target has none, or if synthesis itself makes shift
     /// registers of look-up tables.
     pub delay_memory: Option<DelayMemory>,
+}
+
+/// The block memories of a family, and the rule by which synthesis uses them for synchronous ROMs.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BlockMemory {
+    /// The number of bits of a block.
+    pub bits: u64,
+    /// The width of a block's widest word, in bits.
+    pub widest: u64,
+    /// Synthesis puts a ROM into blocks if it has more bits than this for each block that it needs.
+    pub most_bits_without: u64,
+}
+
+impl BlockMemory {
+    /// Returns the number of blocks for a ROM. Twice the words halve the width of a block. For example, a block of 18 432 bits has 512
+    /// words of 36 bits, or 1024 words of 18 bits.
+    pub fn count(&self, words: u64, width: u64) -> u64 {
+        let mut block_width = self.widest;
+        while block_width > 0 {
+            if self.bits / block_width >= words {
+                return width.div_ceil(block_width);
+            }
+            block_width /= 2;
+        }
+        (words * width).div_ceil(self.bits)
+    }
+
+    /// Returns whether synthesis puts a synchronous ROM into blocks. For example, ECP5 has 64 words of 33 bits in a block, and 64 words
+    /// of 32 bits in look-up tables.
+    pub fn takes(&self, words: u64, width: u64) -> bool {
+        words * width > self.most_bits_without * self.count(words, width)
+    }
 }
 
 /// An FPGA chip, with the number of its look-up tables, DSP blocks and block RAMs.
@@ -128,10 +160,6 @@ pub struct Estimate {
     pub sign: u32,
     /// Partial products with fewer bits than this become look-up tables.
     pub least_product: u32,
-    /// The number of bits in a block RAM, and the width of its widest word.
-    pub block: (u64, u64),
-    /// Synchronous ROMs with fewer bits than this become look-up tables.
-    pub least_block: u64,
 }
 
 /// Kinds of cells in a netlist of Yosys, each with the number of resources that one such cell counts for. For example, `("CCU2C",
@@ -249,5 +277,47 @@ impl Usage {
     /// Returns the numbers of look-up tables, DSP blocks and block RAMs.
     pub fn taken(&self) -> [u64; 3] {
         [self.luts, self.dsps, self.block_rams]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Yosys 0.23 and 0.70 put synchronous ROMs, given as words and width, into look-up tables or into blocks.
+    #[test]
+    fn roms_are_where_synthesis_puts_them() {
+        let in_tables = [
+            ("ecp5", 64, 32),
+            ("ecp5", 64, 64),
+            ("ecp5", 32, 72),
+            ("ecp5", 512, 4),
+            ("ice40", 128, 8),
+            ("ice40", 64, 36),
+            ("ice40", 64, 80),
+            ("xilinx7", 512, 16),
+            ("gatemate", 64, 81),
+            ("nexus", 256, 8),
+            ("gowin", 128, 16),
+        ];
+        let in_blocks = [
+            ("ecp5", 64, 33),
+            ("ecp5", 64, 65),
+            ("ecp5", 4096, 1),
+            ("ice40", 128, 9),
+            ("ice40", 256, 33),
+            ("xilinx7", 512, 17),
+            ("xilinx7", 2048, 8),
+            ("gatemate", 64, 80),
+            ("nexus", 64, 33),
+            ("gowin", 256, 9),
+        ];
+        for (roms, is_block) in [(&in_tables[..], false), (&in_blocks[..], true)] {
+            for &(name, words, width) in roms {
+                let family = FAMILIES.iter().find(|it| it.timing.name == name).expect("a family");
+                let is_taken = family.timing.blocks.takes(words, width);
+                assert_eq!(is_taken, is_block, "{name}: {words} words of {width} bits");
+            }
+        }
     }
 }

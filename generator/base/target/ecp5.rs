@@ -24,7 +24,7 @@
 //! The weights of the cost were sought near a fit of `benches/tune/fit` to the 20 cores in `records/synthesis/`, for the least
 //! median error. The estimate of half of the cores is within 4 % of the look-up tables, and the worst is 24 % off.
 
-use super::{Chip, DelayMemory, Estimate, Family, Registered, Timing};
+use super::{BlockMemory, Chip, DelayMemory, Estimate, Family, Registered, Timing};
 
 /// Data of the family Lattice ECP5, for speed grade 6.
 pub const ECP5: Family = Family {
@@ -43,7 +43,7 @@ pub const ECP5: Family = Family {
         registered: Some(Registered { product: 4.15, output: 0.45 }),
         block: 5.34,
         address: 2.4,
-        block_bits: 4096,
+        blocks: BlockMemory { bits: 18_432, widest: 36, most_bits_without: 2048 },
         delay_memory: Some(DelayMemory { words: 16, width: 4, tables: 6 }),
     },
     library: "read_verilog -lib +/ecp5/cells_sim.v +/ecp5/cells_bb.v; ",
@@ -65,7 +65,5 @@ pub const ECP5: Family = Family {
         scale: 0.95,
         sign: 0,
         least_product: 9,
-        block: (18_432, 36),
-        least_block: 2048,
     },
 };

@@ -14,7 +14,7 @@
 //! The chip has no DSP blocks: a product is an array of its logic cells (CPEs). A look-up table here is half of a CPE, a tree of
 //! tables with four inputs. The delays contain a reserve for longer wires: 0.5 ns for every clock.
 
-use super::{Chip, Estimate, Family, Timing};
+use super::{BlockMemory, Chip, Estimate, Family, Timing};
 
 /// Returns the look-up tables of a product with operands of these widths in bits: two for each CPE that nextpnr makes. The formula
 /// is exact for the products of 4 × 4, 8 × 8, 9 × 9, 12 × 8, 16 × 8, 16 × 16 and 18 × 18 bits, which were placed. For example, 8
@@ -43,7 +43,7 @@ pub const GATEMATE: Family = Family {
         registered: None,
         block: 4.0,
         address: 4.0,
-        block_bits: 1024,
+        blocks: BlockMemory { bits: 20_480, widest: 40, most_bits_without: 2048 },
         delay_memory: None,
     },
     library: "",
@@ -75,8 +75,6 @@ pub const GATEMATE: Family = Family {
         scale: 1.27,
         sign: 0,
         least_product: 9,
-        block: (20_480, 40),
-        least_block: 1024,
     },
 };
 

@@ -1,6 +1,6 @@
 //! Delays of a device that nobody named.
 
-use super::Timing;
+use super::{BlockMemory, Timing};
 
 /// Any device: a gate is one unit of about a nanosecond.
 pub const GENERIC: Timing = Timing {
@@ -17,6 +17,6 @@ pub const GENERIC: Timing = Timing {
     registered: None,
     block: 4.0,
     address: 0.8,
-    block_bits: 4096,
+    blocks: BlockMemory { bits: 18_432, widest: 36, most_bits_without: 4095 },
     delay_memory: None,
 };

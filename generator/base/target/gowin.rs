@@ -17,7 +17,7 @@
 //!
 //! The delays contain a reserve for longer wires: 0.35 ns for every clock and 0.3 ns for every carry chain.
 
-use super::{Chip, DelayMemory, Estimate, Family, Kinds, Timing};
+use super::{BlockMemory, Chip, DelayMemory, Estimate, Family, Kinds, Timing};
 
 const LUTS: Kinds = &[
     ("LUT1", 1),
@@ -69,8 +69,6 @@ const ESTIMATE: Estimate = Estimate {
     scale: 1.0,
     sign: 0,
     least_product: 9,
-    block: (18_432, 36),
-    least_block: 2048,
 };
 
 /// Data of Gowin's GW2A, speed grade C8/I7, for the chip GW2AR-18 of the Tang Nano 20K.
@@ -90,7 +88,7 @@ pub const GOWIN: Family = Family {
         registered: None,
         block: 3.0,
         address: 1.2,
-        block_bits: 4096,
+        blocks: BlockMemory { bits: 18_432, widest: 36, most_bits_without: 2048 },
         delay_memory: Some(DELAY_MEMORY),
     },
     library: "",

@@ -2,7 +2,7 @@
 //! sequential and pipelined; `benches/tune/fit` computed them. The estimate of half of the cores is within 9 % of the look-up
 //! tables; the worst is `threshold` (33 % too many).
 
-use super::{Chip, Estimate, Family, Timing};
+use super::{BlockMemory, Chip, Estimate, Family, Timing};
 
 /// Products in DSP blocks of iCE40 that are multipliers and nothing else. `synth_ice40 -dsp` would move registers and adders
 /// into the blocks too, and no tool knows the delays of those: `icetime` takes such a block for the end of
@@ -30,7 +30,7 @@ pub const ICE40: Family = Family {
         registered: None,
         block: 4.0,
         address: 1.0,
-        block_bits: 2048,
+        blocks: BlockMemory { bits: 4096, widest: 16, most_bits_without: 1024 },
         delay_memory: None,
     },
     library: "",
@@ -55,7 +55,5 @@ pub const ICE40: Family = Family {
         scale: 0.92,
         sign: 0,
         least_product: 11,
-        block: (4096, 16),
-        least_block: 128,
     },
 };

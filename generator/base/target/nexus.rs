@@ -13,7 +13,7 @@
 //!
 //! The delays contain a reserve for longer wires: 0.35 ns for every clock and 0.3 ns for every carry chain.
 
-use super::{Chip, DelayMemory, Estimate, Family, Timing};
+use super::{BlockMemory, Chip, DelayMemory, Estimate, Family, Timing};
 
 /// Products in DSP blocks that are multipliers and nothing else, and small products in look-up tables. By itself `synth_nexus` of
 /// Yosys 0.70 also moves registers and sums into the blocks, and its netlists then give wrong results: the simulation of
@@ -45,7 +45,7 @@ pub const NEXUS: Family = Family {
         registered: None,
         block: 1.8,
         address: 0.8,
-        block_bits: 4096,
+        blocks: BlockMemory { bits: 18_432, widest: 36, most_bits_without: 2048 },
         delay_memory: Some(DelayMemory { words: 16, width: 4, tables: 6 }),
     },
     library: "",
@@ -70,7 +70,5 @@ pub const NEXUS: Family = Family {
         scale: 1.04,
         sign: 0,
         least_product: 9,
-        block: (18_432, 36),
-        least_block: 2048,
     },
 };

@@ -2,7 +2,7 @@
 //! 20 cores in `records/synthesis/`, for the least median error. The estimate of half of the cores is within 10 % of the look-up
 //! tables; the worst is `schlick_pipelined` (51 % too few: its adders divide, and the adders of other cores go into DSP blocks).
 
-use super::{Chip, Estimate, Family, Timing};
+use super::{BlockMemory, Chip, Estimate, Family, Timing};
 
 /// Data of the family AMD 7 series, for speed grade −1.
 pub const XILINX7: Family = Family {
@@ -21,7 +21,7 @@ pub const XILINX7: Family = Family {
         registered: None,
         block: 2.5,
         address: 0.5,
-        block_bits: 4096,
+        blocks: BlockMemory { bits: 18_432, widest: 36, most_bits_without: 8192 },
         delay_memory: None,
     },
     library: "",
@@ -40,7 +40,5 @@ pub const XILINX7: Family = Family {
         scale: 1.0,
         sign: 1,
         least_product: 9,
-        block: (18_432, 36),
-        least_block: 8192,
     },
 };

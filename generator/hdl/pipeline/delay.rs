@@ -67,14 +67,13 @@ pub fn reset_by(graph: &Graph, id: NodeId) -> Option<NodeId> {
     (graph.width(id) > 1 && inputs.len() == 2 && constants == 1).then_some(*select)
 }
 
-/// Returns whether a node of the computation's graph reads a ROM that synthesis puts into a block memory. Such a ROM has at least
-/// `block_bits` bits, and its word comes a clock after the address.
+/// Returns whether a node of the computation's graph reads a ROM that synthesis puts into a block memory. The word of such a ROM comes
+/// a clock after the address.
 pub fn is_block(timing: &Timing, graph: &Graph, id: NodeId) -> bool {
     match graph.node(id).cell {
         Cell::Read { address, .. } => {
-            let words = graph.node(address).range.1 + 1;
-            u64::try_from(words)
-                .is_ok_and(|words| words * u64::from(graph.width(id)) >= timing.block_bits)
+            let words = u64::try_from(graph.node(address).range.1 + 1);
+            words.is_ok_and(|words| timing.blocks.takes(words, u64::from(graph.width(id))))
         }
         _ => false,
     }

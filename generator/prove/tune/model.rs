@@ -140,9 +140,9 @@ impl Features {
             }
         }
         for rom in &design.roms {
-            let bits = rom.words.len() as u64 * u64::from(design.width(rom.data));
-            if !rom.synchronous || bits < family.estimate.least_block {
-                sum.rom += bits as f64 / 16.0;
+            let (words, width) = (rom.words.len() as u64, u64::from(design.width(rom.data)));
+            if !rom.synchronous || !family.timing.blocks.takes(words, width) {
+                sum.rom += (words * width) as f64 / 16.0;
             }
         }
         sum
@@ -204,25 +204,11 @@ fn block_rams(design: &Design, family: &Family) -> u64 {
     for rom in &design.roms {
         let (words, width) = (rom.words.len() as u64, u64::from(design.width(rom.data)));
         let is_own_block = rom.synchronous && rom.shares.is_none();
-        if is_own_block && words * width >= family.estimate.least_block {
-            blocks += block_rams_of_rom(family, words, width);
+        if is_own_block && family.timing.blocks.takes(words, width) {
+            blocks += family.timing.blocks.count(words, width);
         }
     }
     blocks
-}
-
-/// Returns the number of block RAMs for a ROM. A block has fewer bits per word the more words it has: twice the words halve the
-/// bits.
-fn block_rams_of_rom(family: &Family, words: u64, width: u64) -> u64 {
-    let (capacity, widest) = family.estimate.block;
-    let mut block_width = widest;
-    while block_width > 0 {
-        if capacity / block_width >= words {
-            return width.div_ceil(block_width);
-        }
-        block_width /= 2;
-    }
-    (words * width).div_ceil(capacity)
 }
 
 /// Returns the delay of the longest path between registers, in nanoseconds, including the delay of a register.
