@@ -244,16 +244,29 @@ impl TargetFunction {
         }
     }
 
-    /// Returns how the operands of the domain are numbered. With `layout` halving there is no overhang: its last segment is short.
-    fn numbering(&self, layout: Option<Layout>) -> Numbering {
+    /// Returns the ways to number the operands of the domain, the way to try first at the beginning. The last segment may have to be
+    /// shorter than an overhang, so that there is a way without one, too.
+    fn numberings(&self, layout: Option<Layout>) -> Vec<Numbering> {
+        let with_overhang = self.numbering_with_overhang(layout);
+        with_overhang.into_iter().chain([self.numbering_without_overhang()]).collect()
+    }
+
+    /// Returns the numbers of the operands if the last segment contains the operands beyond a power of two. Returns `None` if they are
+    /// too many. With `layout` halving there is no overhang: its last segment is short.
+    fn numbering_with_overhang(&self, layout: Option<Layout>) -> Option<Numbering> {
+        let span = (self.domain.1 - self.domain.0) as u64;
+        let bits = u64::BITS - span.leading_zeros();
+        if bits == 0 || self.outside != Outside::Anything || layout == Some(Layout::Halving) {
+            return None;
+        }
+        let overhang = span + 1 - (1 << (bits - 1));
+        let is_short = overhang > 0 && overhang <= span >> SMALL_PART;
+        is_short.then_some(Numbering { origin: self.domain.0, bits: bits - 1, overhang })
+    }
+
+    fn numbering_without_overhang(&self) -> Numbering {
         let span = (self.domain.1 - self.domain.0) as u64;
         let bits = (u64::BITS - span.leading_zeros()).max(1);
-        let beyond = span + 1 - (1 << (bits - 1));
-        let may_overhang =
-            self.outside == Outside::Anything && layout != Some(Layout::Halving) && beyond > 0;
-        if may_overhang && beyond <= span >> SMALL_PART {
-            return Numbering { origin: self.domain.0, bits: bits - 1, overhang: beyond };
-        }
         let whole = self.operand.width();
         if bits < whole {
             return Numbering { origin: self.domain.0, bits, overhang: 0 };

@@ -5,7 +5,8 @@ use super::reduction::KEY;
 use super::seen::AllowedResults;
 use super::table::{BITS_A_CELL, Table, Widths};
 use super::{
-    Curve, Identity, Layout, MOST_BITS, Piecewise, Reduction, Refusal, Segments, TargetFunction,
+    Curve, Identity, Layout, MOST_BITS, Numbering, Piecewise, Reduction, Refusal, Segments,
+    TargetFunction,
 };
 use glint_base::fixed::MAX_WIDTH;
 
@@ -103,10 +104,24 @@ fn attempt(function: &TargetFunction, wish: Wish) -> Result<Option<Piecewise>, R
     if wish.identity != Identity::None {
         return attempt_reduced(function, wish);
     }
+    for numbering in function.numberings(wish.layout) {
+        if let Some(found) = attempt_numbered(function, wish, numbering)? {
+            return Ok(Some(found));
+        }
+    }
+    Ok(None)
+}
+
+/// Gives the approximation of least cost, proved, with these numbers of the operands, if there is one.
+fn attempt_numbered(
+    function: &TargetFunction,
+    wish: Wish,
+    numbering: Numbering,
+) -> Result<Option<Piecewise>, Refusal> {
     let mut unproved = None;
     for stricter in STRICTER {
         let stricter = stricter * (function.error - 0.5);
-        let Some(seen) = AllowedResults::new(function, stricter, wish.layout)? else { break };
+        let Some(seen) = AllowedResults::new(function, stricter, numbering)? else { break };
         let Some(found) = cheapest(&seen, wish) else { break };
         match found.prove(function) {
             Ok(bound) => return Ok(Some(Piecewise { bound, ..found })),
@@ -137,11 +152,11 @@ fn attempt_reduced(function: &TargetFunction, wish: Wish) -> Result<Option<Piece
     }
     for &(guard, wider) in variants(wish.identity) {
         let (reduction, inner) = Reduction::of(wish.identity, function, guard, wider)?;
-        let Some(seen) = AllowedResults::reduced(function, &reduction, &inner, wish.layout)? else {
-            continue;
-        };
-        if let Some(found) = cheapest(&seen, wish) {
-            return found.prove(function).map(|bound| Some(Piecewise { bound, ..found }));
+        for numbering in inner.numberings(wish.layout) {
+            let seen = AllowedResults::reduced(function, &reduction, &inner, numbering)?;
+            if let Some(found) = seen.and_then(|seen| cheapest(&seen, wish)) {
+                return found.prove(function).map(|bound| Some(Piecewise { bound, ..found }));
+            }
         }
     }
     Ok(None)

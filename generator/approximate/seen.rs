@@ -4,7 +4,7 @@
 
 use rayon::prelude::*;
 
-use super::{Layout, Numbering, Reduction, Refusal, TargetFunction};
+use super::{Numbering, Reduction, Refusal, TargetFunction};
 use glint_base::fixed::{Format, exp2, nearest};
 
 /// The number of operands that the search may look at. If there are more, the search takes evenly spread ones.
@@ -85,10 +85,10 @@ impl<'f> AllowedResults<'f> {
     pub(super) fn new(
         function: &'f TargetFunction,
         stricter: f64,
-        layout: Option<Layout>,
+        numbering: Numbering,
     ) -> Result<Option<Self>, Refusal> {
         let (first, last) = function.domain;
-        let Numbering { origin, bits, overhang } = function.numbering(layout);
+        let Numbering { origin, bits, overhang } = numbering;
         let count = (last - first) as u64 + 1;
         let held = if function.is_wide() { HELD_OF_MANY } else { HELD };
         // An odd one, so that the low bits take every value.
@@ -121,9 +121,9 @@ impl<'f> AllowedResults<'f> {
         whole: &'f TargetFunction,
         reduction: &'f Reduction,
         inner: &'f TargetFunction,
-        layout: Option<Layout>,
+        numbering: Numbering,
     ) -> Result<Option<Self>, Refusal> {
-        let Some(mut seen) = Self::new(inner, 0.0, layout)? else { return Ok(None) };
+        let Some(mut seen) = Self::new(inner, 0.0, numbering)? else { return Ok(None) };
         let all = (seen.result.min_raw() as i64, seen.result.max_raw() as i64);
         seen.right.fill(all);
         let (first, last) = whole.domain;

@@ -216,3 +216,19 @@ fn a_domain_with_both_ends_may_have_every_layout() {
         assert!(found.bound < 1.0);
     }
 }
+
+/// A wave so short that each operand needs a segment of its own: the last segment cannot contain more operands.
+#[test]
+fn a_steep_function_does_without_an_overhang() {
+    let it = TargetFunction {
+        curve: Curve::Formula(parse("cos(2 * pi * sqrt(0.01 + x))").unwrap()),
+        domain: (1, 4194),
+        operand: Format::unsigned(9, 4),
+        outside: Outside::Anything,
+        fraction: 5,
+        error: 1.0,
+    };
+    let found = find(&it, Wish::default()).unwrap();
+    assert_eq!(found.segments.overhang, 0);
+    assert!(found.bound < 1.0);
+}

@@ -6,7 +6,9 @@
 
 use super::node::{NodeId, Operation, PlanNode, normalising_shifts};
 use super::plan::ExpressionPlan;
-use glint_approximate::Piecewise;
+use std::sync::Arc;
+
+use glint_approximate::{Piecewise, TargetFunction};
 use glint_base::fixed::Rounding;
 
 /// The words of a bit that a look-up table holds.
@@ -14,6 +16,18 @@ const WORDS_OF_CELL: usize = 16;
 
 /// The bits of a multiplier's factor.
 const FACTOR_BITS: u32 = 18;
+
+/// The look-up tables that a degree more takes: the sum, and delays beside it.
+const CELLS_OF_A_DEGREE: f64 = 50.0;
+
+/// The look-up tables of an octave that has segments of its own length: a row of the muxes that bring offsets into their place.
+const CELLS_OF_AN_OCTAVE: f64 = 12.0;
+
+/// A table of more bits goes into a block memory on most families, from which a word arrives too late for 150 MHz.
+const MOST_BITS_OF_FAST_TABLE: u64 = 2048;
+
+/// The look-up tables that the planner rather takes than a block memory.
+const CELLS_IN_PLACE_OF_BLOCK: f64 = 300.0;
 
 /// The look-up tables for each pair of bits that a multiplier does not have.
 const CELLS_OF_BIT_PAIR: f64 = 1.5;
@@ -49,6 +63,8 @@ impl ExpressionPlan {
             // The comparison of the same two values serves the other one as well.
             Operation::Minimum(..) => width,
             Operation::Maximum(..) => 2.0 * width,
+            // A number below 0 shows its sign.
+            Operation::Less(_, b) if self.is_zero(*b) => 0.0,
             Operation::Less(a, b) => f64::from(width_of(a).max(width_of(b))),
             Operation::NonZero(a) => f64::from(width_of(a)) / 3.0,
             Operation::Multiply(a, b) => cells_of_product(self.node(*a), self.node(*b)),
@@ -61,9 +77,15 @@ impl ExpressionPlan {
             }
             Operation::Lookup { words, .. } => width * words.len().div_ceil(WORDS_OF_CELL) as f64,
             Operation::Polynomial(_, approximation) => {
-                approximation.polynomials.as_deref().map_or(0.0, cells_of_polynomials)
+                let found = approximation.polynomials.as_ref();
+                found.map_or(0.0, |found| cells_of_function(&approximation.function, found))
             }
         }
+    }
+
+    /// Returns whether a node is the constant 0.
+    fn is_zero(&self, id: NodeId) -> bool {
+        matches!(self.node(id).operation, Operation::Constant { raw: 0, .. })
     }
 
     /// Returns the number of products that a node computes. A table of polynomials of degree 2 computes two.
@@ -86,8 +108,16 @@ fn cells_of_product(a: &PlanNode, b: &PlanNode) -> f64 {
     CELLS_OF_BIT_PAIR * (excess(a, b) + excess(b, a))
 }
 
-/// Returns the look-up tables of a table of coefficients and of the sums.
-fn cells_of_polynomials(it: &Piecewise) -> f64 {
-    let sums: u32 = it.sums[..it.degree()].iter().map(|sum| sum.width()).sum();
-    it.rom_cells() + f64::from(sums)
+/// Returns an estimate of the look-up tables that a function takes in a pipeline, with the operations of its range reduction. They are
+/// infinite if one of these operations has too many bits.
+pub(super) fn cells_of_function(function: &TargetFunction, found: &Arc<Piecewise>) -> f64 {
+    if found.reduction.is_some() {
+        let plan = ExpressionPlan::of_function(function, found);
+        return plan.map_or(f64::INFINITY, |plan| plan.total_cells());
+    }
+    let is_slow = found.rom_bits() > MOST_BITS_OF_FAST_TABLE;
+    let of_block = if is_slow { CELLS_IN_PLACE_OF_BLOCK } else { 0.0 };
+    let of_degree = CELLS_OF_A_DEGREE * found.degree() as f64;
+    let of_octaves = CELLS_OF_AN_OCTAVE * f64::from(found.segments.octaves);
+    found.rom_cells() + of_degree + of_octaves + of_block
 }

@@ -10,7 +10,7 @@ use std::sync::Arc;
 use glint_approximate::{Curve, Outside, Piecewise, Reduction, Rule, TargetFunction};
 use glint_base::fixed::{Format, Rounding};
 
-use super::node::{Approximation, NodeId};
+use super::node::{Approximation, NodeId, Operation};
 use super::plan::ExpressionPlan;
 use super::refusal::PlanRefusal;
 
@@ -55,6 +55,35 @@ impl ExpressionPlan {
         plan.results.push(result);
         plan.proved.push(result);
         Ok(plan)
+    }
+
+    /// Returns the plan with the nodes of its range reductions, and the new number of each node. While the planner looks for a plan,
+    /// a function with a range reduction is a single node, because its error is proved for the whole.
+    ///
+    /// # Errors
+    /// Fails if a node has too many bits.
+    pub(super) fn with_reductions(&self) -> Result<(Self, Vec<NodeId>), PlanRefusal> {
+        let mut plan = Self::default();
+        let mut renumbered: Vec<NodeId> = Vec::with_capacity(self.nodes.len());
+        for node in &self.nodes {
+            let operation = node.operation.with_inputs(&|id: NodeId| renumbered[id.0]);
+            let reduced = match &operation {
+                Operation::Polynomial(x, approximation) => {
+                    let found = approximation.polynomials.as_ref();
+                    let found = found.filter(|found| found.reduction.is_some());
+                    found.map(|found| (*x, approximation.function.clone(), found.clone()))
+                }
+                _ => None,
+            };
+            renumbered.push(match reduced {
+                Some((x, function, found)) => plan.curve(&node.name, x, &function, &found)?,
+                None => plan.push_copy(node, operation),
+            });
+        }
+        let new_number = |id: &NodeId| renumbered[id.0];
+        plan.results = self.results.iter().map(new_number).collect();
+        plan.proved = self.proved.iter().map(new_number).collect();
+        Ok((plan, renumbered))
     }
 
     /// Adds a function of a node whose polynomials are known. The format of the node must be the operand format of the polynomials.

@@ -4,13 +4,15 @@
 use std::collections::HashMap;
 use std::sync::{Arc, LazyLock, Mutex};
 
-use glint_approximate::{FULL_CELL, Piecewise, TargetFunction, Wish};
+use glint_approximate::{FULL_CELL, Identity, Piecewise, TargetFunction, Wish};
 use glint_base::fixed::MAX_WIDTH;
 
 use super::allocate::{Allocation, allocated, largest_excess};
 use super::boxes::ResultProof;
+use super::cost::cells_of_function;
 use super::exhaust::largest_errors;
-use super::lower::{FoundPolynomials, Guards, PlanStyle, lowered};
+use super::lower::{FoundPolynomials, Guards, PlanStyle, has_functions_of_operands, lowered};
+use super::node::{NodeId, Operation};
 use super::plan::ExpressionPlan;
 use super::refusal::PlanRefusal;
 use super::statement::ExpressionStatement;
@@ -23,18 +25,21 @@ const MOST_COMBINATIONS: u32 = 20;
 
 /// The styles that the planner tries. If a table may have a little less than a whole unit of error, a single table needs no further bit
 /// beside the rounding of the result by half a unit.
-const STYLES: [PlanStyle; 4] = [
-    PlanStyle { table_error: 1.0, centres_fractions: false },
-    PlanStyle { table_error: 0.96, centres_fractions: false },
-    PlanStyle { table_error: 1.0, centres_fractions: true },
-    PlanStyle { table_error: 0.96, centres_fractions: true },
+const STYLES: [PlanStyle; 6] = [
+    PlanStyle { table_error: 1.0, centres_fractions: false, keeps_functions: false },
+    PlanStyle { table_error: 0.96, centres_fractions: false, keeps_functions: false },
+    PlanStyle { table_error: 1.0, centres_fractions: true, keeps_functions: false },
+    PlanStyle { table_error: 0.96, centres_fractions: true, keeps_functions: false },
+    PlanStyle { table_error: 1.0, centres_fractions: false, keeps_functions: true },
+    PlanStyle { table_error: 0.96, centres_fractions: false, keeps_functions: true },
 ];
 
 /// A number that no source has.
 const NO_SOURCE: usize = usize::MAX;
 
-/// The look-up tables that a degree more takes: the sum, and delays beside it.
-const CELLS_OF_A_DEGREE: f64 = 50.0;
+/// The identities by which a table of a short domain serves a longer one.
+const IDENTITIES: [Identity; 5] =
+    [Identity::Odd, Identity::Even, Identity::Quadrants, Identity::Octaves, Identity::Exponent];
 
 /// The method by which an error bound was proved.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -62,6 +67,8 @@ pub struct ProvedPlan {
     pub statement: ExpressionStatement,
     /// The operations that compute the formulas.
     pub plan: ExpressionPlan,
+    /// The same plan with a single node for each function that has a range reduction. The errors are proved for this plan.
+    pub(super) whole_functions: ExpressionPlan,
     /// The proven error bound of each result, in units of the result's last place.
     pub bounds: Vec<f64>,
     /// The share that each node has in the error of each result, in units of the result's last place, by result and node. It is what
@@ -98,12 +105,13 @@ struct PlanCandidate {
 }
 
 fn searched(statement: &ExpressionStatement) -> Result<ProvedPlan, PlanRefusal> {
-    let PlanCandidate { plan, divisions } = smallest_candidate(statement)?;
+    let PlanCandidate { plan: whole, divisions } = smallest_candidate(statement)?;
+    let (plan, renumbered) = whole.with_reductions()?;
     let [first, second] = plan.multiplier_widths();
     if first + second > MAX_WIDTH {
         return Err(PlanRefusal::too_wide("product_of_factors", (first + second) as i32));
     }
-    let mut bounds = enclosed_errors(statement, &plan, divisions.max(DIVISIONS))?;
+    let mut bounds = enclosed_errors(statement, &whole, divisions.max(DIVISIONS))?;
     let mut proof = ProofKind::Enclosed;
     if statement.combinations() <= 1 << MOST_COMBINATIONS {
         proof = ProofKind::EveryCombination;
@@ -111,8 +119,27 @@ fn searched(statement: &ExpressionStatement) -> Result<ProvedPlan, PlanRefusal> 
             *bound = bound.min(largest);
         }
     }
-    let shares = error_shares(statement, &plan, divisions);
-    Ok(ProvedPlan { statement: statement.clone(), plan, bounds, shares, proof })
+    let mut shares = Vec::new();
+    for of_result in error_shares(statement, &whole, divisions) {
+        let mut of_nodes = vec![0.0; plan.nodes.len()];
+        for (at, share) in of_result.iter().enumerate() {
+            of_nodes[rounding_node(&plan, &renumbered, at).0] += share;
+        }
+        shares.push(of_nodes);
+    }
+    let statement = statement.clone();
+    Ok(ProvedPlan { statement, plan, whole_functions: whole, bounds, shares, proof })
+}
+
+/// Returns the node of the plan that has the rounding error of node number `at` before it got range reductions. It is the table of a
+/// function with a range reduction, and otherwise the node itself.
+fn rounding_node(plan: &ExpressionPlan, renumbered: &[NodeId], at: usize) -> NodeId {
+    let first = if at == 0 { 0 } else { renumbered[at - 1].0 + 1 };
+    let is_table = |node: &usize| matches!(plan.nodes[*node].operation, Operation::Polynomial(..));
+    match (first..=renumbered[at].0).find(is_table) {
+        Some(table) => NodeId(table),
+        None => renumbered[at],
+    }
 }
 
 /// Returns the plan that takes the fewest look-up tables by the estimate.
@@ -122,7 +149,11 @@ fn searched(statement: &ExpressionStatement) -> Result<ProvedPlan, PlanRefusal> 
 fn smallest_candidate(statement: &ExpressionStatement) -> Result<PlanCandidate, PlanRefusal> {
     let mut smallest: Option<(f64, PlanCandidate)> = None;
     let mut first_refusal = None;
+    let has_functions = has_functions_of_operands(statement);
     for style in STYLES {
+        if style.keeps_functions && !has_functions {
+            continue;
+        }
         let candidate = match candidate_with(statement, style) {
             Ok(candidate) => candidate,
             Err(refusal) => {
@@ -190,11 +221,17 @@ fn with_polynomials(
 /// Returns the polynomials of a function with the least cost in a pipeline: each degree more needs a product, a sum, and
 /// registers for all that waits for them.
 fn cheapest_polynomials(function: &TargetFunction) -> Result<Arc<Piecewise>, PlanRefusal> {
+    let mut wishes = Vec::new();
+    for degree in [1, 2, 3] {
+        wishes.push(Wish { degree: Some(degree), least_words: FULL_CELL, ..Wish::default() });
+    }
+    for identity in IDENTITIES {
+        wishes.push(Wish { identity, least_words: FULL_CELL, ..Wish::default() });
+    }
     let mut cheapest: Option<(f64, Arc<Piecewise>)> = None;
-    for degree in [1, 2] {
-        let wish = Wish { degree: Some(degree), least_words: FULL_CELL, ..Wish::default() };
+    for wish in wishes {
         let Ok(found) = glint_approximate::find(function, wish) else { continue };
-        let cost = found.rom_cells() + CELLS_OF_A_DEGREE * f64::from(degree);
+        let cost = cells_of_function(function, &found);
         if cheapest.as_ref().is_none_or(|(least, _)| cost < *least) {
             cheapest = Some((cost, found));
         }

@@ -58,6 +58,9 @@ pub(super) struct PlanStyle {
     /// Whether the fraction of a normalised word is shortened to the middle of the values with the same upper bits; otherwise its
     /// low bits are dropped.
     pub(super) centres_fractions: bool,
+    /// Whether a function of an operand is a single table, before and behind which a range reduction can be. Otherwise the function is
+    /// rewritten, for example a root by the octaves of its operand.
+    pub(super) keeps_functions: bool,
 }
 
 impl Guards {
@@ -259,21 +262,8 @@ impl<'s> Lowering<'s> {
         let core = core.clone();
         let operand = Expression::operand("x");
         let function = part.substitute(&core, &operand, &part.span);
-        if let Some(node) = self.scaled_direction(&core, &function)? {
-            return Ok(node);
-        }
-        if let Some(power) = root::power_of(&function)
-            && let Some(node) = self.power(part, &core, &function, power)?
-        {
-            return Ok(node);
-        }
-        if let Some(node) = self.wave(&core, &function)? {
-            return Ok(node);
-        }
-        if let Some(node) = self.logarithm(&core, &function)? {
-            return Ok(node);
-        }
-        if let Some(node) = self.exponential(&core, &function)? {
+        let is_kept = self.guards.style.keeps_functions && is_short_operand(self.statement, &core);
+        if !is_kept && let Some(node) = self.rewritten(part, &core, &function)? {
             return Ok(node);
         }
         let node = self.part(&core)?;
@@ -286,6 +276,31 @@ impl<'s> Lowering<'s> {
             own.plan.shorten_for_table("operand", node, frac)
         })?;
         self.function("curve", node, &function, range)
+    }
+
+    /// Returns the node of a function for which there is a rewriting: a power, a sine or a cosine, a logarithm, an exponential
+    /// function. Returns `None` for any other function.
+    fn rewritten(
+        &mut self,
+        part: &Expression,
+        core: &Expression,
+        function: &Expression,
+    ) -> Result<Option<NodeId>, PlanRefusal> {
+        if let Some(node) = self.scaled_direction(core, function)? {
+            return Ok(Some(node));
+        }
+        if let Some(power) = root::power_of(function)
+            && let Some(node) = self.power(part, core, function, power)?
+        {
+            return Ok(Some(node));
+        }
+        if let Some(node) = self.wave(core, function)? {
+            return Ok(Some(node));
+        }
+        if let Some(node) = self.logarithm(core, function)? {
+            return Ok(Some(node));
+        }
+        self.exponential(core, function)
     }
 
     /// Returns a number as a constant: exactly if it has few bits, otherwise rounded at a choice of fraction bits.
@@ -513,6 +528,25 @@ impl<'s> Lowering<'s> {
         let node = self.plan.node(node);
         node.source.is_none() && node.operation.inputs().into_iter().all(|it| self.is_exact(it))
     }
+}
+
+/// Returns whether a part is an operand that is short enough for a table.
+fn is_short_operand(statement: &ExpressionStatement, part: &Expression) -> bool {
+    let Kind::Operand(name) = &part.kind else { return false };
+    let mut operands = statement.operands.iter();
+    operands.any(|operand| operand.name == *name && operand.format.width() <= WIDEST_OPERAND)
+}
+
+/// Returns whether a formula of the statement has a function of an operand alone that products do not compute. For example,
+/// `sqrt(x) * y` has one.
+pub(super) fn has_functions_of_operands(statement: &ExpressionStatement) -> bool {
+    let is_function = |part: &Expression| {
+        let core = core_of(part);
+        let is_by_products =
+            products_of(part, core).is_some_and(|products| products <= MOST_PRODUCTS);
+        is_short_operand(statement, core) && !is_by_products
+    };
+    statement.results.iter().any(|result| result.formula.count(&is_function) > 0)
 }
 
 /// Returns the smallest part on which a formula depends: the formula is a function of this part alone. It is the formula

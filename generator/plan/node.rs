@@ -144,6 +144,42 @@ impl Operation {
         Some((discriminant(self), self.inputs(), more))
     }
 
+    /// Returns the operation with other nodes in the place of those that it reads.
+    pub(super) fn with_inputs(&self, of_node: &dyn Fn(NodeId) -> NodeId) -> Self {
+        let mut operation = self.clone();
+        match &mut operation {
+            Self::Operand(_) | Self::Constant { .. } => {}
+            Self::Absolute(a)
+            | Self::NonZero(a)
+            | Self::Scale(a)
+            | Self::Narrow(a, _)
+            | Self::Middle(a)
+            | Self::IntegerPart(a)
+            | Self::Bit(a, _)
+            | Self::Normalise { word: a, .. }
+            | Self::Places(a)
+            | Self::Lookup { address: a, .. }
+            | Self::Polynomial(a, _) => *a = of_node(*a),
+            Self::Add(a, b)
+            | Self::Subtract(a, b)
+            | Self::Multiply(a, b)
+            | Self::Minimum(a, b)
+            | Self::Maximum(a, b)
+            | Self::Less(a, b)
+            | Self::FractionPart(a, b)
+            | Self::ShiftLeft(a, b)
+            | Self::ShiftRight(a, b) => {
+                *a = of_node(*a);
+                *b = of_node(*b);
+            }
+            Self::Choose { condition, cases } => {
+                *condition = of_node(*condition);
+                *cases = cases.map(of_node);
+            }
+        }
+        operation
+    }
+
     /// Returns the nodes that the operation reads.
     pub fn inputs(&self) -> Vec<NodeId> {
         match self {

@@ -132,6 +132,13 @@ impl ExpressionPlan {
         Ok(NodeId(self.nodes.len() - 1))
     }
 
+    /// Adds a copy of a node of another plan, with an operation that reads nodes of this plan.
+    pub(super) fn push_copy(&mut self, node: &PlanNode, operation: Operation) -> NodeId {
+        let name = self.unused_name(&node.name);
+        self.nodes.push(PlanNode { name, operation, ..node.clone() });
+        NodeId(self.nodes.len() - 1)
+    }
+
     /// Returns the node that already does an operation, if it is exact.
     fn same_node(&self, operation: &Operation, format: Format) -> Option<NodeId> {
         let wanted = operation.identity()?;

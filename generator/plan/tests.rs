@@ -50,7 +50,7 @@ fn statements(bits: i32) -> Vec<ExpressionStatement> {
     let signed = Format::signed(0, bits - 1);
     let unsigned = Format::unsigned(0, bits);
     let not_origin = Some("x^2 + y^2 > 0");
-    let cases: [(&[&str], Format, Option<&str>); 14] = [
+    let cases: [(&[&str], Format, Option<&str>); 15] = [
         (&["x * y"], signed, None),
         (&["sqrt(x^2 + y^2)"], signed, None),
         (&["atan2(y, x) / pi"], signed, not_origin),
@@ -61,6 +61,7 @@ fn statements(bits: i32) -> Vec<ExpressionStatement> {
         (&["sin(x) * y + 0.3", "1 / sqrt(1 + x * y)"], unsigned, None),
         (&["sqrt(x^2 + y^2)", "atan2(y, x) / pi"], signed, not_origin),
         (&["-sqrt(x^2 + y^2)", "-2 / sqrt(x + y)"], unsigned, Some("x + y > 0.25")),
+        (&["tanh(4 * x) * y", "1 / (1.5 + sigmoid(8 * y))"], signed, None),
         // Divisors and coordinates that are rounded themselves.
         (&["x / sqrt(y)"], unsigned, Some("x < sqrt(y)")),
         (&["x / (0.3 + sin(y))", "atan2(sin(x), 1 + exp(y))"], unsigned, Some("y > 0.375")),
@@ -87,7 +88,8 @@ fn enclosed_errors_hold_for_every_combination() {
     for bits in [5, 8] {
         for statement in statements(bits) {
             let found = find(&statement).unwrap_or_else(|refusal| panic!("{refusal:?}"));
-            let enclosed = enclosed_errors(&statement, &found.plan, DIVISIONS).expect("a proof");
+            let enclosed =
+                enclosed_errors(&statement, &found.whole_functions, DIVISIONS).expect("a proof");
             let largest = largest_errors(&statement, &found.plan).expect("values");
             for ((enclosed, largest), result) in
                 enclosed.iter().zip(&largest).zip(&statement.results)
@@ -307,8 +309,8 @@ fn random_formulas_are_proved_or_refused() {
         match find(&statement) {
             Ok(found) => {
                 proved += 1;
-                let enclosed =
-                    enclosed_errors(&statement, &found.plan, DIVISIONS).expect("a proof");
+                let enclosed = enclosed_errors(&statement, &found.whole_functions, DIVISIONS)
+                    .expect("a proof");
                 let largest = largest_errors(&statement, &found.plan).expect("values");
                 assert!(
                     largest[0] <= enclosed[0] + ROUNDING,
@@ -465,4 +467,20 @@ fn plans_of_reduced_functions_compute_the_proved_results() {
             assert_eq!(result, polynomials.result(raw).into(), "{formula} at {raw}");
         }
     }
+}
+
+/// A function that is odd about a point needs polynomials for one side of it only. The hardware mirrors the operand and the result.
+#[test]
+fn an_odd_function_has_a_table_for_one_side() {
+    let x = Format::signed(3, 12);
+    let statement = ExpressionStatement {
+        operands: vec![operand("x", x)],
+        results: vec![result("r", "atan(x)", 14)],
+    };
+    let found = find(&statement).expect("a plan");
+    assert_eq!(found.proof, ProofKind::EveryCombination);
+    let has_size = |node: &super::PlanNode| matches!(node.operation, Operation::Absolute(_));
+    assert!(found.plan.nodes.iter().any(has_size), "{:?}", found.plan);
+    let [approximation] = found.plan.approximations()[..] else { panic!("{:?}", found.plan) };
+    assert_eq!(approximation.function.domain.0, 0, "{approximation:?}");
 }
