@@ -1,7 +1,7 @@
 //! The hardware description of the device `expression`, which computes formulas of several operands.
 //!
 //! A configuration states the formulas; for example, `a / b` or `sqrt(x*x + y*y)`. The planner ([`glint_plan`]) translates them
-//! into a plan, a list of fixed-point operations, and [`crate::plan`] builds the hardware of the plan.
+//! into a plan, a list of fixed-point operations, and the module `plan` builds the hardware of the plan.
 
 use glint_base::text;
 use glint_config::{Config, Shared};

@@ -1,7 +1,7 @@
 //! The golden model and the accuracy contract of the device `expression`, which computes formulas of several operands.
 //!
 //! A configuration states the formulas; for example, `a / b` or `sqrt(x*x + y*y)`. The planner ([`glint_plan`]) translates them
-//! into a plan and proves a bound on its error against the formulas. [`super::plan`] executes the plan in integers.
+//! into a plan and proves a bound on its error against the formulas. The module `plan` executes the plan in integers.
 
 use std::sync::Arc;
 

@@ -68,7 +68,7 @@ pub struct ProvedPlan {
     /// The operations that compute the formulas.
     pub plan: ExpressionPlan,
     /// The same plan with a single node for each function that has a range reduction. The errors are proved for this plan.
-    pub(super) whole_functions: ExpressionPlan,
+    pub whole_functions: ExpressionPlan,
     /// The proven error bound of each result, in units of the result's last place.
     pub bounds: Vec<f64>,
     /// The share that each node has in the error of each result, in units of the result's last place, by result and node. It is what
