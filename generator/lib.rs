@@ -1,10 +1,17 @@
 //! Glint: specular-shading hardware from Rust descriptions.
 //!
-//! A device is a [`registry::Device`]: keys ([`config::Schema`]), a description ([`dsl`]), a golden model
-//! ([`golden::Model`]) and a contract ([`golden::Contract`]). `cli::run` makes a command line of a
-//! registry, whether its devices are the catalogue's or your own. Complete devices outside the library, to be read
-//! from top to bottom, are `examples/fresnel`, which multiplies colours, and `examples/smoothstep`, which does
-//! not.
+//! A device ([`registry::Device`]) has four parts:
+//!
+//! - its keys ([`config::Schema`]): the settings in its configuration files, such as the widths of operands,
+//! - its description ([`dsl`]): a Rust function that builds the hardware,
+//! - its golden model ([`golden::Model`]), which predicts every register and output in every clock,
+//! - its contract ([`golden::Contract`]): the exact formula of each output, and a bound on the error.
+//!
+//! A registry ([`registry::Registry`]) is a list of devices, from the catalogue or your own. `cli::run` runs the whole
+//! command line of Glint for the devices of a registry.
+//!
+//! Two examples are complete devices outside the library. Read them from top to bottom: `examples/fresnel`
+//! multiplies colours, and `examples/smoothstep` computes a function of one operand.
 //!
 //! | to | see |
 //! |---|---|

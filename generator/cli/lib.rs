@@ -1,5 +1,6 @@
 //! Parses the command line and runs the commands. Only this crate prints, and only this crate exits the process.
 
+mod choice;
 mod commands;
 mod destination;
 mod directories;

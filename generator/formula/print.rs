@@ -85,7 +85,8 @@ impl Expression {
 }
 
 impl Comparison {
-    /// Returns the comparison as C: a call that tells whether it holds. For example, `exceeds(x, number("0.0"), 1)` for `x >= 0`.
+    /// Returns the comparison as a call of a C function that tells whether the comparison holds. The last argument is 1 if equal
+    /// numbers satisfy the comparison (`>=`), and 0 if not (`>`). For example, `x >= 0` becomes `exceeds(x, number("0.0"), 1)`.
     pub fn c(&self, arithmetic: CArithmetic) -> String {
         let or_equal = format!(", {}", u8::from(self.or_equal));
         c_call(arithmetic, "exceeds", &[&self.left, &self.right], &or_equal)

@@ -6,9 +6,9 @@
 //!
 //! A golden model uses only [`glint_base::fixed`] and [`glint_config`], and computes its own tables. It never sees the hardware
 //! description, the netlist or the microcode, so that an error in one of them shows as a difference in simulation. Four devices
-//! are exceptions. In `function`, `blinn` and `gauss` the description and the golden model read the same polynomials
-//! ([`glint_keys::function`], [`glint_keys::decay`]); an exhaustive comparison with the formula checks these polynomials. In
-//! `expression` both read the same plan ([`glint_plan`]), whose error against the formulas is proved.
+//! are exceptions. In `blinn` and `gauss` the description and the golden model read the same polynomials ([`glint_keys::decay`]); an
+//! exhaustive comparison with the formula checks these polynomials. In `function` and `expression` both read the same plan
+//! ([`glint_plan`]), whose error against the formulas is proved.
 
 pub mod blinn;
 pub mod contract;

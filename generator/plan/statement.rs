@@ -126,7 +126,9 @@ impl StatedOperand {
         }
     }
 
-    /// Returns the raw value with which results are computed for a raw operand.
+    /// Returns the raw value with which results are computed if the operand has the raw value `raw`. It is the nearer end of the
+    /// domain if `raw` is outside a domain that clamps, and otherwise `raw`. For example, 900 becomes 500 if a domain that
+    /// clamps ends at 500.
     pub fn computed_raw(&self, raw: i64) -> i64 {
         match self.outside {
             Outside::Clamp => raw.clamp(self.domain.0, self.domain.1),

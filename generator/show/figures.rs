@@ -7,8 +7,6 @@ mod record;
 
 use std::fmt;
 
-use clap::ValueEnum;
-use clap::builder::PossibleValue;
 use serde::{Deserialize, Serialize};
 
 use glint_base::target::{FAMILIES, Family, Usage};
@@ -82,16 +80,6 @@ impl Target {
     /// Returns the data of the FPGA family, or `None` if the target is a standard-cell library.
     pub fn family(self) -> Option<&'static Family> {
         FAMILIES.iter().find(|family| family.name() == self.name())
-    }
-}
-
-impl ValueEnum for Target {
-    fn value_variants<'a>() -> &'a [Self] {
-        &TARGETS
-    }
-
-    fn to_possible_value(&self) -> Option<PossibleValue> {
-        Some(PossibleValue::new(self.name()).help(self.title()))
     }
 }
 

@@ -17,11 +17,12 @@ const ROOMS: [(&str, &[&str]); 4] = [
 ];
 
 /// The crates without a thread of their own, a process or a signal.
-const EVERYWHERE: [&str; 10] = [
+const EVERYWHERE: [&str; 11] = [
     "base",
     "formula",
     "config",
     "approximate",
+    "plan",
     "keys",
     "golden",
     "hdl",

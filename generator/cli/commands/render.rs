@@ -8,6 +8,7 @@ use clap::{Args, ValueEnum};
 use serde_json::{Value, json};
 
 use super::load_one;
+use crate::choice;
 use crate::destination::Destination;
 use crate::failure::{self, Failure};
 use crate::report::CommandReport;
@@ -61,7 +62,7 @@ pub struct Arguments {
     #[arg(long, value_name = "N", default_value_t = 2)]
     samples: u32,
     /// The object that is shown
-    #[arg(long, value_enum, default_value_t = BuiltIn::Sphere, conflicts_with = "mesh")]
+    #[arg(long, value_parser = choice::shape(), default_value = "sphere", conflicts_with = "mesh")]
     shape: BuiltIn,
     /// Show the mesh of a Wavefront OBJ file; where it has no normals, they are computed
     #[arg(long, value_name = "FILE")]

@@ -13,6 +13,7 @@ use rayon::prelude::*;
 use serde::Serialize;
 
 use super::{Loaded, load};
+use crate::choice;
 use crate::own_file::OwnFile;
 use crate::{Configs, OutputOptions, TimeLimit, progress, say};
 use cache::Cache;
@@ -47,7 +48,7 @@ pub struct Arguments {
     configs: Configs,
     /// The technology to measure for; may be repeated [default: the target of the pipelines, or all of iCE40, ECP5, Xilinx 7 and
     /// standard cells whose tools are installed]
-    #[arg(long = "target", value_name = "TARGET", value_enum)]
+    #[arg(long = "target", value_name = "TARGET", value_parser = choice::target())]
     targets: Vec<Target>,
     /// Runs of place and route, of which the median counts
     #[arg(long, value_name = "N", default_value_t = 5, value_parser = clap::value_parser!(u32).range(1..=1000))]

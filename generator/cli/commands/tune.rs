@@ -10,6 +10,7 @@ use indicatif::ProgressBar;
 use serde_json::{Value as Json, json};
 
 use super::settings::KeyAssignment;
+use crate::choice;
 use crate::destination::Destination;
 use crate::failure::{self, Failure};
 use crate::report::CommandReport;
@@ -44,13 +45,13 @@ pub struct Arguments {
     #[arg(long, value_name = "E", value_parser = number)]
     error: f64,
     /// The measure of the error: the reflectance f, 0 to 1, or the outputs' least significant bit
-    #[arg(long, value_enum, default_value_t = ErrorUnit::Output)]
+    #[arg(long, value_parser = choice::error_unit(), default_value = "output")]
     unit: ErrorUnit,
     /// The technology that area and clock are estimated for
-    #[arg(long, value_name = "TARGET", value_enum, default_value_t = Target::Ecp5)]
+    #[arg(long, value_name = "TARGET", value_parser = choice::target(), default_value = "ecp5")]
     target: Target,
     /// The figure to minimise
-    #[arg(long, value_enum, default_value_t = Objective::Area)]
+    #[arg(long, value_parser = choice::objective(), default_value = "area")]
     objective: Objective,
     /// The clock that the core must reach, by the estimate
     #[arg(long, value_name = "MHZ", value_parser = number)]

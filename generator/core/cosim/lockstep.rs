@@ -1,9 +1,11 @@
 //! Simulates a design and its golden model side by side, and compares every predicted signal at every clock.
 //!
-//! A run is divided into *streams*. Each stream starts at power-up and has its own random inputs. The number of streams, their
-//! seeds and their points depend only on the seed and the number of points (sets of operands) of the run. Up to [`LANES`] streams
-//! share a simulator, and each thread has a simulator; neither number changes the result. The result covers the streams in order,
-//! up to the first stream in which model and hardware differ.
+//! A run compares a given number of points, which are results of the device. The run is divided into *streams*. Each stream starts
+//! at power-up, and has its own seed for random inputs and its share of the points. The number of streams, their seeds and their
+//! shares depend only on the design, the seed of the run and its number of points.
+//!
+//! Up to [`LANES`] streams share a simulator, and the threads work on different simulators. The number of threads does not change
+//! the outcome. The outcome joins the streams in order, up to the first stream in which model and hardware differ.
 
 use std::io::Write;
 use std::sync::Arc;

@@ -107,7 +107,7 @@ impl Stimulus {
         self.idle
     }
 
-    /// Returns the inputs of the latest clock.
+    /// Returns the bit patterns of all inputs in the latest clock, in the order of the design's input ports.
     #[inline]
     pub(super) fn inputs(&self) -> &[u64] {
         &self.inputs

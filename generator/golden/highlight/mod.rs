@@ -61,10 +61,12 @@ pub trait Reflectance: Send + Sync {
         None
     }
 
-    /// Returns the control operands of a computation whose results go from the point `first` to the point `last`; `first` states
-    /// the number of results. This is the inverse of [`Reflectance::point`].
+    /// Returns the control operands of a line that goes from a first point to a last point. `first` and `last` are the control
+    /// operands at these two points, and `first` also has the length of the line. For example, a line from the angle 0 to the
+    /// angle 300 in 3 steps gets the step 100. A step that is no integer is rounded toward 0, so the line may end before `last`.
     ///
-    /// A device with one result for each `start` returns `first`.
+    /// [`Reflectance::point`] goes the other way, from a line to one of its points. A device with one result for each `start`
+    /// returns `first`.
     fn line(&self, first: &[i64], last: &[i64]) -> Vec<i64> {
         let _ = last;
         first.to_vec()

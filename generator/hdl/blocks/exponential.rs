@@ -1,5 +1,7 @@
-//! Builds hardware for 2^−y with y ≥ 0: it shifts 2^−x to the right by the integer part of y, where x is the fraction of y. For
-//! example, 2^−2.5 is 2^−0.5 shifted by two bits.
+//! Builds the last step of the computation of 2^−y with y ≥ 0: a shift to the right.
+//!
+//! The device computes 2^−x first, where x is the fraction of y. [`halved`] then shifts 2^−x by the integer part of y, and
+//! rounds the result. For example, 2^−2.5 is 2^−0.5 shifted by two bits.
 
 use super::shift;
 use crate::dsl::{Designer, Signal};

@@ -1,4 +1,7 @@
-//! Translates the hardware's computation in one case to real expressions with roundings for the prover Gappa.
+//! Translates the hardware's computation to real expressions with roundings for the prover Gappa, one case at a time.
+//!
+//! A case is one combination of outcomes of all conditions in the computation ([`super::cases`]). For example, in one case a
+//! saturation cuts the value off, and the result is a constant. In the other case the result is a term with the value's rounding.
 
 use std::collections::{BTreeMap, HashMap};
 

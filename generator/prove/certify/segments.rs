@@ -255,7 +255,10 @@ fn words(
     Ok(found.into_values().collect())
 }
 
-/// Returns the address that is read for all values of the operand in a range. Returns `None` if it is not the same for all.
+/// Returns the value of the node `address` if it is the same for every value of `operand` in `range`. Returns `None` if the
+/// intervals of the nodes do not show this; a caller can then try each half of the range.
+///
+/// For example, the address may be the top 8 bits of the operand. Its value is known if these bits are equal in the whole range.
 fn decided_address(
     task: &Task,
     (operand, range): (NodeId, (i128, i128)),

@@ -73,7 +73,8 @@ pub struct NetlistFault {
     pub site: Site,
 }
 
-/// The faults that can be planted in a netlist.
+/// A list of faults that can be planted in a netlist, each in a mutant of its own. For large ROMs the list has only a sample of the
+/// possible faults.
 #[derive(Clone, Debug, Default)]
 pub struct Faults(Vec<NetlistFault>);
 

@@ -13,7 +13,6 @@ mod space;
 use std::fmt;
 
 use anyhow::{Context, Result};
-use clap::ValueEnum;
 use serde::Serialize;
 
 use glint_config::{Config, Shared, Value};
@@ -27,7 +26,7 @@ use space::SearchSpace;
 use crate::synth::Target;
 
 /// The unit in which the user of `glint tune` states the largest error.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, ValueEnum)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum ErrorUnit {
     /// The reflectance f, from 0 to 1.
@@ -56,7 +55,7 @@ impl fmt::Display for ErrorUnit {
 }
 
 /// The cost of a core that `glint tune` minimises.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Objective {
     /// The area: look-up tables, where a DSP block or a block RAM counts for as many look-up tables as the chip has for each.
     Area,

@@ -107,8 +107,12 @@ fn number(word: &str) -> Result<f64> {
     Ok(value)
 }
 
-/// Returns the index that a number in the file denotes, among `count` entries so far. Positive numbers count from 1, and
-/// negative ones count backward from the last entry. For example, of 4 entries `1` is index 0, and `-1` is index 3.
+/// Returns the index that the number `part` of the file denotes, if the file has had `count` entries so far. Positive numbers
+/// count from 1, and negative numbers count backward from the last entry. For example, with 4 entries `1` is index 0, and `-1`
+/// is index 3.
+///
+/// # Errors
+/// Fails if `part` is not an integer, is 0, or denotes no entry so far. The message calls the entry `what`, for example `vertex`.
 fn index(part: &str, what: &str, count: usize) -> Result<u32> {
     let given: i64 = part.parse().map_err(|_| anyhow!("`{part}` is not an integer"))?;
     let index = match given {

@@ -1,12 +1,10 @@
 //! Defines the scene of a picture: objects with shapes and colours, lights, and a height map.
 
-use anyhow::Result;
-use clap::ValueEnum;
-
 use super::height::Relief;
 use super::mesh::Mesh;
 use super::shapes;
 use super::vector::Vector;
+use anyhow::Result;
 
 /// The scene of a picture: its objects, lights and height map.
 #[derive(Clone, Debug, Default)]
@@ -52,7 +50,7 @@ pub struct Light {
 }
 
 /// The scenes that need no file.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum BuiltIn {
     /// A ball.
     Sphere,

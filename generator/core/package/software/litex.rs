@@ -1,6 +1,11 @@
 //! Generates `<name>_litex.py`, the core as a Python module for the SoC builder LiteX.
 //!
-//! The LiteX module connects the core by CSRs, by its two streams, or by its own registers on a bus.
+//! The file has up to three LiteX modules, and the user takes one of them. For a core `highlight` they are:
+//!
+//! - `HighlightCore`, with a CSR (a register that LiteX manages) for each operand and each result. A pipeline and a core that
+//!   walks lines do not have it.
+//! - `HighlightStream`, with a sink for operands and a source for results, if the configuration asks for a stream.
+//! - `HighlightRegisters`, a slave on a bus with the core's own registers, if the configuration asks for registers.
 
 use anyhow::{Result, bail};
 use glint_base::fill;

@@ -36,7 +36,7 @@ const STUB: f64 = 14.0;
 /// The space on each side of the text in a box.
 const MARGIN: i32 = 10;
 
-/// The height of the point at the lower end of a port.
+/// The height of the triangular tip at the lower end of the shape that is drawn for a port.
 const NECK: i32 = 8;
 
 /// The width of the empty border around the drawing.

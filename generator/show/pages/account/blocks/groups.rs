@@ -386,8 +386,10 @@ impl<'a> Groups<'a> {
         held
     }
 
-    /// Returns the block or port whose value a register of a pipeline holds. If the register holds a part of a gate,
-    /// it returns the gate.
+    /// Returns the block, port or joint whose value a register of a pipeline holds. Returns `None` if no such value is found.
+    ///
+    /// A register may also hold an intermediate value of gates, in which several sources meet before the joint. The function then
+    /// follows the nets that read the register, and returns the first block or joint that it reaches.
     fn holds(&self, register: NetId) -> Option<NetId> {
         let driver = self.driver(register);
         if self.sources[register.index()].len() < 2
