@@ -81,6 +81,19 @@ def test_expressions_of_several_operands_are_within_their_bounds():
         glint.expression("x", x=3, fraction=7)
 
 
+def test_an_expression_keeps_a_relative_error():
+    half = (Fraction(1, 2), 1, 12)
+    core = glint.expression("x / y", x=half, y=half, fraction=14, error_relative="2^-12")
+    x, y = np.meshgrid(np.arange(2048, 4096, 31) / 4096, np.arange(2048, 4096, 37) / 4096)
+    exact = x / y
+    assert (np.abs(core(x, y) - exact) / exact).max() < 2**-12
+    # A result that states its own error does not get the relative one.
+    finer = {"formula": "x / y", "error": 1}
+    assert glint.expression({"r": finer}, x=half, y=half, fraction=14, error_relative="2^-12").bound < 1
+    with pytest.raises(ValueError, match="near 0"):
+        glint.expression("x - y", x=half, y=half, fraction=14, error_relative="2^-12")
+
+
 def test_every_operand_of_a_function_is_within_its_bound():
     for formula, low, high, of in [
         ("1/sqrt(x)", 1, 4, lambda x: 1 / np.sqrt(x)),

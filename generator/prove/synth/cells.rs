@@ -5,7 +5,7 @@
 //! `qflow-tech-osu018` has it. One gate is the area of its NAND2X1.
 
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, bail};
 
@@ -13,6 +13,7 @@ use super::harness::TOP;
 use super::netlist::{self, Netlist};
 use super::workspace::{self, HARNESS, Workspace};
 use super::{SynthesisSubject, Target};
+use glint_core::package;
 use glint_show::figures::{Area, Figures, PathPoint, rounded};
 use glint_tools::Tool;
 use glint_tools::gates::cells::{LOAD, MAPPING};
@@ -24,36 +25,49 @@ const STATISTICS: &str = "cells.txt";
 const GATE: &str = "NAND2X1";
 const CONSTRAINTS: &str = "cells.constr";
 
-/// Checks that the cell library exists.
-///
-/// # Errors
-/// Fails if the library is missing; the message says how to get it.
-pub fn check(liberty: &Path) -> Result<()> {
-    if !liberty.is_file() {
-        bail!(
-            "`{}`, which describes cells of 0.18 µm, is not there; install it (Debian, Ubuntu: `apt install \
-             qflow-tech-osu018`), or name another with --liberty",
-            liberty.display()
-        );
+/// A file that describes standard cells in the format Liberty, with its contents.
+pub struct CellLibrary {
+    path: PathBuf,
+    text: String,
+}
+
+impl CellLibrary {
+    /// Reads a cell library.
+    ///
+    /// # Errors
+    /// Fails if the library is missing or cannot be read; the message says how to get it.
+    pub fn read(path: &Path) -> Result<Self> {
+        if !path.is_file() {
+            bail!(
+                "`{}`, which describes cells of 0.18 µm, is not there; install it (Debian, Ubuntu: `apt install \
+                 qflow-tech-osu018`), or name another with --liberty",
+                path.display()
+            );
+        }
+        let text = fs::read_to_string(path)
+            .with_context(|| format!("cannot read `{}`", path.display()))?;
+        Ok(Self { path: path.to_owned(), text })
     }
-    Ok(())
+
+    /// Returns the SHA-256 of the contents, in hexadecimal.
+    pub fn digest(&self) -> String {
+        package::digest(self.text.as_bytes())
+    }
 }
 
 pub fn measure(
     yosys: &Tool,
     sta: &Tool,
-    liberty: &Path,
+    CellLibrary { path, text }: &CellLibrary,
     subject: &SynthesisSubject,
     done: &(dyn Fn() + Sync),
 ) -> Result<Figures> {
-    let text = fs::read_to_string(liberty)
-        .with_context(|| format!("cannot read `{}`", liberty.display()))?;
-    let gate = gate(&text).with_context(|| {
-        format!("`{}` tells no area of the cell {GATE}, the unit of gates", liberty.display())
+    let gate = gate(text).with_context(|| {
+        format!("`{}` tells no area of the cell {GATE}, the unit of gates", path.display())
     })?;
     let workspace = Workspace::new(yosys, subject)?;
     let (sources, library) = (&workspace.sources, "cells.lib");
-    sources.write(library, &text)?;
+    sources.write(library, text)?;
     sources.write(CONSTRAINTS, LOAD)?;
     let map = |top: &str| format!("synth -flatten -top {top}; {MAPPING}");
     let name = &subject.design.name;
@@ -156,4 +170,28 @@ fn steps(netlist: &Netlist, said: &str) -> Vec<PathPoint> {
     let end = end.and_then(|cell| netlist.register(cell));
     points.extend(end.map(|name| (name.to_owned(), time)));
     netlist::path(points)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The figures in the cache are of one library: a library that differs in one number gets figures of its own.
+    #[test]
+    fn libraries_with_other_contents_have_other_digests() {
+        let library = |area: &str| CellLibrary {
+            path: PathBuf::from("cells.lib"),
+            text: format!("cell ({GATE}) {{ area : {area}; }}"),
+        };
+        assert_eq!(library("24").digest(), library("24").digest());
+        assert_ne!(library("24").digest(), library("25").digest());
+    }
+
+    #[test]
+    fn a_missing_library_is_told_with_its_package() {
+        let missing = CellLibrary::read(Path::new("nowhere/cells.lib"));
+        let message = missing.map(|_| ()).expect_err("no file").to_string();
+        assert!(message.contains("`nowhere/cells.lib`"), "{message}");
+        assert!(message.contains("qflow-tech-osu018"), "{message}");
+    }
 }

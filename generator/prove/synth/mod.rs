@@ -17,11 +17,12 @@ mod routes;
 mod workspace;
 
 use std::ffi::OsStr;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::time::Duration;
 
 use anyhow::{Context, Result};
 
+use cells::CellLibrary;
 use glint_base::target::Family;
 use glint_base::target::Usage;
 use glint_core::package;
@@ -41,7 +42,8 @@ pub struct Flow {
     yosys: Tool,
     /// nextpnr and icetime, or OpenSTA; empty if only the area is measured.
     others: Vec<Tool>,
-    liberty: PathBuf,
+    /// The cell library, for a target of standard cells.
+    library: Option<CellLibrary>,
     versions: Vec<String>,
 }
 
@@ -69,6 +71,10 @@ impl Flow {
             Some(family) => yosys_of(family, search)?,
             None => Tool::find_in("yosys", search)?,
         };
+        let library = match target {
+            Target::Osu018 => Some(CellLibrary::read(liberty)?),
+            _ => None,
+        };
         let others = match target {
             Target::Ice40 => {
                 vec![Tool::find_in("nextpnr-ice40", search)?, Tool::find_in("icetime", search)?]
@@ -80,15 +86,12 @@ impl Flow {
                 vec![one_of(names, search)?]
             }
             Target::Xilinx7 | Target::Gowin | Target::GowinGw1n => Vec::new(),
-            Target::Osu018 => {
-                cells::check(liberty)?;
-                vec![Tool::find_in("sta", search)?]
-            }
+            Target::Osu018 => vec![Tool::find_in("sta", search)?],
         };
         // icetime has no version; it comes with the data of the chip.
         let versioned = std::iter::once(&yosys).chain(&others).filter(|it| it.name() != "icetime");
         let versions = versioned.map(version).collect::<Result<_>>()?;
-        Ok(Self { target, yosys, others, liberty: liberty.to_owned(), versions })
+        Ok(Self { target, yosys, others, library, versions })
     }
 
     /// Returns the target for which these tools measure.
@@ -96,13 +99,14 @@ impl Flow {
         self.target
     }
 
-    /// Returns the SHA-256 of target, seeds, versions and source files of a measurement, in hexadecimal. For example, another
-    /// number of seeds or another version of Yosys gives another digest. The contents of the cell library are not part of it.
+    /// Returns the SHA-256 of target, seeds, versions, cell library and source files of a measurement, in hexadecimal. For example,
+    /// another number of seeds or another version of Yosys gives another digest.
     pub fn digest(&self, subject: &SynthesisSubject) -> String {
         let mut text = format!("{} {} {}\n", self.target, subject.seeds, env!("CARGO_PKG_VERSION"));
         text += &self.versions.join("\n");
-        if self.target == Target::Osu018 {
+        if let Some(library) = &self.library {
             text += MAPPING;
+            text += &library.digest();
         }
         for (name, contents) in subject.files {
             text += &format!("\n{name} {}", package::digest(contents.as_bytes()));
@@ -139,7 +143,8 @@ impl Flow {
                 nextpnr::measure(&gatemate::RECIPE, &self.yosys, nextpnr, subject, done)
             }
             (Target::Osu018, [sta]) => {
-                cells::measure(&self.yosys, sta, &self.liberty, subject, done)
+                let library = self.library.as_ref().expect("a library for standard cells");
+                cells::measure(&self.yosys, sta, library, subject, done)
             }
             (target, _) => area(target, &self.yosys, subject, done),
         };
