@@ -342,7 +342,7 @@ impl<'d, 'p> PlanDatapath<'d, 'p> {
         }
     }
 
-    /// Returns the value of `held` from that of a product: the nodes between the two only scale and shorten it.
+    /// Returns the value of the node `held`, computed from the value `product`. The nodes between the two only scale and shorten it.
     fn following(&self, product: Signal<'d>, from: NodeId, held: NodeId) -> Signal<'d> {
         let node = self.plan.node(held);
         if held == from {

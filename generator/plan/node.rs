@@ -144,7 +144,7 @@ impl Operation {
         Some((discriminant(self), self.inputs(), more))
     }
 
-    /// Returns the operation with other nodes in the place of those that it reads.
+    /// Returns the operation with each node that it reads replaced by `of_node` of this node.
     pub(super) fn with_inputs(&self, of_node: &dyn Fn(NodeId) -> NodeId) -> Self {
         let mut operation = self.clone();
         match &mut operation {

@@ -70,8 +70,8 @@ impl ExpressionPlan {
         widths
     }
 
-    /// Returns what stands before the names of the nets of a node's table. It is the name of the node, so that each table has nets of
-    /// its own. The nets of a plan of a single function of `x` have no prefix.
+    /// Returns the prefix of the names of all nets of a node's table: the name of the node and an underscore, so that each table has
+    /// nets of its own. A plan of a single function of `x` needs no prefix.
     pub fn table_prefix(&self, id: NodeId) -> String {
         let mut operands = Vec::new();
         for node in &self.nodes {
@@ -83,8 +83,8 @@ impl ExpressionPlan {
         if is_single { String::new() } else { format!("{}_", self.node(id).name) }
     }
 
-    /// Returns the names of the registers of a node's polynomial: the register of the polynomial itself, and those of the sums before
-    /// the last one.
+    /// Returns the names of the registers of a node's polynomial. The first register holds the polynomial, and the others hold the
+    /// partial sums of Horner's rule. For example, a node `curve` has `curve`, `curve_sum1` and `curve_sum2`.
     pub fn sum_names(&self, id: NodeId) -> [String; 3] {
         let prefix = self.table_prefix(id);
         [self.node(id).name.clone(), format!("{prefix}sum1"), format!("{prefix}sum2")]

@@ -409,7 +409,7 @@ fn shares_are_of_the_parts_that_round() {
     }
 }
 
-/// The values of x / y with x and y from 1/2 to 1 − 2⁻¹² are at least 2048/4095; those of x − y include 0.
+/// The values of x / y with x and y from 1/2 to 1 − 2⁻¹² are at least 2048/4095. The values of x − y include 0.
 #[test]
 fn least_sizes_by_hand() {
     let half = StatedOperand { domain: (2048, 4095), ..operand("x", Format::unsigned(0, 12)) };
