@@ -127,6 +127,36 @@ impl Approximation {
     }
 }
 
+/// Returns references to the nodes that an operation reads. They are mutable if the operation is borrowed mutably.
+macro_rules! inputs_of {
+    ($operation:expr) => {
+        match $operation {
+            Operation::Operand(_) | Operation::Constant { .. } => Vec::new(),
+            Operation::Absolute(a)
+            | Operation::NonZero(a)
+            | Operation::Scale(a)
+            | Operation::Narrow(a, _)
+            | Operation::Middle(a)
+            | Operation::IntegerPart(a)
+            | Operation::Bit(a, _)
+            | Operation::Normalise { word: a, .. }
+            | Operation::Places(a)
+            | Operation::Lookup { address: a, .. }
+            | Operation::Polynomial(a, _) => vec![a],
+            Operation::Add(a, b)
+            | Operation::Subtract(a, b)
+            | Operation::Multiply(a, b)
+            | Operation::Minimum(a, b)
+            | Operation::Maximum(a, b)
+            | Operation::Less(a, b)
+            | Operation::FractionPart(a, b)
+            | Operation::ShiftLeft(a, b)
+            | Operation::ShiftRight(a, b) => vec![a, b],
+            Operation::Choose { condition, cases: [zero, one] } => vec![condition, zero, one],
+        }
+    };
+}
+
 impl Operation {
     /// Returns everything that an exact operation is known by; `None` for an operation that may round, or that has more than its
     /// inputs.
@@ -147,65 +177,15 @@ impl Operation {
     /// Returns the operation with each node that it reads replaced by `of_node` of this node.
     pub(super) fn with_inputs(&self, of_node: &dyn Fn(NodeId) -> NodeId) -> Self {
         let mut operation = self.clone();
-        match &mut operation {
-            Self::Operand(_) | Self::Constant { .. } => {}
-            Self::Absolute(a)
-            | Self::NonZero(a)
-            | Self::Scale(a)
-            | Self::Narrow(a, _)
-            | Self::Middle(a)
-            | Self::IntegerPart(a)
-            | Self::Bit(a, _)
-            | Self::Normalise { word: a, .. }
-            | Self::Places(a)
-            | Self::Lookup { address: a, .. }
-            | Self::Polynomial(a, _) => *a = of_node(*a),
-            Self::Add(a, b)
-            | Self::Subtract(a, b)
-            | Self::Multiply(a, b)
-            | Self::Minimum(a, b)
-            | Self::Maximum(a, b)
-            | Self::Less(a, b)
-            | Self::FractionPart(a, b)
-            | Self::ShiftLeft(a, b)
-            | Self::ShiftRight(a, b) => {
-                *a = of_node(*a);
-                *b = of_node(*b);
-            }
-            Self::Choose { condition, cases } => {
-                *condition = of_node(*condition);
-                *cases = cases.map(of_node);
-            }
+        for input in inputs_of!(&mut operation) {
+            *input = of_node(*input);
         }
         operation
     }
 
     /// Returns the nodes that the operation reads.
     pub fn inputs(&self) -> Vec<NodeId> {
-        match self {
-            Self::Operand(_) | Self::Constant { .. } => Vec::new(),
-            Self::Absolute(a)
-            | Self::NonZero(a)
-            | Self::Scale(a)
-            | Self::Narrow(a, _)
-            | Self::Middle(a)
-            | Self::IntegerPart(a)
-            | Self::Bit(a, _)
-            | Self::Normalise { word: a, .. }
-            | Self::Places(a)
-            | Self::Lookup { address: a, .. }
-            | Self::Polynomial(a, _) => vec![*a],
-            Self::Add(a, b)
-            | Self::Subtract(a, b)
-            | Self::Multiply(a, b)
-            | Self::Minimum(a, b)
-            | Self::Maximum(a, b)
-            | Self::Less(a, b)
-            | Self::FractionPart(a, b)
-            | Self::ShiftLeft(a, b)
-            | Self::ShiftRight(a, b) => vec![*a, *b],
-            Self::Choose { condition, cases } => vec![*condition, cases[0], cases[1]],
-        }
+        inputs_of!(self).into_iter().copied().collect()
     }
 }
 
