@@ -117,7 +117,9 @@ impl ExpressionPlan {
         let table = known(short_function, behind);
         let polynomial = self.polynomial("polynomial", number, table, values)?;
         let restored = self.restored(polynomial, &reduced, polynomials.result)?;
-        self.narrow(name, restored, polynomials.result, Rounding::Truncate)
+        let last = self.narrow(name, restored, polynomials.result, Rounding::Truncate)?;
+        self.rename(last, name);
+        Ok(last)
     }
 
     /// Adds the nodes before the table.

@@ -163,6 +163,13 @@ impl ExpressionPlan {
         unused
     }
 
+    /// Gives a node a name, with a number behind it if another node already has the name.
+    pub(super) fn rename(&mut self, id: NodeId, name: &str) {
+        if self.node(id).name != name {
+            self.nodes[id.0].name = self.unused_name(name);
+        }
+    }
+
     /// Adds an exact result whose raw values lie in a range.
     fn exact(
         &mut self,
