@@ -13,7 +13,7 @@ use glint_golden::{self as golden, Contract, Model};
 use glint_keys as keys;
 use glint_rtl::dsl::Designer;
 use glint_rtl::netlist::Design;
-use glint_rtl::pipeline;
+use glint_rtl::pipeline::{self, PassResult};
 
 pub use design_error::DesignError;
 pub use pipeline_keys::CLOCK_MHZ;
@@ -83,6 +83,17 @@ impl Device {
             pipelined = pipeline_keys::pipelined(&sequential, config);
         }
         Ok(pipelined?.unwrap_or(sequential))
+    }
+
+    /// Returns the computation of a pipeline before the passes that rewrite it, and after each pass. Returns an empty list if
+    /// the configuration has a sequential architecture.
+    ///
+    /// # Errors
+    /// Fails if the description has mistakes, or if the microprogram cannot be unrolled.
+    pub fn pass_results(&self, config: &Config) -> Result<Vec<PassResult>, DesignError> {
+        let sequential = self.sequential(config)?;
+        let results = pipeline_keys::pass_results(&sequential, config)?;
+        Ok(results.unwrap_or_default())
     }
 
     /// Returns the sequential netlist, which executes a microprogram. [`Device::design`] makes pipelines from it.

@@ -13,6 +13,7 @@ use glint_base::text::counted;
 use glint_core::package::{Seal, sealed};
 use glint_core::registry::Registry;
 use glint_rtl::netlist::{Design, Pipeline};
+use glint_rtl::pipeline::PassResult;
 use glint_show::pages::diagram;
 
 /// Show the stages of a pipeline
@@ -25,6 +26,8 @@ use glint_show::pages::diagram;
 Examples:
   glint schedule my_pipeline.toml
   glint schedule my_pipeline.toml --svg drawings   a drawing of the stages, drawings/<name>.svg
+  glint schedule my_pipeline.toml --passes         what each rewriting makes of the computation
+  glint schedule my_pipeline.toml --after split    the computation itself, a line for each value
   glint schedule my_pipeline.toml --json")]
 pub struct Arguments {
     #[command(flatten)]
@@ -35,6 +38,12 @@ pub struct Arguments {
     /// Replace drawings that Glint did not write or that were edited since
     #[arg(long, requires = "svg")]
     force: bool,
+    /// List the passes that rewrite the computation before it is scheduled
+    #[arg(long, conflicts_with_all = ["svg", "after"])]
+    passes: bool,
+    /// Print the computation after this pass, as text: `unroll` is the computation before all passes
+    #[arg(long, value_name = "PASS", conflicts_with = "svg")]
+    after: Option<String>,
 }
 
 /// Runs `glint schedule`, which shows the stages of a pipeline, and the operations in each. Returns true, because the command
@@ -60,13 +69,94 @@ pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) ->
             store::write_sealed(&path, &drawing, Seal::Markup, arguments.force)
                 .with_context(|| format!("`{}` was not drawn", one.path))?;
         }
-        list.add(&PipelineSchedule { one: &one, pipeline })?;
+        match &arguments.after {
+            _ if arguments.passes => list.add(&PassList::new(&one)?)?,
+            Some(pass) => list.add(&PassText::new(&one, pass)?)?,
+            None => list.add(&PipelineSchedule { one: &one, pipeline })?,
+        }
     }
     if shown == 0 {
         bail!("none of {} configurations is pipelined; name one", named.len());
     }
     list.finish(|schedules| Ok(json!({ "ok": true, "schedules": schedules })))?;
     Ok(true)
+}
+
+/// The passes that rewrite the computation of a configuration, with their results.
+struct PassList<'a> {
+    path: &'a str,
+    results: Vec<PassResult>,
+}
+
+impl<'a> PassList<'a> {
+    fn new(one: &'a Loaded) -> Result<Self> {
+        let results = one.core.device.pass_results(&one.core.config)?;
+        Ok(Self { path: &one.path, results })
+    }
+}
+
+impl CommandReport for PassList<'_> {
+    fn json(&self) -> Result<Value> {
+        let mut passes = Vec::new();
+        for result in &self.results {
+            passes.push(json!({
+                "pass": result.name,
+                "description": result.description,
+                "operations": result.operations(),
+                "products": result.products(),
+            }));
+        }
+        Ok(json!({ "config": self.path, "passes": passes }))
+    }
+
+    fn print(&self) -> Result<()> {
+        say!("{}:", self.path);
+        let mut rows = Vec::new();
+        for result in &self.results {
+            rows.push(vec![
+                result.name.to_owned(),
+                result.operations().to_string(),
+                result.products().to_string(),
+                result.description.to_owned(),
+            ]);
+        }
+        tables::print("pass | operations: | products: | the pass", rows);
+        Ok(())
+    }
+}
+
+/// The computation of a configuration after a pass.
+struct PassText<'a> {
+    path: &'a str,
+    pass: &'a str,
+    text: String,
+}
+
+impl<'a> PassText<'a> {
+    /// Returns the computation after the pass with the name `pass`.
+    ///
+    /// # Errors
+    /// Fails if no pass that rewrites this computation has the name.
+    fn new(one: &'a Loaded, pass: &'a str) -> Result<Self> {
+        let results = one.core.device.pass_results(&one.core.config)?;
+        let Some(result) = results.iter().find(|result| result.name == pass) else {
+            let names: Vec<&str> = results.iter().map(|result| result.name).collect();
+            bail!("`{}`: no pass `{pass}` runs; these do: {}", one.path, names.join(", "));
+        };
+        Ok(Self { path: &one.path, pass, text: result.text() })
+    }
+}
+
+impl CommandReport for PassText<'_> {
+    fn json(&self) -> Result<Value> {
+        Ok(json!({ "config": self.path, "pass": self.pass, "computation": self.text }))
+    }
+
+    fn print(&self) -> Result<()> {
+        say!("# {} after `{}`", self.path, self.pass);
+        say!("{}", self.text.trim_end());
+        Ok(())
+    }
 }
 
 /// A configuration with its pipeline.

@@ -6,7 +6,7 @@ use glint_base::key_error::KeyError;
 use glint_base::target;
 use glint_config::{Config, Shared};
 use glint_rtl::netlist::Design;
-use glint_rtl::pipeline::{self, PipelineError, PipelineErrorKind};
+use glint_rtl::pipeline::{self, PassResult, PipelineError, PipelineErrorKind};
 
 /// The key with the clock frequency for which a pipeline is scheduled.
 pub const CLOCK_MHZ: &str = "pipeline.clock_mhz";
@@ -24,6 +24,23 @@ pub fn pipelined(sequential: &Design, config: &Config) -> Result<Option<Design>,
         Ok(design) => Ok(Some(Design { warnings: sequential.warnings.clone(), ..design })),
         Err(error) => Err(key_error(&error, &keys, &config.name)),
     }
+}
+
+/// Returns the computation before the passes and after each of them. Returns `None` if the configuration has a sequential
+/// architecture.
+///
+/// # Errors
+/// Fails if the microprogram cannot be unrolled.
+pub fn pass_results(
+    sequential: &Design,
+    config: &Config,
+) -> Result<Option<Vec<PassResult>>, KeyError> {
+    let keys = Shared::of(config);
+    if keys.architecture != "pipelined" {
+        return Ok(None);
+    }
+    let results = pipeline::pass_results(sequential, &options(&keys));
+    results.map(Some).map_err(|error| key_error(&error, &keys, &config.name))
 }
 
 /// Returns the options of a pipeline.

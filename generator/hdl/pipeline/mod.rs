@@ -10,6 +10,8 @@ mod error;
 mod gates;
 mod graph;
 mod interval;
+#[cfg(test)]
+mod parse_text;
 mod passes;
 mod possible;
 mod rebuild;
@@ -22,7 +24,6 @@ mod stages;
 mod sums;
 #[cfg(test)]
 mod tests;
-#[cfg(test)]
 mod text;
 mod unroll;
 
@@ -33,7 +34,7 @@ pub use delay::delay_of;
 pub use error::{PipelineError, PipelineErrorKind};
 pub use graph::{Cell, Graph, Node, NodeId, NodeOp};
 pub use interval::IntervalGoal;
-pub use passes::{PASSES, Pass};
+pub use passes::{PASSES, Pass, PassResult};
 use request::Request;
 pub use unroll::{
     Cycle, StateValues, Unrolled, UnrolledLine, WalkRegister, any_cycle, carried, unroll,
@@ -78,18 +79,33 @@ pub struct Options {
     pub delays: Delays,
 }
 
+/// Returns the computation of a pipeline before the passes and after each of them, in the order of the passes. The first entry
+/// is the unrolled microprogram, and Glint schedules the last one.
+///
+/// # Errors
+/// Fails if the microprogram cannot be unrolled; the error has its source line.
+pub fn pass_results(
+    sequential: &Design,
+    options: &Options,
+) -> Result<Vec<PassResult>, PipelineError> {
+    let unrolled =
+        unroll::unroll_for_pipeline(sequential).map_err(PipelineError::of_microprogram)?;
+    Ok(passes::results(unrolled, options))
+}
+
 /// Turns a sequential design, which executes a microprogram, into a pipeline with the same results, and returns it.
 ///
 /// # Errors
 /// Fails if the microprogram cannot be unrolled; the error has its source line. Fails if a clock or a number of stages cannot be
 /// reached; the error has the nearest value that can.
 pub fn pipeline(sequential: &Design, options: &Options) -> Result<Design, PipelineError> {
-    let unrolled =
-        unroll::unroll_for_pipeline(sequential).map_err(PipelineError::of_microprogram)?;
-    let unrolled = passes::applied(unrolled, options);
-    let request = Request::new(sequential, &unrolled, options);
+    let mut results = pass_results(sequential, options)?;
+    let Some(PassResult { computation, .. }) = results.pop() else {
+        unreachable!("the first result is the unrolled microprogram")
+    };
+    let request = Request::new(sequential, &computation, options);
     let interval = request.interval()?;
     let problems = request.problems(options.registered, interval);
     let schedule = request.schedule(&problems, interval)?;
-    Ok(stages::assemble(sequential, &unrolled, &problems, &schedule, (options, interval)))
+    Ok(stages::assemble(sequential, &computation, &problems, &schedule, (options, interval)))
 }

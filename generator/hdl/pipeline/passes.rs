@@ -1,21 +1,27 @@
-//! Runs the passes that rewrite an unrolled computation before it is scheduled. A pass replaces operations by others that compute
-//! the same values. For example, one splits a product that is too wide for a multiplier.
+//! Runs the passes that rewrite a computation before Glint schedules it as a pipeline.
 //!
-//! The tests of a pass are files, `passes/<name>/*.txt`: a computation as text, and the computation that the pass
-//! must make of it.
+//! A pass replaces operations by others that compute the same results. For example, `split` replaces a product that is too wide
+//! for a multiplier by a sum of narrower products. The tests of a pass are files, `passes/<name>/*.txt`: each has a computation
+//! as text, and the computation that the pass must make from it.
 
 use super::Options;
 use super::gates::gated;
+use super::graph::{Cell, NodeOp};
 use super::split::split;
+use super::text::printed;
 use super::unroll::Unrolled;
 use glint_base::target::Timing;
 
-/// A pass: a rewriting of a computation before Glint schedules it as a pipeline. For example, it splits wide products. Results stay
-/// the same.
+/// The name of the first [`PassResult`], which no pass has rewritten.
+const UNROLL: &str = "unroll";
+
+/// A pass: a rewriting of a computation before Glint schedules it as a pipeline. The results of the computation stay the same.
 pub struct Pass {
     /// The name of the pass, and of the directory with the files that test it. For example, `split`.
     pub name: &'static str,
-    /// Returns whether a pipeline with these options uses the pass.
+    /// A sentence about what the pass does, for `glint schedule --passes`.
+    pub description: &'static str,
+    /// Returns whether Glint runs the pass for a pipeline with these options.
     pub applies: fn(&Options) -> bool,
     /// Returns the computation as the pass rewrites it for an FPGA target.
     pub run: fn(&Unrolled, &Timing) -> Unrolled,
@@ -23,16 +29,64 @@ pub struct Pass {
 
 /// All passes that may rewrite a computation before Glint schedules it, in the order in which they run.
 pub static PASSES: [Pass; 2] = [
-    // Products no wider than the multipliers of the target, and sums as short as they can be.
-    Pass { name: "split", applies: |_| true, run: split },
-    // Gates in place of muxes with constants, where products have registers of their own.
-    Pass { name: "gates", applies: |options| options.registered, run: |it, _| gated(it) },
+    Pass {
+        name: "split",
+        description: "splits products that are too wide for a multiplier, and shortens sums",
+        applies: |_| true,
+        run: split,
+    },
+    Pass {
+        name: "gates",
+        description: "replaces muxes with a constant input by gates; runs if pipeline.multipliers is \"registered\"",
+        applies: |options| options.registered,
+        run: |unrolled, _| gated(unrolled),
+    },
 ];
 
-/// Runs the passes that apply to a pipeline with these options, and returns the rewritten computation.
-pub fn applied(unrolled: Unrolled, options: &Options) -> Unrolled {
-    let passes = PASSES.iter().filter(|pass| (pass.applies)(options));
-    passes.fold(unrolled, |unrolled, pass| (pass.run)(&unrolled, options.target))
+/// A computation that a pass has rewritten.
+pub struct PassResult {
+    /// The name of the pass, or `unroll` for the computation that the microprogram states.
+    pub name: &'static str,
+    /// A sentence about what the pass does.
+    pub description: &'static str,
+    /// The computation after the pass.
+    pub computation: Unrolled,
+}
+
+impl PassResult {
+    /// Returns the computation as text, a line for each value. For example, a line is `sum u6.0 = add a b`.
+    pub fn text(&self) -> String {
+        printed(&self.computation)
+    }
+
+    /// Returns the number of operations of the computation that the results need, without operands and constants.
+    pub fn operations(&self) -> usize {
+        self.count(|cell| matches!(cell, Cell::Op(_) | Cell::Read { .. }))
+    }
+
+    /// Returns the number of multiplications of the computation that the results need.
+    pub fn products(&self) -> usize {
+        self.count(|cell| matches!(cell, Cell::Op(NodeOp::Mul(..))))
+    }
+
+    fn count(&self, is_counted: impl Fn(&Cell) -> bool) -> usize {
+        let Unrolled { graph, results, .. } = &self.computation;
+        let nodes = graph.cone(results.iter().map(|&(_, value)| value));
+        nodes.into_iter().filter(|&id| is_counted(&graph.node(id).cell)).count()
+    }
+}
+
+/// Returns the computation `unrolled` as the first entry, and then the computation after each pass that applies to a pipeline
+/// with these options.
+pub fn results(unrolled: Unrolled, options: &Options) -> Vec<PassResult> {
+    let description = "executes the microprogram symbolically, one clock after another";
+    let mut results = vec![PassResult { name: UNROLL, description, computation: unrolled }];
+    for pass in PASSES.iter().filter(|pass| (pass.applies)(options)) {
+        let before = &results[results.len() - 1].computation;
+        let computation = (pass.run)(before, options.target);
+        results.push(PassResult { name: pass.name, description: pass.description, computation });
+    }
+    results
 }
 
 #[cfg(test)]
@@ -40,8 +94,8 @@ mod tests {
     use std::fs;
     use std::path::Path;
 
-    use super::super::text::{computed, parsed, printed};
-    use super::PASSES;
+    use super::super::parse_text::{computed, parsed};
+    use super::{PASSES, printed};
     use glint_base::target::TIMINGS;
 
     /// Combinations of operands that are computed of a test.
