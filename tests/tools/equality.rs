@@ -3,6 +3,7 @@
 use std::cell::Cell;
 use std::time::Duration;
 
+use glint::config::Value;
 use glint::core::Core;
 use glint::dsl::{Designer, end, step, valid};
 use glint::equality::{Open, TextVerdict, Verdict, compare, compare_text};
@@ -35,6 +36,36 @@ fn sequential(core: &Core) -> Design {
 #[test]
 fn every_pipeline_is_proved_equal_to_its_sequential_core() {
     for (path, core) in sampled("equality", pipelines(), 4) {
+        match verdict(&sequential(&core), &core.design) {
+            Verdict::Equal(proof) => {
+                assert!(proof.outputs > 0 && proof.registers > 0 && proof.products > 0, "{path}");
+            }
+            other => panic!("{path}: {other:?}"),
+        }
+    }
+}
+
+/// Returns the pipeline of a configuration with another interval, at the clock that it reaches with this interval.
+fn at_interval(path: &str, clocks: u64) -> Core {
+    let Core { device, mut config, .. } = configuration(path);
+    config.set("pipeline.interval", Value::Text(clocks.to_string()));
+    Core::with_free_clock(device, config).sure_of(path)
+}
+
+/// Returns all pipelines in `configs/` at intervals from 2 to 4 clocks.
+fn at_longer_intervals() -> Vec<(String, Core)> {
+    let mut all = Vec::new();
+    for (path, _) in pipelines() {
+        for clocks in 2..=4 {
+            all.push((format!("{path} every {clocks} clocks"), at_interval(&path, clocks)));
+        }
+    }
+    all
+}
+
+#[test]
+fn every_longer_interval_is_proved_equal_to_its_sequential_core() {
+    for (path, core) in sampled("equality of intervals", at_longer_intervals(), 5) {
         match verdict(&sequential(&core), &core.design) {
             Verdict::Equal(proof) => {
                 assert!(proof.outputs > 0 && proof.registers > 0 && proof.products > 0, "{path}");
@@ -192,6 +223,46 @@ fn the_text_of_every_pipeline_is_proved_equal_to_its_netlist() {
         }
     }
     assert!(delays > 8, "{delays}");
+}
+
+#[test]
+fn the_text_of_every_longer_interval_is_proved_equal_to_its_netlist() {
+    for (path, core) in sampled("text of intervals", at_longer_intervals(), 5) {
+        match of_text(&core, 900, str::to_owned) {
+            TextVerdict::Equal(proof) => {
+                assert!(proof.outputs > 0 && proof.registers > 0, "{path}: {proof:?}");
+            }
+            other => panic!("{path}: {other:?}"),
+        }
+    }
+}
+
+/// In the counter of slots, in what it selects and enables, and in the memory of a delay line.
+#[test]
+fn a_fault_in_the_text_of_a_longer_interval_is_not_proved() {
+    let core = at_interval("configs/cosine_power_pipelined.toml", 4);
+    let faults = [
+        ("slot <= slot + 2'd1;", "slot <= slot + 2'd3;"),
+        ("slot <= 2'd0;", "slot <= 2'd1;"),
+        ("assign in_ready = advance & (slot == 2'd0);", "assign in_ready = advance & slot[0];"),
+        ("assign in_ready = advance & (slot == 2'd0);", "assign in_ready = advance;"),
+        ("wire load_0 = advance & (slot == 2'd0);", "wire load_0 = advance & (slot == 2'd1);"),
+        ("wire load_3 = advance & (slot == 2'd3);", "wire load_3 = slot == 2'd3;"),
+        (".enable(load_0),", ".enable(advance),"),
+        ("slot == LAST", "slot == LAST - 1'b1"),
+        ("leaving <= words[slot]", "leaving <= words[0]"),
+        ("words[slot] <= entering", "if (entering[0]) words[slot] <= entering"),
+        ("2'd1: multiplier_1_a_next", "2'd2: multiplier_1_a_next"),
+    ];
+    for (was, is) in sampled("faults in the text of an interval", faults, 3) {
+        let planted = Cell::new(false);
+        let verdict = of_text(&core, 20, |text| {
+            planted.set(planted.get() || text.contains(was));
+            text.replacen(was, is, 1)
+        });
+        assert!(planted.get(), "`{was}` is not in the text");
+        assert!(!matches!(verdict, TextVerdict::Equal(_)), "{was} -> {is}");
+    }
 }
 
 /// In operators, operands, choices, enables, bits, and in the memory of a delay line.

@@ -46,6 +46,8 @@ pub fn about(
                     for (factor, other) in [(a, b), (b, a)] {
                         facts.extend(by_one_or_none(terms, id, factor, other));
                     }
+                    let by_width = [a, b].map(|factor| range_by_width(terms, factor));
+                    facts.extend(within(terms, &Product { factors: [a, b], ranges: by_width }));
                     for product in products {
                         if product.factors == [a, b] || product.factors == [b, a] {
                             facts.extend(within(terms, product));
@@ -243,6 +245,23 @@ pub fn shifted(terms: &mut VectorTerms, id: VectorTermId, by: u32) -> VectorTerm
     }
     let (kept, zeros) = (terms.slice(id, 0, MAX_WIDTH - by), terms.constant(0, by));
     terms.make(VectorTerm::Join(kept, zeros), MAX_WIDTH)
+}
+
+/// Returns the interval that contains a factor of 64 bits, a two's complement number, because of the width of the term that the
+/// factor extends. For example, a term of 8 bits with zeros above it is at most 255. The ranges of a design can be wider: a
+/// multiplier that several products share has the ranges of all its factors.
+fn range_by_width(terms: &VectorTerms, factor: VectorTermId) -> Interval {
+    match extended(terms, factor) {
+        Some((bits, true)) => {
+            let half = 1 << (terms.width(bits) - 1);
+            (-half, half - 1)
+        }
+        Some((bits, false)) => (0, (1 << terms.width(bits)) - 1),
+        None => match terms.constant_of(factor) {
+            Some(bits) => (i128::from(bits as i64), i128::from(bits as i64)),
+            None => (i128::from(i64::MIN), i128::from(i64::MAX)),
+        },
+    }
 }
 
 /// Returns the fact that a product lies in the product of the ranges, if its factors lie in their ranges. Returns `None` if a

@@ -7,6 +7,7 @@
 //! share one term. The code shares nothing with `hdl/pipeline`, which built the pipeline.
 
 mod cells;
+mod delays;
 mod facts;
 mod module;
 mod random_precheck;

@@ -2,24 +2,24 @@
 //! and from any state.
 //!
 //! Yosys reads the Verilog, and the module executes netlist and Verilog on symbolic terms, with unknown registers and memories
-//! at the beginning. `delays` proves that every memory is a delay line, and `stays` proves that a clock in which the pipeline
-//! waits changes nothing. It is therefore enough to compare both in the clocks from a point to its results. A register of the
-//! Verilog that equals a net takes the net's term, so the solver only has to compare one clock at a time.
+//! at the beginning. [`Counters`] finds the slot counter, and proves that every memory is a delay line; `stays` proves that a
+//! clock in which the pipeline waits changes nothing. It is therefore enough to compare both in the clocks from a point to its
+//! results. A register of the Verilog that equals a net takes the net's term, so the solver only has to compare one clock at a time.
 
 use std::collections::{HashMap, HashSet};
 use std::time::Duration;
 
-use anyhow::{Context, Result, anyhow};
+use anyhow::{Context, Result, anyhow, ensure};
 use serde_json::Value;
 
 use super::Open;
 use super::cells::WireValues;
-use super::module::{Memory, Module, Read, RegisterContents};
+use super::delays::{Counters, Roles};
+use super::module::{Module, Read, RegisterContents};
 use super::solver::{Solver, SolverAnswer};
 use super::split_products::samples;
 use super::symbolic::{Execution, Product};
 use super::term::{VectorTerm, VectorTermId, VectorTerms};
-use glint_base::fixed::mask;
 use glint_rtl::netlist::{Design, Role};
 use glint_tools::Tool;
 
@@ -44,7 +44,7 @@ pub struct TextProof {
     pub outputs: usize,
     /// The number of Verilog registers that are proved equal to a net of the netlist, counted for every clock of a point.
     pub registers: usize,
-    /// For each memory that the module writes, the number of clocks from write to read.
+    /// For each read port of each memory that the module writes, the largest number of clocks from a write to a read.
     pub delays: Vec<usize>,
     /// The number of questions to the solver. Other equalities need no question, because both sides are the same term.
     pub questions: usize,
@@ -63,17 +63,13 @@ pub fn compare_text(
 ) -> Result<TextVerdict> {
     let pipeline = design.pipeline.as_ref().context("the design is no pipeline")?;
     let latency = pipeline.stages.len();
-    if pipeline.interval > 1 {
-        let why = "the text is followed for pipelines with pipeline.interval = 1 alone".to_owned();
-        return Ok(TextVerdict::Unread(why));
-    }
     let roles = design.ports.iter().map(|it| (design.net(it.net).name.clone(), it.role)).collect();
-    let read = || -> Result<(Module, Vec<Vec<usize>>)> {
+    let read = || -> Result<(Module, Counters)> {
         let module = Module::new(text)?;
-        let delays = delays(&module, &roles)?;
-        Ok((module, delays))
+        let counters = Counters::new(&module, &roles, pipeline.interval)?;
+        Ok((module, counters))
     };
-    let (module, delays) = match read() {
+    let (module, counters) = match read() {
         Ok(read) => read,
         Err(error) => return Ok(TextVerdict::Unread(format!("{error:#}"))),
     };
@@ -81,13 +77,13 @@ pub fn compare_text(
         design,
         module: &module,
         roles: &roles,
-        delays: &delays,
+        counters: &counters,
         latency,
         terms: VectorTerms::default(),
         inputs: HashMap::new(),
         products: Vec::new(),
         solver: Solver::new(solver, limit)?,
-        proof: TextProof { delays: delays.concat(), ..TextProof::default() },
+        proof: TextProof { delays: counters.longest_delays(), ..TextProof::default() },
     };
     match comparison.stays().and_then(|()| comparison.follows_a_point()) {
         Ok(()) => {
@@ -119,105 +115,11 @@ impl From<TextVerdict> for EarlyEnd {
     }
 }
 
-type Roles = HashMap<String, Role>;
-
-/// For each register that holds a constant, its value; and for each memory, the constants at its ports, write address first.
-type Constants = (HashMap<usize, u64>, Vec<Option<Vec<u64>>>);
-
-/// Returns for each memory and each of its read ports the number of clocks from write to read, in a pipeline in which all
-/// points move. Fails if a memory is not addressed by a counter, or if a number is not the same for all values of the counter.
-fn delays(module: &Module, roles: &Roles) -> Result<Vec<Vec<usize>>> {
-    let reset = constants(module, roles, 0, &HashMap::new())?.0;
-    let mut delays = vec![None; module.memories.len()];
-    for (&counter, &first) in &reset {
-        let mut course: Vec<Vec<Option<Vec<u64>>>> = Vec::new();
-        let mut value = first;
-        let repeats = loop {
-            let (next, control) = constants(module, roles, 1, &HashMap::from([(counter, value)]))?;
-            course.push(control);
-            match next.get(&counter) {
-                Some(&again) if again == first => break true,
-                Some(&next) if course.len() < MOST_SLOTS => value = next,
-                _ => break false,
-            }
-        };
-        if !repeats {
-            continue;
-        }
-        for (memory, delay) in delays.iter_mut().enumerate() {
-            let course: Option<Vec<&[u64]>> =
-                course.iter().map(|control| control[memory].as_deref()).collect();
-            if let Some(course) = course {
-                *delay = lags(&course, module.memories[memory].reads.len());
-            }
-        }
-    }
-    let all: Option<Vec<_>> = delays.into_iter().collect();
-    all.context("a memory of the text is no delay of a fixed number of clocks")
-}
-
-/// The largest number of values of a counter that addresses a memory. A counter with more values is not recognised.
-const MOST_SLOTS: usize = 1024;
-
-/// Returns the number of clocks from write to read for each read port. `course` has the write address and the read addresses in
-/// each clock of a period, which repeats. Returns `None` if a read port has no fixed number of clocks. For example, write
-/// addresses 0, 1, 2, 3 and read addresses 2, 3, 0, 1 give 2 clocks.
-fn lags(course: &[&[u64]], reads: usize) -> Option<Vec<usize>> {
-    let period = course.len();
-    let lag = |read: usize, now: usize| {
-        (1..=period).find(|lag| course[(now + period - lag) % period][0] == course[now][1 + read])
-    };
-    let of_read = |read| {
-        let first = lag(read, 0)?;
-        (1..period).all(|now| lag(read, now) == Some(first)).then_some(first)
-    };
-    (0..reads).map(of_read).collect()
-}
-
-/// Returns the registers that hold a constant after a clock, and for each memory the constant addresses at its ports in that
-/// clock. A memory has none if not all bits are written. The clock is a reset (`rst_n` = 0) or a clock in which the results are
-/// taken. `known` are the values of some registers before the clock.
-fn constants(
-    module: &Module,
-    roles: &Roles,
-    rst_n: u64,
-    known: &HashMap<usize, u64>,
-) -> Result<Constants> {
-    let mut terms = VectorTerms::default();
-    let mut held = module.power_up(&mut terms);
-    for (&at, &bits) in known {
-        held[at] = vec![terms.constant(bits, terms.width(held[at][0]))];
-    }
-    let input = |terms: &mut VectorTerms, name: &str, width: u32| match roles.get(name) {
-        Some(Role::Reset) => terms.constant(rst_n, width),
-        Some(Role::OutReady) if rst_n == 1 => terms.constant(1, width),
-        _ => terms.unknown(width),
-    };
-    let any = |terms: &mut VectorTerms, read: Read| module.memories[read.memory].any(terms);
-    let values = module.settle(&mut terms, &held, input, any)?;
-    let next = module.edge(&mut terms, &values);
-    let next = next.iter().enumerate().filter_map(|(at, columns)| match columns[..] {
-        [column] => Some((at, terms.constant_of(column)?)),
-        _ => None,
-    });
-    let next = next.collect();
-    let control = |memory: &Memory| {
-        let ports = memory.control(&mut terms, &values);
-        let addresses = 1 + memory.reads.len();
-        let ones = |&id: &VectorTermId| terms.constant_of(id) == Some(mask(terms.width(id)));
-        let written = ports[addresses..].iter().all(ones);
-        let constant = ports[..addresses].iter().map(|&id| terms.constant_of(id));
-        constant.collect::<Option<Vec<u64>>>().filter(|_| written)
-    };
-    let control = module.memories.iter().map(control).collect();
-    Ok((next, control))
-}
-
 struct TextComparison<'p> {
     design: &'p Design,
     module: &'p Module,
     roles: &'p Roles,
-    delays: &'p [Vec<usize>],
+    counters: &'p Counters,
     latency: usize,
     terms: VectorTerms,
     /// The terms of the inputs, by name and clock.
@@ -245,15 +147,33 @@ fn input(
 }
 
 impl TextComparison<'_> {
-    /// Proves that the pipeline may wait. A clock with `in_ready` = 0 must change no register and no memory, and a clock with
-    /// `in_ready` = 1 must do the same as a clock with `out_ready` = 1. A pipeline without `out_ready` never waits.
+    /// Proves that the pipeline may wait, in every slot. A pipeline without `out_ready` never waits.
     fn stays(&mut self) -> Result<(), EarlyEnd> {
         let has = |role| self.roles.values().any(|it| *it == role);
-        if !has(Role::OutReady) {
-            return Ok(());
+        if has(Role::OutReady) {
+            for slot in 0..self.counters.slots.len() {
+                self.stays_in_slot(slot)?;
+            }
         }
+        Ok(())
+    }
+
+    /// Returns the registers of the Verilog: constants in the slot counter, and unknowns in all others.
+    fn registers_in_slot(&mut self, slot: usize) -> RegisterContents {
+        let mut held = self.module.power_up(&mut self.terms);
+        for (&register, &bits) in &self.counters.slots[slot] {
+            let width = self.terms.width(held[register][0]);
+            held[register] = vec![self.terms.constant(bits, width)];
+        }
+        held
+    }
+
+    /// Proves that a clock in the slot either moves all points or changes nothing. A clock that moves no point must change no
+    /// register and no memory. A clock that moves the points must do the same as a clock with `out_ready` = 1. With an interval of
+    /// 1, the points move if `in_ready` is 1. With a longer interval, they move if the slot counter counts.
+    fn stays_in_slot(&mut self, slot: usize) -> Result<(), EarlyEnd> {
         let module = self.module;
-        let held = module.power_up(&mut self.terms);
+        let held = self.registers_in_slot(slot);
         let mut reads: HashMap<Read, Vec<VectorTermId>> = HashMap::new();
         let mut clock = |it: &mut Self,
                          out_ready: Option<u64>|
@@ -280,8 +200,18 @@ impl TextComparison<'_> {
         let ready = self.roles.iter().find(|(_, role)| **role == Role::InReady);
         let ready = ready.context("the pipeline has no output `in_ready`")?.0;
         let shown = [&any, &taken].map(|it| module.shown(&mut self.terms, it).get(ready).copied());
-        let [Some(moves), Some(moved)] = shown else {
+        let [Some(ready), Some(ready_if_taken)] = shown else {
             return Err(anyhow!("the text has no output `{ready}`").into());
+        };
+        let (moves, moved) = match self.counters.slots[slot].keys().next() {
+            None => (ready, ready_if_taken),
+            Some(&counter) => {
+                let before = held[counter][0];
+                let moves = self.counts(before, after_any[counter][0]);
+                let takes = if slot == 0 { moves } else { self.terms.constant(0, 1) };
+                self.must_equal(None, ready, takes, "`in_ready`")?;
+                (moves, self.counts(before, after_taken[counter][0]))
+            }
         };
         let one = self.terms.constant(1, 1);
         self.must_equal(None, moved, one, "a pipeline moves when its results are taken")?;
@@ -319,20 +249,34 @@ impl TextComparison<'_> {
         Ok(())
     }
 
+    /// Returns a one-bit term that is 1 if a counter has another value `after` a clock than `before`.
+    fn counts(&mut self, before: VectorTermId, after: VectorTermId) -> VectorTermId {
+        match *self.terms.term(after) {
+            // The condition itself, so that it can be replaced by its value in other terms.
+            VectorTerm::Choice(condition, next, kept) if kept == before && next != before => {
+                condition
+            }
+            _ => {
+                let equal = self.terms.equal(before, after);
+                self.terms.not(equal)
+            }
+        }
+    }
+
     /// Proves that the outputs of netlist and Verilog are the same when the results of a point are shown.
     fn follows_a_point(&mut self) -> Result<(), EarlyEnd> {
-        let nets = self.netlist();
+        let nets = self.netlist()?;
         let module = self.module;
-        let mut held = module.power_up(&mut self.terms);
+        let mut held = self.registers_in_slot(0);
         let mut written: Vec<Vec<Vec<VectorTermId>>> = Vec::new();
         for clock in 0..=self.latency {
-            let (roles, inputs, delays) = (self.roles, &mut self.inputs, self.delays);
+            let (roles, inputs, counters) = (self.roles, &mut self.inputs, self.counters);
             let input = |terms: &mut VectorTerms, name: &str, width: u32| {
                 input(terms, inputs, name, roles.get(name).copied(), width, clock)
             };
             let read = |terms: &mut VectorTerms, read: Read| {
-                let before = clock.checked_sub(delays[read.memory][read.port]);
-                match before {
+                let delay = counters.delay(read, clock);
+                match delay.and_then(|delay| clock.checked_sub(delay)) {
                     Some(before) => written[before][read.memory].clone(),
                     None => module.memories[read.memory].any(terms),
                 }
@@ -350,11 +294,17 @@ impl TextComparison<'_> {
     }
 
     /// Returns the term of every net of the netlist in each clock, from the clock in which the point enters to the one with its
-    /// results.
-    fn netlist(&mut self) -> Vec<Vec<VectorTermId>> {
+    /// results. The slot counter begins with 0. Fails if the netlist does not take the point in this slot.
+    fn netlist(&mut self) -> Result<Vec<Vec<VectorTermId>>> {
         let design = self.design;
         let execution = Execution::new(&mut self.terms, design);
         let mut state = execution.power_up(&mut self.terms);
+        let slot = design.pipeline.as_ref().and_then(|pipeline| pipeline.slot);
+        for (register, held) in design.registers.iter().zip(&mut state.registers) {
+            if Some(register.q) == slot {
+                *held = self.terms.constant(0, design.width(register.q));
+            }
+        }
         let mut nets = Vec::new();
         for clock in 0..=self.latency {
             let inputs = &mut self.inputs;
@@ -370,7 +320,11 @@ impl TextComparison<'_> {
             state = execution.edge(&mut self.terms, &state, &values);
             nets.push(values);
         }
-        nets
+        if let Some(ready) = design.port(|role| role == Role::InReady) {
+            let taken = self.terms.constant_of(nets[0][ready.net.index()]);
+            ensure!(taken == Some(1), "the netlist does not take a point in slot 0");
+        }
+        Ok(nets)
     }
 
     /// Replaces the terms in registers of the Verilog by the terms of nets that the solver proves equal.
