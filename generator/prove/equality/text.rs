@@ -231,19 +231,25 @@ impl TextComparison<'_> {
             self.must_equal(Some((moves, true)), *one, *other, why)?;
         }
         for memory in &module.memories {
-            let [one, other] = [&any, &taken].map(|it| {
-                let control = memory.control(&mut self.terms, it);
-                [control, memory.written(&mut self.terms, it)].concat()
-            });
-            for (one, other) in one.into_iter().zip(other) {
-                self.must_equal(Some((moves, true)), one, other, why)?;
-            }
+            let [one, other] = [&any, &taken].map(|values| memory.control(&mut self.terms, values));
             // A read gives the same word in both only if the address is the same.
-            let [one, other] = [&any, &taken].map(|it| memory.control(&mut self.terms, it));
             let reads = 1..=memory.reads.len();
-            if one[reads.clone()] != other[reads] {
+            if one[reads.clone()] != other[reads.clone()] {
                 let why = "a memory of the text is read by what is no register";
                 return Err(TextVerdict::Unread(why.to_owned()).into());
+            }
+            let enables = reads.end() + 1..one.len();
+            for at in enables.clone() {
+                self.must_equal(Some((moves, true)), one[at], other[at], why)?;
+            }
+            // A word that is not written has no address and no data that matter.
+            if other[enables].iter().all(|&enable| self.terms.constant_of(enable) == Some(0)) {
+                continue;
+            }
+            self.must_equal(Some((moves, true)), one[0], other[0], why)?;
+            let [one, other] = [&any, &taken].map(|values| memory.written(&mut self.terms, values));
+            for (one, other) in one.into_iter().zip(other) {
+                self.must_equal(Some((moves, true)), one, other, why)?;
             }
         }
         Ok(())
