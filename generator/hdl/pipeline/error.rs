@@ -1,4 +1,4 @@
-//! Defines the error for a pipeline that cannot be made as requested. It states the nearest request that can be satisfied.
+//! Defines the error for a pipeline that cannot be made as requested. The error states the nearest request that can be satisfied.
 
 use std::fmt;
 
@@ -6,9 +6,11 @@ use crate::netlist::Design;
 use glint_base::codes;
 use glint_base::diagnostic::{Diagnostic, SourceLocation};
 
-/// The reason why Glint cannot turn a sequential design into a pipeline with the clock, stages or interval that the user requested.
+/// The reason why Glint cannot turn a sequential design into a pipeline with the clock, stages or interval that the user
+/// requested.
 ///
-/// A variant states the nearest possible value. For example, a request for 900 MHz may fail with `Clock { nearest: 130.0, .. }`.
+/// Most variants state the nearest possible value. For example, a request for 900 MHz may fail with
+/// `Clock { nearest: 130.0, .. }`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum PipelineErrorKind {
     /// The microprogram cannot be unrolled into a computation without loops.
@@ -20,17 +22,17 @@ pub enum PipelineErrorKind {
         /// Whether the clock could be reached if multipliers had output registers.
         needs_registered: bool,
     },
-    /// The pipeline would have more stages than make it faster.
+    /// The requested number of stages is larger than useful: the additional stages would not make the pipeline faster.
     TooManyStages {
         /// The largest number of stages that is of use.
         most: usize,
     },
-    /// The memories and the registers of multipliers need more stages than requested.
+    /// The requested number of stages is too small. Block memories and the registers of multipliers need more stages.
     TooFewStages {
         /// The smallest number of stages.
         least: usize,
     },
-    /// The interval exceeds the number of clocks that the sequential core takes for a point.
+    /// The requested interval exceeds the number of clocks that the sequential core takes for a point.
     Interval {
         /// The largest interval, in clocks.
         most: usize,
@@ -42,7 +44,7 @@ pub enum PipelineErrorKind {
         /// The highest rate, in million points a second.
         most: f64,
     },
-    /// Every interval needs more multipliers than requested.
+    /// Every possible interval needs more multipliers than the user allows.
     Multipliers {
         /// The smallest number of multipliers that is possible.
         fewest: usize,

@@ -23,7 +23,7 @@ pub struct Pass {
     pub description: &'static str,
     /// Returns whether Glint runs the pass for a pipeline with these options.
     pub applies: fn(&Options) -> bool,
-    /// Returns the computation as the pass rewrites it for an FPGA target.
+    /// Returns the computation after the pass has rewritten it for an FPGA target.
     pub run: fn(&Unrolled, &Timing) -> Unrolled,
 }
 
@@ -98,11 +98,11 @@ mod tests {
     use super::{PASSES, printed};
     use glint_base::target::TIMINGS;
 
-    /// Combinations of operands that are computed of a test.
+    /// The largest number of combinations of operand values that one test file may have.
     const MOST: u64 = 1 << 16;
 
-    /// In every file: the pass makes the computation behind the arrow, and the results are the same for every
-    /// operand.
+    /// For every test file, the pass must return the computation behind the arrow `->`. The results of both computations must be
+    /// the same for every combination of operand values.
     #[test]
     fn passes_make_what_their_files_say() {
         let place = Path::new(env!("CARGO_MANIFEST_DIR")).join("pipeline/passes");
