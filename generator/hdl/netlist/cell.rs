@@ -12,14 +12,16 @@ pub enum Op<N = NetId> {
     /// The operand with copies of its sign bit (signed operand) or zeros (unsigned) above it; the
     /// result is wider.
     Extend(N),
-    /// The bits of the operand from `low` up, as many as the result is wide.
+    /// The bits of the operand from `low` up, as many as the result is wide. For example, `low` 2 and a result of 3 bits give the
+    /// bits 2, 3 and 4.
     Slice {
         /// The operand whose bits are taken.
         of: N,
         /// The lowest bit taken.
         low: u32,
     },
-    /// The bits of all operands joined, the first operand in the top bits; the result is as wide as all operands together.
+    /// The bits of all operands joined, the first operand in the top bits; the result is as wide as all operands together. For
+    /// example, `10` and `011` give `10011`.
     Concat(Vec<N>),
     /// Every bit inverted; same width.
     Not(N),
@@ -44,8 +46,8 @@ pub enum Op<N = NetId> {
     Mul(N, N),
     /// A bit that is 1 if the operands are equal. Both operands have the same width.
     Equal(N, N),
-    /// A bit that is 1 if the first operand is less than the second. The operands have the same width, and both are signed or both
-    /// unsigned.
+    /// A bit that is 1 if the first operand is less than the second. The operands have the same width, and both are signed or
+    /// both unsigned.
     Less(N, N),
     /// A bit that is 1 if any bit of the operand is 1.
     Any(N),
@@ -62,8 +64,8 @@ pub enum Op<N = NetId> {
 }
 
 impl<N> Op<N> {
-    /// Returns the same kind of cell with other operands, such as `x + y` for `a + b`. `of` gives the new operand for each one, in
-    /// the order in which the cell states them.
+    /// Returns the same kind of cell with other operands, such as `x + y` for `a + b`. `of` gives the new operand for each one,
+    /// in the order in which the cell states them.
     pub fn map<M>(&self, mut of: impl FnMut(&N) -> M) -> Op<M> {
         match self {
             Self::Relabel(a) => Op::Relabel(of(a)),

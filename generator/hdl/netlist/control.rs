@@ -6,7 +6,7 @@ use glint_base::diagnostic::SourceLocation;
 /// The control unit of a device: an address counter, a run flag and a ROM of microinstructions.
 ///
 /// An idle device has the address 0 and the run flag 0. `start` sets the flag. From then on the device executes one
-/// microinstruction a clock, and [`Sequence`] says which comes next.
+/// microinstruction a clock, and the [`Sequence`] of a microinstruction determines its successor.
 #[derive(Clone, Debug)]
 pub struct Control {
     /// The fields of the control word, the most significant first.
@@ -23,8 +23,8 @@ pub struct Control {
     pub overlaps: bool,
 }
 
-/// A field of the control word: bits of a microinstruction that control one thing in the device. For example, `rough` has the field
-/// `operand_select` of two bits, which chooses among four pairs of factors.
+/// A field of the control word: bits of a microinstruction that control one thing in the device. For example, `rough` has the
+/// field `operand_select` of two bits, which chooses among four pairs of factors.
 #[derive(Clone, Debug)]
 pub struct Field {
     /// The name of this field of the control word, such as `operand_select`. It must be a legal Verilog identifier.
@@ -33,8 +33,8 @@ pub struct Field {
     pub net: NetId,
     /// The kind of thing that the field controls.
     pub kind: FieldKind,
-    /// The numbers of the field's lines in the block diagram of the document that describes the device, the most significant first.
-    /// It is empty if the diagram does not show them.
+    /// The numbers of the field's lines in the block diagram of the document that describes the device, the most significant
+    /// first. It is empty if the diagram does not show them.
     pub lines: Vec<u16>,
 }
 
@@ -71,7 +71,8 @@ pub enum Sequence {
     Next,
     /// The same microinstruction follows until `start` is high, and then the next one. The device is not busy here.
     WaitStart,
-    /// Microinstruction `to` follows if `condition` is 1, otherwise the next one. `to` may lie behind or ahead.
+    /// Microinstruction `to` follows if `condition` is 1, otherwise the microinstruction at the next address. `to` may be a lower
+    /// address (a loop), the same one, or a higher one (a jump).
     LoopWhile {
         /// The condition of the jump, a net of one bit in the datapath.
         condition: NetId,
@@ -95,9 +96,9 @@ impl Control {
         }
     }
 
-    /// Returns the microinstructions that can follow microinstruction `at`, in ascending order. If the last microinstruction
-    /// does not end, its successor is the number of microinstructions. An idle device stays in microinstruction 0. For example,
-    /// microinstruction 0 has the successors 0 and 1.
+    /// Returns the addresses of the microinstructions that can follow microinstruction `at`, in ascending order. If the last
+    /// microinstruction does not end the computation, its successor is the number of microinstructions. An idle device stays in
+    /// microinstruction 0. For example, microinstruction 0 has the successors 0 and 1.
     pub fn successors(&self, at: usize) -> Vec<usize> {
         let next = at + 1;
         let mut successors = match self.microprogram[at].sequence {
@@ -113,8 +114,8 @@ impl Control {
         successors
     }
 
-    /// Returns the microinstructions from which control reaches microinstruction `at` in exactly `clocks` clocks, in ascending
-    /// order.
+    /// Returns the addresses of the microinstructions from which control reaches microinstruction `at` in exactly `clocks`
+    /// clocks, in ascending order. With 0 clocks, this is `at` itself.
     pub fn predecessors(&self, at: usize, clocks: u32) -> Vec<usize> {
         let mut after = vec![at];
         for _ in 0..clocks {

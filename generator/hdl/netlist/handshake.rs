@@ -20,7 +20,7 @@ pub struct Handshake {
 }
 
 impl Role {
-    /// Returns whether the net is an output of the handshake: `valid`, `busy` or `done`.
+    /// Returns whether the port is an output of the handshake: `valid`, `busy` or `done`, or `in_ready` of a pipeline.
     pub fn is_status(self) -> bool {
         matches!(self, Self::Valid | Self::Busy | Self::Done | Self::InReady)
     }

@@ -99,7 +99,8 @@ pub struct Net {
     pub range: Interval,
     /// The one thing that drives the net, such as an input port, a register or a cell.
     pub driver: Driver,
-    /// The number of the block that drives this net, in the block diagram of the document that describes the device.
+    /// The number of the block that drives this net, in the block diagram of the document that describes the device. `None` if
+    /// the diagram does not number it.
     pub block: Option<u16>,
     /// A comment of one line on the net, which the Verilog shows, or an empty text.
     pub doc: String,
@@ -140,9 +141,9 @@ pub struct NetlistRegister {
     pub q: NetId,
     /// The data input; `None` is an error that [`Design::verify`] reports.
     pub data: Option<NetId>,
-    /// The load enable, one bit. Without it the register loads on every rising edge.
+    /// The load enable, one bit. If it is `None`, the register loads on every rising edge.
     pub enable: Option<NetId>,
-    /// The bit pattern that the register loads on a rising edge with `rst_n` low. Without it a reset does not affect the
+    /// The bit pattern that the register loads on a rising edge with `rst_n` low. If it is `None`, a reset does not affect the
     /// register.
     pub reset: Option<u64>,
     /// The purpose of the register.
@@ -177,10 +178,11 @@ pub struct NetlistRom {
     pub data: NetId,
     /// Whether the ROM is read at the rising edge (block RAM) rather than without a clock (logic).
     pub synchronous: bool,
-    /// The read enable of a synchronous ROM, one bit. The ROM keeps its output while it is 0; without it, the ROM reads at every
-    /// edge.
+    /// The read enable of a synchronous ROM, one bit. The ROM keeps its output while the enable is 0. If it is `None`, the ROM
+    /// reads at every rising edge.
     pub enable: Option<NetId>,
-    /// A ROM with the same words, if this ROM is the second read port of its memory.
+    /// The first read port of this ROM's memory, if this ROM is the second read port; it must have the same words. Otherwise
+    /// `None`.
     pub shares: Option<RomId>,
     /// The contents of the ROM: its words as bit patterns, from address 0.
     pub words: Vec<u64>,
@@ -188,7 +190,8 @@ pub struct NetlistRom {
     pub doc: Vec<String>,
     /// A comment for each word of the ROM, or an empty list.
     pub comments: Vec<String>,
-    /// The number of the ROM in the block diagram of the document that describes the device.
+    /// The number of the ROM in the block diagram of the document that describes the device. `None` if the diagram does not
+    /// number it.
     pub block: Option<u16>,
     /// The place in the Rust source where the device's description makes the ROM.
     pub location: SourceLocation,
@@ -229,7 +232,7 @@ pub enum Role {
     InReady,
     /// Output `side_out` of a pipeline: the value of `side_in` that came with the point whose results are on the outputs.
     SideOut,
-    /// Output `valid`, high exactly in the microinstructions that raise it. The results are then on the outputs.
+    /// Output `valid`, or `out_valid` of a pipeline: high while the results of a point are on the outputs.
     Valid,
     /// Output `busy`, high from the clock after `start` to the end of the computation.
     Busy,
@@ -267,7 +270,8 @@ pub struct About {
     pub title: String,
     /// The formula that the device computes, as text.
     pub formula: String,
-    /// The document that describes the device, and the part of it, as text for people; empty without one.
+    /// The document that describes the device, and the part of the document, as text for people. Empty if no document describes
+    /// the device.
     pub source: String,
     /// Paragraphs about the device: how its description interprets the source document, its formats and its limits.
     pub notes: Vec<Note>,
@@ -295,7 +299,8 @@ pub struct Note {
 pub enum Topic {
     /// The paragraph is about the device itself, whatever its architecture.
     Device,
-    /// The paragraph is about hardware that a microprogram uses several times: multipliers, the control ROM, the clocks of a loop.
+    /// The paragraph is about hardware that a microprogram uses several times: multipliers, the control ROM, the clocks of a
+    /// loop.
     Microprogram,
     /// The paragraph is about writes to operands, and how long the outputs keep their values.
     Writes,
@@ -355,8 +360,8 @@ impl Design {
         &self.registers[id.index()]
     }
 
-    /// Returns whether `rom` stores control words: it is the control ROM, or another ROM for the fields that do not fit into the
-    /// words of the control ROM.
+    /// Returns whether `rom` stores control words. It does if it is the control ROM, or another ROM at the same address, which
+    /// stores the fields that do not fit into the words of the control ROM.
     pub fn is_control_memory(&self, rom: &NetlistRom) -> bool {
         self.roms.get(self.control.rom.index()).is_some_and(|it| it.address == rom.address)
     }
@@ -400,8 +405,8 @@ impl Design {
         self.ports.iter().find(|port| wanted(port.role))
     }
 
-    /// Returns the nets on which net `id` depends within one clock: operands of its cell, the address of an asynchronous ROM, the
-    /// control ROM behind a field. Nothing for inputs, constants, registers and synchronous ROMs.
+    /// Returns the nets on which net `id` depends within one clock: the operands of its cell, the address of an asynchronous ROM,
+    /// or the control word behind a field. The list is empty for inputs, constants, registers and synchronous ROMs.
     pub fn combinational_inputs(&self, id: NetId) -> Vec<NetId> {
         match &self.net(id).driver {
             Driver::Op(op) => op.operands(),
@@ -415,10 +420,11 @@ impl Design {
         }
     }
 
-    /// Returns all nets of the design in an order in which each follows the nets that it depends on within one clock.
+    /// Returns all nets of the design in an order in which each net follows the nets on which it depends within one clock.
     ///
     /// # Errors
-    /// Fails if there is a combinational loop. The error is the nets along the loop.
+    /// Fails if there is a combinational loop. The error is the nets along the loop: each net depends on the next one, and the
+    /// last on the first.
     pub fn levelise(&self) -> Result<Vec<NetId>, Vec<NetId>> {
         #[derive(Clone, Copy, PartialEq)]
         enum VisitMark {
@@ -432,7 +438,7 @@ impl Design {
             if mark[root as usize] != VisitMark::New {
                 continue;
             }
-            // Each entry: a net and the inputs of it that are still to be visited.
+            // Each entry has a net, and those of its inputs that the search has not visited.
             let mut path = vec![(NetId(root), self.combinational_inputs(NetId(root)))];
             mark[root as usize] = VisitMark::Open;
             while let Some((net, pending)) = path.last_mut() {

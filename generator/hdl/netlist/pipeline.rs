@@ -20,7 +20,7 @@ pub struct Pipeline {
     /// pipeline accepts a point in slot 0, and a point is in stage s while the slot is s modulo the interval. For example, with
     /// an interval of 4 a point is in stage 6 while the slot is 2.
     pub interval: usize,
-    /// The counter of slots, if the interval is longer than 1. It counts one further whenever the points move to the next stage.
+    /// The counter of slots, or `None` if the interval is 1. It counts one further whenever the points move to the next stage.
     pub slot: Option<NetId>,
     /// For each slot in which registers load a value that they must keep for a whole interval, the net that enables these
     /// registers.
@@ -60,14 +60,15 @@ pub struct Pipeline {
 pub struct Unit {
     /// The name of the multiplier in the Verilog, and of the register behind it.
     pub name: String,
-    /// The nets of the multiplier's muxes, its operand registers and its product, followed by the net of the register behind it.
+    /// The nets of the multiplier: its muxes if it has any, its two operand registers, its product, and the register behind it.
     pub nets: Vec<NetId>,
-    /// For each slot (clock modulo the interval), the name of the product that the multiplier computes in it.
+    /// For each slot (clock modulo the interval), the name of the product that the multiplier computes in this slot; `None` if it
+    /// computes none.
     pub serves: Vec<Option<String>>,
 }
 
-/// A stage of a pipeline: the logic between two rows of registers. For example, the first stage of `rough_pipelined` has 4.4 ns of
-/// logic and 86 register bits.
+/// A stage of a pipeline: the logic between two rows of registers. For example, the first stage of `rough_pipelined` has 4.4 ns
+/// of logic and 86 register bits.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Stage {
     /// The microinstructions of the sequential design that compute the values of this stage.
@@ -82,8 +83,8 @@ pub struct Stage {
     pub delayed_bits: u32,
 }
 
-/// A checkpoint: a value of a pipeline that a register of the sequential design also holds in some microinstruction. Checks compare
-/// both values.
+/// A checkpoint: a value of a pipeline that a register of the sequential design also holds in some microinstruction. Checks
+/// compare both values.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Checkpoint {
     /// The name of the register in the sequential design.
@@ -97,8 +98,8 @@ pub struct Checkpoint {
 }
 
 impl Pipeline {
-    /// Returns the first clock in which a net of the pipeline has its value for a point. The pipeline accepts the point in clock 0,
-    /// so this is the stage of the net.
+    /// Returns the first clock in which a net of the pipeline has its value for a point. The pipeline accepts the point in clock
+    /// 0, so this is the stage of the net.
     pub fn clock_of(&self, net: NetId) -> usize {
         self.stage_of[net.index()]
     }
@@ -108,8 +109,8 @@ impl Pipeline {
         self.units.iter().any(|unit| unit.nets.contains(&net))
     }
 
-    /// Returns the named nets whose logic is in stage number `stage` of the pipeline, with the names of their values, in the order
-    /// of the design. It leaves out nets of the handshake.
+    /// Returns the named nets whose logic is in stage number `stage` of the pipeline, with the names of their values, in the
+    /// order of the design. It leaves out nets of the handshake.
     pub fn computed<'a>(
         &'a self,
         design: &'a Design,
@@ -119,7 +120,7 @@ impl Pipeline {
         for ((id, net), &at) in design.iter().zip(&self.stage_of) {
             let is_computed_here = match net.driver {
                 Driver::Op(_) => at == stage,
-                // The word of a block memory is there a stage after its address.
+                // The word of a block memory is available one stage after its address.
                 Driver::Rom(rom) => at == stage + usize::from(design.rom(rom).synchronous),
                 _ => false,
             };

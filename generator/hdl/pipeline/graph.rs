@@ -65,8 +65,8 @@ impl Label {
         Self { name, doc: String::new(), block: None, named: true, part_of: None, location }
     }
 
-    /// Returns the label of a part of the labelled value, such as its low bits. A part of a part is named after the whole value, so
-    /// that names stay short. For example, the part `low` of `base` is named `base_low`, and the part `high` of that part
+    /// Returns the label of a part of the labelled value, such as its low bits. A part of a part is named after the whole value,
+    /// so that names stay short. For example, the part `low` of `base` is named `base_low`, and the part `high` of that part
     /// `base_high`.
     pub fn part(&self, name: &str) -> Self {
         let whole = self.part_of.as_ref().unwrap_or(&self.name);
@@ -98,8 +98,8 @@ pub struct Graph {
     /// The nodes of the graph. The number of a node is its index in this list.
     pub nodes: Vec<Node>,
     known: HashMap<(Cell, u32, bool), NodeId>,
-    /// The microinstruction that is being unrolled, as a position in [`super::unroll::Unrolled::steps`]. New nodes get this number
-    /// as their `step`.
+    /// The microinstruction that is being unrolled, as a position in [`super::unroll::Unrolled::steps`]. New nodes get this
+    /// number as their `step`.
     pub step: usize,
 }
 
@@ -211,8 +211,8 @@ impl Graph {
         }
     }
 
-    /// Returns a node with the value of the combinational cell `op`. It may be an existing or a simpler node. For example, a sum of
-    /// two constants becomes a constant.
+    /// Returns a node with the value of the combinational cell `op`. It may be an existing or a simpler node. For example, a sum
+    /// of two constants becomes a constant.
     pub fn op(&mut self, op: NodeOp, format: Format, label: &Label) -> NodeId {
         if let Some(id) = self.fold(&op, format, label) {
             let node = &mut self.nodes[id.index()];

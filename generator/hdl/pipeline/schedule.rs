@@ -690,8 +690,8 @@ impl<'a> ScheduleProblem<'a> {
         last
     }
 
-    /// Returns the multipliers that serve several products under this schedule, with the product that each computes in each slot. A
-    /// slot is the number of a clock modulo the interval, the number of clocks between points.
+    /// Returns the multipliers that serve several products under this schedule, with the product that each computes in each slot.
+    /// A slot is the number of a clock modulo the interval, the number of clocks between points.
     pub fn units(&self, schedule: &Schedule) -> Vec<MultiplierUnit> {
         let mut units = Vec::new();
         for kind in &self.kinds {
