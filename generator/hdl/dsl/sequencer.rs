@@ -12,9 +12,9 @@ use crate::netlist::{
 use glint_base::diagnostic::SourceLocation;
 use glint_base::fixed::{Format, MAX_WIDTH};
 
-/// The fields of the control word that the sequencer itself uses, as far as the microprogram needs them.
+/// The fields of the control word that the sequencer itself uses. A field is `None` if the microprogram does not need it.
 pub struct SequenceFields {
-    /// The field that raises `valid`; `None` if `valid` follows a signal.
+    /// The field that raises `valid`; `None` if `valid` follows a signal instead.
     pub valid: Option<FieldId>,
     pub wait: Option<FieldId>,
     pub again: Option<FieldId>,
@@ -132,8 +132,8 @@ impl Sequencer {
     }
 }
 
-/// Returns the net that drives `valid`: the signal of [`Designer::valid_after`], delayed by its number of clocks, or
-/// the run flag without such a signal. A reset drops the results on their way.
+/// Returns the net that drives `valid`: the signal of [`Designer::valid_after`], delayed by its number of clocks. A reset clears
+/// the registers of this delay, and so drops the results on their way.
 fn valid_line(d: &Designer) -> NetId {
     let Some((mut source, clocks)) = d.with(|inner| inner.valid) else {
         return d.run;
@@ -155,7 +155,8 @@ fn valid_line(d: &Designer) -> NetId {
     source
 }
 
-/// Moves fields of parts, the last first, into memories beside the control ROM, until the others fit a control word.
+/// Limits the control word to 64 bits. While the fields are wider, moves fields of parts, the last field first, into additional
+/// ROMs with the same address. Fields of the description itself stay in the control word.
 fn moved_beside(d: &Designer, microinstructions: &mut [Microinstruction], address: NetId) {
     let width_of = |field: &Field| d.net(field.net).format.width();
     let mut fields = d.with(|inner| inner.design.control.fields.clone());
