@@ -122,8 +122,9 @@ impl<'d> Signal<'d> {
         self.wiring("scaled", scaled, range, Op::Concat(vec![self.id, zeros.id]))
     }
 
-    /// Returns as many bits as `format` is wide, from bit `low` up, as a number of `format`. For example, `bits(4, u4.0)` of a
-    /// `u8.0` signal gives its upper half. Reports a mistake if the signal has too few bits.
+    /// Returns as many bits as `format` is wide, from bit `low` up, as a number of `format`. For example,
+    /// `x.bits(4, Format::unsigned(4, 0))` is the upper half of a `u8.0` signal `x`. Reports a mistake if the signal has too few
+    /// bits.
     #[must_use]
     #[track_caller]
     pub fn bits(self, low: u32, format: Format) -> Self {

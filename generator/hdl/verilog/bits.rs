@@ -1,8 +1,8 @@
-//! Reduces wiring to a normal form: every word becomes a list of bit ranges of nets and constants.
+//! Reduces wiring to a normal form: every word (the bits of a net) becomes a list of bit ranges of nets and constants.
 //!
 //! Slices, extensions, concatenations, renamed nets and constants are wiring, which needs no hardware. [`Bits`] represents any
-//! mixture of them as pieces of nets that the Verilog declares, constants, and copies of a sign bit. For example, the emitter
-//! finds `a[5:2]` behind three nets of wiring. It also finds out which bits of a net nobody reads.
+//! mixture of them as pieces of declared nets, constants, and copies of a sign bit. For example, the emitter finds `a[5:2]`
+//! behind three nets of wiring, and the bits of a net that no logic reads.
 
 use crate::netlist::NetId;
 use glint_base::fixed::mask;
@@ -46,7 +46,7 @@ impl BitRun {
         }
     }
 
-    /// Returns `width` bits from `low` up.
+    /// Returns `width` bits of this run, from bit `low` up.
     fn slice(self, low: u32, width: u32) -> Self {
         match self {
             Self::Net { net, low: from, .. } => Self::Net { net, low: from + low, width },
@@ -58,7 +58,8 @@ impl BitRun {
         }
     }
 
-    /// Joins both pieces into one, `self` above `below`, if they are neighbours of one origin.
+    /// Joins two runs into one, `self` above `below`. Returns `None` unless they are adjacent bits of one net, or constants of at
+    /// most 64 bits together.
     fn join(self, below: Self) -> Option<Self> {
         match (self, below) {
             (Self::Net { net, low, width }, Self::Net { net: other, low: from, width: count })

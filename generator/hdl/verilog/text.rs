@@ -70,8 +70,8 @@ pub fn ascii(text: &str) -> String {
     plain
 }
 
-/// Returns `text` as an upper-case identifier; all other characters become underscores, one for each run. For example, `cos γ`
-/// becomes `COS_GAMMA`.
+/// Returns `text` as an upper-case identifier; each run of other characters becomes one underscore. For example, `cos γ` becomes
+/// `COS_GAMMA`.
 pub fn constant_name(text: &str) -> String {
     let mut name = String::new();
     for sign in ascii(text).chars() {
@@ -94,7 +94,8 @@ pub fn literal(value: u64, width: u32) -> String {
     }
 }
 
-/// Returns the only one of the Verilog texts, or the concatenation of several. For example, `a` and `b` give `{a, b}`.
+/// Returns the only one of the Verilog texts, or the concatenation of several, the first in the top bits. For example, `a` and
+/// `b` give `{a, b}`.
 pub fn together(words: Vec<String>) -> String {
     match &words[..] {
         [only] => only.clone(),
@@ -110,14 +111,15 @@ pub fn range(width: u32) -> String {
     }
 }
 
-/// Returns the lines of a Verilog statement with `indent` spaces before it. It is broken at spaces if it exceeds [`COLUMNS`].
+/// Returns the lines of a Verilog statement with `indent` spaces before it. A statement longer than [`COLUMNS`] is broken at
+/// spaces, and further lines are indented by 8 more.
 pub fn statement(indent: usize, text: &str) -> Vec<String> {
     broken(&" ".repeat(indent), &" ".repeat(indent + 8), text)
 }
 
 /// Returns `text` as the lines of a Verilog comment with `indent` spaces before it, or no lines for an empty text.
 pub fn comment(indent: usize, text: &str) -> Vec<String> {
-    // Tools take a comment that begins with their name for an order.
+    // Some tools read a comment that begins with their name as a command.
     let text = ascii(text).replace("verilator", "Verilator").replace("synopsys", "Synopsys");
     if text.trim().is_empty() {
         return Vec::new();
@@ -142,7 +144,8 @@ pub fn annotated(code: &str, indent: usize, note: &str) -> Vec<String> {
     lines
 }
 
-/// Breaks `text` into lines of at most [`COLUMNS`], at spaces alone.
+/// Breaks `text` at spaces into lines of at most [`COLUMNS`] columns. The first line begins with `first`, all others with
+/// `further`. A single longer word is not broken.
 fn broken(first: &str, further: &str, text: &str) -> Vec<String> {
     let mut lines = Vec::new();
     let mut line = first.to_owned();
@@ -162,7 +165,7 @@ fn broken(first: &str, further: &str, text: &str) -> Vec<String> {
     lines
 }
 
-/// The identifiers that one Verilog module uses already.
+/// The identifiers that one Verilog module already uses.
 #[derive(Clone, Debug, Default)]
 pub struct Names(HashSet<String>);
 
