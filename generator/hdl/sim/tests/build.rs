@@ -73,7 +73,7 @@ impl Build {
         data
     }
 
-    /// Returns a new field of the control word, below the fields that are already there.
+    /// Adds a field of the control word, below the fields that already exist, and returns its net.
     pub fn field(&mut self, name: &str, width: u32) -> NetId {
         let id = FieldId(self.design.control.fields.len() as u32);
         let format = Format::unsigned(width as i32, 0);

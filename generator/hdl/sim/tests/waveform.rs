@@ -31,7 +31,7 @@ impl Write for Shared {
     }
 }
 
-/// Takes this number of bytes, then fails.
+/// A file that takes this number of bytes, and then fails.
 struct Full(usize);
 
 impl Write for Full {
