@@ -73,8 +73,7 @@ impl fmt::Display for Code {
     }
 }
 
-/// Returns the explanation of each code, in the order of the codes: the code as text, such as `G0203`, its title, and the
-/// explanation in Markdown.
+/// Returns for each code, in order, the code as text, such as `G0203`, its title, and its explanation in Markdown.
 pub fn pages() -> impl Iterator<Item = (&'static str, &'static str, &'static str)> {
     PAGES.split("\n## ").skip(1).filter_map(|page| {
         let (heading, text) = page.split_once('\n')?;

@@ -5,8 +5,8 @@ use std::collections::HashSet;
 use std::hash::Hash;
 
 /// Marks the nodes on which any of the `roots` depends, including the roots themselves. The result has an entry for each of the
-/// `count` nodes, by number. A node must have a higher number than its operands, which `operands` returns. For example, for y = a
-/// + b the root y marks y, a and b, but not a node c that only another root reads.
+/// `count` nodes, by number. A node must have a higher number than its operands, which `operands` returns. For example, with y =
+/// a + b, the root y marks y, a and b, but no other node.
 pub fn needed<I: IntoIterator<Item = usize>>(
     count: usize,
     roots: impl IntoIterator<Item = usize>,

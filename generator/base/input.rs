@@ -60,9 +60,9 @@ pub fn text(path: &Path) -> Result<Option<String>> {
     }
 }
 
-/// Returns the records in a directory, each with its path: the `*.json` files that can be read as a `T`, in the order of their
-/// names. Files with JSON of another structure are ignored, and so are all other files. A directory that does not exist has no
-/// records.
+/// Returns the records in a directory, each with its path, in the order of their names. A record is a `*.json` file that can be
+/// read as a `T`. Files with JSON of another structure are ignored, and so are all other files. A directory that does not exist
+/// has no records.
 ///
 /// # Errors
 /// Fails if the directory or a `*.json` file in it cannot be read, or if such a file is no JSON.

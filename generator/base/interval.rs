@@ -36,9 +36,9 @@ pub fn fits(interval: Interval, format: Format) -> bool {
     format.holds(interval.0) && format.holds(interval.1)
 }
 
-/// Returns the multiple of 2^width that moves every number of the interval into the format, as hardware does when it drops the
-/// bits above the format. Returns `None` if no single multiple works for all numbers. For example, `(256, 260)` in `u8.0` gives
-/// −256, and `(250, 260)` gives `None`.
+/// Returns the multiple of 2^width that moves every number of the interval into the format. Hardware adds this number when it
+/// drops the bits above the format. Returns `None` if no single multiple works for all numbers. For example, `(256, 260)` in
+/// `u8.0` gives −256, and `(250, 260)` gives `None`.
 pub fn wrap((low, high): Interval, format: Format) -> Option<i128> {
     let (least, most) = format.range();
     let modulus = most - least + 1;

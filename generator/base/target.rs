@@ -34,9 +34,9 @@ pub struct DelayMemory {
 }
 
 impl DelayMemory {
-    /// Returns whether a memory of `words` words of `bits` bits, with its address counter, takes fewer look-up tables and
-    /// registers than the registers that it replaces. For example, on ECP5 the result is true for 3 words of 4 bits, and false
-    /// for 2.
+    /// Returns whether a memory of `words` words of `bits` bits takes fewer look-up tables and registers, with its address
+    /// counter, than the registers that it replaces. For example, on ECP5 the result is true for 3 words of 4 bits, and false for
+    /// 2.
     pub fn pays(self, words: usize, bits: u32) -> bool {
         let words = words as u32;
         let memories = bits.div_ceil(self.width) * words.div_ceil(self.words);
@@ -62,8 +62,8 @@ pub struct Timing {
     pub name: &'static str,
     /// The largest widths of a multiplier's unsigned operands in bits, the wider operand first. For example, (18, 18) on ECP5.
     pub multiplier: (u32, u32),
-    /// The largest size of a partial product that Glint adds up in look-up tables instead of using a multiplier: the number of
-    /// bits in all its rows. On ECP5 three rows of 21 bits and their sums take about 110 look-up tables, and four rows of 22 bits
+    /// The largest size of a partial product that Glint adds up in look-up tables instead of a multiplier. The size is the number
+    /// of bits in all rows. On ECP5 three rows of 21 bits and their sums take about 110 look-up tables, and four rows of 22 bits
     /// take
     /// 160. The limit is higher for iCE40, because its smaller chips have few multipliers.
     pub row_bits: u32,
@@ -87,8 +87,8 @@ pub struct Timing {
     pub registered: Option<Registered>,
     /// The delay from the rising edge to the output of a block memory, without the delay of a register.
     pub block: f64,
-    /// The extra delay of the wire to the address of a block memory, compared with a wire to a register: block memories
-    /// occupy only a few columns of the chip.
+    /// The extra delay of the wire to the address of a block memory, compared with a wire to a register. Block memories occupy
+    /// only a few columns of the chip.
     pub address: f64,
     /// The size of a block memory, and the ROMs that synthesis puts into block memories.
     pub blocks: BlockMemory,
@@ -141,10 +141,9 @@ pub struct Chip {
 }
 
 impl Chip {
-    /// Returns the resources of which a design needs more than the chip has. `wanted` has the numbers of look-up tables, DSP
-    /// blocks and block RAMs. Each entry of the result has the index of the resource in `wanted`, the number that the design
-    /// needs, and the number on the chip. For example, 6000 look-up tables and 8 DSP blocks give `(0, 6000, 5280)` on the iCE40
-    /// UP5K.
+    /// Returns the resources that the chip has too few of for a design. `wanted` has the numbers of look-up tables, DSP blocks
+    /// and block RAMs. Each entry of the result has the index of the resource in `wanted`, the number that the design needs, and
+    /// the number on the chip. For example, 6000 look-up tables and 8 DSP blocks give `(0, 6000, 5280)` on the iCE40 UP5K.
     pub fn lack(&self, wanted: [u64; 3]) -> Vec<(usize, u64, u64)> {
         let all = wanted.into_iter().zip(self.has).enumerate();
         all.filter(|(_, (wanted, has))| wanted > has)
@@ -191,8 +190,8 @@ pub struct Family {
     pub least_yosys: (u32, u32),
     /// The cells that count as look-up tables. A carry cell that replaces two look-up tables counts as two.
     pub luts: Kinds,
-    /// For a family without DSP blocks, the kind of cell that multiplies in look-up tables, and a function that returns the
-    /// number of look-up tables of such a cell for operands of two widths. Otherwise `None`.
+    /// For a family without DSP blocks, the kind of cell that multiplies in look-up tables, and a function for its number of
+    /// look-up tables. The function takes the widths of both operands. Otherwise `None`.
     pub fabric_product: Option<(&'static str, LutsOfProduct)>,
     /// The cells that count as DSP blocks. Empty for a family without DSP blocks.
     pub dsps: Kinds,
@@ -289,8 +288,8 @@ impl Usage {
 mod tests {
     use super::*;
 
-    /// Compares the rule with Yosys 0.23 and 0.70, which put synchronous ROMs of a number of words and a width into look-up
-    /// tables or into blocks.
+    /// Compares the rule with Yosys 0.23 and 0.70: a synchronous ROM with a number of words and a width goes into look-up tables
+    /// or into blocks.
     #[test]
     fn roms_are_where_synthesis_puts_them() {
         let in_tables = [

@@ -57,8 +57,8 @@ impl BenchDifference {
 /// in the file `rsqrt_tb_window.v`. Building and running may each take at most `limit`.
 ///
 /// # Errors
-/// Fails if the simulator is missing or rejects the sources, if the bench crashes, takes too long or ends without a verdict, or
-/// if it writes no waveform.
+/// Fails if the simulator is missing or rejects the sources. Fails if the bench crashes, takes too long or ends without a
+/// verdict, or if it writes no waveform.
 pub fn bench_waveform(
     simulator: VerilogSimulator,
     files: &[(String, String)],

@@ -179,7 +179,7 @@ impl Tool {
         let shared = capture.clone();
         thread::spawn(move || {
             shared.drain(&mut reader);
-            // Sending fails only if the receiver no longer waits, after the time limit.
+            // Sending fails only if the time limit is over, so that the receiver does not wait.
             let _ = sender.send(());
         });
 

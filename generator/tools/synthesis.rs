@@ -14,8 +14,8 @@ use glint_base::target::{Family, Kinds};
 /// numbers of cells of the flat netlist.
 ///
 /// # Errors
-/// Fails if the files cannot be written, if Yosys fails or takes longer than `limit`, or if its statistics do not list the cells
-/// of `top`.
+/// Fails if the files cannot be written, or if Yosys fails or takes longer than `limit`. Fails if its statistics do not list the
+/// cells of `top`.
 pub fn synthesise(
     yosys: &Tool,
     files: &[(String, String)],

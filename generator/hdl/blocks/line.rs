@@ -1,5 +1,5 @@
-//! Builds the accumulator that computes the angles of the points along a scan line: the register `angle` starts at the operand
-//! `zeta_start` and grows by the operand `delta_zeta` every clock.
+//! Builds the accumulator for the angles of the points along a scan line. Its register `angle` starts at the operand `zeta_start`
+//! and grows by the operand `delta_zeta` every clock.
 //!
 //! A line is a row of neighbouring points that the device computes after one `start`. The devices `quad-cosine` and
 //! `cosine-squared` use the accumulator. [`Line`] makes the operands, the adder, the mux, the register and the counter of
@@ -43,8 +43,8 @@ pub struct LineBlocks {
     pub write: u16,
 }
 
-/// The accumulator of a scan line: the operands `delta_zeta`, `zeta_start` and `length`, the register `angle`, and the outputs
-/// `count`, `accumulate` and `write_angle`, which show the control lines.
+/// The accumulator of a scan line: the operands `delta_zeta`, `zeta_start` and `length`, and the register `angle`. Its outputs
+/// `count`, `accumulate` and `write_angle` show the control lines.
 ///
 /// A line of l = `length` intervals has l + 1 points, one a clock. The angle is a signed number that wraps around. Its format
 /// must therefore represent every angle of a line, or wrap at a full turn.
@@ -120,8 +120,8 @@ impl<'d> Line<'d> {
     }
 
     /// Sets the microprogram of a device that only computes lines. `clocks` is the number of clocks from a microinstruction that
-    /// loads an angle to its results on the outputs: one for the register of the angle, and one for every further register up to
-    /// the outputs. 0 counts as 1.
+    /// loads an angle to its results on the outputs. It is one for the register of the angle, and one more for every further
+    /// register up to the outputs. A value of 0 counts as 1.
     #[track_caller]
     pub fn microprogram(&self, clocks: u32) {
         let delay = clocks.max(1);

@@ -1,11 +1,10 @@
 //! Builds a table that approximates a function of one operand by linear interpolation, in segments that become shorter toward 0.
 //! For example, `rough` has such a table of sines.
 //!
-//! The operand u is an integer of C bits, or exactly 2^C. It is divided into ranges by factors of four: range 0 is the upper
-//! three quarters of the values, range 1 the upper three quarters of the rest, and so on. Range j has the values u in
-//! [2^(C−2j−2), 2^(C−2j)). In range j, u has C−2j bits, and its upper k_j bits select a segment. Below the last range, every
-//! value of u has its own entry. Segments are therefore short where a function such as √u is steep. The hardware needs a tree of
-//! muxes and no shifter.
+//! The operand u is an integer of C bits, or exactly 2^C. Its values are divided into ranges: range 0 is the upper three quarters
+//! of the values, range 1 the upper three quarters of the rest, and so on. Range j has the values u in [2^(C−2j−2), 2^(C−2j)). In
+//! range j, u has C−2j bits, and its upper k_j bits select a segment. Below the last range, every value of u has its own entry.
+//! Segments are therefore short where a function such as √u is steep. The hardware needs a tree of muxes and no shifter.
 
 use crate::dsl::{Designer, Signal};
 use glint_base::fixed::{Format, Overflow, Rounding, exp2};
@@ -31,8 +30,8 @@ struct EntryBlock {
     base: u32,
 }
 
-/// One entry of the table: the value at the start of its segment, and the rise over the segment, as raw values in the formats of
-/// [`SegmentedFormats`]. For example, with 8 fraction bits a base of 128 is 0.5.
+/// One entry of the table: the value at the start of its segment, and the rise over the segment. Both are raw values in the
+/// formats of [`SegmentedFormats`]. For example, with 8 fraction bits a base of 128 is 0.5.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Entry {
     /// The value at the start of the segment.
@@ -208,8 +207,7 @@ pub fn interpolate<'d>(
     d.narrow(&format!("{name}_value"), sum, value, Rounding::Truncate, Overflow::Saturate)
 }
 
-/// Returns the address of the table's word for `u`, and the position of `u` within its segment as a fraction from 0 to less than
-/// 1.
+/// Returns the address of the table's word for `u`, and the position of `u` within its segment, a fraction below 1.
 #[track_caller]
 fn address_and_rest<'d>(
     d: &'d Designer,

@@ -45,7 +45,7 @@ pub fn normalise<'d>(d: &'d Designer, name: &str, x: Signal<'d>) -> Normalised<'
     normalise_in_steps(d, name, x, 1)
 }
 
-/// Shifts `x` to the left by pairs of places until one of its two top bits is 1, and returns the shifted bits and the number of
+/// Shifts `x` to the left by pairs of places until one of its two top bits is 1. Returns the shifted bits and the number of
 /// pairs. For example, 22 in 8 bits has one pair of leading zeros and becomes 88. If `x` is 0, all bits of the number are 1.
 #[track_caller]
 pub fn normalise_by_pairs<'d>(d: &'d Designer, name: &str, x: Signal<'d>) -> Normalised<'d> {

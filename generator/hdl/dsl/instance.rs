@@ -55,9 +55,9 @@ impl Designer {
     /// Instantiates the description `describe` as a part called `name`, with a signal for each of its operands. The results of
     /// the part are in registers. A description with parts calls [`Designer::dataflow`] instead of writing a microprogram.
     ///
-    /// Reports a mistake if the names in `operands` differ from the part's operands, if a signal does not fit its operand's
-    /// format, or if another part has the same name. Reports the mistakes of the part itself. A part must raise `valid` by a
-    /// microinstruction, for one result, and must not wait for `start`.
+    /// Reports a mistake if the names in `operands` differ from the part's operands, or if a signal does not fit its operand's
+    /// format. Reports a mistake if another part has the same name. Reports the mistakes of the part itself. A part must raise
+    /// `valid` by a microinstruction, for one result, and must not wait for `start`.
     ///
     /// ```
     /// use glint_rtl::dsl::{Designer, end, step, valid};

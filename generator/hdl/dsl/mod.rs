@@ -371,8 +371,8 @@ impl Designer {
         }
     }
 
-    /// Sets the numbers of two lines that every control unit has, in the block diagram of the document that describes the device:
-    /// the line by which a microinstruction raises `valid`, and the line by which it lets the program continue.
+    /// Sets the numbers of two control lines in the block diagram of the document that describes the device. By the line `valid`
+    /// a microinstruction raises `valid`, and by the line `go_on` it lets the program continue.
     pub fn sequencer_lines(&self, valid: u16, go_on: u16) {
         self.inner.borrow_mut().sequencer_lines = Some([valid, go_on]);
     }

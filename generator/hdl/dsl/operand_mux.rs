@@ -62,7 +62,7 @@ impl Designer {
     /// differ in select lines, number of inputs or registers behind them.
     ///
     /// If only one of the muxes has negative inputs, the multiplier takes the bits of that mux below its sign as an unsigned
-    /// number. Each factor then has one bit less than in a product of signed numbers, which may save DSP blocks: for example, 18
+    /// number. Each factor then has one bit less than in a product of signed numbers, which may save DSP blocks. For example, 18
     /// bits fit and 19 do not. For a negative operand, this product is too large by the other operand at the weight of the sign.
     /// [`SharedProduct::of`] subtracts that amount.
     #[track_caller]

@@ -271,8 +271,8 @@ fn foreign(d: &Designer, steps: &[Step]) -> bool {
     any
 }
 
-/// Returns the rule for the microinstruction after `step`. Reports a mistake if its settings state two different rules, or if a
-/// jump leads to an unknown name or has a condition of several bits.
+/// Returns the rule for the microinstruction after `step`. Reports a mistake if its settings state two different rules. Reports a
+/// mistake if a jump leads to an unknown name or has a condition of several bits.
 fn sequence(d: &Designer, steps: &[Step], step: &Step) -> Sequence {
     let mut found: Option<(Sequence, SourceLocation)> = None;
     let own = &step.name;

@@ -15,7 +15,7 @@ impl Designer {
         self.operand_port(name, format, |port| port)
     }
 
-    /// Adds an operand whose register is limited to the values from `low` to `high`, rounded to `format`: a write of a smaller or
+    /// Adds an operand whose register is limited to the values from `low` to `high`, rounded to `format`. A write of a smaller or
     /// larger value loads the limit. For example, with limits 0 and 1 in `u1.20`, a write of 1.5 loads 1.
     #[track_caller]
     pub fn operand_clamped(

@@ -57,7 +57,7 @@ impl Sequencer {
         let address = d.add_register("word_address", wide, (0, last_word), RegisterKind::Sequencer);
         d.set_doc(address, "the microinstruction that is executed");
         let following = op("following_word", wide, Op::Add { a: address, b: one, carry: None });
-        // Where control goes while the program goes on: around a loop, or to the following microinstruction.
+        // The next address while the microprogram continues: the target of a loop or jump, or the following address.
         let mut onward = following;
         if let Some(again) = fields.again {
             let condition = match (fields.condition, &conditions[..]) {

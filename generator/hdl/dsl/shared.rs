@@ -1,5 +1,5 @@
-//! Gives the modules of the description language access to the state of a designer: its nets, registers and fields, and the
-//! mistakes that it has collected.
+//! Gives the modules of the description language access to the state of a designer: nets, registers, fields, and the collected
+//! mistakes.
 
 use std::panic::Location;
 
@@ -164,8 +164,8 @@ impl Designer {
         self.signal(net)
     }
 
-    /// Returns `signal`. If it belongs to another designer, reports a mistake and returns a constant with the same format, so
-    /// that the rest of the description can be checked too.
+    /// Returns `signal`. If it belongs to another designer, reports a mistake and returns a constant with the same format. The
+    /// rest of the description can then be checked too.
     #[track_caller]
     pub(crate) fn own(&self, signal: Signal<'_>) -> Signal<'_> {
         let other = signal.designer();

@@ -93,8 +93,8 @@ impl Design {
     }
 
     /// Returns the number of the register that follows register `at` in a delay line. It is the only reader of register `at`,
-    /// with the same enable. Returns `None` if another net reads register `at`, if one of the registers has a reset, or if
-    /// register `at` belongs to the side channel or is inside a multiplier.
+    /// with the same enable. Returns `None` if another net reads register `at`, or if one of the registers has a reset. Returns
+    /// `None` if register `at` belongs to the side channel or is inside a multiplier.
     fn next_of_line(
         &self,
         pipeline: &Pipeline,

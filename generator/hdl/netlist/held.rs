@@ -1,9 +1,8 @@
 //! Inserts registers into logic that depends only on operands, to shorten the longest path of a device.
 //!
 //! Operands cannot change while the device is busy. Logic that depends only on operands and constants is therefore *steady*: it
-//! may take all clocks from the first microinstruction after `start` to the microinstruction that first uses its value. A
-//! register in steady logic shortens a path without adding a clock. The module inserts no register before outputs, which must
-//! follow the operand registers in the same clock, and none before nets that the first microinstruction uses.
+//! may take several clocks, up to the microinstruction that first uses its value. A register in steady logic shortens a path
+//! without adding a clock. The module inserts no register before outputs, or before nets that the first microinstruction uses.
 
 use std::collections::{BTreeMap, BTreeSet, HashSet};
 
@@ -54,17 +53,18 @@ enum OperandReader {
 }
 
 /// Two limits that divide steady logic among three clocks, in ascending order. A limit is a delay from the operand registers in
-/// hundredths of a nanosecond. Cells that have their value after at most the first limit are computed in clock 0, at most the
-/// second limit in clock 1, and all others in clock 2. The third entry is always 0. For example, with `[500, 900, 0]` a cell
-/// whose value arrives after 6 ns is computed in clock 1.
+/// hundredths of a nanosecond. A cell whose value arrives by the first limit is computed in clock 0, by the second limit in clock
+/// 1, and any other cell in clock 2. The third entry is always 0. For example, with `[500, 900, 0]` a cell whose value arrives
+/// after 6 ns is computed in clock 1.
 type CutPlaces = [u32; 3];
 
-/// The numbers that determine in which clock a cell is computed or a register is loaded: in the clock whose number is the count
-/// of entries that are greater than the entry of [`CutPlaces`] at the same index.
+/// The numbers that determine in which clock a cell is computed or a register is loaded. The clock is the number of entries that
+/// are greater than the entry of [`CutPlaces`] at the same index. For example, `[600, 600, 0]` with the limits `[500, 900, 0]`
+/// gives clock 1.
 type Thresholds = [u32; 3];
 
-/// Returns `thresholds` in which the entries from index `needed` on are 0, so that the net is computed no later than in clock
-/// `needed`, in which it is first used.
+/// Returns `thresholds` with 0 in the entries from index `needed` on. The net is then computed no later than in clock `needed`,
+/// in which it is first used.
 fn until(needed: usize, thresholds: Thresholds) -> Thresholds {
     std::array::from_fn(|clock| if needed > clock { thresholds[clock] } else { 0 })
 }
@@ -94,8 +94,8 @@ struct Steady<'a> {
     holds: Vec<bool>,
     /// The registers, each with the net that it loads and the thresholds of its load.
     registers: Vec<(RegId, NetId, Thresholds)>,
-    /// The estimated delays from the operand registers to the steady nets that may be computed later than in clock 0, in
-    /// hundredths of a nanosecond, in ascending order. 0 is always among them.
+    /// The estimated delays from the operand registers to the steady nets that may be computed later than in clock 0. They are in
+    /// hundredths of a nanosecond, in ascending order, and include 0.
     places: Vec<u32>,
 }
 
@@ -219,7 +219,7 @@ impl<'a> Steady<'a> {
         self.holds[net.index()] && by > clock(self.thresholds[net.index()], places)
     }
 
-    /// Returns the longest path that starts at an operand register or at an inserted register, in hundredths of a nanosecond, and
+    /// Returns the delay of the longest path from an operand register or an inserted register, in hundredths of a nanosecond, and
     /// the number of bits of the inserted registers.
     fn cost(&self, places: CutPlaces) -> (u32, u32) {
         let mut arrival: Vec<Option<u32>> = vec![None; self.thresholds.len()];
@@ -302,8 +302,8 @@ fn delay(design: &Design, op: &Op) -> u32 {
     }
 }
 
-/// Returns whether a net is a sum or difference, or a product with a factor wider than 18 bits, or such a net after wiring and
-/// inversion.
+/// Returns whether a net is a sum, a difference, or a product with a factor wider than 18 bits. Wiring and inversion behind it do
+/// not count.
 fn ends_in_a_sum(design: &Design, net: NetId) -> bool {
     match &design.net(net).driver {
         Driver::Op(Op::Relabel(of) | Op::Extend(of) | Op::Not(of) | Op::Slice { of, .. }) => {

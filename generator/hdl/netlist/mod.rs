@@ -1,9 +1,8 @@
 //! Defines the netlist of a device: its nets, registers, ROMs, ports and control unit. The description language builds it; the
 //! simulator, the pipeline builder and the Verilog emitter read it.
 //!
-//! A [`Design`] is a set of *nets* in an arena. Every net has a name, a [`Format`], the interval of
-//! raw values that it can take, and exactly one driver: an input port, a constant, a register, a ROM,
-//! a field of the control word, or a combinational [`Op`]. There is one clock; registers and
+//! A [`Design`] is a set of *nets* in an arena. Every net has a name, a [`Format`], the interval of raw values that it can take,
+//! and exactly one [`Driver`], such as an input port, a register or a combinational [`Op`]. There is one clock; registers and
 //! synchronous ROMs change on its rising edge and nothing else holds state.
 //!
 //! Invariants that [`Design::verify`] establishes and everything downstream relies on:
@@ -360,8 +359,8 @@ impl Design {
         &self.registers[id.index()]
     }
 
-    /// Returns whether `rom` stores control words. It does if it is the control ROM, or another ROM at the same address, which
-    /// stores the fields that do not fit into the words of the control ROM.
+    /// Returns whether `rom` stores control words. It does if it is the control ROM, or another ROM at the same address, for
+    /// fields that do not fit into the control ROM.
     pub fn is_control_memory(&self, rom: &NetlistRom) -> bool {
         self.roms.get(self.control.rom.index()).is_some_and(|it| it.address == rom.address)
     }
@@ -405,8 +404,8 @@ impl Design {
         self.ports.iter().find(|port| wanted(port.role))
     }
 
-    /// Returns the nets on which net `id` depends within one clock: the operands of its cell, the address of an asynchronous ROM,
-    /// or the control word behind a field. The list is empty for inputs, constants, registers and synchronous ROMs.
+    /// Returns the nets on which net `id` depends within one clock: operands of its cell, the address of an asynchronous ROM, or
+    /// the control word of a field. The list is empty for inputs, constants, registers and synchronous ROMs.
     pub fn combinational_inputs(&self, id: NetId) -> Vec<NetId> {
         match &self.net(id).driver {
             Driver::Op(op) => op.operands(),
@@ -438,7 +437,7 @@ impl Design {
             if mark[root as usize] != VisitMark::New {
                 continue;
             }
-            // Each entry has a net, and those of its inputs that the search has not visited.
+            // Each entry has a net, and its inputs that the search has not visited.
             let mut path = vec![(NetId(root), self.combinational_inputs(NetId(root)))];
             mark[root as usize] = VisitMark::Open;
             while let Some((net, pending)) = path.last_mut() {

@@ -6,9 +6,9 @@ use std::collections::{HashSet, VecDeque};
 use super::{Design, Driver, Microinstruction, NetId, Op};
 use glint_base::fixed::mask;
 
-/// Returns for each net of the design the first clock in which its value is used: it reaches an output, the sequencer, or a
-/// register that is loaded. The clock of the first microinstruction has the number 0. The result is `usize::MAX` for a net that
-/// is never used.
+/// Returns for each net of the design the first clock in which its value is used. A value is used if it reaches an output, the
+/// sequencer, or a register that is loaded. The clock of the first microinstruction has the number 0. The result is `usize::MAX`
+/// for a net that is never used.
 ///
 /// If a microinstruction determines the select of a mux, only the chosen input counts as used. Outputs, enables and the sequencer
 /// use their nets in every clock.

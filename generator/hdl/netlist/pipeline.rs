@@ -16,8 +16,8 @@ pub struct Pipeline {
     pub clock_mhz: f64,
     /// The highest clock frequency that any number of stages can reach, in MHz. The slowest single operation limits it.
     pub most_mhz: f64,
-    /// The interval: the smallest number of clocks between two points. A counter counts slots from 0 to this number less one; the
-    /// pipeline accepts a point in slot 0, and a point is in stage s while the slot is s modulo the interval. For example, with
+    /// The interval: the smallest number of clocks between two points. A counter counts slots from 0 to this number less one, and
+    /// the pipeline accepts a point in slot 0. A point is in stage s while the slot is s modulo the interval. For example, with
     /// an interval of 4 a point is in stage 6 while the slot is 2.
     pub interval: usize,
     /// The counter of slots, or `None` if the interval is 1. It counts one further whenever the points move to the next stage.
@@ -31,8 +31,8 @@ pub struct Pipeline {
     pub stall: bool,
     /// The number of bits of the side channel, which carries data of the user along with each point.
     pub side: u32,
-    /// The kind of memory with which the Verilog replaces delay lines (chains of registers that only carry a value to a later
-    /// stage); `None` if the registers stay.
+    /// The kind of memory with which the Verilog replaces delay lines, chains of registers that only carry a value to a later
+    /// stage. `None` if the registers stay.
     pub delay_memory: Option<DelayMemory>,
     /// The stages, from the operands on. The results are in the registers behind the last stage, so there are as many stages as
     /// clocks from a point to its results. For example, `rough_pipelined` has 18 stages.
@@ -109,8 +109,8 @@ impl Pipeline {
         self.units.iter().any(|unit| unit.nets.contains(&net))
     }
 
-    /// Returns the named nets whose logic is in stage number `stage` of the pipeline, with the names of their values, in the
-    /// order of the design. It leaves out nets of the handshake.
+    /// Returns the named nets whose logic is in stage number `stage`, each with the name of its value, in the order of the
+    /// design. It leaves out nets of the handshake.
     pub fn computed<'a>(
         &'a self,
         design: &'a Design,

@@ -25,8 +25,8 @@ impl Design {
         found
     }
 
-    /// Returns the mistakes that make a design meaningless: references to parts that do not exist, nets without a driver or with
-    /// two, widths that do not match, and combinational loops. It does not check the names and the microprogram.
+    /// Returns the mistakes that make a design meaningless: references to missing parts, nets without a driver or with two, wrong
+    /// widths, and combinational loops. It does not check the names and the microprogram.
     pub fn verify_structure(&self) -> Vec<Diagnostic> {
         let mut found = Vec::new();
         // The later checks must not index parts that do not exist, or ask for an impossible width.

@@ -52,10 +52,10 @@ pub fn node_delay(timing: &Timing, graph: &Graph, id: NodeId) -> f64 {
 }
 
 /// Returns the additional setup time, in nanoseconds, of the register behind a node of the computation's graph. It is the delay
-/// of one look-up table if the node is a mux with a constant input and more than one bit, and otherwise 0.
+/// of one look-up table for a mux with a constant input and more than one bit, and otherwise 0.
 ///
 /// Synthesis turns such a mux into the set or the reset of the register. The select of the mux then passes through a look-up
-/// table with the clock enable, and takes a longer path from this table to the register.
+/// table with the clock enable. From this table, it takes a longer path to the register.
 pub fn setup(timing: &Timing, graph: &Graph, id: NodeId) -> f64 {
     let Cell::Op(Op::Mux { inputs, .. }) = &graph.node(id).cell else { return 0.0 };
     let has_constant = inputs.iter().any(|input| graph.constant_of(*input).is_some());

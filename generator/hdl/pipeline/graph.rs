@@ -40,8 +40,7 @@ pub enum Cell {
     Op(NodeOp),
 }
 
-/// What people need to read a value in Verilog and in diagrams: its name, its comment, and the number that its block has in the
-/// block diagram of the device's source, if any.
+/// The texts by which people recognise a value in Verilog and in diagrams: its name, its comment, and the number of its block.
 #[derive(Clone, Debug)]
 pub struct Label {
     /// The name of the net or register in the sequential design that has the value. For example, `product`.
@@ -156,8 +155,8 @@ impl Graph {
         self.insert(Cell::Constant(bits), format, (raw, raw), label)
     }
 
-    /// Returns the node for the word that a ROM with the contents `words` has at `address`, and adds the node to the graph unless
-    /// the graph has it. If `address` is a constant, the returned node is the constant word, or 0 behind the last word.
+    /// Returns the node for the word at `address` of a ROM with the contents `words`. Adds the node to the graph unless the graph
+    /// has it. If `address` is a constant, the returned node is the constant word, or 0 behind the last word.
     pub fn read(
         &mut self,
         rom: RomId,

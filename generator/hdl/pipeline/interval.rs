@@ -23,8 +23,9 @@ pub enum IntervalGoal {
 /// Returns the interval of a pipeline in clocks, from one point to the next, as `options.interval` requests it. `most` is the
 /// number of clocks in which the sequential core computes a point. `problems` makes the scheduling problem for an interval.
 ///
-/// For a rate, the function returns the longest interval that reaches the rate and the clock; for a number of multipliers, the
-/// shortest interval that needs no more. If no interval reaches the clock, it returns 1, and the scheduler reports the error.
+/// For a rate, the function returns the longest interval that reaches the rate and the clock. For a number of multipliers, it
+/// returns the shortest interval that needs no more. If no interval reaches the clock, it returns 1, and the scheduler reports
+/// the error.
 ///
 /// # Errors
 /// Fails if the requested interval exceeds `most`. Fails if the rate exceeds one point a clock, or if the options give a rate

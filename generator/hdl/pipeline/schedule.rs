@@ -1,13 +1,13 @@
 //! Assigns each node of a computation to a stage of the pipeline, with the fewest register bits.
 //!
 //! The stage of a node is not before the stages of its operands. The node must be in a later stage if a block memory lies between
-//! them, or if the path through the logic from an earlier node takes longer than the clock period. A value needs registers at
-//! every boundary between stages up to its last use, one register bit for each of its bits and boundaries. All constraints are on
-//! differences of two stages, so the linear program has an integer solution (Cong and Zhang, "An efficient and versatile
-//! scheduling algorithm based on SDC formulation", 2006).
+//! them, or if the logic between them takes longer than the clock period. A value needs registers at every boundary between
+//! stages up to its last use, one register bit for each of its bits and boundaries. All constraints are on differences of two
+//! stages, so the linear program has an integer solution. The method is from Cong and Zhang, "An efficient and versatile
+//! scheduling algorithm based on SDC formulation", 2006.
 //!
-//! If products share multipliers, they get their stages first: one after another, as early as the constraints allow, in the first
-//! slot in which a multiplier is free (`sharing`). The linear program then places all other nodes around them.
+//! Products that share multipliers (`sharing`) get their stages first, each as early as the constraints and the free multipliers
+//! allow. The linear program then places all other nodes around them.
 
 use std::cmp::Reverse;
 use std::collections::{BTreeMap, BTreeSet};
@@ -346,8 +346,8 @@ impl<'a> ScheduleProblem<'a> {
         self.latency(&differences, &self.taken(&differences))
     }
 
-    /// Returns the number of rows of pipeline registers that must lie between the operands of node `user` and its value: 0 for
-    /// combinational logic, 1 for a word of a block memory or a product with a register, and 2 for a product of a shared
+    /// Returns the number of rows of pipeline registers that must lie between the operands of node `user` and its value. It is 0
+    /// for combinational logic, 1 for a word of a block memory or a product with a register, and 2 for a product of a shared
     /// multiplier.
     pub fn apart(&self, user: NodeId) -> usize {
         match self.clocked[user.index()] {
@@ -357,9 +357,9 @@ impl<'a> ScheduleProblem<'a> {
     }
 
     /// Returns the number of register rows between the nodes `from` and `user`, whose path takes longer than the `most`
-    /// nanoseconds of a stage. The number is 2 if a block memory's value goes to a multiplier and there is not enough time for
-    /// the wire between them; otherwise it is 1. Block memories and multipliers lie in separate columns of the chip, so that one
-    /// register is placed near each of the two.
+    /// nanoseconds of a stage. The number is 2 if a block memory's value goes to a multiplier and the time does not suffice for
+    /// the wire; otherwise it is 1. Block memories and multipliers lie in separate columns of the chip, so that one register is
+    /// placed near each of the two.
     fn registers_between(&self, from: NodeId, user: NodeId, most: f64) -> usize {
         let product = matches!(self.graph.node(user).cell, Cell::Op(NodeOp::Mul(..)));
         let far = product && delay::is_block(self.target, self.graph, from);
@@ -448,8 +448,8 @@ impl<'a> ScheduleProblem<'a> {
         earliest
     }
 
-    /// Returns the stages of products that share multipliers. The products get their stages one after another: first the product
-    /// that can have the earliest stage, and among several, the product that the most stages must follow.
+    /// Returns the stages of products that share multipliers. The products get their stages one after another. The product that
+    /// can have the earliest stage comes first. Among several, the product that the most stages must follow comes first.
     fn taken(&self, differences: &[StageDifference]) -> Taken {
         let mut after = vec![0; self.graph.nodes.len()];
         for &(from, to, apart) in differences.iter().rev() {

@@ -1,6 +1,6 @@
 //! Assigns products to multipliers, so that one multiplier serves several products of a pipeline, each in its own slot.
 //!
-//! A pipeline that accepts a point every k clocks counts slots from 0 to k − 1: a point is in stage s while the slot is s modulo
+//! A pipeline that accepts a point every k clocks counts slots from 0 to k − 1. A point is in stage s while the slot is s modulo
 //! k. A product in a known stage therefore needs a multiplier in one slot of k, and products of different slots can share one.
 //! Muxes in front of the multiplier select the factors for its operand registers, and a register behind the multiplier takes the
 //! product.
@@ -29,8 +29,8 @@ pub struct MultiplierUnit {
     pub widths: [u32; 2],
     /// Whether the multiplier takes signed factors.
     pub signed: bool,
-    /// For each slot (clock modulo the interval), the product that the multiplier computes in it, and the factors of this product
-    /// in the order of the multiplier's operands.
+    /// For each slot (clock modulo the interval), the product that the multiplier computes in it, and the two factors in the
+    /// order of the multiplier's operands. `None` if it computes no product.
     pub serves: Vec<Option<(NodeId, [NodeId; 2])>>,
 }
 

@@ -1,12 +1,12 @@
 //! Splits products that are too wide for the multipliers of an FPGA target into sums of narrower products.
 //!
 //! An operand that is too wide is divided into two parts: as many upper bits as a multiplier takes, and the remaining lower bits.
-//! If only a few bits remain, their product is added row by row in look-up tables, as in multiplication by hand; synthesis would
-//! use a whole multiplier. Otherwise the lower bits become a product of their own.
+//! If only a few bits remain, their product is added row by row in look-up tables, as in multiplication by hand. Otherwise the
+//! lower bits become a product of their own.
 //!
 //! Two special cases cost less. In the square `(u·2^r + l)² = u²·4^r + l·(u·2^(r+1) + l)`, both partial products with the lower
-//! bits l share one factor. If the largest value of a factor is a power of two, such as 1.0 of a cosine, its highest bit is 1
-//! only if all other bits are 0. The product is then either the other factor, shifted, or a product without the highest bit.
+//! bits l share one factor. If the largest value of a factor is a power of two, such as 1.0, its highest bit is 1 only if all
+//! other bits are 0. The product is then either the other factor, shifted, or a product without the highest bit.
 
 use super::graph::{Graph, Label, NodeId, NodeOp};
 use super::rebuild::rebuilt;
@@ -109,8 +109,8 @@ fn below_the_highest(
     graph.op(NodeOp::Extend(whole), format, label)
 }
 
-/// Returns two signed factors of which the first is never negative, and the second has bits besides its sign. Returns `None` if
-/// no order of `a` and `b` has this form.
+/// Returns `a` and `b` in an order in which the first factor is signed and never negative, and the second has bits besides its
+/// sign. Returns `None` if no order of `a` and `b` has this form.
 fn with_a_sign(graph: &Graph, [a, b]: [NodeId; 2]) -> Option<[NodeId; 2]> {
     let positive = |id: NodeId| graph.node(id).format.signed && graph.node(id).range.0 >= 0;
     let factors = if positive(a) { [a, b] } else { [b, a] };

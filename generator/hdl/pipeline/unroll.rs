@@ -5,8 +5,8 @@
 //! register makes a new value.
 //!
 //! A constant condition decides which microinstruction follows. If a condition depends on an operand, the execution follows both
-//! branches, and a mux chooses the value of each register at the place where the branches meet. A loop is unrolled as often as it
-//! can run, and a jump is executed with and without the microinstructions that it skips.
+//! branches. A mux chooses the value of each register at the place where the branches meet. A loop is unrolled as often as it can
+//! run, and a jump is executed with and without the microinstructions that it skips.
 
 mod clock;
 mod cycle;
@@ -48,8 +48,8 @@ pub struct UnrolledStep {
     pub address: usize,
     /// The number of earlier executions of the same microinstruction in this computation.
     pub visit: usize,
-    /// The values of the architectural registers (the registers that the golden model predicts) while the microinstruction is
-    /// executed, each as a node of the computation's graph. A register without a known value is left out.
+    /// The values of the architectural registers while the microinstruction is executed, each as a node of the computation's
+    /// graph. (The golden model predicts these registers.) A register without a known value is left out.
     pub registers: Vec<(RegId, NodeId)>,
 }
 
@@ -81,8 +81,8 @@ pub fn unroll(design: &Design) -> Result<Unrolled, Diagnostics> {
 }
 
 /// Unrolls the microprogram of a design as [`unroll`] does, but with fewer muxes for loops whose number of iterations depends on
-/// an operand. Such iterations become blocks of 8, 4, 2 and 1 iterations, each enabled by one bit of the number, if the
-/// iterations are alike and a few bits determine their number.
+/// an operand. Such iterations become blocks of 8, 4, 2 and 1 iterations, each enabled by one bit of the number. The condition
+/// for this is that the iterations are alike and that a few bits determine their number.
 ///
 /// # Errors
 /// Fails under the same conditions as [`unroll`].
@@ -232,9 +232,9 @@ impl<'a> Executor<'a> {
     }
 
     /// Executes every iteration but the first of the loop from address `to` to address `last`, and returns the state after them.
-    /// `condition` says whether the second iteration takes place; `state` is the state after the first one. A bound for the
-    /// number of iterations must hold for any values of `free`, the register contents at the beginning of the last
-    /// microinstruction of the first iteration.
+    /// `condition` says whether the second iteration takes place; `state` is the state after the first one. The number of
+    /// iterations must have a bound for any values of `free`, the register contents before the last microinstruction of the first
+    /// iteration.
     ///
     /// Registers on which the loop's condition depends go from iteration to iteration as if every iteration took place. This does
     /// no harm, because an iteration counts only if all iterations before it took place, and it saves muxes for a counter.
@@ -287,13 +287,13 @@ impl<'a> Executor<'a> {
         }
     }
 
-    /// Unrolls a loop whose number of iterations depends on an operand as blocks of 8, 4, 2 and 1 iterations (fewer or more
-    /// blocks for other numbers). The number of `conditions` that are 1 is the number of further iterations after `first`, the
-    /// state behind the first iteration. One bit of this number enables each block. `counters` marks the registers that count
+    /// Unrolls a loop whose number of iterations depends on an operand. It becomes blocks of 8, 4, 2 and 1 iterations, with fewer
+    /// or more blocks for other numbers. The number of `conditions` that are 1 is the number of further iterations after `first`,
+    /// the state behind the first iteration. One bit of this number enables each block. `counters` marks the registers that count
     /// iterations; their values in the returned state are wrong.
     ///
-    /// Returns `None` if an iteration depends on these registers or changes a memory's output, if there are fewer than four
-    /// conditions, or if the number depends on several nodes or on more than 6 bits.
+    /// Returns `None` if an iteration depends on these registers or changes a memory's output, or if there are fewer than four
+    /// conditions. Returns `None` if the number depends on several nodes or on more than 6 bits.
     fn in_powers(
         &mut self,
         first: &State,

@@ -1,6 +1,5 @@
-//! Distributes the values of a compiled design over two banks of memory, one with slots of 32 bits and one with slots of 64 bits,
-//! and inserts conversions between the banks. Most values fit into 32 bits, and a vector of the processor holds twice as many of
-//! them.
+//! Distributes the values of a compiled design over two banks of memory with slots of 32 and of 64 bits, and inserts conversions
+//! between the banks. Most values fit into 32 bits, and a vector of the processor holds twice as many of them.
 
 use crate::sim::compiler::{Compiler, Ordered};
 use crate::sim::program::{
@@ -11,8 +10,8 @@ use crate::sim::program::{
 /// The width of a narrow slot in bits.
 const NARROW: u32 = u32::BITS;
 
-/// Gives every slot of the compiler a slot in one of the two banks, and inserts conversions before instructions that work on
-/// slots of both banks.
+/// Gives every slot of the compiler a slot in one of the two banks. Inserts conversions before instructions that work on slots of
+/// both banks.
 ///
 /// Within a bank, slots are numbered in the order in which they are computed.
 pub(super) fn divide(

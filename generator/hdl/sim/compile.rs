@@ -35,7 +35,7 @@ impl CompiledDesign {
 
 impl<'a> Compiler<'a> {
     /// Returns a slot with a field of the control word, the `width` bits from bit `low` of the net `word`. The field is a source
-    /// of its own, so that instructions are evaluated again only when this field changes, and not whenever the control word does.
+    /// of its own, so that a change of another field does not evaluate its readers again.
     fn field(&mut self, word: NetId, low: u32, width: u32) -> Slot {
         let a = self.of_net[word.index()];
         if self.known_value(a).is_some() || self.next_field == Sources::BITS {
@@ -111,9 +111,8 @@ impl<'a> Compiler<'a> {
             });
         }
         self.drop_unneeded(&reads, &registers);
-        // An operand depends on no source that its result does not depend on, so that its set of sources is a number that is not
-        // larger. A field has a larger source number than its operands. The sorted order therefore remains an order of
-        // evaluation.
+        // The sources of an operand are among the sources of its result, so that their set, as a number, is not larger. A field
+        // has a larger source number than its operands. The sorted order therefore remains an order of evaluation.
         self.steps.sort_by_key(|step| step.sources);
         banks::divide(&self, &reads, &registers)
     }

@@ -107,7 +107,7 @@ impl<'a> Compiler<'a> {
     }
 
     /// Returns a new slot for a value that the rising edge writes if `enable` is 1. All slots with the same enable share one
-    /// source, because they change together. This does not apply to an enable that is a field of the control word, because a
+    /// source, because they change together. An enable that is a field of the control word is an exception, because a
     /// microinstruction seldom changes all the values that it loads.
     pub(super) fn source(&mut self, enable: Option<NetId>) -> Slot {
         let shared = enable.filter(|net| !matches!(self.design.net(*net).driver, Driver::Field(_)));
@@ -194,8 +194,8 @@ impl<'a> Compiler<'a> {
         }
     }
 
-    /// Returns the placement that makes `slot`: the base, the slot of the added bits, the lowest of these bits, their width as a
-    /// `drop`, and the shift. A slice is a placement on the slot `zero`. Returns `None` for other instructions.
+    /// Returns the placement that makes `slot`. The result has the base, the slot of the added bits, the lowest of these bits,
+    /// their width as a `drop`, and the shift. A slice is a placement on the slot `zero`. Returns `None` for other instructions.
     pub(super) fn placed(&self, slot: Slot, zero: Slot) -> Option<(Slot, Slot, u8, u8, u8)> {
         match *self.made_by.get(&slot)? {
             Instruction::Place { base, a, low, drop, shift, .. } => {

@@ -119,8 +119,8 @@ impl<const LANES: usize> Simulator<LANES> {
     /// Returns the bit pattern of a net in one lane, after the latest clock.
     ///
     /// # Panics
-    /// Panics if there is no such lane, or if the compiler has optimised the net away, which it may do only if the net has no
-    /// name.
+    /// Panics if `lane` is not less than `LANES`. Panics if the compiler has optimised the net away, which it may do only if the
+    /// net has no name.
     pub fn lane(&self, net: NetId, lane: usize) -> u64 {
         self.circuit.machine.lane(net, lane)
     }

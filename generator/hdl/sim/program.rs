@@ -2,9 +2,8 @@
 //!
 //! All values are in *slots*, bit patterns with zeros above their width. A clock has two phases. *Settling* runs the steps in
 //! order; each step computes one slot from earlier ones. The *edge* writes the outputs of synchronous ROMs and then the
-//! registers. Nets that are mere wiring (other names, zero extensions, whole slices) share a slot, constants are folded, and
-//! equal instructions are merged, so that there are fewer instructions than cells. An unnamed slice has no slot if all its
-//! readers take the bits from its operand themselves.
+//! registers. There are fewer instructions than cells: nets that are mere wiring share a slot, constants are folded, and equal
+//! instructions are merged. An unnamed slice has no slot if all its readers take the bits from its operand themselves.
 //!
 //! There are two banks of slots. The *narrow* bank has slots of 32 bits: nearly all values fit, and a vector of the processor
 //! holds twice as many lanes. The *wide* bank has slots of 64 bits for all other values. An [`Instruction`] works within one
@@ -179,7 +178,7 @@ pub(super) struct ReadEdge {
     pub words: Span,
 }
 
-/// A register: at the edge, `q` gets the reset value if the slot of `rst_n` in `reset` is 0, and otherwise `data` if `enable` is
+/// A register. At the edge, `q` gets the reset value if `rst_n`, the slot in `reset`, is 0, and otherwise `data` if `enable` is
 /// 1.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct RegisterEdge {

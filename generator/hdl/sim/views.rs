@@ -1,5 +1,5 @@
-//! Writes files that tell the waveform viewers GTKWave and Surfer how to show a waveform: each net in its module or stage, and
-//! numbers as values.
+//! Writes files for the waveform viewers GTKWave and Surfer. They show each net in its module or stage, and GTKWave shows numbers
+//! with their binary points.
 
 use std::fmt::Write;
 

@@ -18,7 +18,7 @@ pub(super) enum Direction {
     Local,
 }
 
-/// What a probe sees of an atom.
+/// The description of an atom for a probe.
 #[derive(Debug)]
 pub(super) enum ProbeView<'a> {
     /// A net, with its width, sign and direction.

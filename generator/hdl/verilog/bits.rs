@@ -7,7 +7,7 @@
 use crate::netlist::NetId;
 use glint_base::fixed::mask;
 
-/// A run of adjacent bits in a word of the Verilog that have the same origin: bits of a net, constant bits, or copies of one bit.
+/// Adjacent bits of a word (the bits of a net) with the same origin: bits of a net, constant bits, or copies of one bit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum BitRun {
     /// `width` adjacent bits of a net, from bit `low` up.

@@ -76,7 +76,7 @@ fn crossing(plan: &Plan, from: Partition, to: Partition) -> Vec<NetId> {
 }
 
 /// Returns the bits of nets in a module that no logic in the module reads, as ranges of net, lowest bit and number of bits. The
-/// Verilog connects them to one net, which linters accept as unread. For example, `(net, 0, 3)` stands for the bits 0 to 2.
+/// Verilog connects them to one net, which linters accept as unread. For example, `(net, 0, 3)` means the bits 0 to 2.
 pub fn unread(plan: &Plan, partition: Partition, interface: &Interface) -> Vec<(NetId, u32, u32)> {
     let design = plan.design;
     let mut nets = interface.inputs.clone();

@@ -12,7 +12,7 @@ use glint_base::fixed::mask;
 /// for `$readmemb`, all others hexadecimal for `$readmemh`.
 ///
 /// # Errors
-/// Fails if the words of the control ROM are not exactly as wide as all fields together, or if a word is wider than its ROM.
+/// Fails if a word is wider than its ROM, or if the words of the control ROM are not as wide as all fields together.
 pub fn contents(design: &Design, id: RomId) -> Result<String> {
     let rom = design.rom(id);
     let width = design.width(rom.data);

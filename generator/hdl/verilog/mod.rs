@@ -28,8 +28,8 @@ use interface::Interface;
 use naming::Naming;
 use plan::Plan;
 
-/// Returns the files for a design as pairs of file name and text: the Verilog modules (`.v`), and the contents of ROMs for
-/// `$readmemh` and `$readmemb` (`.mem`).
+/// Returns the files for a design as pairs of file name and text. They are the Verilog modules (`.v`), and the contents of ROMs
+/// (`.mem`) for `$readmemh` and `$readmemb`.
 ///
 /// # Errors
 /// Fails if [`Design::verify_structure`] finds mistakes, with these mistakes, or if a word of a ROM does not fit the ROM.
@@ -81,7 +81,7 @@ pub fn modules(plan: &Plan, naming: &Naming, origin: &Origin) -> Vec<ModuleFile>
 /// puts the words into the Verilog. The second read port of a memory has no file of its own.
 ///
 /// # Errors
-/// Fails if the words of the control ROM are not exactly as wide as all fields together, or if a word is wider than its ROM.
+/// Fails if a word is wider than its ROM, or if the words of the control ROM are not as wide as all fields together.
 pub fn memories(design: &Design, naming: &Naming) -> Result<Vec<(String, String)>> {
     let mut memories = Vec::new();
     for (id, file) in (0..).map(RomId).zip(&naming.files) {

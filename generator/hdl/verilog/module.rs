@@ -161,8 +161,8 @@ impl<'a> Builder<'a> {
         lines
     }
 
-    /// Returns the Verilog lines for each declared cell, each memory and each registered multiplier of the module that drives a
-    /// net for which `wanted` returns true. Each entry of the list has the lines of one of them.
+    /// Returns a list with the Verilog lines of each declared cell, each memory and each registered multiplier of the module. It
+    /// leaves out those that drive a net for which `wanted` returns false.
     pub(super) fn items(&mut self, wanted: &dyn Fn(NetId) -> bool) -> Vec<Vec<String>> {
         let design = self.plan.design;
         let mut items = Vec::new();
@@ -426,8 +426,8 @@ impl<'a> Builder<'a> {
         takes
     }
 
-    /// Returns the `always` blocks for the registers of a pipeline for whose output net `wanted` returns true: one block for all
-    /// registers with the same enable.
+    /// Returns the `always` blocks for the registers of a pipeline for whose output net `wanted` returns true. Registers with the
+    /// same enable share one block.
     pub(super) fn stage(&mut self, wanted: &dyn Fn(NetId) -> bool) -> Vec<String> {
         let mut groups: BTreeMap<Option<NetId>, Vec<RegId>> = BTreeMap::new();
         for id in self.written(wanted) {

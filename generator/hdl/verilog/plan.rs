@@ -38,8 +38,8 @@ pub enum Reader {
     Rom(RomId),
 }
 
-/// The decisions on how the nets of a design appear in the Verilog: declared under a name, within the expression that uses them,
-/// or as wiring.
+/// The decisions on how each net of a design appears in the Verilog: declared under a name, within another expression, or as
+/// wiring.
 pub struct Plan<'a> {
     /// The design that is written as Verilog.
     pub design: &'a Design,
@@ -53,8 +53,7 @@ pub struct Plan<'a> {
     pub roots: Vec<Bits>,
     /// The nets of the design whose cells the Verilog writes, operands before their readers.
     pub live: Vec<NetId>,
-    /// For each net of the design and each Verilog module, control unit or datapath, a mask of the bits of the net that the
-    /// module reads.
+    /// For each net and each Verilog module (control unit or datapath), a mask of the bits of the net that the module reads.
     pub reads: BTreeMap<(Partition, NetId), u64>,
     /// The net of the reset input; `None` if no register has a reset.
     pub reset: Option<NetId>,
@@ -180,8 +179,8 @@ impl<'a> Plan<'a> {
         }
     }
 
-    /// Returns the value of the comparison `a < b` (1 or 0) if constants or the range of the format decide it, such as `a < 0`
-    /// for an unsigned `a`. Linters reject such comparisons. Returns `None` for any other comparison.
+    /// Returns the value of the comparison `a < b` (1 or 0) if constants or the range of the format decide it. For example,
+    /// `a < 0` is 0 for an unsigned `a`. Linters reject such comparisons. Returns `None` for any other comparison.
     pub fn constant_comparison(&self, a: NetId, b: NetId) -> Option<u64> {
         let format = self.design.net(a).format;
         let constants = [a, b].map(|id| match self.roots[id.index()].single() {
@@ -213,8 +212,8 @@ impl<'a> Plan<'a> {
         readers
     }
 
-    /// Returns the bits that form a net if it is wiring: the bits of its operands, which `known` has for each net, or of a
-    /// constant. Returns `None` if the net needs logic.
+    /// Returns the bits that form a net if it is wiring: bits of its operands, or of a constant. `known` has the bits of each
+    /// net. Returns `None` if the net needs logic.
     fn wired(&self, id: NetId, known: &[Bits]) -> Option<Bits> {
         let width = self.design.width(id);
         let of = |operand: &NetId| &known[operand.index()];
@@ -370,8 +369,8 @@ impl<'a> Plan<'a> {
             && self.design.multiplier(register).is_none()
     }
 
-    /// Finds the nets that have a value of an earlier net under the same value name, such as the registers that carry a value
-    /// from stage to stage.
+    /// Finds the nets that repeat the value of an earlier net, such as the registers that carry a value from stage to stage. Both
+    /// nets have the same value name.
     fn find_repeats(&mut self) {
         let Some(pipeline) = &self.design.pipeline else { return };
         let mut passed: HashSet<NetId> = HashSet::new();
@@ -401,8 +400,8 @@ impl<'a> Plan<'a> {
         self.repeats = repeats;
     }
 
-    /// Returns the comment that the Verilog shows at the declaration of a net, or an empty text if the net only repeats a value
-    /// of an earlier pipeline stage.
+    /// Returns the comment that the Verilog shows at the declaration of a net. It is empty if the net only repeats a value of an
+    /// earlier pipeline stage.
     pub fn remark(&self, id: NetId) -> String {
         if self.repeats.contains(&id) { String::new() } else { remark(self.design, id) }
     }

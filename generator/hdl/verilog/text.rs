@@ -181,8 +181,8 @@ impl Names {
         Self::new(ports.chain(["clk"]))
     }
 
-    /// Returns a name that the module does not use yet, and adds it to the set: `wish`, or `wish_2`, `wish_3` and so on if it is
-    /// taken. For example, if `control` is taken, the next names are `control_2` and `control_3`.
+    /// Returns a name that the module does not use yet, and adds it to the set. The name is `wish`, or `wish_2`, `wish_3` and so
+    /// on if `wish` is taken. For example, if `control` is taken, the next names are `control_2` and `control_3`.
     pub fn fresh(&mut self, wish: &str) -> String {
         let mut name = wish.to_owned();
         let mut number = 1;

@@ -32,7 +32,7 @@ pub enum Start {
 
 impl Start {
     /// Returns the initial values of the registers with which the test bench must pass. A pipeline must pass with unknown values,
-    /// since reset and points determine its state. For a core with a microprogram, the values are 0 and 1: simulation of its
+    /// since reset and points determine its state. For a core with a microprogram, the values are 0 and 1. Simulation of its
     /// gates can keep values unknown that are known in a real circuit.
     pub fn of(pipelined: bool) -> &'static [Self] {
         if pipelined { &[Self::Unknown] } else { &[Self::Zeros, Self::Ones] }
@@ -61,8 +61,8 @@ pub fn netlist(
     sources.text(NETLIST)
 }
 
-/// Returns the Verilog models of the cells, without delays, as one pair of a file name and contents. The flip-flop's model is
-/// replaced by one that begins with the value `start`, because the library's own model becomes unknown at the first value on its
+/// Returns the Verilog models of the cells, without delays, as one pair of a file name and contents. The model of the flip-flop
+/// is replaced by one that begins with the value `start`. The library's own model would become unknown at the first value on its
 /// constant inputs.
 ///
 /// # Errors

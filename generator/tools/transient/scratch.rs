@@ -101,8 +101,8 @@ impl Drop for Directory {
     }
 }
 
-/// Deletes the directories that killed processes have left in `parent`. The name of such a directory begins with `prefix`, and it
-/// has a lock file that contains the directory's own name and that no process has locked. Errors are ignored.
+/// Deletes the directories that killed processes have left in `parent`. The name of such a directory begins with `prefix`. Its
+/// lock file contains the directory's own name, and no process has locked it. Errors are ignored.
 fn sweep(parent: &Path, prefix: &str) {
     for entry in fs::read_dir(parent).into_iter().flatten().flatten() {
         let (path, lock) = (entry.path(), entry.path().join(LOCK));

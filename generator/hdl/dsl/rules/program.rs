@@ -1,5 +1,5 @@
-//! Checks the microprogram of a description: it raises `valid` only after the result is loaded, it selects an input of every mux,
-//! and every loop can end.
+//! Checks the microprogram of a description. It must raise `valid` only after the result is loaded, and select an input of every
+//! mux, and every loop must be able to end.
 
 use std::collections::HashSet;
 
@@ -11,9 +11,8 @@ use glint_base::codes;
 use glint_base::cone::reached;
 use glint_base::diagnostic::Diagnostic;
 
-/// Returns the mistakes of the microprogram: microinstructions that raise `valid` too early, no microinstruction that raises
-/// `valid`, select lines without a choice, and loops that cannot end. `picked` has the select fields to which some
-/// microinstruction gives a value.
+/// Returns the mistakes of the microprogram: microinstructions that raise `valid` too early, or none that raises it, select lines
+/// without a choice, and loops that cannot end. `picked` has the select fields to which some microinstruction gives a value.
 pub(super) fn check(design: &Design, picked: &HashSet<FieldId>) -> Vec<Diagnostic> {
     let mut found = early(design);
     found.extend(silent(design));
@@ -58,8 +57,8 @@ fn unpicked(design: &Design, picked: &HashSet<FieldId>) -> Vec<Diagnostic> {
     found
 }
 
-/// Finds microinstructions that raise `valid` while they load a register that a result shows, if a path through the microprogram
-/// leads to them without an earlier load of this register. In this clock the output does not yet show the result.
+/// Finds microinstructions that raise `valid` while they load a register that a result shows. A path through the microprogram
+/// must lead to them without an earlier load of this register. In this clock the output does not yet show the result.
 fn early(design: &Design) -> Vec<Diagnostic> {
     let control = &design.control;
     let mut found = Vec::new();

@@ -1,5 +1,5 @@
-//! Finds parts of a correct description that the device does not need, and returns warnings of them: logic on which no output
-//! depends, muxes that always pass the same input, and choices that no microinstruction makes.
+//! Finds parts of a correct description that the device does not need. They are logic on which no output depends, muxes that
+//! always pass the same input, and choices that no microinstruction makes.
 
 use std::collections::HashSet;
 
@@ -9,8 +9,8 @@ use glint_base::codes;
 use glint_base::cone::reached;
 use glint_base::diagnostic::Diagnostic;
 
-/// Returns a warning for logic on which no output depends, for each mux that always passes the same input, and for select lines
-/// with choices that no microinstruction makes. The select lines in `partly_used` may have such choices.
+/// Returns a warning for each of these: logic on which no output depends, a mux that always passes the same input, and select
+/// lines with choices that no microinstruction makes. The select lines in `partly_used` may have such choices.
 pub(in crate::dsl) fn warnings(design: &Design, partly_used: &HashSet<FieldId>) -> Vec<Diagnostic> {
     let mut found = dead(design);
     found.extend(constant(design));

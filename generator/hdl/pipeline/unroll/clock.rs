@@ -86,9 +86,9 @@ impl<'e, 'a> Clock<'e, 'a> {
         value
     }
 
-    /// Returns the value of a register of the sequencer while the microinstruction at `self.address` is executed: the address, or
-    /// the run flag, which is 0 in the clock that accepts `start`. Returns `None` for any other register, and if the address is
-    /// unknown.
+    /// Returns the value of a register of the sequencer while the microinstruction at `self.address` is executed. The address
+    /// counter has this address, and the run flag is 0 only in the clock that accepts `start`. Returns `None` for any other
+    /// register, and if the address is unknown.
     fn of_sequencer(&self, register: RegId) -> Option<u64> {
         let (control, address) = (&self.executor.design.control, self.address?);
         match register {

@@ -119,9 +119,9 @@ impl LineUnroller<'_> {
         Ok(UnrolledLine { unrolled: self.executor.unrolled, walk: registers })
     }
 
-    /// Finds the smallest number of clocks after which `valid` is a constant on every path, so that the microinstruction at the
-    /// beginning of the path determines it. Returns this number, and the addresses of the microinstructions that set `valid`.
-    /// Fails if no number up to [`MOST_DELAY`] has this property, or if a microinstruction sets `valid` on some paths only.
+    /// Finds the smallest number of clocks after which the microinstruction at the beginning of any path determines `valid`,
+    /// whatever the registers contain. Returns this number, and the addresses of the microinstructions that set `valid`. Fails if
+    /// no number up to [`MOST_DELAY`] has this property, or if a microinstruction sets `valid` on some paths only.
     fn delay(&mut self, any: &State) -> Result<(usize, Vec<usize>), Diagnostic> {
         let design = self.executor.design;
         let Some(valid) = design.port(|role| role == Role::Valid).map(|port| port.net) else {
