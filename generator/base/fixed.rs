@@ -1,9 +1,8 @@
 //! Defines fixed-point formats and computes their rounding and overflow.
 //!
-//! A format is written `uI.F` or `sI.F`: I integer bits, F fraction bits and, in a signed format, one sign bit more. The width is
-//! therefore I + F, or 1 + I + F. A *raw* value is the integer that the bits denote; the value is `raw · 2⁻ᶠ`, and one ulp is
-//! `2⁻ᶠ`. For example, raw 3 in `u1.2` is the value 0.75. Functions pass raw values as `i128`, and the bit pattern of a wire as
-//! `u64`.
+//! A format is written `uI.F` or `sI.F`: I integer bits, F fraction bits and, in a signed format, one sign bit more. A *raw*
+//! value is the integer that the bits denote; the value is `raw · 2⁻ᶠ`, and one ulp is `2⁻ᶠ`. For example, raw 3 in `u1.2` is the
+//! value 0.75. Functions pass raw values as `i128`, and the bit pattern of a wire as `u64`.
 
 use std::fmt;
 use std::str::FromStr;
@@ -14,7 +13,7 @@ pub const MAX_WIDTH: u32 = 64;
 /// The largest absolute number of fraction bits. Beyond it, `f64` could not represent the value of one ulp, 2⁻ᶠ.
 pub const MAX_POINT: i32 = 1000;
 
-/// A fixed-point format, `uI.F` or `sI.F`.
+/// A fixed-point format, `uI.F` or `sI.F`. The width is I + F bits, and one bit more in a signed format.
 ///
 /// I and F may be negative as long as the width stays positive: `u-3.15` is a 12-bit fraction whose three leading bits are
 /// known to be zero. For example, `u1.20` has 21 bits, and `s1.20` has 22.

@@ -1,10 +1,8 @@
-//! Instantiates a hardware description within another one, as a *part*. The operands of the part are signals of the surrounding
-//! description.
+//! Instantiates a hardware description within another one, as a *part* whose operands are signals of the surrounding description.
+//! For example, `shading` instantiates `dot-product`.
 //!
-//! A part is a whole design: its nets, registers and memories become part of the surrounding design, with the name of the
-//! instance in front. The parts run one after the other, in the order of their instances. The operand registers of a part are
-//! loaded in the microinstruction before the part's first one. A part has no ports, sequencer or handshake of its own. For
-//! example, `shading` instantiates `dot-product`.
+//! The nets, registers and memories of the part are added to the surrounding design, with the name of the instance in front. The
+//! parts run one after the other, in the order of their instances. A part has no ports, sequencer or handshake of its own.
 
 use std::collections::HashMap;
 use std::panic::Location;
@@ -52,8 +50,9 @@ impl<'d> Instance<'d> {
 }
 
 impl Designer {
-    /// Instantiates the description `describe` as a part called `name`, with a signal for each of its operands. The results of
-    /// the part are in registers. A description with parts calls [`Designer::dataflow`] instead of writing a microprogram.
+    /// Instantiates the description `describe` as a part called `name`, with a signal for each of its operands. The part's
+    /// operand registers are loaded in the microinstruction before the part's first one. The results of the part are in
+    /// registers. A description with parts calls [`Designer::dataflow`] instead of writing a microprogram.
     ///
     /// Reports a mistake if the names in `operands` differ from the part's operands, or if a signal does not fit its operand's
     /// format. Reports a mistake if another part has the same name. Reports the mistakes of the part itself. A part must raise

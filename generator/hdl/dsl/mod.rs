@@ -1,13 +1,9 @@
 //! The description language: datapath, microprogram and ports of a device, in Rust.
 //!
-//! A description is a function that takes a [`Designer`] and builds with it. Handles ([`Signal`], [`Register`], [`Mux`], …) are
-//! `Copy`. Every signal has a fixed-point format *and* the interval of values that it can take. Both follow by rule from the
-//! operands, so that nothing can overflow unnoticed. Sums and products are exact. Only [`Designer::narrow`] drops bits of a
-//! value, with stated rounding and overflow.
-//!
-//! A microinstruction ([`step`]) is a list of settings, which the blocks make: [`Mux::pick`], [`Register::load`],
-//! [`Flag::raise`], [`Counter::load`] and [`Counter::count`]. Each setting gives a value to a field of the control
-//! word. The fields of the word are in the order in which the blocks were created.
+//! A description is a function that builds with a [`Designer`], by handles such as [`Signal`], [`Register`] and [`Mux`]. Every
+//! signal has a fixed-point format *and* the interval of values that it can take, so that nothing can overflow unnoticed. Only
+//! [`Designer::narrow`] drops bits of a value, with stated rounding and overflow. A microinstruction ([`step`]) is a list of
+//! settings, such as [`Register::load`] and [`Mux::pick`].
 //!
 //! ```
 //! use glint_rtl::dsl::{Designer, end, step, valid};

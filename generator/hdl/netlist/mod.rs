@@ -1,16 +1,9 @@
-//! Defines the netlist of a device: its nets, registers, ROMs, ports and control unit. The description language builds it; the
-//! simulator, the pipeline builder and the Verilog emitter read it.
+//! Defines the netlist of a device, which the description language builds, and which the simulator, the pipeline builder and the
+//! Verilog emitter read.
 //!
-//! A [`Design`] is a set of *nets* in an arena. Every net has a name, a [`Format`], the interval of raw values that it can take,
-//! and exactly one [`Driver`], such as an input port, a register or a combinational [`Op`]. There is one clock; registers and
-//! synchronous ROMs change on its rising edge and nothing else holds state.
-//!
-//! Invariants that [`Design::verify`] establishes and everything downstream relies on:
-//!
-//! * operands have the widths that the [`Op`] documents; nothing is extended or cut implicitly;
-//! * the combinational part is acyclic ([`Design::levelise`] gives an evaluation order);
-//! * names are distinct, legal Verilog identifiers, and no net is wider than 64 bits;
-//! * a value never leaves the interval of its net, and the interval fits the format.
+//! A [`Design`] is a list of *nets*. Every net has a [`Format`], the interval of its raw values, and exactly one [`Driver`], such
+//! as a register or a combinational [`Op`]. [`Design::verify`] checks widths, names and drivers, and [`Design::levelise`] finds
+//! combinational loops. There is one clock; only registers and synchronous ROMs have state, and they change on its rising edge.
 
 mod builder;
 mod cell;

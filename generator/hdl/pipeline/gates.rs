@@ -1,8 +1,8 @@
 //! Replaces two-input muxes by gates if one input has constant bits, to shorten the longest path of a pipeline.
 //!
 //! Synthesis implements such a mux by the set or the reset of the register behind it. A look-up table combines the select of the
-//! mux with the clock enable. The path from this table to the register's set or reset is longer than any path through a gate. It
-//! is too long for clocks at which products need output registers. Synthesis treats each bit separately, and so does this pass.
+//! mux with the clock enable. The path from this table to the register is too long for clocks at which products need output
+//! registers. Synthesis treats each bit separately, and so does this pass.
 
 use super::graph::{Cell, Graph, Label, NodeId, NodeOp};
 use super::rebuild::rebuilt;

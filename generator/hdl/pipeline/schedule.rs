@@ -1,13 +1,10 @@
 //! Assigns each node of a computation to a stage of the pipeline, with the fewest register bits.
 //!
-//! The stage of a node is not before the stages of its operands. The node must be in a later stage if a block memory lies between
-//! them, or if the logic between them takes longer than the clock period. A value needs registers at every boundary between
-//! stages up to its last use, one register bit for each of its bits and boundaries. All constraints are on differences of two
-//! stages, so the linear program has an integer solution. The method is from Cong and Zhang, "An efficient and versatile
-//! scheduling algorithm based on SDC formulation", 2006.
-//!
-//! Products that share multipliers (`sharing`) get their stages first, each as early as the constraints and the free multipliers
-//! allow. The linear program then places all other nodes around them.
+//! The node must be in a later stage than an operand if a block memory lies between them, or if the logic between them is too
+//! slow for the clock. A value takes one register bit for each of its bits and for each boundary between stages up to its last
+//! use. All constraints are on differences of two stages, so a linear program finds an integer solution. (The method is from Cong
+//! and Zhang, "An efficient and versatile scheduling algorithm based on SDC formulation", 2006.) Products that share multipliers
+//! (`sharing`) get their stages before the linear program runs.
 
 use std::cmp::Reverse;
 use std::collections::{BTreeMap, BTreeSet};

@@ -1,12 +1,9 @@
 //! Splits products that are too wide for the multipliers of an FPGA target into sums of narrower products.
 //!
-//! An operand that is too wide is divided into two parts: as many upper bits as a multiplier takes, and the remaining lower bits.
-//! If only a few bits remain, their product is added row by row in look-up tables, as in multiplication by hand. Otherwise the
-//! lower bits become a product of their own.
-//!
-//! Two special cases cost less. In the square `(u·2^r + l)² = u²·4^r + l·(u·2^(r+1) + l)`, both partial products with the lower
-//! bits l share one factor. If the largest value of a factor is a power of two, such as 1.0, its highest bit is 1 only if all
-//! other bits are 0. The product is then either the other factor, shifted, or a product without the highest bit.
+//! A factor that is too wide is divided into as many upper bits as a multiplier takes, and the remaining lower bits. A few lower
+//! bits are multiplied row by row in look-up tables; more lower bits become a product of their own. In the square
+//! `(u·2^r + l)² = u²·4^r + l·(u·2^(r+1) + l)`, both partial products with the lower bits l share one factor. If a factor's
+//! highest bit is 1 only if all other bits are 0, the product is either the other factor, shifted, or a product without this bit.
 
 use super::graph::{Graph, Label, NodeId, NodeOp};
 use super::rebuild::rebuilt;

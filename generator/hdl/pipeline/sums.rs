@@ -1,8 +1,8 @@
 //! Rewrites sums and differences so that they take fewer look-up tables. For example, `a + ~b + 1` becomes `a - b`.
 //!
-//! Synthesis implements sums as they are written, and the schedule counts their cost. If an operand of a sum has zeros in its
-//! lowest bits, the lowest bits of the other operand bypass the adder. A choice between a value and a constant moves behind a sum
-//! with a constant, where a register can make the choice by its reset. For example, `(s ? 5 : x) + 3` becomes `s ? 8 : x + 3`.
+//! If an operand of a sum has zeros in its lowest bits, the lowest bits of the other operand bypass the adder. A choice between a
+//! value and a constant moves behind a sum with a constant, where a register can make the choice by its reset. For example,
+//! `(s ? 5 : x) + 3` becomes `s ? 8 : x + 3`.
 
 use super::graph::{Cell, Graph, Label, NodeId, NodeOp};
 use crate::netlist::interval::of_cell;

@@ -1,12 +1,9 @@
 //! Unrolls a microprogram into a graph of values, by executing it symbolically with unknown operands.
 //!
-//! The execution follows one computation clock by clock, from the clock that accepts `start` to the clock with the results. In
-//! each clock the fields of the control word are constants, so that muxes with a field as their select disappear. Each load of a
-//! register makes a new value.
-//!
-//! A constant condition decides which microinstruction follows. If a condition depends on an operand, the execution follows both
-//! branches. A mux chooses the value of each register at the place where the branches meet. A loop is unrolled as often as it can
-//! run, and a jump is executed with and without the microinstructions that it skips.
+//! The execution follows one computation clock by clock, from the clock that accepts `start` to the clock with the results. The
+//! fields of the control word are constants in each clock, so that muxes with a field as their select disappear. If a condition
+//! depends on an operand, the execution follows both branches, and muxes choose the register contents behind them. A loop is
+//! unrolled as often as it can run.
 
 mod clock;
 mod cycle;

@@ -1,13 +1,9 @@
 //! The built-in simulator: runs many independent instances of a design clock by clock, and writes waveforms.
 //!
 //! The compiler turns a [`Design`] into a [`CompiledDesign`], a list of instructions in evaluation order. A [`Machine`] executes
-//! it for several instances at once, called lanes. A [`Circuit`] wraps the machine as one block of the simulation kernel
-//! rust_hdl, and a [`Simulator`] adds the clock.
-//!
-//! rust_hdl is the kernel. It owns the clock, a `Signal`. Each half of a clock is one call of its `simulate()`, which updates the
-//! block, finds the edge, and updates again until nothing changes. Its `check_all` checks the ports, and its probes read every
-//! named net and write the waveforms. Glint computes the nets within an update: the registers at an edge, and then one pass over
-//! the instructions. rust_hdl could also simulate one block for each cell, but a hundred times more slowly.
+//! the instructions for several instances at once, called lanes. A [`Circuit`] wraps the machine as one block of the simulation
+//! kernel rust_hdl, which writes waveforms, and a [`Simulator`] adds the clock. (One rust_hdl block for each cell would be a
+//! hundred times slower.)
 
 mod banks;
 mod circuit;

@@ -2,24 +2,18 @@
 //!
 //! All values are in *slots*, bit patterns with zeros above their width. A clock has two phases. *Settling* runs the steps in
 //! order; each step computes one slot from earlier ones. The *edge* writes the outputs of synchronous ROMs and then the
-//! registers. There are fewer instructions than cells: nets that are mere wiring share a slot, constants are folded, and equal
-//! instructions are merged. An unnamed slice has no slot if all its readers take the bits from its operand themselves.
-//!
-//! There are two banks of slots. The *narrow* bank has slots of 32 bits: nearly all values fit, and a vector of the processor
-//! holds twice as many lanes. The *wide* bank has slots of 64 bits for all other values. An [`Instruction`] works within one
-//! bank; the other variants of [`SettlingStep`] convert values from one bank to the other.
-//!
-//! A value that changes outside settling is a *source*: an input port, or a value that the edge writes. The fields of the control
-//! word are sources too, because most of them stay the same from one control word to the next. Instructions that depend on the
-//! same sources form a segment. Settling skips segments whose sources have not changed.
+//! registers.
 
 use crate::netlist::NetId;
 use glint_base::fixed::MAX_WIDTH;
 
-/// The number of a slot within its bank.
+/// The number of a slot within its bank. Nets that are mere wiring (other names, zero extensions, whole slices) share a slot. An
+/// unnamed slice has no slot if all its readers take the bits from its operand themselves.
 pub(super) type Slot = u32;
 
-/// A set of sources, with one bit for each source. If there are more than 64 sources, several share a bit.
+/// A set of sources, with one bit for each source. A *source* is a value that changes outside settling: an input port, or a value
+/// that the edge writes. Each field of the control word is a source too, because most fields stay the same from one control word
+/// to the next. If there are more than 64 sources, several share a bit.
 pub(super) type Sources = u64;
 
 /// A computation within one bank: the slot `to` from the slots `a`, `b` and so on, which have smaller numbers.
@@ -119,7 +113,7 @@ impl Instruction {
     }
 }
 
-/// One step of settling.
+/// One step of settling: an instruction within a bank, or the conversion of a value from one bank to the other.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum SettlingStep {
     /// An instruction whose slots are all narrow.
@@ -150,7 +144,7 @@ pub(super) struct Span {
     pub len: u32,
 }
 
-/// Consecutive steps that depend on the same sources.
+/// A number of consecutive steps that depend on the same sources. Settling skips the group if none of its sources has changed.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct StepGroup {
     pub sources: Sources,
@@ -191,7 +185,8 @@ pub(super) struct RegisterEdge {
     pub reset: Option<(Slot, u64)>,
 }
 
-/// One of the two banks: the slots that change outside settling, and the contents at power-up.
+/// One of the two banks: the slots that change outside settling, and the contents at power-up. The narrow bank has slots of 32
+/// bits, so that a vector of the processor holds twice as many lanes; the wide bank has slots of 64 bits.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Bank {
     pub inputs: Vec<InputPort>,
@@ -208,7 +203,7 @@ pub(super) struct Bank {
 pub struct CompiledDesign {
     /// The steps, in an order in which each follows the steps that compute its operands.
     pub(super) steps: Vec<SettlingStep>,
-    /// The groups of consecutive steps with the same sources. Together they have all steps, in order.
+    /// The groups of consecutive steps with the same sources. Together they contain all steps, in order.
     pub(super) segments: Vec<StepGroup>,
     pub(super) narrow: Bank,
     pub(super) wide: Bank,

@@ -1,9 +1,8 @@
-//! Writes the cells of a netlist as Verilog expressions. For example, a sum becomes `a + b`.
+//! Writes the cells of a netlist as Verilog expressions, such as `a + b` for a sum.
 //!
-//! The operands of every cell have the same width as the result, so that no context can extend or truncate a carry. Two cells are
-//! exceptions. A product is written only as the whole right-hand side of a net of its full width. The carry into an adder is
-//! extended to the adder's width. Only products and comparisons depend on signs; their operands are written with `$signed` or
-//! `$unsigned` if necessary.
+//! The operands of every cell have the same width as the result, so that no context can extend or truncate a carry. As an
+//! exception, a product is only written as the whole right-hand side of a net of its full width. The carry into an adder is
+//! extended to the adder's width. Operands of products and comparisons are written with `$signed` or `$unsigned` if necessary.
 
 use super::bits::{BitRun, Bits};
 use super::plan::{NetForm, Plan, Reader};

@@ -1,17 +1,10 @@
-//! Unrolls a computation with several results, such as the points of a scan line. The module finds how each point follows from
-//! the operands and the point before it.
+//! Unrolls a computation with several results, such as the points of a scan line, into the first point and the step from a point
+//! to the next.
 //!
-//! The registers that carry state from one point to the next are called the *walk*. For example, the walk of `quad-cosine` is the
-//! register with the current angle. The module proves by induction that all points are computed alike:
-//!
-//! - The results are the same function of the operands and the walk for each point, whatever microinstructions are executed
-//!   between points.
-//! - The first point loads functions of the operands alone into the walk. Every other point loads one function of the walk and
-//!   the operands. Nothing else writes the walk between points.
-//!
-//! A microinstruction computes a point if `valid` follows it after a fixed number D of clocks. The search therefore follows every
-//! path through the microprogram for D clocks, from any microinstruction. It assumes nothing about the registers at the beginning
-//! of the path, except that the operand registers hold operands.
+//! The registers that carry state from one point to the next are called the *walk*, for example the register with the current
+//! angle. The module proves by induction that every point is the same function of the operands and the walk. It also proves that
+//! the first point loads functions of the operands into the walk, and every other point one function of the walk and the
+//! operands. A design for which the proof fails is refused.
 
 use super::{Clock, Executor, Iterations, State, Unrolled};
 use crate::netlist::{Design, NetId, RegisterKind, Role, Sequence};
@@ -120,8 +113,9 @@ impl LineUnroller<'_> {
     }
 
     /// Finds the smallest number of clocks after which the microinstruction at the beginning of any path determines `valid`,
-    /// whatever the registers contain. Returns this number, and the addresses of the microinstructions that set `valid`. Fails if
-    /// no number up to [`MOST_DELAY`] has this property, or if a microinstruction sets `valid` on some paths only.
+    /// whatever registers other than operands contain. Returns this number, and the addresses of the microinstructions that set
+    /// `valid`. Fails if no number up to [`MOST_DELAY`] has this property, or if a microinstruction sets `valid` on some paths
+    /// only.
     fn delay(&mut self, any: &State) -> Result<(usize, Vec<usize>), Diagnostic> {
         let design = self.executor.design;
         let Some(valid) = design.port(|role| role == Role::Valid).map(|port| port.net) else {
