@@ -69,9 +69,8 @@ impl Format {
         u32::try_from(self.int + self.frac + i32::from(self.signed)).expect("a positive width")
     }
 
-    /// Returns the smallest raw value that the format can represent. For example, `s2.0` gives −4, and every unsigned format
-    /// gives
-    /// 0. If the format is too wide for any net, the result is limited to the range of an `i128`.
+    /// Returns the smallest raw value that the format can represent: 0 for an unsigned format, and for example −4 for `s2.0`. If
+    /// the format is too wide for any net, the result is limited to the range of an `i128`.
     pub fn min_raw(self) -> i128 {
         if self.signed { i128::MIN >> 128u32.saturating_sub(self.width()) } else { 0 }
     }

@@ -64,8 +64,7 @@ pub struct Timing {
     pub multiplier: (u32, u32),
     /// The largest size of a partial product that Glint adds up in look-up tables instead of a multiplier. The size is the number
     /// of bits in all rows. On ECP5 three rows of 21 bits and their sums take about 110 look-up tables, and four rows of 22 bits
-    /// take
-    /// 160. The limit is higher for iCE40, because its smaller chips have few multipliers.
+    /// take about 160. The limit is higher for iCE40, because its smaller chips have few multipliers.
     pub row_bits: u32,
     /// The delay from the rising edge to the output of a register, plus the wire to the next register and the setup of that
     /// register.

@@ -71,7 +71,7 @@ pub fn run_bench<N: AsRef<str>, C: AsRef<[u8]>>(
     run_bench_in(&search, simulator, files, top, limit)
 }
 
-/// Does the same as [`run_bench`], but looks for the simulator on the search path `search` instead of `PATH`.
+/// Builds and runs a bench as [`run_bench`] does. Looks for the simulator on the search path `search` instead of `PATH`.
 pub(super) fn run_bench_in<N: AsRef<str>, C: AsRef<[u8]>>(
     search: &OsStr,
     simulator: VerilogSimulator,
@@ -96,8 +96,9 @@ pub struct BuiltBench {
 }
 
 impl BuiltBench {
-    /// Builds a bench in a temporary directory, with `files` as in [`run_bench`]. If the bench calls `$dumpvars` to write a
-    /// waveform, `waveform` must be [`Waveform::Written`].
+    /// Builds the bench `top` in a temporary directory from `files`, pairs of a plain file name and contents. Files that end in
+    /// `.v` or `.sv` are compiled, in the given order. If the bench calls `$dumpvars` to write a waveform, `waveform` must be
+    /// [`Waveform::Written`].
     ///
     /// # Errors
     /// Fails if the simulator is missing or rejects the sources (Verilator: or warns of them), or if building takes more than

@@ -52,7 +52,7 @@ impl BenchDifference {
     }
 }
 
-/// Builds and runs the bench `top` of `files`, as [`super::run_bench`] does, and returns the waveform (VCD) of the clocks from
+/// Builds and runs the bench `top` of `files`, pairs of a file name and contents. Returns the waveform (VCD) of the clocks from
 /// `from` to `to`, both included. A module around the bench writes the waveform: for the bench `rsqrt_tb` it is `rsqrt_tb_window`
 /// in the file `rsqrt_tb_window.v`. Building and running may each take at most `limit`.
 ///

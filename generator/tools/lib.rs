@@ -198,7 +198,8 @@ impl Tool {
         )));
     }
 
-    /// Runs a tool as [`Tool::run`] does, and returns the output of a successful run.
+    /// Runs the tool in `directory` with an empty standard input, and returns the output of a successful run: standard output and
+    /// standard error together.
     ///
     /// # Errors
     /// Fails if the tool does not start, takes longer than its time limit, or exits with a status other than 0.

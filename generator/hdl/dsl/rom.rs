@@ -1,4 +1,5 @@
-//! The handle of a read-only memory (ROM) in a hardware description. It gives the word that the ROM reads, and sets comments.
+//! Defines the handle of a read-only memory (ROM) in a hardware description. The handle returns the word that the ROM reads, and
+//! sets comments.
 
 use super::{Designer, Signal};
 use crate::netlist::RomId;

@@ -33,8 +33,8 @@ impl Designer {
         self.add_net(name, format, format.range(), driver, true)
     }
 
-    /// Adds a net that the description language needs, and returns it. If another net has the name, a number is added: a second
-    /// `sum_wide` becomes `sum_wide_2`.
+    /// Adds an unnamed net, such as an extension, that the description language makes itself, and returns it. If another net has
+    /// the name, a number is added: a second `sum_wide` becomes `sum_wide_2`.
     #[track_caller]
     pub(crate) fn add_wiring(
         &self,
@@ -186,8 +186,8 @@ impl Designer {
         self.signal(self.add_wiring(&signal.name(), signal.format(), signal.range(), driver))
     }
 
-    /// Returns several signals as [`Designer::own`] does. A loop replaces a closure, because in a closure the reported source
-    /// line would be in this file.
+    /// Returns several signals, each replaced by a constant if it belongs to another designer ([`Designer::own`]). A loop
+    /// replaces a closure, because in a closure the reported source line would be in this file.
     #[track_caller]
     pub(crate) fn own_all(&self, signals: &[Signal<'_>]) -> Vec<Signal<'_>> {
         let mut own = Vec::with_capacity(signals.len());

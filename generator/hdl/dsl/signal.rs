@@ -285,8 +285,8 @@ impl Designer {
         self.signal(self.add_net(name, format, format.range(), Driver::Op(op), true))
     }
 
-    /// Returns `a − b`, aligned as in [`Designer::add`]. The result is unsigned if the ranges show that it is never negative.
-    /// For example, two operands `u0.8` that may have any value give `s0.8`.
+    /// Returns `a − b`, exact. Signals with different binary points are aligned first. The result is unsigned if the ranges show
+    /// that it is never negative. For example, two operands `u0.8` that may have any value give `s0.8`.
     #[track_caller]
     pub fn sub<'d>(&'d self, name: &str, a: Signal<'d>, b: Signal<'d>) -> Signal<'d> {
         let (a, b) = aligned(self.own(a), self.own(b));

@@ -30,7 +30,7 @@ pub struct Delayed {
 
 impl DelayLine {
     /// Returns the number of words of a memory that replaces the registers of the delay line. One more register behind the memory
-    /// holds its output. For example, five registers become a memory of four words.
+    /// stores the output of the memory. For example, five registers become a memory of four words.
     pub fn words(&self) -> usize {
         self.values[0].passed().len()
     }

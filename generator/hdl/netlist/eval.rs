@@ -127,7 +127,7 @@ impl<'a> Interpreter<'a> {
         }
     }
 
-    /// Performs the rising edge of the clock after [`Interpreter::settle`]: registers and synchronous ROMs take their new values.
+    /// Performs the rising edge of the clock after [`Interpreter::settle`]: registers and synchronous ROMs load their new values.
     /// If the input `rst_n` is 0, registers with a reset take their reset values.
     pub fn edge(&mut self) {
         let design = self.design;

@@ -332,7 +332,7 @@ pub struct Design {
     pub control: Control,
     /// The facts about the stages, if the design is a pipeline.
     pub pipeline: Option<Pipeline>,
-    /// Warnings about logic that no output needs.
+    /// Warnings about logic on which no output depends, and about choices that no microinstruction makes.
     pub warnings: Vec<Diagnostic>,
 }
 

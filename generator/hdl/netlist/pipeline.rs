@@ -1,6 +1,6 @@
 //! Defines the facts about a pipeline that its netlist alone does not state: stages, handshake, shared multipliers, and
-//! checkpoints. A checkpoint is a value that a register of the sequential design also holds, so that checks can compare both
-//! designs there.
+//! checkpoints. A checkpoint is a value that a register of the sequential design has at some time too, so that checks can compare
+//! both designs.
 
 use std::collections::BTreeMap;
 
@@ -37,7 +37,7 @@ pub struct Pipeline {
     /// The stages, from the operands on. The results are in the registers behind the last stage, so there are as many stages as
     /// clocks from a point to its results. For example, `rough_pipelined` has 18 stages.
     pub stages: Vec<Stage>,
-    /// The number of the stage for each net. A register in stage k holds a value that stage k − 1 computed.
+    /// The number of the stage for each net. A register in stage k has a value that stage k − 1 computed.
     pub stage_of: Vec<usize>,
     /// For each net, the name of the value that it carries. The name is the same in every stage through which the value travels.
     pub value_of: Vec<String>,
@@ -49,8 +49,8 @@ pub struct Pipeline {
     pub side_values: Vec<NetId>,
     /// The registers that become output registers of multipliers, inside a DSP block of the FPGA.
     pub registered: Vec<RegId>,
-    /// The checkpoints: values of the pipeline that a register of the sequential design also holds at some time. Checks compare
-    /// both designs there.
+    /// The checkpoints: values of the pipeline that a register of the sequential design has at some time too. Checks compare
+    /// these values of both designs.
     pub checkpoints: Vec<Checkpoint>,
 }
 
@@ -83,13 +83,13 @@ pub struct Stage {
     pub delayed_bits: u32,
 }
 
-/// A checkpoint: a value of a pipeline that a register of the sequential design also holds in some microinstruction. Checks
-/// compare both values.
+/// A checkpoint: a value of a pipeline that a register of the sequential design has in some microinstruction too. Checks compare
+/// both values.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Checkpoint {
     /// The name of the register in the sequential design.
     pub register: String,
-    /// The address of the microinstruction in which the sequential design's register holds the value.
+    /// The address of the microinstruction in which the sequential design's register has the value.
     pub address: usize,
     /// The number of earlier executions of this microinstruction in the same computation.
     pub visit: usize,

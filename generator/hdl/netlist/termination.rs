@@ -48,8 +48,8 @@ pub fn remaining(design: &Design) -> Option<Vec<Left>> {
     Some(left)
 }
 
-/// Returns the number of the latest clock in which the output `done` can be high. The clock that accepts `start` has the number
-/// 0. Returns `None` if [`remaining`] finds no limit, or if the design has no microprogram.
+/// Returns the number of the latest clock in which the output `done` can be high. Clock 0 is the clock that accepts `start`.
+/// Returns `None` if [`remaining`] finds no limit, or if the design has no microprogram.
 pub fn latest_done(design: &Design) -> Option<u32> {
     // Microinstruction 0 is executed in clock 1.
     let first = *remaining(design)?.first()?;

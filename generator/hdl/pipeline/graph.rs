@@ -85,7 +85,7 @@ pub struct Node {
     pub range: Interval,
     /// The name, the comment and the source line of the value.
     pub label: Label,
-    /// The first executed microinstruction that needs the value, as a position in [`super::unroll::Unrolled::steps`].
+    /// The first executed microinstruction whose execution made the value, as a position in [`super::unroll::Unrolled::steps`].
     pub step: usize,
     /// Whether a register of the sequential design loads the value.
     pub held: bool,

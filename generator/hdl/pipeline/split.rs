@@ -16,7 +16,7 @@ use glint_base::target::Timing;
 const MOST_ROWS: u32 = 4;
 
 /// Returns a copy of the computation in which products that are too wide for the target's multipliers are sums of narrower
-/// products. Sums and differences are rewritten as `sums::shortened` describes.
+/// products. Sums and differences are rewritten too, so that their carry chains are short (`sums::shortened`).
 pub fn split(unrolled: &Unrolled, target: &Timing) -> Unrolled {
     rebuilt(unrolled, |graph, op, node| {
         Some(match op {

@@ -119,8 +119,7 @@ struct StageBuilder<'a> {
 }
 
 impl StageBuilder<'_> {
-    /// Adds a net to `stage`. All nets are counted to the source line of the sequential design's first net, until `labelled`
-    /// changes this.
+    /// Adds a net to `stage`. Its source line is the line of the sequential design's first net, until `labelled` changes it.
     fn net(&mut self, name: String, stage: usize, format: Format, driver: Driver) -> NetId {
         self.taken.insert(name.clone());
         self.pipeline.stage_of.push(stage);
@@ -645,8 +644,8 @@ impl StageBuilder<'_> {
         bits
     }
 
-    /// Returns the stage whose logic computes a node. This is the stage before the node's own for a product whose register the
-    /// node is.
+    /// Returns the stage whose logic computes a node. It is the node's own stage, or for a product with a register behind it the
+    /// stage before.
     fn computed_in(&self, id: NodeId) -> usize {
         let product = matches!(self.graph.node(id).cell, Cell::Op(_));
         self.schedule.stage[id.index()] - usize::from(product && self.problems.is_clocked(id))

@@ -28,8 +28,8 @@ pub fn shortened(
     within(graph, op, format, range, label, behind)
 }
 
-/// Returns a cell as [`shortened`] does. Only if `behind` is true, a choice between a value and a constant moves behind a sum
-/// with a constant.
+/// Returns a node with the value of the cell `op`, in which low bits bypass an adder as [`shortened`] describes. If `behind` is
+/// true, a choice between a value and a constant moves behind a sum with a constant.
 fn within(
     graph: &mut Graph,
     op: NodeOp,

@@ -82,7 +82,8 @@ pub fn unroll(design: &Design) -> Result<Unrolled, Diagnostics> {
 /// for this is that the iterations are alike and that a few bits determine their number.
 ///
 /// # Errors
-/// Fails under the same conditions as [`unroll`].
+/// Fails if a loop has no bound, or one that depends on more than 16 bits, or if the computation takes more than 4096 clocks.
+/// Fails if the microprogram does not set `valid` at a fixed place, or if a result depends on an earlier computation.
 pub fn unroll_in_powers(design: &Design) -> Result<Unrolled, Diagnostics> {
     unroll_for_pipeline(design).map_err(|diagnostic| Diagnostics(vec![diagnostic]))
 }
@@ -90,7 +91,8 @@ pub fn unroll_in_powers(design: &Design) -> Result<Unrolled, Diagnostics> {
 /// Unrolls the microprogram of a design as [`unroll_in_powers`] does.
 ///
 /// # Errors
-/// Fails under the same conditions as [`unroll`]. The error is the first mistake that the execution meets.
+/// Fails if the microprogram cannot be unrolled, as [`unroll`] describes. The error is the first mistake that the execution
+/// meets.
 pub(super) fn unroll_for_pipeline(design: &Design) -> Result<Unrolled, Diagnostic> {
     run(design, Iterations::InPowers)
 }

@@ -13,11 +13,11 @@ use crate::sim::machine::Machine;
 use crate::sim::program::CompiledDesign;
 use crate::sim::wire::{Direction, ProbeView, Wire};
 
-/// `LANES` independent instances of a design as one rust_hdl [`Block`]. rust_hdl clocks and settles the block, checks it, and
-/// traces lane 0.
+/// `LANES` independent instances of a design as one rust_hdl [`Block`]. rust_hdl clocks the block, updates it until nothing
+/// changes, checks it, and writes the waveform of lane 0.
 ///
 /// The caller must change inputs together with the falling edge of [`Circuit::clock`]. Inputs that change together with the
-/// rising edge are seen only after it.
+/// rising edge take effect only after it.
 #[derive(Debug)]
 pub struct Circuit<const LANES: usize = 1> {
     /// The clock of the circuit. Registers change on its rising edge.

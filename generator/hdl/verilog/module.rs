@@ -305,8 +305,8 @@ impl<'a> Builder<'a> {
         lines
     }
 
-    /// Returns the declaration of a memory with its words, or the function that replaces it if the style asks for a case
-    /// statement.
+    /// Returns the declaration of a memory with its words, or the function with a case statement that replaces it if `style.case`
+    /// is true.
     fn memory(&mut self, id: RomId) -> Vec<String> {
         let design = self.plan.design;
         let rom = design.rom(id);

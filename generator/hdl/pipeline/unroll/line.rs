@@ -33,7 +33,7 @@ pub struct UnrolledLine {
 pub struct WalkRegister {
     /// The value that the first point loads into the register.
     pub first: NodeId,
-    /// The value that the register holds before a later point is loaded.
+    /// The value of the register before a later point is loaded, an unknown value of the graph.
     pub before: NodeId,
     /// The value that a later point loads into the register, as a function of the `before` values of all registers of the walk.
     pub next: NodeId,
