@@ -48,7 +48,7 @@ impl Design {
 }
 
 impl Net {
-    /// Returns a named net of the datapath whose interval is the whole range of its format.
+    /// Makes a named net of the datapath whose interval is the whole range of its format, without a comment and a block number.
     pub fn new(name: String, format: Format, driver: Driver, location: SourceLocation) -> Self {
         Self {
             name,
@@ -66,7 +66,7 @@ impl Net {
 }
 
 impl NetlistRom {
-    /// Returns a ROM that is read without a clock.
+    /// Makes a ROM that is read without a clock, without comments and a block number. `words` are bit patterns, from address 0.
     pub fn new(
         name: &str,
         address: NetId,

@@ -19,7 +19,7 @@ pub struct Control {
     pub address: RegId,
     /// The register with the run flag, which is 1 during a computation.
     pub run: RegId,
-    /// Whether the device accepts `start` in the last clock of a computation too. It does if the operand registers have buffers.
+    /// Whether the device accepts `start` in the last clock of a computation too, because the operand registers have buffers.
     pub overlaps: bool,
 }
 
@@ -31,14 +31,14 @@ pub struct Field {
     pub name: String,
     /// The net that the field drives.
     pub net: NetId,
-    /// The kind of thing that the field controls.
+    /// Whether the field selects inputs of muxes, loads registers, drives an output, or controls the sequencer.
     pub kind: FieldKind,
-    /// The numbers of the field's lines in the block diagram of the document that describes the device, the most significant
-    /// first. It is empty if the diagram does not show them.
+    /// The numbers of the field's bits (lines) in the block diagram of the document that describes the device, the most
+    /// significant first. The list is empty if the diagram does not show them.
     pub lines: Vec<u16>,
 }
 
-/// The kind of thing that a field of the control word controls.
+/// The purpose of a field of the control word.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum FieldKind {
     /// The field drives select lines of muxes. The texts are the names of the choices, from the value 0 on.
@@ -84,7 +84,8 @@ pub enum Sequence {
 }
 
 impl Control {
-    /// Returns the control unit of a pipeline, which has no microinstructions, fields or sequencer.
+    /// Returns the control unit of a pipeline, which has no microinstructions, fields or sequencer. Its identifiers of ROM and
+    /// registers are invalid.
     pub fn none() -> Self {
         Self {
             fields: Vec::new(),
@@ -132,8 +133,8 @@ impl Control {
 }
 
 impl Design {
-    /// Returns the position of the lowest bit of each field in the control word. It is empty for a pipeline, which has no control
-    /// word. For example, `rough` has 7 for `operand_select` and 0 for `go_on`.
+    /// Returns the position of the lowest bit of each field in the control word, in the order of the fields. The list is empty
+    /// for a pipeline, which has no control word. For example, `rough` has 7 for `operand_select` and 0 for `go_on`.
     pub fn field_positions(&self) -> Vec<u32> {
         if self.control.fields.is_empty() {
             return Vec::new();

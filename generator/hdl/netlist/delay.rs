@@ -15,7 +15,7 @@ pub struct DelayLine {
     pub to: usize,
     /// The net that says when the values move to the next stage; `None` if they always move.
     pub enable: Option<NetId>,
-    /// The values that travel through this delay line, in the order of their registers.
+    /// The values that travel through this delay line, in the order of their first registers in the design.
     pub values: Vec<Delayed>,
 }
 

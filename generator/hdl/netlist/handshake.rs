@@ -27,7 +27,7 @@ impl Role {
 }
 
 impl Design {
-    /// Returns the position of a net among the input ports of the design.
+    /// Returns the position of a net among the input ports of the design, from 0.
     ///
     /// # Errors
     /// Fails if the net is no input.

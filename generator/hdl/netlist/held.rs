@@ -90,7 +90,8 @@ struct Steady<'a> {
     cells: Vec<OperandCell>,
     /// The thresholds of each net, which determine the clock in which it is computed.
     thresholds: Vec<Thresholds>,
-    /// Whether a register may follow each net: the net depends only on operand registers and constants, and is more than wiring.
+    /// For each net, whether a register may follow it: the net is steady, and more than wiring lies between it and the operand
+    /// registers.
     holds: Vec<bool>,
     /// The registers, each with the net that it loads and the thresholds of its load.
     registers: Vec<(RegId, NetId, Thresholds)>,

@@ -45,7 +45,8 @@ macro_rules! id {
         pub struct $name(pub u32);
 
         impl $name {
-            /// Returns the position of the item in the design's list of nets, registers, ROMs or fields.
+            /// Returns the identifier as an index into the list of its kind: nets, registers, ROMs or fields of a design, or
+            /// nodes of a graph.
             pub fn index(self) -> usize {
                 self.0 as usize
             }
@@ -55,19 +56,19 @@ macro_rules! id {
 pub(crate) use id;
 
 id!(
-    /// A net of a [`Design`].
+    /// The identifier of a net: its position in [`Design::nets`].
     NetId
 );
 id!(
-    /// A register of a [`Design`].
+    /// The identifier of a register: its position in [`Design::registers`].
     RegId
 );
 id!(
-    /// A ROM of a [`Design`].
+    /// The identifier of a ROM: its position in [`Design::roms`].
     RomId
 );
 id!(
-    /// A field of the control word of a [`Design`].
+    /// The identifier of a field of the control word: its position in [`Control::fields`].
     FieldId
 );
 
@@ -146,7 +147,7 @@ pub struct NetlistRegister {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RegisterKind {
     /// An operand register. The write strobe loads it from an input port, or `start` loads it from its buffer. It does not change
-    /// while the device is busy. For example, `cos_gamma_reg` of `rough`.
+    /// during a computation. For example, `cos_gamma_reg` of `rough`.
     Operand,
     /// A buffer in front of an operand register, which accepts the next operand at any time.
     Buffer,
@@ -164,7 +165,7 @@ pub struct NetlistRom {
     /// The name of the ROM, which must be a legal Verilog identifier. The contents go to `<design>_<name>.mem`. For example, the
     /// ROM `sine` of `rough` is in `rough_sine.mem`.
     pub name: String,
-    /// The net with the address of the word to read. Its interval must lie within the number of words.
+    /// The net with the address of the word to read. Its interval must lie between 0 and the number of words less one.
     pub address: NetId,
     /// The net with the word that was read. It must be wide enough for every word.
     pub data: NetId,
@@ -203,16 +204,17 @@ pub struct Port {
 pub enum Role {
     /// Input `rst_n`, the reset: active low, synchronous.
     Reset,
-    /// Input `start`, which begins a computation if the device is not busy.
+    /// Input `start`, which begins a computation if the device is not busy. If operands have buffers, it also does so in the last
+    /// clock of a computation.
     Start,
-    /// Input for the data of an operand register.
+    /// Input for the value of an operand, which the write strobe loads.
     Operand {
-        /// The net of the write strobe, an input of one bit that loads the operand register.
+        /// The net of the write strobe, an input of one bit that loads the operand register or its buffer.
         strobe: NetId,
     },
     /// Input, the write strobe of an operand register. For example, `cos_gamma_write` writes `cos_gamma_reg`.
     Strobe,
-    /// Input `in_valid` of a pipeline: the operand inputs hold a point. The pipeline accepts it in this clock if `in_ready` is 1.
+    /// Input `in_valid` of a pipeline: the operand inputs have a point. The pipeline accepts it in this clock if `in_ready` is 1.
     InValid,
     /// Input, an operand of the point that the environment offers to a pipeline.
     Point,
@@ -232,7 +234,7 @@ pub enum Role {
     Done,
     /// Output that carries a result of the computation.
     Result,
-    /// Output that shows a signal of the control unit for which no other role exists.
+    /// Output that shows a signal of the control unit, such as a control line, and no result.
     Status,
 }
 
@@ -330,7 +332,7 @@ pub struct Design {
     pub ports: Vec<Port>,
     /// The control unit; for a pipeline it is [`Control::none`].
     pub control: Control,
-    /// The facts about the stages, if the design is a pipeline.
+    /// The facts about the stages of a pipeline; `None` for any other design.
     pub pipeline: Option<Pipeline>,
     /// Warnings about logic on which no output depends, and about choices that no microinstruction makes.
     pub warnings: Vec<Diagnostic>,
@@ -342,7 +344,7 @@ impl Design {
         &self.nets[id.index()]
     }
 
-    /// Returns the width of the net `id`.
+    /// Returns the width of the net `id` in bits.
     pub fn width(&self, id: NetId) -> u32 {
         self.net(id).format.width()
     }
@@ -369,7 +371,7 @@ impl Design {
         Some(NetId(at as u32))
     }
 
-    /// Follows nets that only rename another net. Returns the net with the original name, which may be `id` itself.
+    /// Returns the net that net `id` only renames, directly or through several names. Returns `id` itself if it renames no net.
     pub fn renamed(&self, id: NetId) -> NetId {
         match self.net(id).driver {
             Driver::Op(Op::Relabel(of)) => self.renamed(of),
@@ -382,17 +384,17 @@ impl Design {
         self.nets.iter().enumerate().map(|(at, net)| (NetId(at as u32), net))
     }
 
-    /// Returns the ports that are inputs, in order.
+    /// Returns the ports that are inputs, in the order of declaration.
     pub fn inputs(&self) -> impl Iterator<Item = &Port> {
         self.ports.iter().filter(|port| port.role.is_input())
     }
 
-    /// Returns the ports that are outputs, in order.
+    /// Returns the ports that are outputs, in the order of declaration.
     pub fn outputs(&self) -> impl Iterator<Item = &Port> {
         self.ports.iter().filter(|port| !port.role.is_input())
     }
 
-    /// Returns the first port of the design for whose role `wanted` returns true, or `None`.
+    /// Returns the first port of the design for whose role `wanted` returns true, or `None` if no port has such a role.
     pub fn port(&self, wanted: impl Fn(Role) -> bool) -> Option<&Port> {
         self.ports.iter().find(|port| wanted(port.role))
     }
@@ -460,7 +462,7 @@ impl Design {
         Ok(order)
     }
 
-    /// Returns the number of bits in all ROMs of the design together.
+    /// Returns the number of bits in all ROMs of the design together: the number of words times their width, added up.
     pub fn rom_bits(&self) -> u64 {
         self.roms.iter().map(|rom| rom.words.len() as u64 * u64::from(self.width(rom.data))).sum()
     }

@@ -41,9 +41,9 @@ pub struct Pipeline {
     pub stage_of: Vec<usize>,
     /// For each net, the name of the value that it carries. The name is the same in every stage through which the value travels.
     pub value_of: Vec<String>,
-    /// The nets of the handshake, which say which stages have a point and when points move.
+    /// The nets of the handshake: the valid bits, the slot counter, and the nets that determine when points move.
     pub handshake: Vec<NetId>,
-    /// For each stage from 1 on, including the results, the net that says whether it has a point.
+    /// For each stage from 1 on, including the results, the net that is 1 if the stage has a point.
     pub valid: Vec<NetId>,
     /// For each stage from 1 on, the net that carries the side channel's data. It is empty if there is no side channel.
     pub side_values: Vec<NetId>,
@@ -79,7 +79,7 @@ pub struct Stage {
     pub slack_ns: f64,
     /// The number of bits in the pipeline registers at the end of the stage.
     pub register_bits: u32,
-    /// The number of bits that memories hold in place of registers at the end of the stage.
+    /// The number of bits that memories store in place of registers at the end of the stage.
     pub delayed_bits: u32,
 }
 

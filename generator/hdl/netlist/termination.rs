@@ -10,10 +10,10 @@ use glint_base::cone;
 /// plus the value of the counter `remaining`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Left {
-    /// The number of clocks that do not depend on a counter.
+    /// The part of the limit that does not depend on a counter, in clocks.
     pub clocks: u64,
-    /// The counter register that decides how often the microinstruction repeats itself. Its current value must be added to
-    /// `clocks`. `None` if the microinstruction does not repeat itself.
+    /// The counter register that determines how often the microinstruction repeats itself. The limit is `clocks` plus the current
+    /// value of this register. `None` if the microinstruction does not repeat itself.
     pub counter: Option<RegId>,
 }
 
@@ -85,7 +85,7 @@ mod tests {
 
     type Condition = for<'d> fn(&'d Designer, Signal<'d>, Signal<'d>) -> Signal<'d>;
 
-    /// Makes a counter of three bits that goes from the operand to 0 in microinstruction 2.
+    /// Makes a design with a counter of three bits, which counts from the operand down to 0 in microinstruction 2.
     fn counted(condition: Condition) -> Design {
         design(|d| {
             let x = d.operand("x", Format::unsigned(3, 0));
