@@ -7,7 +7,7 @@
 use crate::dsl::{Designer, Signal};
 use glint_base::fixed::{Format, Overflow, Rounding, exp2};
 
-/// The magnitude of a signed angle, as signals of the hardware.
+/// The magnitude of a signed angle, and whether the angle is within a right angle of 0, as signals of the hardware.
 #[derive(Clone, Copy)]
 pub struct Folded<'d> {
     /// The magnitude of the angle, as a fraction of a right angle. It is meaningful only if `within` is 1.

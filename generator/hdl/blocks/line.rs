@@ -155,7 +155,7 @@ impl<'d> Line<'d> {
     }
 }
 
-/// Returns the name of the microinstruction in which the last point is `left` clocks away from the outputs.
+/// Returns the name of the microinstruction in which the results of the last point reach the outputs after `left` clocks.
 fn drain(left: u32) -> String {
     match left {
         0 => "last point on the output".to_owned(),

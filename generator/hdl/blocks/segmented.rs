@@ -33,9 +33,9 @@ struct EntryBlock {
 /// formats of [`SegmentedFormats`]. For example, with 8 fraction bits a base of 128 is 0.5.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Entry {
-    /// The value at the start of the segment.
+    /// The value at the start of the segment, as a raw value with S fraction bits.
     pub base: i128,
-    /// The rise over the whole segment, which is not negative.
+    /// The rise over the whole segment, which is not negative, as a raw value with D fraction bits.
     pub slope: i128,
 }
 

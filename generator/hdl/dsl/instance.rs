@@ -22,11 +22,11 @@ use glint_base::fixed::Format;
 /// The largest depth of parts inside parts. A description that instantiates itself, which would never end, exceeds this limit.
 const DEEPEST: u32 = 8;
 
-/// A part: an instance of another hardware description. It gives access to the results of the part.
+/// A part: an instance of another hardware description, as a handle for the results of the part.
 pub struct Instance<'d> {
     designer: &'d Designer,
     name: String,
-    /// The results of the part by name; `None` if the part has mistakes, which have been reported.
+    /// The results of the part, each with its name; `None` if the part has mistakes, which have been reported.
     outputs: Option<Vec<(String, Signal<'d>)>>,
 }
 

@@ -116,7 +116,7 @@ const BUFFERED_NOTE: &str = "Operands have buffers: a write at any time is for t
 /// Builds a [`Design`] from a hardware description; the [module documentation](self) has an example.
 pub struct Designer {
     inner: RefCell<Inner>,
-    /// Distinguishes the handles of this designer from the handles of another.
+    /// The number of this designer, which distinguishes its handles from the handles of another designer.
     serial: u64,
     /// The number of descriptions that contain this one as a part, one inside the other; 0 for a whole device.
     depth: u32,
@@ -130,9 +130,9 @@ pub struct Designer {
 pub(crate) struct SelectedProduct {
     /// The field of the control word that selects the operands of the shared multiplier.
     pub field: FieldId,
-    /// The values of that field for which the net has the product that its format describes.
+    /// The values of this field for which the net has the product in its format.
     pub values: Vec<u64>,
-    /// The number of clocks between the selection and the product, because of registers behind the multiplier.
+    /// The number of clocks between the selection and the product: the number of registers between the muxes and the multiplier.
     pub delay: u32,
 }
 

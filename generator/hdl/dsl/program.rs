@@ -142,14 +142,14 @@ pub fn loop_while(condition: Signal<'_>, to: &str) -> StepSetting {
 }
 
 /// Returns the setting that jumps ahead to the microinstruction named `to` if the bit `condition` is 1, and otherwise continues
-/// with the next one. For example, it skips a loop that need not run even once.
+/// with the next one. For example, a jump skips a loop that may run zero times.
 #[track_caller]
 pub fn jump_if(condition: Signal<'_>, to: &str) -> StepSetting {
     // The sequencer treats a jump ahead like a jump back.
     loop_while(condition, to)
 }
 
-/// Returns the setting of the last microinstruction, which raises `done`. The device is idle after it.
+/// Returns the setting that ends the computation. The device raises `done` in this microinstruction, and is idle after it.
 #[track_caller]
 pub fn end() -> StepSetting {
     StepSetting::sequence(SettingKind::End)
@@ -174,7 +174,7 @@ pub fn step(name: &str, settings: impl IntoIterator<Item = StepSetting>) -> Step
     }
 }
 
-/// A microprogram in the form in which a description states it, before it is translated to control words.
+/// A microprogram as a description states it: microinstructions with settings, not yet control words.
 pub struct MicroprogramSource {
     pub(crate) steps: Vec<Step>,
     /// Whether the microprogram executes the parts (instances) of the description.

@@ -23,13 +23,13 @@ pub struct SequenceFields {
     pub go_on: FieldId,
 }
 
-/// The description of a sequencer, from which `build` makes the hardware.
+/// The properties of a sequencer, from which [`Sequencer::build`] makes the hardware.
 pub struct Sequencer {
     /// The fields that the sequencer uses.
     pub fields: SequenceFields,
     /// The one-bit conditions of loops and jumps. A condition that several microinstructions use is listed once.
     pub conditions: Vec<NetId>,
-    /// The microinstructions to which loops and jumps lead, as addresses. Each is listed once.
+    /// The addresses of the microinstructions to which loops and jumps lead. Each address is listed once.
     pub targets: Vec<usize>,
     /// The number of bits of the microinstruction address.
     pub address_width: u32,

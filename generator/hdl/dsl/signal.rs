@@ -38,7 +38,7 @@ impl<'d> Signal<'d> {
         self.designer.with(|inner| inner.design.net(self.id).format)
     }
 
-    /// Returns the interval of raw values that the signal can have.
+    /// Returns the interval of raw values that the signal can have: the smallest and the largest.
     pub fn range(self) -> Interval {
         self.designer.with(|inner| inner.design.net(self.id).range)
     }
@@ -50,7 +50,7 @@ impl<'d> Signal<'d> {
         self
     }
 
-    /// Sets the one-line comment that the Verilog shows at the signal.
+    /// Sets a comment of one line, which the Verilog shows at the signal.
     #[must_use]
     pub fn doc(self, line: &str) -> Self {
         self.designer.set_doc(self.id, line);

@@ -19,27 +19,27 @@ pub enum PipelineErrorKind {
     Clock {
         /// The highest clock frequency that can be reached, in MHz.
         nearest: f64,
-        /// Whether the clock could be reached if multipliers had output registers.
+        /// Whether the clock can be reached if products use the output registers of multipliers.
         needs_registered: bool,
     },
     /// The requested number of stages is larger than useful: the additional stages would not make the pipeline faster.
     TooManyStages {
-        /// The largest number of stages that is of use.
+        /// The largest useful number of stages: more stages make the pipeline no faster.
         most: usize,
     },
     /// The requested number of stages is too small. Block memories and the registers of multipliers need more stages.
     TooFewStages {
-        /// The smallest number of stages.
+        /// The smallest possible number of stages.
         least: usize,
     },
     /// The requested interval exceeds the number of clocks that the sequential core takes for a point.
     Interval {
-        /// The largest interval, in clocks.
+        /// The largest possible interval in clocks: the number of clocks that the sequential core takes for a point.
         most: usize,
     },
     /// The user requested a rate in points per second together with a number of stages. A rate needs a clock frequency instead.
     RateWithoutClock,
-    /// The rate exceeds one point a clock.
+    /// The requested rate exceeds one point a clock.
     Rate {
         /// The highest rate, in million points a second.
         most: f64,
@@ -56,7 +56,7 @@ pub enum PipelineErrorKind {
 /// The error for a pipeline that Glint cannot make as the user requested.
 #[derive(Clone, Debug)]
 pub struct PipelineError {
-    /// The reason why the pipeline cannot be made, with the nearest possible value.
+    /// The reason why the pipeline cannot be made, in most cases with the nearest possible value.
     pub kind: PipelineErrorKind,
     /// The reason as a message for the user, with the line of the Rust source that it concerns.
     pub diagnostic: Diagnostic,
@@ -69,7 +69,8 @@ impl PipelineError {
         Self { kind: PipelineErrorKind::Microprogram, diagnostic }
     }
 
-    /// Makes the error for an option of the pipeline that the design as a whole cannot satisfy, such as a rate.
+    /// Makes the error for an option of the pipeline that the design as a whole cannot satisfy, such as a rate. The source line
+    /// is the line of the design's first net.
     pub(super) fn of_design(design: &Design, kind: PipelineErrorKind, message: String) -> Self {
         Self::at(design.nets[0].location, kind, message)
     }

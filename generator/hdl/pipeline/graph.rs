@@ -25,11 +25,11 @@ pub type NodeOp = netlist::Op<NodeId>;
 pub enum Cell {
     /// An operand of the design. The number is its position among all operands.
     Operand(usize),
-    /// An unknown value: the content of the named register before its first load.
+    /// An unknown value: the content of the named register or ROM output before its first load.
     Unknown(String),
     /// A constant bit pattern.
     Constant(u64),
-    /// The word at an address of a ROM.
+    /// A read of a ROM: the word at an address.
     Read {
         /// The ROM of the sequential design that is read.
         rom: RomId,
@@ -47,12 +47,13 @@ pub struct Label {
     pub name: String,
     /// A comment of one line, taken from the sequential design.
     pub doc: String,
-    /// The number of the block that computes the value, in the block diagram of the document that describes the device; `None`
-    /// without a number.
+    /// The number of the block that computes the value, in the block diagram of the document that describes the device. `None` if
+    /// the diagram does not number it.
     pub block: Option<u16>,
     /// Whether the author of the device's description chose the name. Glint generates all other names.
     pub named: bool,
-    /// The name of the whole value, if the node is a part of it. For example, the part `base_low` has `base` here.
+    /// The name of the whole value if the node is a part of a value; otherwise `None`. For example, the part `base_low` has
+    /// `base` here.
     pub part_of: Option<String>,
     /// The line of the Rust source that describes the value.
     pub location: &'static Location<'static>,
@@ -87,7 +88,7 @@ pub struct Node {
     pub label: Label,
     /// The first executed microinstruction whose execution made the value, as a position in [`super::unroll::Unrolled::steps`].
     pub step: usize,
-    /// Whether a register of the sequential design loads the value.
+    /// Whether a register of the sequential design loads the value, so that the node has the register's label.
     pub held: bool,
 }
 
@@ -210,8 +211,8 @@ impl Graph {
         }
     }
 
-    /// Returns a node with the value of the combinational cell `op`. It may be an existing or a simpler node. For example, a sum
-    /// of two constants becomes a constant.
+    /// Returns a node with the value of the combinational cell `op`, which is an existing, a simpler or a new node. For example,
+    /// a sum of two constants becomes a constant.
     pub fn op(&mut self, op: NodeOp, format: Format, label: &Label) -> NodeId {
         if let Some(id) = self.fold(&op, format, label) {
             let node = &mut self.nodes[id.index()];
@@ -465,7 +466,8 @@ impl Graph {
 }
 
 impl Cell {
-    /// Returns the nodes that the operation reads, such as the two factors of a product.
+    /// Returns the nodes that the operation reads, in order, such as the two factors of a product. The list is empty for
+    /// operands, constants and unknown values.
     pub fn operands(&self) -> Vec<NodeId> {
         match self {
             Self::Op(op) => op.operands(),
@@ -474,8 +476,8 @@ impl Cell {
         }
     }
 
-    /// Returns whether the operation needs no logic: it is a constant, or it renames, extends, slices or concatenates the bits of
-    /// other nodes.
+    /// Returns whether the operation takes no logic: it is a constant, or it renames, extends, slices or joins the bits of other
+    /// nodes.
     pub fn is_wiring(&self) -> bool {
         matches!(
             self,

@@ -8,7 +8,7 @@ use super::schedule::ScheduleProblem;
 use super::{Goal, Options};
 use crate::netlist::Design;
 
-/// How the interval of a pipeline is chosen. The interval is the number of clocks from one point to the next.
+/// The way in which Glint chooses the interval of a pipeline. The interval is the number of clocks from one point to the next.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum IntervalGoal {
     /// The interval itself, in clocks.

@@ -40,7 +40,7 @@ pub use unroll::{
     unroll_in_powers, unroll_line,
 };
 
-/// The goal when Glint divides a computation into pipeline stages: a clock frequency or a number of stages.
+/// The goal with which Glint divides a computation into pipeline stages: a clock frequency or a number of stages.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Goal {
     /// The pipeline must reach this clock frequency in MHz, with as few register bits as possible.
@@ -52,10 +52,10 @@ pub enum Goal {
 /// The way in which a pipeline stores a value that no stage reads for several stages.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Delays {
-    /// A waiting value is stored in a small memory of look-up tables, if the target has one and it takes fewer resources than
-    /// registers.
+    /// A waiting value is stored in a small memory of look-up tables, if the target has such memories and if they take fewer
+    /// resources than registers.
     Memory,
-    /// A waiting value is stored in a register in each stage.
+    /// A waiting value is stored in a register at the end of each stage.
     Registers,
 }
 

@@ -45,7 +45,7 @@ pub static PASSES: [Pass; 2] = [
 
 /// A computation that a pass has rewritten.
 pub struct PassResult {
-    /// The name of the pass, or `unroll` for the computation that the microprogram states.
+    /// The name of the pass, or `unroll` for the computation before all passes.
     pub name: &'static str,
     /// A sentence about what the pass does.
     pub description: &'static str,
@@ -59,12 +59,12 @@ impl PassResult {
         printed(&self.computation)
     }
 
-    /// Returns the number of operations of the computation that the results need, without operands and constants.
+    /// Returns the number of operations on which the results depend, wiring included. Operands and constants do not count.
     pub fn operations(&self) -> usize {
         self.count(|cell| matches!(cell, Cell::Op(_) | Cell::Read { .. }))
     }
 
-    /// Returns the number of multiplications of the computation that the results need.
+    /// Returns the number of multiplications on which the results depend.
     pub fn products(&self) -> usize {
         self.count(|cell| matches!(cell, Cell::Op(NodeOp::Mul(..))))
     }

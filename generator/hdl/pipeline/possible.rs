@@ -1,4 +1,4 @@
-//! Decides whether a condition can ever be 1, by trying all combinations of the bits on which it depends.
+//! Finds out whether a condition can ever be 1, by trying all combinations of the bits on which it depends.
 
 use std::collections::{HashMap, HashSet};
 
@@ -6,7 +6,7 @@ use super::graph::{Cell, Graph, NodeId};
 use crate::netlist::eval;
 use glint_base::fixed::mask;
 
-/// The number of bits that a condition may depend on. With more, the combinations cannot all be tried.
+/// The largest number of bits on which a condition may depend. With more bits, there are too many combinations to try.
 const MOST_BITS: u32 = 16;
 
 /// The largest width in bits of the node for which [`count`] returns a list. With 6 bits, the list has 64 entries.

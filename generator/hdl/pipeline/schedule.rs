@@ -33,14 +33,14 @@ pub struct Schedule {
 /// The reason why the scheduler returns no assignment of a computation's nodes to pipeline stages.
 #[derive(Clone, Debug)]
 pub enum ScheduleRefusal {
-    /// The requested clock period is too short for an operation.
+    /// The requested clock period is too short for a single operation.
     Unreachable(Unreachable),
     /// The solver failed, or its solution violates a constraint. The fields are the reason as text, and the node in a wrong
     /// stage, if known.
     Unsolved(String, Option<NodeId>),
 }
 
-/// The operation that makes a requested clock period of a pipeline impossible.
+/// The operation that limits the clock period of a pipeline, and the shortest period.
 #[derive(Clone, Debug)]
 pub struct Unreachable {
     /// The slowest node of the computation's graph, which limits the clock period.
@@ -70,7 +70,7 @@ pub struct ScheduleProblem<'a> {
     clocked: Vec<Option<ClockedNode>>,
     /// The interval: the smallest number of clocks from one point to the next.
     interval: usize,
-    /// The groups of products that share multipliers.
+    /// The groups of products whose products share multipliers.
     kinds: Vec<ProductGroup>,
 }
 
@@ -667,7 +667,8 @@ impl<'a> ScheduleProblem<'a> {
         self.target.register
     }
 
-    /// Returns the nodes on which a result of the computation depends. The schedule must assign a stage to each.
+    /// Returns the nodes to which the schedule must assign a stage, each after its operands: all nodes on which a result depends,
+    /// except constants and extensions.
     pub fn live(&self) -> &[NodeId] {
         &self.live
     }
@@ -699,8 +700,8 @@ impl<'a> ScheduleProblem<'a> {
         units
     }
 
-    /// Returns whether a node gets its value at a rising edge. Such a node is the word of a block memory, or a product in the
-    /// output register of a multiplier.
+    /// Returns whether a node gets its value at a rising edge: it is the word of a block memory, or a product in the register
+    /// behind a multiplier.
     pub fn is_clocked(&self, id: NodeId) -> bool {
         self.clocked[id.index()].is_some()
     }

@@ -15,14 +15,13 @@ use glint_base::target::{FAMILIES, Timing};
 pub struct ProductGroup {
     /// The products of the group, in the order of the computation.
     pub products: Vec<NodeId>,
-    /// The number of multipliers that the group needs. It is less than the number of products, because one multiplier serves a
-    /// product in each slot.
+    /// The number of multipliers for the group, less than the number of products: one multiplier computes a product in each slot.
     pub units: usize,
     /// Whether the multipliers take signed factors.
     signed: bool,
 }
 
-/// A multiplier of a pipeline, with the products that it computes in turn.
+/// A multiplier of a pipeline that several products share, with the product of each slot.
 #[derive(Clone, Debug)]
 pub struct MultiplierUnit {
     /// The widths of the multiplier's two factors, in bits.

@@ -307,7 +307,7 @@ mod tests {
     use glint_base::fixed::Format;
     use glint_base::target::{TIMINGS, Timing};
 
-    /// Returns a product in one stage, of a device whose multipliers take 4 bits by 4.
+    /// Returns a pipeline of one stage with the product of two factors, for a target whose multipliers take 4 bits by 4.
     fn product(factors: impl for<'d> Fn(&'d Designer) -> [Signal<'d>; 2]) -> Design {
         let design = design(|d| {
             let [a, b] = factors(d);
@@ -331,7 +331,7 @@ mod tests {
         pipeline(&design, &options).expect("a pipeline")
     }
 
-    /// Returns the result for the bit patterns of its operands.
+    /// Returns the bit pattern of the result for the bit patterns of the operands.
     fn result(design: &Design, operands: &[u64]) -> u64 {
         let mut device = Interpreter::new(design).expect("no loop");
         let mut operands = operands.iter();
@@ -348,7 +348,7 @@ mod tests {
         device.value(design.find("product_out").expect("a result"))
     }
 
-    /// Returns how many multipliers there are; none takes more than it can.
+    /// Returns the number of multipliers, and checks that no factor has more than 4 bits.
     fn multipliers(design: &Design) -> usize {
         let products = design.iter().filter_map(|(_, net)| match net.driver {
             Driver::Op(Op::Mul(a, b)) => Some([a, b]),

@@ -125,7 +125,7 @@ fn what_an_earlier_computation_left_cannot_be_a_result() {
     assert!(super::carried(&power()).is_none());
 }
 
-/// Returns the fourth power of an operand, by two products.
+/// Returns a design that computes the fourth power of an operand, by two products.
 fn power() -> Design {
     design(|d| {
         let x = d.operand("x", Format::unsigned(9, 0));
@@ -248,7 +248,7 @@ enum By {
     Sum,
 }
 
-/// Returns the clock in MHz of a stage in which a sum goes to a register.
+/// Returns the clock frequency in MHz of a pipeline of one stage in which a register loads a sum.
 fn clock_of_a_sum(by: By) -> f64 {
     let design = design(|d| {
         let wide = Format::unsigned(40, 0);

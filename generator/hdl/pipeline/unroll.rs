@@ -30,7 +30,7 @@ const MOST_CLOCKS: usize = 4096;
 pub struct Unrolled {
     /// The graph with all values of the computation, each computed once.
     pub graph: Graph,
-    /// The operands, as nets of the design's input ports.
+    /// The nets of the design's operand ports, in the order of the ports. `Cell::Operand` has positions in this list.
     pub operands: Vec<NetId>,
     /// The results: the net of each output port, with the node of its value in the graph.
     pub results: Vec<(NetId, NodeId)>,

@@ -27,7 +27,7 @@ pub struct Circuit<const LANES: usize = 1> {
     inputs: Vec<[u64; LANES]>,
     /// Whether the inputs were set and the machine has not yet read them.
     input_set: bool,
-    /// Whether the latest update changed a value.
+    /// Whether the latest update had an edge or changed a value.
     changed: bool,
     connected: bool,
     ports: Vec<Observed>,
@@ -104,8 +104,8 @@ impl<const LANES: usize> Circuit<LANES> {
         Ok(circuit)
     }
 
-    /// Returns the values of the input ports, in the order of the ports, one for each lane. The circuit ignores bits beyond the
-    /// width of a port. New values take effect at rust_hdl's next update.
+    /// Returns the values of the input ports for the caller to change, in the order of the ports, one value for each lane. The
+    /// circuit ignores bits beyond the width of a port. New values take effect at rust_hdl's next update.
     pub fn inputs_mut(&mut self) -> &mut Vec<[u64; LANES]> {
         self.input_set = true;
         &mut self.inputs

@@ -13,8 +13,8 @@ use crate::sim::word::LaneWord;
 
 /// The state of `LANES` independent instances of a design, which one pass over the [`CompiledDesign`] advances together.
 ///
-/// On x86-64 the pass is compiled three times: for any processor, for AVX2 and for AVX-512. The machine chooses at run time; all
-/// compute the same values.
+/// On x86-64 the pass is compiled three times: for any processor, for AVX2 and for AVX-512. The machine chooses one of them at
+/// run time; all three compute the same values.
 #[derive(Clone, Debug)]
 pub struct Machine<const LANES: usize = 1> {
     program: Arc<CompiledDesign>,

@@ -98,8 +98,8 @@ impl<const LANES: usize> Simulator<LANES> {
         self.circuit.inputs_mut()[input] = lanes;
     }
 
-    /// Returns the values of all input ports in order of position, one for each lane. A caller that sets many inputs uses this
-    /// instead of [`Simulator::set_lanes`].
+    /// Returns the values of all input ports for the caller to change, in order of position, one value for each lane. A caller
+    /// that sets many inputs uses this method instead of [`Simulator::set_lanes`].
     pub fn inputs_mut(&mut self) -> &mut [[u64; LANES]] {
         self.circuit.inputs_mut()
     }

@@ -40,7 +40,8 @@ pub(super) enum Instruction {
     Xor { to: Slot, a: Slot, b: Slot },
     /// Sum modulo 2^width, with the width given by `drop`.
     Add { to: Slot, a: Slot, b: Slot, drop: u8 },
-    /// Sum of bits of `a` and bits of `b`: for example, a value and the amount by which it is rounded up.
+    /// Sum of bits of `a` and bits of `b`, each from its `low` up with the width that its `drop` gives, modulo 2^width of the
+    /// result. For example, it adds to a value the bit by which rounding increases it.
     AddSlices { to: Slot, a: Slot, b: Slot, low_a: u8, drop_a: u8, low_b: u8, drop_b: u8, drop: u8 },
     /// Sum of `a`, `b` and the bit `carry`, modulo 2^width.
     AddCarry { to: Slot, a: Slot, b: Slot, carry: Slot, drop: u8 },
@@ -137,7 +138,7 @@ pub(super) enum ValueSlot {
     Wide(Slot),
 }
 
-/// The contents of a ROM in [`CompiledDesign::words`].
+/// The place of a ROM's contents in [`CompiledDesign::words`]: the first index and the number of words.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(super) struct Span {
     pub start: u32,
@@ -151,7 +152,7 @@ pub(super) struct StepGroup {
     pub len: u32,
 }
 
-/// An input port.
+/// An input port: its position, its slot, its source, and the mask of its width.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct InputPort {
     /// The position of the port among the input ports.
@@ -181,7 +182,7 @@ pub(super) struct RegisterEdge {
     pub data: Slot,
     /// The slot of the load enable; `None` if the register loads at every edge.
     pub enable: Option<Slot>,
-    /// The slot of the reset and the value that the register takes on a reset; `None` if the register has no reset.
+    /// The slot of `rst_n`, and the value that the register loads if `rst_n` is 0. `None` if the register has no reset.
     pub reset: Option<(Slot, u64)>,
 }
 

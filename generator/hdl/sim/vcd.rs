@@ -13,8 +13,8 @@ use rust_hdl::core::vcd_probe::{VCDProbe, write_vcd_change, write_vcd_dump, writ
 
 /// Writes the waveform of a circuit step by step. Times are in picoseconds.
 ///
-/// rust_hdl panics if a write fails, so it writes to a buffer in memory, which cannot fail. After each step the buffer goes to
-/// the file.
+/// rust_hdl panics if a write fails, so it writes to a buffer in memory, which cannot fail. After each step the writer copies the
+/// buffer to the file.
 pub struct VcdWriter<W: Write> {
     /// The probe of rust_hdl; `None` only while rust_hdl writes.
     probe: Option<VCDProbe<Page>>,

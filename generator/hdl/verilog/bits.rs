@@ -98,7 +98,7 @@ impl Bits {
         &self.0
     }
 
-    /// Returns the run of bits if the word has exactly one, otherwise `None`.
+    /// Returns the run of bits if the word has exactly one run, otherwise `None`.
     pub fn single(&self) -> Option<BitRun> {
         match self.0[..] {
             [piece] => Some(piece),
@@ -111,7 +111,7 @@ impl Bits {
         self.0.iter().map(|piece| piece.width()).sum()
     }
 
-    /// Returns `width` bits of the word, from bit `low` up.
+    /// Returns `width` bits of the word, from bit `low` up. For example, the bits from 1 up of `{a[5:2], 1'b0}` are `a[5:2]`.
     pub fn slice(&self, low: u32, width: u32) -> Self {
         let mut taken = Self::default();
         let mut top = self.width();
@@ -134,7 +134,8 @@ impl Bits {
         self
     }
 
-    /// Returns the word extended to `width` bits: by copies of its top bit if it is signed, otherwise by zeros.
+    /// Returns the word extended to `width` bits: by copies of its top bit if `signed`, otherwise by zeros. A word that has
+    /// `width` bits or more stays as it is.
     pub fn extend(&self, width: u32, signed: bool) -> Self {
         let count = width.saturating_sub(self.width());
         if count == 0 {

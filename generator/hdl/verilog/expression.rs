@@ -22,7 +22,7 @@ pub struct Constant {
     pub bits: u64,
     /// The number of bits of the constant.
     pub width: u32,
-    /// The comment behind the localparam: the constant's value as text, or empty if the bit pattern itself is the value.
+    /// The comment behind the localparam: the constant's value as text. It is empty if the bit pattern itself is the value.
     pub note: String,
 }
 
@@ -60,7 +60,8 @@ impl<'a> Expressions<'a> {
         }
     }
 
-    /// Returns the Verilog text that reads a net, for use as a complete right-hand side, without parentheses around it.
+    /// Returns the Verilog text that reads a net, for use as a complete right-hand side. The text has no parentheses around it,
+    /// such as `a + b`.
     pub fn whole(&mut self, id: NetId) -> String {
         match self.inline(id) {
             Some(cell) => self.driver(cell),
@@ -68,8 +69,8 @@ impl<'a> Expressions<'a> {
         }
     }
 
-    /// Returns the Verilog text that reads a net within a larger expression: a name, a selection, a concatenation, or a cell in
-    /// parentheses.
+    /// Returns the Verilog text that reads a net within a larger expression. It is a name, a selection, a concatenation, or a
+    /// cell in parentheses, such as `(a + b)`.
     pub fn operand(&mut self, id: NetId) -> String {
         if let Some(constant) = self.constant(id) {
             return constant;

@@ -11,12 +11,12 @@ use glint_base::fixed::Format;
 pub struct Origin<'a> {
     /// The command that generates the file again. If it is empty, the header does not mention a command.
     pub regenerate: &'a str,
-    /// The numbers of clocks between the events of the handshake.
+    /// The numbers of clocks between the events of the handshake, for the line on latency.
     pub timing: &'a HandshakeTiming,
 }
 
-/// Returns the header comment for the top module's Verilog file, as lines: the formula, and everything that a user of the module
-/// must know.
+/// Returns the lines of the header comment for the top module's Verilog file: title, formula, source, latency, formats, ports and
+/// notes.
 pub fn top(design: &Design, origin: &Origin) -> Vec<String> {
     let about = &design.about;
     let mut lines = comment(0, &format!("{}: {}", design.name, about.title));
@@ -41,7 +41,8 @@ pub fn top(design: &Design, origin: &Origin) -> Vec<String> {
     lines
 }
 
-/// Returns the header comment for the Verilog file of the control unit or of the datapath, as lines.
+/// Returns the lines of the header comment for the Verilog file of the control unit or the datapath. The control unit's comment
+/// lists the microprogram.
 pub fn partition(
     design: &Design,
     partition: Partition,

@@ -18,7 +18,7 @@ pub struct Interface {
 }
 
 impl Interface {
-    /// Finds the ports and ROMs of one of the two modules below the top module, control unit or datapath.
+    /// Finds the ports and ROMs of one of the two modules below the top module: the control unit or the datapath.
     pub fn new(plan: &Plan, partition: Partition) -> Self {
         let design = plan.design;
         let other = match partition {

@@ -1,5 +1,5 @@
-//! Writes assertions into the Verilog of a control unit or datapath, for formal tools only. The proof of the handshake relies on
-//! them. For example, the control unit of `rough` asserts that `word_address` is 0 while `run` is 0.
+//! Writes assertions for the Verilog of a control unit or datapath, which only formal tools read. The proof of the handshake
+//! relies on them. For example, the control unit of `rough` asserts that `word_address` is 0 while `run` is 0.
 
 use super::naming::Naming;
 use super::text::literal;

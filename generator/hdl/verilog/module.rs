@@ -25,7 +25,7 @@ pub struct Builder<'a> {
     pub(super) expressions: Expressions<'a>,
     /// The choices of select fields that are labels of case statements, as pairs of field number and value.
     labels: BTreeSet<(usize, usize)>,
-    /// The comment of the previous assignment.
+    /// The comment of the previous assignment, so that it is not repeated.
     last_note: String,
 }
 
@@ -375,7 +375,7 @@ impl<'a> Builder<'a> {
         lines
     }
 
-    /// Returns the bodies of the module's `always` blocks, for the registers for whose output net `wanted` returns true.
+    /// Returns the lines of each `always` block of the module, for the registers for whose output net `wanted` returns true.
     /// Registers with the same enable and the same reset behaviour share a block.
     pub(super) fn groups(&mut self, wanted: &dyn Fn(NetId) -> bool) -> Vec<Vec<String>> {
         /// The enable of the registers, and whether the reset sets them.

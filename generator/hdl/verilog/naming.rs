@@ -30,7 +30,7 @@ pub struct Naming {
     pub unused: String,
     /// The name of the shift register that has a bit for each stage of a pipeline, which is 1 if the stage has a point.
     pub valid: String,
-    /// The identifiers that the design uses already. A module may add identifiers of its own.
+    /// The identifiers that the Verilog of the design already uses: names of nets, and the names in this structure.
     pub names: Names,
     design: String,
 }
@@ -44,7 +44,7 @@ pub struct Style {
     pub case: bool,
     /// The Verilog attribute before the memories of synchronous ROMs, without `(*` and `*)`. `None` omits it.
     pub rom_style: Option<&'static str>,
-    /// Whether the Verilog gives registers the initial value 0.
+    /// Whether an initial block sets registers to 0.
     pub initial: bool,
 }
 
@@ -88,7 +88,7 @@ impl Naming {
         }
     }
 
-    /// Returns the same names with another style of memories and registers.
+    /// Returns the same names with the style `style` of memories and registers.
     pub fn styled(self, style: Style) -> Self {
         Self { style, ..self }
     }

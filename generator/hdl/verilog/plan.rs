@@ -21,16 +21,16 @@ pub enum NetForm {
     Wiring,
     /// The net is declared as a `wire`, `reg` or port.
     Declared,
-    /// The net's expression is written within the one expression that uses it.
+    /// The net's expression is written within the one expression that uses the net.
     Inline,
     /// The net is not written at all, because it is the product inside a multiplier with an output register.
     Inside,
 }
 
-/// Something in the Verilog that reads nets, such as a register, which reads its data and its enable.
+/// A part of the Verilog that reads nets: the right-hand side of a net, a register, or a ROM.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Reader {
-    /// A cell or a field of the control word that drives this net. Its right-hand side reads the nets.
+    /// The cell or the field of the control word that drives this net; its right-hand side reads other nets.
     Cell(NetId),
     /// A register, which reads its data and its enable.
     Register(RegId),
@@ -48,8 +48,8 @@ pub struct Plan<'a> {
     /// For each net of the design, the bits that the Verilog writes where the net is used. For example, `a[5:2]` for a slice of
     /// `a` without a name.
     pub bits: Vec<Bits>,
-    /// For each net of the design, the origin of its bits. Bits are traced through declared wiring too, back to cells, registers,
-    /// ROMs and inputs.
+    /// For each net of the design, the origin of its bits: cells, registers, ROMs, inputs and constants. Bits are traced through
+    /// declared wiring too.
     pub roots: Vec<Bits>,
     /// The nets of the design whose cells the Verilog writes, operands before their readers.
     pub live: Vec<NetId>,
@@ -69,7 +69,7 @@ impl<'a> Plan<'a> {
     /// omits it.
     ///
     /// # Errors
-    /// Fails with the mistakes that [`Design::verify_structure`] finds.
+    /// Fails if [`Design::verify_structure`] finds mistakes; the error lists them.
     pub fn new(design: &'a Design) -> Result<Self> {
         let mistakes = design.verify_structure();
         ensure!(mistakes.is_empty(), Diagnostics(mistakes));

@@ -43,8 +43,8 @@ pub struct Row {
 }
 
 impl Row {
-    /// Makes the Verilog declaration of a net. `direction` is `input` or `output` for a port, otherwise empty; `kind` is `wire`
-    /// or `reg`.
+    /// Makes the Verilog declaration of a net, with the comment from the plan. `direction` is `input` or `output` for a port,
+    /// otherwise empty; `kind` is `wire` or `reg`.
     pub fn net(plan: &Plan, direction: &str, kind: &str, id: NetId) -> Self {
         let net = plan.design.net(id);
         let format = net.format;

@@ -84,8 +84,8 @@ pub fn constant_name(text: &str) -> String {
     name.trim_end_matches('_').to_owned()
 }
 
-/// Returns a Verilog literal with its width, decimal if that is short and otherwise hexadecimal. For example, 9 in 4 bits is
-/// `4'd9`, and 1048576 in 21 bits is `21'h100000`.
+/// Returns a Verilog literal with its width: binary for one bit, decimal below 1024, and otherwise hexadecimal. For example, 9 in
+/// 4 bits is `4'd9`, and 1048576 in 21 bits is `21'h100000`.
 pub fn literal(value: u64, width: u32) -> String {
     match (width, value) {
         (1, _) => format!("1'b{value}"),
@@ -103,7 +103,7 @@ pub fn together(words: Vec<String>) -> String {
     }
 }
 
-/// Returns the range of a Verilog declaration of `width` bits, such as `[7:0]`, or nothing for one bit.
+/// Returns the range of a Verilog declaration of `width` bits, such as `[7:0]`, or an empty text for one bit.
 pub fn range(width: u32) -> String {
     match width {
         1 => String::new(),
@@ -128,7 +128,8 @@ pub fn comment(indent: usize, text: &str) -> Vec<String> {
     broken(&margin, &margin, &text)
 }
 
-/// Returns the lines of a Verilog declaration with the comment `note` behind it, or above it if the line would be too long.
+/// Returns the lines of a Verilog declaration with `indent` spaces before it and the comment `note` behind it. The comment is
+/// above the declaration if the line would exceed [`COLUMNS`].
 pub fn annotated(code: &str, indent: usize, note: &str) -> Vec<String> {
     let code = format!("{}{code}", " ".repeat(indent));
     let note = ascii(note);
@@ -170,12 +171,12 @@ fn broken(first: &str, further: &str, text: &str) -> Vec<String> {
 pub struct Names(HashSet<String>);
 
 impl Names {
-    /// Makes the set of a module's identifiers, with the names that are already taken.
+    /// Makes the set of a module's identifiers from the names `taken`, which are already in use.
     pub fn new<'a>(taken: impl IntoIterator<Item = &'a str>) -> Self {
         Self(taken.into_iter().map(str::to_owned).collect())
     }
 
-    /// Makes the set of a module's identifiers, with the names of a design's ports and its clock.
+    /// Makes the set of a module's identifiers from the names of a design's ports and its clock `clk`.
     pub fn of_ports(design: &Design) -> Self {
         let ports = design.ports.iter().map(|port| design.net(port.net).name.as_str());
         Self::new(ports.chain(["clk"]))

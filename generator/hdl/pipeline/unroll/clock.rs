@@ -38,7 +38,7 @@ impl<'e, 'a> Clock<'e, 'a> {
         Self { executor, state, address, first, values: HashMap::new() }
     }
 
-    /// Returns the value of a net in this clock, as a node of the computation's graph.
+    /// Returns the node with the value of a net in this clock. Adds the nodes that the graph does not have.
     pub(super) fn value(&mut self, id: NetId) -> NodeId {
         if let Some(&value) = self.values.get(&id) {
             return value;

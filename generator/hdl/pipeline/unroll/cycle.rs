@@ -14,7 +14,7 @@ pub struct Cycle {
     /// The graph with the values of an arbitrary clock, and of the clock that accepts `start`. Its results are all outputs of the
     /// design in the arbitrary clock.
     pub unrolled: Unrolled,
-    /// For each register and synchronous ROM of the design, its output value before and after the clock.
+    /// For each register and then each synchronous ROM of the design, its output value before and after the clock.
     pub held: Vec<StateValues>,
 }
 

@@ -116,7 +116,8 @@ impl Random {
         low + self.below((high - low + 1) as usize) as u32
     }
 
-    /// Returns a random bit pattern of `width` bits. It is often a corner of the range, such as 0 or all ones.
+    /// Returns a random bit pattern of `width` bits. In more than half of the cases it is a corner of the range, such as 0 or all
+    /// ones.
     pub fn pattern(&mut self, width: u32) -> u64 {
         let top = 1 << (width - 1);
         let pattern = match self.below(8) {
