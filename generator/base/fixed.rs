@@ -1,8 +1,8 @@
 //! Defines fixed-point formats and computes their rounding and overflow.
 //!
-//! A format is written `uI.F` or `sI.F`: I integer bits, F fraction bits and, in a signed format, one sign bit more. A *raw*
-//! value is the integer that the bits denote; the value is `raw · 2⁻ᶠ`, and one ulp is `2⁻ᶠ`. For example, raw 3 in `u1.2` is the
-//! value 0.75. Functions pass raw values as `i128`, and the bit pattern of a wire as `u64`.
+//! A format is written `uI.F` or `sI.F`: I integer bits, F fraction bits and, in a signed format, one sign bit more. A
+//! *raw* value is the integer that the bits denote; the value is `raw · 2⁻ᶠ`, and one ulp is `2⁻ᶠ`. For example, raw 3 in
+//! `u1.2` is the value 0.75. Functions pass raw values as `i128`, and the bit pattern of a wire as `u64`.
 
 use std::fmt;
 use std::str::FromStr;
@@ -69,8 +69,8 @@ impl Format {
         u32::try_from(self.int + self.frac + i32::from(self.signed)).expect("a positive width")
     }
 
-    /// Returns the smallest raw value that the format can represent: 0 for an unsigned format, and for example −4 for `s2.0`. If
-    /// the format is too wide for any net, the result is limited to the range of an `i128`.
+    /// Returns the smallest raw value that the format can represent: 0 for an unsigned format, and for example −4 for
+    /// `s2.0`. If the format is too wide for any net, the result is limited to the range of an `i128`.
     pub fn min_raw(self) -> i128 {
         if self.signed { i128::MIN >> 128u32.saturating_sub(self.width()) } else { 0 }
     }
@@ -186,13 +186,14 @@ pub enum Rounding {
     /// Drops the fraction bits, which rounds toward minus infinity. Truncation costs no logic. For example, 1.75 becomes 1, and
     /// −1.25 becomes −2.
     Truncate,
-    /// Rounds to the nearest value, ties upward. Rounding costs an incrementer. For example, 1.5 becomes 2, and −1.5 becomes −1.
+    /// Rounds to the nearest value, ties upward. Rounding costs an incrementer. For example, 1.5 becomes 2, and −1.5
+    /// becomes −1.
     Nearest,
 }
 
 impl Rounding {
-    /// Divides `raw` by `2^places` and rounds; a negative `places` multiplies (exactly). For example, −3 by one place gives −2
-    /// if truncated, and −1 if rounded to the nearest.
+    /// Divides `raw` by `2^places` and rounds; a negative `places` multiplies (exactly). For example, −3 by one place gives
+    /// −2 if truncated, and −1 if rounded to the nearest.
     pub fn shift(self, raw: i128, places: i32) -> i128 {
         match (self, places) {
             (_, ..=0) => raw << -places,

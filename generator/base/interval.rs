@@ -23,8 +23,8 @@ pub fn common(a: Interval, b: Interval) -> Option<Interval> {
     (both.0 <= both.1).then_some(both)
 }
 
-/// Returns the smallest interval that contains all products of a value of `a` and a value of `b`. For example, (−1, 2) and (3, 4)
-/// give (−4, 8). A product beyond the range of `i128` is limited to this range; no net can have such a value.
+/// Returns the smallest interval that contains all products of a value of `a` and a value of `b`. For example, (−1, 2) and (3,
+/// 4) give (−4, 8). A product beyond the range of `i128` is limited to this range; no net can have such a value.
 pub fn product(a: Interval, b: Interval) -> Interval {
     let corners = [(a.0, b.0), (a.0, b.1), (a.1, b.0), (a.1, b.1)];
     let [first, rest @ ..] = corners.map(|(a, b)| a.saturating_mul(b));

@@ -16,9 +16,9 @@
 
 use super::{BlockMemory, Chip, Estimate, Family, Timing};
 
-/// Returns the number of look-up tables of a product with operands of these widths in bits: two for each CPE that nextpnr makes.
-/// The formula is exact for the products of 4 × 4, 8 × 8, 9 × 9, 12 × 8, 16 × 8, 16 × 16 and 18 × 18 bits, which were placed. For
-/// example, 8 by 8 bits take 73 CPEs, and so 146 look-up tables.
+/// Returns the number of look-up tables of a product with operands of these widths in bits: two for each CPE that nextpnr
+/// makes. The formula is exact for the products of 4 × 4, 8 × 8, 9 × 9, 12 × 8, 16 × 8, 16 × 16 and 18 × 18 bits, which
+/// were placed. For example, 8 by 8 bits take 73 CPEs, and so 146 look-up tables.
 fn product_luts(first: u64, second: u64) -> u64 {
     let (columns, rows) = (first.max(second) / 2, first.min(second) / 2);
     let cells = columns * rows + 3 * columns + 7 * rows + 17;
@@ -68,8 +68,8 @@ pub const GATEMATE: Family = Family {
         options: "--device CCGM1A1 --vopt allow-unconstrained",
         has: [40_960, 0, 64],
     }],
-    // `benches/tune/fit` computed the weights from twelve cores. For half of them, the estimate of look-up tables is within 5 %
-    // of the number after synthesis; the worst is 9 % too low.
+    // `benches/tune/fit` computed the weights from twelve cores. For half of them, the estimate of look-up tables is within 5
+    // % of the number after synthesis; the worst is 9 % too low.
     estimate: Estimate {
         weights: [1.70, 0.67, 0.57, 1.18, 1.05, 20.05],
         scale: 1.27,

@@ -66,8 +66,8 @@ pub const NEXUS: Family = Family {
         options: "--device LIFCL-40-9BG400CES",
         has: [32_256, 56, 84],
     }],
-    // `benches/tune/fit` computed the weights from twelve cores. For half of them, the estimate of look-up tables is within 13 %
-    // of the number after synthesis; the worst is 31 % too high.
+    // `benches/tune/fit` computed the weights from twelve cores. For half of them, the estimate of look-up tables is within 13
+    // % of the number after synthesis; the worst is 31 % too high.
     estimate: Estimate {
         weights: [1.01, 0.49, 0.88, 2.15, 1.84, 3.84],
         scale: 1.04,

@@ -1,8 +1,8 @@
-//! Builds hardware for cosines of angles: it takes the magnitude of a signed angle and addresses a table of cosᵏ. The devices of
-//! scan lines, such as `quad-cosine`, use it.
+//! Builds hardware for cosines of angles: it takes the magnitude of a signed angle and addresses a table of cosᵏ. The
+//! devices of scan lines, such as `quad-cosine`, use it.
 //!
-//! Angles are in right angles, so 90° is 1.0. A signed angle is therefore outside −90° … 90° exactly if its integer bits differ
-//! from its sign. The fraction bits of its magnitude address a table without any conversion.
+//! Angles are in right angles, so 90° is 1.0. A signed angle is therefore outside −90° … 90° exactly if its integer bits
+//! differ from its sign. The fraction bits of its magnitude address a table without any conversion.
 
 use crate::dsl::{Designer, Signal};
 use glint_base::fixed::{Format, Overflow, Rounding, exp2};

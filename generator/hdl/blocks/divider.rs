@@ -11,8 +11,8 @@ use glint_base::fixed::{Format, Overflow, Rounding};
 /// Computes `dividend / divisor`, truncated to a fraction `u0.Q`. Neither operand may be negative, and the dividend must not
 /// exceed the divisor. For example, 1 / 3 with Q = 4 gives 5/16.
 ///
-/// A quotient of 1.0 becomes `1.0 − ulp` (all bits 1), and so does a division by 0. A device that must avoid the latter keeps the
-/// divisor above 0.
+/// A quotient of 1.0 becomes `1.0 − ulp` (all bits 1), and so does a division by 0. A device that must avoid the latter keeps
+/// the divisor above 0.
 ///
 /// A division takes a microinstruction that [loads](Self::load) the operands, and Q executions of a microinstruction that
 /// [steps](Self::step), which is one microinstruction in a loop:

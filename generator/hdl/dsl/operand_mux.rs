@@ -132,8 +132,8 @@ impl Designer {
 }
 
 impl<'d> OperandMux<'d> {
-    /// Returns the setting with which a microinstruction selects `input`. Reports a mistake unless `input` is exactly one input
-    /// of the mux.
+    /// Returns the setting with which a microinstruction selects `input`. Reports a mistake unless `input` is exactly one
+    /// input of the mux.
     #[track_caller]
     pub fn pick(&self, input: Signal<'d>) -> StepSetting {
         StepSetting::pick_of(self.designer, self.field, &self.name, input, &self.inputs)

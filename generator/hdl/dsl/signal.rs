@@ -285,8 +285,8 @@ impl Designer {
         self.signal(self.add_net(name, format, format.range(), Driver::Op(op), true))
     }
 
-    /// Returns `a − b`, exact. Signals with different binary points are aligned first. The result is unsigned if the ranges show
-    /// that it is never negative. For example, two operands `u0.8` that may have any value give `s0.8`.
+    /// Returns `a − b`, exact. Signals with different binary points are aligned first. The result is unsigned if the ranges
+    /// show that it is never negative. For example, two operands `u0.8` that may have any value give `s0.8`.
     #[track_caller]
     pub fn sub<'d>(&'d self, name: &str, a: Signal<'d>, b: Signal<'d>) -> Signal<'d> {
         let (a, b) = aligned(self.own(a), self.own(b));
@@ -315,7 +315,8 @@ impl Designer {
         self.signal(self.add_net(name, format, range, Driver::Op(Op::Mul(a.id(), b.id())), true))
     }
 
-    /// Returns every bit inverted. In raw values, this is `−a − 1` for a signed signal, and `largest − a` for an unsigned one.
+    /// Returns every bit inverted. In raw values, this is `−a − 1` for a signed signal, and `largest − a` for an unsigned
+    /// one.
     #[track_caller]
     pub fn not<'d>(&'d self, name: &str, a: Signal<'d>) -> Signal<'d> {
         let a = self.own(a);
@@ -568,8 +569,8 @@ impl<'d> Mux<'d> {
         self.out
     }
 
-    /// Returns the setting with which a microinstruction selects `input`. Reports a mistake unless `input` is exactly one input
-    /// of the mux.
+    /// Returns the setting with which a microinstruction selects `input`. Reports a mistake unless `input` is exactly one
+    /// input of the mux.
     #[track_caller]
     pub fn pick(self, input: Signal<'d>) -> StepSetting {
         StepSetting::pick(self.out.designer(), self.field, &self.out.name(), input)

@@ -179,8 +179,8 @@ impl<'a> Steady<'a> {
     }
 
     /// Returns the pair of limits with the shortest longest path, and among several the fewest register bits. The function tries
-    /// all pairs if there are few. Otherwise it tries pairs that are evenly spread, and then again pairs between the neighbours
-    /// of the best one.
+    /// all pairs if there are few. Otherwise it tries pairs that are evenly spread, and then again pairs between the
+    /// neighbours of the best one.
     fn best(&self) -> CutPlaces {
         let mut windows = [(0, self.places.len() - 1); 2];
         loop {

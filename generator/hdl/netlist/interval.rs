@@ -25,8 +25,8 @@ pub fn of_cell<N: Copy + PartialEq>(
         Op::Slice { of: a, low } => wrapped((of(*a).0 >> low, of(*a).1 >> low)),
         Op::Concat(parts) => wrapped(parts.iter().fold((0, 0), |(low, high), part| {
             let width = format_of(*part).width();
-            // A negative value of a signed part contributes its bit pattern, so that all patterns count. If the part is the top
-            // of a signed number, its sign is the sign of the number, and the order of values remains.
+            // A negative value of a signed part contributes its bit pattern, so that all patterns count. If the part is the
+            // top of a signed number, its sign is the sign of the number, and the order of values remains.
             let is_sign = format.signed && Some(part) == parts.first();
             let own = if of(*part).0 < 0 && !is_sign { (0, mask(width).into()) } else { of(*part) };
             ((low << width) + own.0, (high << width) + own.1)

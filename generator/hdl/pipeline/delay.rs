@@ -33,9 +33,9 @@ pub fn of_choice(timing: &Timing, values: usize) -> f64 {
     delay_of(timing, &Op::Mux { select: 0, inputs: vec![0; values] }, &|_| select)
 }
 
-/// Returns the delay from the operands of a node of the computation's graph to the node's value, in nanoseconds. For an operand
-/// of the design, this is the time that the environment takes to deliver the operand. For a word of a block memory, it is the
-/// time from the clock edge to the word.
+/// Returns the delay from the operands of a node of the computation's graph to the node's value, in nanoseconds. For an
+/// operand of the design, this is the time that the environment takes to deliver the operand. For a word of a block memory, it
+/// is the time from the clock edge to the word.
 pub fn node_delay(timing: &Timing, graph: &Graph, id: NodeId) -> f64 {
     match &graph.node(id).cell {
         Cell::Operand(_) => timing.input,

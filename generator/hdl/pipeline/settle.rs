@@ -1,8 +1,8 @@
 //! Merges two muxes that limit a value to a constant into one mux. Two such muxes follow each other if a computation repeats a
 //! step that limits (saturates) its result.
 //!
-//! For example, in `over₂ ? most : f(over₁ ? most : x)`, `f` is wiring, and the condition `over₂` is a bit of the inner mux. The
-//! module returns one mux: the result is `most` if either condition holds, and otherwise `f(x)`.
+//! For example, in `over₂ ? most : f(over₁ ? most : x)`, `f` is wiring, and the condition `over₂` is a bit of the inner
+//! mux. The module returns one mux: the result is `most` if either condition holds, and otherwise `f(x)`.
 
 use super::graph::{Cell, Graph, Label, NodeId, NodeOp};
 use glint_base::fixed::Format;

@@ -1,9 +1,9 @@
 //! Assigns products to multipliers, so that one multiplier serves several products of a pipeline, each in its own slot.
 //!
-//! A pipeline that accepts a point every k clocks counts slots from 0 to k − 1. A point is in stage s while the slot is s modulo
-//! k. A product in a known stage therefore needs a multiplier in one slot of k, and products of different slots can share one.
-//! Muxes in front of the multiplier select the factors for its operand registers, and a register behind the multiplier takes the
-//! product.
+//! A pipeline that accepts a point every k clocks counts slots from 0 to k − 1. A point is in stage s while the slot is s
+//! modulo k. A product in a known stage therefore needs a multiplier in one slot of k, and products of different slots can
+//! share one. Muxes in front of the multiplier select the factors for its operand registers, and a register behind the
+//! multiplier takes the product.
 
 use std::cmp::Reverse;
 

@@ -254,8 +254,8 @@ impl<'a> Builder<'a> {
         lines
     }
 
-    /// Returns the labels of a case statement for the select values from 0 up to `count` − 1. They are localparams if the select
-    /// is a field of the control word, and otherwise numbers.
+    /// Returns the labels of a case statement for the select values from 0 up to `count` − 1. They are localparams if the
+    /// select is a field of the control word, and otherwise numbers.
     fn case_labels(&mut self, select: NetId, count: usize) -> Vec<String> {
         let design = self.plan.design;
         let width = design.width(select);
