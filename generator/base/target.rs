@@ -157,11 +157,12 @@ pub struct Estimate {
     /// The weight of each number in `tune::Features` for the estimated number of look-up tables. One weight is the constant
     /// number of look-up tables of every core.
     pub weights: [f64; 6],
-    /// The measured clock period divided by the clock period that the delays predict.
+    /// The factor for the predicted clock period: the measured period divided by the period that the delays predict.
     pub scale: f64,
     /// The number of bits by which a signed operand of a DSP block may be wider than an unsigned one.
     pub sign: u32,
-    /// Partial products with fewer bits than this become look-up tables.
+    /// A product, or a part of a wide product, becomes look-up tables instead of a DSP block if its result has fewer bits than
+    /// this.
     pub least_product: u32,
 }
 
@@ -181,7 +182,7 @@ pub struct Family {
     pub timing: Timing,
     /// The Yosys command that reads the models of the cells which a core may instantiate, or an empty text.
     pub library: &'static str,
-    /// The Yosys commands that precede `command`.
+    /// The Yosys commands that precede `command`, or an empty text. `{top}` in them is replaced by the name of the top module.
     pub prepare: &'static str,
     /// The Yosys command that synthesises for the family, without the name of the top module.
     pub command: &'static str,
@@ -222,7 +223,7 @@ impl Family {
     }
 }
 
-/// The families that Glint's Verilog is meant for.
+/// The FPGA families for which Glint can synthesise cores.
 pub const FAMILIES: [Family; 7] = [ICE40, ECP5, XILINX7, GOWIN, GOWIN_GW1N, NEXUS, GATEMATE];
 
 /// The families for which datasheets, `compare` and `verify` synthesise every core.

@@ -33,7 +33,7 @@ pub struct Field {
     pub net: NetId,
     /// Whether the field selects inputs of muxes, loads registers, drives an output, or controls the sequencer.
     pub kind: FieldKind,
-    /// The numbers of the field's bits (lines) in the block diagram of the document that describes the device, the most
+    /// The numbers of the field's bits (its lines) in the block diagram of the document that describes the device, the most
     /// significant first. The list is empty if the diagram does not show them.
     pub lines: Vec<u16>,
 }

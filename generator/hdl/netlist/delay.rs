@@ -19,7 +19,7 @@ pub struct DelayLine {
     pub values: Vec<Delayed>,
 }
 
-/// A value of a pipeline that travels through the registers of several stages.
+/// A value of a delay line, which passes through one register in each of several stages.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Delayed {
     /// The net with the value that enters the delay line, the data input of its first register.

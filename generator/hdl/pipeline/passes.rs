@@ -12,7 +12,7 @@ use super::text::printed;
 use super::unroll::Unrolled;
 use glint_base::target::Timing;
 
-/// The name of the first [`PassResult`], which no pass has rewritten.
+/// The name of the first [`PassResult`], the computation before all passes.
 const UNROLL: &str = "unroll";
 
 /// A pass: a rewriting of a computation before Glint schedules it as a pipeline. The results of the computation stay the same.

@@ -93,7 +93,7 @@ pub fn megahertz(period: f64) -> f64 {
     (10_000.0 / period).floor() / 10.0
 }
 
-/// Returns whether an operation is a carry chain or a product. Look-up tables of such an operation cannot include the logic in
+/// Returns whether an operation is a carry chain or a product. The look-up tables of any other operation can include a mux in
 /// front of it.
 fn takes_no_logic(cell: &Cell) -> bool {
     matches!(
@@ -338,7 +338,7 @@ impl<'a> ScheduleProblem<'a> {
         }
     }
 
-    /// Returns the smallest number of stages that reaches a period in nanoseconds.
+    /// Returns the smallest number of stages with which a pipeline reaches a clock period in nanoseconds.
     fn least_stages(&self, period: f64) -> usize {
         let differences = self.differences(period);
         self.latency(&differences, &self.taken(&differences))

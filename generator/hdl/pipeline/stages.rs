@@ -341,7 +341,8 @@ impl StageBuilder<'_> {
     }
 
     /// Returns the enable of the registers behind `stage`, which store its values until the next point arrives there. It is 1 in
-    /// the one slot in which a point leaves `stage`. Returns `None` if these registers load on every clock.
+    /// the one slot in which a point leaves `stage`. With an interval of 1, it is the net `advance`, or `None` if points always
+    /// move.
     fn load(&mut self, stage: usize) -> Option<NetId> {
         let Some(slot) = self.pipeline.slot else { return self.advance };
         let number = stage % self.pipeline.interval;

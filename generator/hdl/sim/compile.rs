@@ -162,8 +162,8 @@ impl<'a> Compiler<'a> {
         ordered
     }
 
-    /// Removes the instructions whose results neither the clock edge nor a named net nor a port needs. Nets with such a result
-    /// have no slot then.
+    /// Removes the instructions whose results neither the clock edge nor a named net nor a port needs. Unnamed nets with such a
+    /// result then have no slot.
     fn drop_unneeded(&mut self, reads: &[ReadEdge], registers: &[RegisterEdge]) {
         let design = self.design;
         let mut needed = vec![false; self.sources.len()];

@@ -49,7 +49,7 @@ impl<const LANES: usize> Machine<LANES> {
     }
 
     /// Performs a rising edge if `edge` is true, then applies `inputs` if there are any, and then evaluates all nets. Returns
-    /// whether the value of any source (input, register or ROM output) has changed.
+    /// whether the value of any source (input, register or ROM output) has changed, or a ROM word has been inverted.
     ///
     /// At the edge, registers and synchronous ROMs load the values of their operands. `inputs` must have the bit pattern of each
     /// input port, in order of declaration; bits beyond the width of a port are ignored.
@@ -511,10 +511,12 @@ fn mux<W: LaneWord, const LANES: usize>(
     }
 }
 
-/// The smallest number of lanes for which comparing all lanes with each number of a mux is faster than a look-up in each lane.
+/// The smallest number of lanes for which a mux compares the select in all lanes with each input number. With fewer lanes, a
+/// look-up in each lane is faster.
 const VECTOR: usize = 8;
 
-/// The largest number of inputs for which a mux compares all lanes with each number.
+/// The largest number of inputs of a mux that compares the select in all lanes with each input number. A mux with more inputs
+/// looks up each lane's input.
 const COMPARED: usize = 16;
 
 #[inline(always)]

@@ -1,8 +1,8 @@
 //! Shows the nets of a circuit to rust_hdl's probes, as atoms (rust_hdl's term for a signal) whose widths are known only at run
 //! time.
 //!
-//! A probe that visits the circuit gets an atom for each net. An atom stores only an id, which is the same at every visit. A
-//! simulation without a waveform makes no atoms.
+//! A probe that visits the circuit gets an atom for each net. The atoms are made anew at every visit; the id of a net's atom
+//! stays the same. A simulation without a waveform makes no atoms.
 
 use rust_hdl::core::ast::VerilogLiteral;
 use rust_hdl::core::atom::{Atom, AtomKind};

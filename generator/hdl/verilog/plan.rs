@@ -59,8 +59,8 @@ pub struct Plan<'a> {
     pub reset: Option<NetId>,
     /// The delay lines of a pipeline that the Verilog writes as memories.
     pub delays: Vec<DelayLine>,
-    /// The nets that have the value of an earlier net under the same value name. Only the first declaration of a value gets the
-    /// comment.
+    /// The nets that repeat the value of an earlier net, with the same name without the stage. Only the first declaration of a
+    /// value gets the comment.
     repeats: HashSet<NetId>,
 }
 
@@ -343,7 +343,7 @@ impl<'a> Plan<'a> {
     }
 
     /// Returns whether a net of a pipeline is wiring of at most three pieces that is not declared. It must have no comment,
-    /// unless the register behind it has the same value name and shows the comment.
+    /// unless the register behind it carries the same value and shows the comment.
     fn is_plain(&self, id: NetId, bits: &Bits) -> bool {
         const MOST_PIECES: usize = 3;
         if self.design.pipeline.is_none() || self.is_port(id) || bits.pieces().len() > MOST_PIECES {
@@ -360,7 +360,8 @@ impl<'a> Plan<'a> {
         false
     }
 
-    /// Returns whether a register has the value of the net `id` from the stage before, under the same value name.
+    /// Returns whether a register only carries the value of the net `id` to the next stage: both have the same name without the
+    /// stage.
     fn is_carried(&self, id: NetId, register: RegId) -> bool {
         let Some(pipeline) = &self.design.pipeline else { return false };
         let q = self.design.register(register).q;
@@ -369,8 +370,8 @@ impl<'a> Plan<'a> {
             && self.design.multiplier(register).is_none()
     }
 
-    /// Finds the nets that repeat the value of an earlier net, such as the registers that carry a value from stage to stage. Both
-    /// nets have the same value name.
+    /// Finds the nets that repeat the value of an earlier net, such as the registers that carry a value from stage to stage.
+    /// Both nets have the same name without the stage.
     fn find_repeats(&mut self) {
         let Some(pipeline) = &self.design.pipeline else { return };
         let mut passed: HashSet<NetId> = HashSet::new();
