@@ -180,7 +180,7 @@ fn width_with_places(graph: &Graph, term: &ShiftedValue) -> u32 {
     term.places + graph.width(term.value)
 }
 
-/// Returns a term as a number without places, with `width` bits and a sign if `signed`.
+/// Returns a node with the number that a term denotes, resized to `width` bits and signed if `signed`.
 fn in_ones(
     graph: &mut Graph,
     term: ShiftedValue,
@@ -192,7 +192,7 @@ fn in_ones(
     graph.resize(shifted, width, signed)
 }
 
-/// Returns a term as a number without places: the value with a zero below it for each place.
+/// Returns a node with the number that a term denotes: the value with a zero below it for each place.
 fn shifted(
     graph: &mut Graph,
     ShiftedValue { value, places }: ShiftedValue,

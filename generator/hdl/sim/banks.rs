@@ -10,8 +10,8 @@ use crate::sim::program::{
 /// The width of a narrow slot in bits.
 const NARROW: u32 = u32::BITS;
 
-/// Gives every slot of the compiler a slot in one of the two banks. Inserts conversions before instructions that work on slots of
-/// both banks.
+/// Gives every value of the compiler, which has a slot of 64 bits there, a slot in one of the two banks. Inserts conversions
+/// before instructions that work on slots of both banks.
 ///
 /// Within a bank, slots are numbered in the order in which they are computed.
 pub(super) fn divide(
@@ -80,7 +80,7 @@ fn widths(compiler: &Compiler) -> Vec<u32> {
 
 struct BankSplitter<'a> {
     compiler: &'a Compiler<'a>,
-    /// For each slot of the compiler, whether its value goes to the wide bank (64 bits).
+    /// For each slot of the compiler, whether its value is wider than 32 bits and goes to the wide bank.
     is_wide: Vec<bool>,
     narrow: Bank,
     wide: Bank,
@@ -99,7 +99,7 @@ impl BankSplitter<'_> {
         (bank.initial.len() - 1) as Slot
     }
 
-    /// Adds a slot for a slot of the compiler, in the bank that its width demands, and returns it.
+    /// Adds a slot for the value in the compiler's slot `slot` to the bank for the width of the value, and returns the new slot.
     fn home(&mut self, slot: Slot) -> Slot {
         let wide = self.is_wide[slot as usize];
         let [initial] = self.compiler.initial[slot as usize];
@@ -117,7 +117,8 @@ impl BankSplitter<'_> {
         }
     }
 
-    /// Returns the slot of a slot of the compiler, in the bank that its width demands. Returns `None` if it has none yet.
+    /// Returns the bank and the slot of the value in the compiler's slot `slot`. Returns `None` if the value has no slot in a
+    /// bank yet.
     fn place(&self, slot: Slot) -> Option<ValueSlot> {
         let slot = slot as usize;
         if *self.is_wide.get(slot)? {
@@ -127,7 +128,8 @@ impl BankSplitter<'_> {
         }
     }
 
-    /// Returns the slot that has the value of the compiler's `slot`, in the wide bank if `wide`, otherwise in the narrow one.
+    /// Returns the slot that has the value of the compiler's slot `slot`, in the wide bank if `wide`, otherwise in the narrow
+    /// one.
     ///
     /// Constants, registers and ROMs get their slots at the first call. If a conversion to the wide bank is necessary, it becomes
     /// a step with these `sources`, and later calls use its result too.
@@ -153,7 +155,7 @@ impl BankSplitter<'_> {
         to
     }
 
-    /// Adds a narrow slot that takes bits of a wide slot of the compiler: from bit `low` up, as many as `drop` says.
+    /// Adds a narrow slot with bits of the wide value in the compiler's slot `slot`: from bit `low` up, as many as `drop` says.
     fn cut(&mut self, slot: Slot, low: u8, drop: u8, sources: Sources) -> Slot {
         let a = self.operand(slot, true, sources);
         let to = self.fresh(false, 0);
@@ -278,7 +280,7 @@ impl BankSplitter<'_> {
         }
     }
 
-    /// Returns the slot that has the value of a slot of the compiler in a bank after settling.
+    /// Returns the slot in the wide or the narrow bank that has the value of the compiler's slot `slot` after settling.
     fn settled(&mut self, slot: Slot, wide: bool) -> Slot {
         self.operand(slot, wide, self.compiler.sources[slot as usize])
     }
