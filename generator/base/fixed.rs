@@ -1,9 +1,8 @@
 //! Defines fixed-point formats and computes their rounding and overflow.
 //!
-//! A format is written `uI.F` or `sI.F`: I integer bits, F fraction bits and, in a signed format, one sign bit more. The width is
-//! therefore I + F, or 1 + I + F. A *raw* value is the integer that the bits denote; the value is `raw · 2⁻ᶠ`, and one ulp is
-//! `2⁻ᶠ`. For example, raw 3 in `u1.2` is the value 0.75. Functions pass raw values as `i128`, and the bit pattern of a wire as
-//! `u64`.
+//! A format is written `uI.F` or `sI.F`: I integer bits, F fraction bits and, in a signed format, one sign bit more. A
+//! *raw* value is the integer that the bits denote; the value is `raw · 2⁻ᶠ`, and one ulp is `2⁻ᶠ`. For example, raw 3 in
+//! `u1.2` is the value 0.75. Functions pass raw values as `i128`, and the bit pattern of a wire as `u64`.
 
 use std::fmt;
 use std::str::FromStr;
@@ -11,10 +10,10 @@ use std::str::FromStr;
 /// The largest number of bits that a net may have.
 pub const MAX_WIDTH: u32 = 64;
 
-/// The largest number of fraction bits, positive or negative. Beyond it the value of an ulp would be no `f64`.
+/// The largest absolute number of fraction bits. Beyond it, `f64` could not represent the value of one ulp, 2⁻ᶠ.
 pub const MAX_POINT: i32 = 1000;
 
-/// A fixed-point format, `uI.F` or `sI.F`.
+/// A fixed-point format, `uI.F` or `sI.F`. The width is I + F bits, and one bit more in a signed format.
 ///
 /// I and F may be negative as long as the width stays positive: `u-3.15` is a 12-bit fraction whose three leading bits are
 /// known to be zero. For example, `u1.20` has 21 bits, and `s1.20` has 22.
@@ -28,7 +27,7 @@ pub struct Format {
     pub frac: i32,
 }
 
-/// Returns the integer nearest to `x`; ties go upward.
+/// Returns the integer nearest to `x`; ties go upward. For example, 2.5 gives 3, and −2.5 gives −2.
 ///
 /// `(x + 0.5).floor()` would be wrong: the sum is rounded, and 0.49999999999999994 would become 1.
 pub fn nearest(x: f64) -> f64 {
@@ -61,7 +60,7 @@ impl Format {
         Self { signed, int: bits - frac, frac }
     }
 
-    /// Returns the width in bits.
+    /// Returns the width in bits: I + F, and one more if the format is signed.
     ///
     /// # Panics
     /// Panics if the width is negative. The constructors of the DSL and the configuration never accept such a format, and no
@@ -70,8 +69,8 @@ impl Format {
         u32::try_from(self.int + self.frac + i32::from(self.signed)).expect("a positive width")
     }
 
-    /// Returns the smallest raw value that the format can represent. For example, `s2.0` gives −4, and every unsigned format gives
-    /// 0. If the format is too wide for any net, the result is limited to the range of an `i128`.
+    /// Returns the smallest raw value that the format can represent: 0 for an unsigned format, and for example −4 for
+    /// `s2.0`. If the format is too wide for any net, the result is limited to the range of an `i128`.
     pub fn min_raw(self) -> i128 {
         if self.signed { i128::MIN >> 128u32.saturating_sub(self.width()) } else { 0 }
     }
@@ -92,9 +91,10 @@ impl Format {
         (self.min_raw()..=self.max_raw()).contains(&raw)
     }
 
-    /// Returns the value of `raw` as a real number (exact up to 53 significant bits).
+    /// Returns the value `raw · 2⁻ᶠ` as a real number, exact if `raw` has at most 53 significant bits. For example, raw 3 in
+    /// `u1.2` gives 0.75.
     pub fn to_f64(self, raw: i128) -> f64 {
-        // Processors convert 64 bits, and round as well.
+        // Processors convert integers of 64 bits directly, with the same rounding.
         let value = i64::try_from(raw).map_or(raw as f64, |raw| raw as f64);
         value * exp2(-self.frac)
     }
@@ -102,16 +102,16 @@ impl Format {
     /// Returns the raw value nearest to `x`, ties upward. Returns `None` if `x` is not a number, or if rounding takes it outside
     /// the format.
     ///
-    /// For example, `u0.8` represents 0 to 255/256: 0.998 is rounded to 255/256, and 0.999 gives `None`, since its nearest multiple
-    /// of 1/256 is 1.0.
+    /// For example, `u0.8` represents 0 to 255/256: 0.998 is rounded to 255/256, and 0.999 gives `None`, since its nearest
+    /// multiple of 1/256 is 1.0.
     pub fn nearest_raw(self, x: f64) -> Option<i128> {
         let raw = nearest(x * exp2(self.frac));
         let (low, high) = (self.min_raw() as f64, self.max_raw() as f64);
         (low..=high).contains(&raw).then(|| self.quantise(x))
     }
 
-    /// Returns the raw value nearest to `x`, ties upward, saturated to the format. For example, in `u8.0` 2.5 gives 3, and
-    /// 300.0 gives 255.
+    /// Returns the raw value nearest to `x`, ties upward, saturated to the format. For example, in `u8.0` 2.5 gives 3, and 300.0
+    /// gives 255. The result is the smallest raw value if `x` is not a number.
     pub fn quantise(self, x: f64) -> i128 {
         let scaled = nearest(x * exp2(self.frac));
         let (low, high) = (self.min_raw(), self.max_raw());
@@ -141,8 +141,8 @@ impl Format {
         }
     }
 
-    /// Converts `raw`, which has `from_frac` fraction bits, to this format. For example, raw 6 with two fraction bits is 1.5; in
-    /// `u4.0` it becomes 1 if truncated, and 2 if rounded to the nearest.
+    /// Converts `raw`, which has `from_frac` fraction bits, to a raw value of this format. For example, raw 6 with two fraction
+    /// bits is 1.5; in `u4.0` it becomes 1 if truncated, and 2 if rounded to the nearest.
     pub fn narrow(self, raw: i128, from_frac: i32, rounding: Rounding, overflow: Overflow) -> i128 {
         let shifted = rounding.shift(raw, from_frac - self.frac);
         match overflow {
@@ -186,13 +186,14 @@ pub enum Rounding {
     /// Drops the fraction bits, which rounds toward minus infinity. Truncation costs no logic. For example, 1.75 becomes 1, and
     /// −1.25 becomes −2.
     Truncate,
-    /// Rounds to the nearest value, ties upward. Rounding costs an incrementer. For example, 1.5 becomes 2, and −1.5 becomes −1.
+    /// Rounds to the nearest value, ties upward. Rounding costs an incrementer. For example, 1.5 becomes 2, and −1.5
+    /// becomes −1.
     Nearest,
 }
 
 impl Rounding {
-    /// Divides `raw` by `2^places` and rounds; a negative `places` multiplies (exactly). For example, −3 by one place gives −2
-    /// if truncated, and −1 if rounded to the nearest.
+    /// Divides `raw` by `2^places` and rounds; a negative `places` multiplies (exactly). For example, −3 by one place gives
+    /// −2 if truncated, and −1 if rounded to the nearest.
     pub fn shift(self, raw: i128, places: i32) -> i128 {
         match (self, places) {
             (_, ..=0) => raw << -places,
@@ -212,16 +213,16 @@ pub enum Overflow {
     Saturate,
 }
 
-/// Returns a bit pattern whose `width` low bits are 1.
+/// Returns a bit pattern whose `width` low bits are 1, such as `0b111` for 3. A width of 64 or more gives all ones.
 pub const fn mask(width: u32) -> u64 {
     if width >= 64 { u64::MAX } else { (1 << width) - 1 }
 }
 
-/// Returns `2^exponent`, exact.
+/// Returns `2^exponent`, exact from −1074 to 1023. Below this range the result is 0, and above it infinity.
 #[inline]
 pub fn exp2(exponent: i32) -> f64 {
     match exponent {
-        // A normal number: its fraction bits are all 0, so only the exponent field must be set.
+        // The result is a normal number: its fraction bits are all 0, so that only the exponent must be set.
         -1022..=1023 => f64::from_bits(((exponent + 1023) as u64) << 52),
         _ => libm::ldexp(1.0, exponent),
     }

@@ -2,7 +2,8 @@
 
 use crate::keywords::is_keyword;
 
-/// Checks that `name` can be the name of a net, a ROM or a module in Verilog.
+/// Checks that `name` can be the name of a net, a ROM or a module in Verilog. A name begins with an ASCII letter or `_`,
+/// continues with ASCII letters, digits and `_`, and is no keyword.
 ///
 /// # Errors
 /// Fails if the name is not legal in Verilog. The error says why. For example, `wire` gives "it is a keyword".

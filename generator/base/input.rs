@@ -1,4 +1,4 @@
-//! Reads what the user provides: text from a file or from standard input, or the JSON records in a directory.
+//! Reads data that the user provides: text from a file or from standard input, or the JSON records in a directory.
 
 use std::fs::{self, File};
 use std::io::{self, ErrorKind, Read};
@@ -10,15 +10,15 @@ use serde::de::DeserializeOwned;
 /// The path with which a user means standard input.
 pub const STDIN: &str = "-";
 
-/// Returns the name by which written files know the file `path`: without directories, so that they are the same on every
+/// Returns the name under which written files mention the file `path`: without directories, so that the name is the same on every
 /// machine. For example, `configs/rough.toml` becomes `rough.toml`.
 ///
-/// A name with blanks is in single quotes, as a shell takes it: `'my core.toml'`. A character that could end a comment or a string of
-/// an emitted file becomes `%` with its bytes in hexadecimal, as in a URL.
+/// A name with blanks is in single quotes, as a shell needs it: `'my core.toml'`. A character that could end a comment or a
+/// string of an emitted file becomes `%` with its bytes in hexadecimal, as in a URL.
 pub fn label(path: &str) -> String {
     let name = path.rsplit('/').next().unwrap_or(path);
     let plain = |sign: char| sign.is_alphanumeric() || "._+-".contains(sign);
-    // A shell takes a name between quotes as it is.
+    // A shell does not change a name between single quotes.
     let quotable = |sign: char| plain(sign) || " ()[]{},;=@#%&~!?^".contains(sign);
     if !name.chars().all(plain) && name.chars().all(quotable) {
         return format!("'{name}'");
@@ -47,10 +47,10 @@ pub fn open(path: &Path) -> io::Result<Box<dyn Read>> {
     Ok(Box::new(File::open(path)?))
 }
 
-/// Returns the text of a file, or `None` if the file does not exist.
+/// Returns the text of a file, or of standard input if the path is [`STDIN`]. Returns `None` if the file does not exist.
 ///
 /// # Errors
-/// Fails as [`open`] does, except for a file that does not exist.
+/// Fails if the file cannot be read, if it is not UTF-8, or if the path is a directory, a pipe or a device.
 pub fn text(path: &Path) -> Result<Option<String>> {
     let mut text = String::new();
     match open(path).and_then(|mut file| file.read_to_string(&mut text)) {
@@ -60,11 +60,12 @@ pub fn text(path: &Path) -> Result<Option<String>> {
     }
 }
 
-/// Returns the records in a directory: its `*.json` files that can be read as a `T`, in the order of their names. It ignores
-/// other files; a directory that does not exist has no records.
+/// Returns the records in a directory, each with its path, in the order of their names. A record is a `*.json` file that can be
+/// read as a `T`. Files with JSON of another structure are ignored, and so are all other files. A directory that does not exist
+/// has no records.
 ///
 /// # Errors
-/// Fails if the directory or a file in it cannot be read, or if a file is no JSON.
+/// Fails if the directory or a `*.json` file in it cannot be read, or if such a file is no JSON.
 pub fn records<T: DeserializeOwned>(directory: &Path) -> Result<Vec<(PathBuf, T)>> {
     let entries = match fs::read_dir(directory) {
         Ok(entries) => entries,

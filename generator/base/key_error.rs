@@ -4,7 +4,7 @@ use std::fmt;
 
 /// An error in the value of a configuration key, with a message and a remedy.
 ///
-/// The error names the key but knows no file. A caller who knows the file can add the line of the key.
+/// The error names the key but knows no file. A caller that knows the file can add the line of the key.
 ///
 /// ```
 /// # use glint_base::key_error::KeyError;
@@ -17,9 +17,9 @@ pub struct KeyError {
     pub key: String,
     /// The description of the error, for the user. For example, "`core` cannot run at 900 MHz".
     pub message: String,
-    /// The remedy. For example, it lists the integers that the key accepts.
+    /// The sentence that tells the user how to remove the error. For example, it lists the integers that the key accepts.
     pub remedy: String,
-    /// The nearest valid value, if it is a number and known.
+    /// The nearest valid value of the key, if the value is a number and the author of the check knows it; otherwise `None`.
     pub nearest: Option<f64>,
 }
 

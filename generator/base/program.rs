@@ -1,5 +1,5 @@
-//! Stores the name of the running program, for messages that tell a user what to type. The name is `glint`, unless a program with
-//! devices of its own sets another one with [`run_as`].
+//! Stores the name of the running program, for messages that tell a user which command to type. The name is `glint`, unless a
+//! program with devices of its own sets another one with [`run_as`].
 
 use std::fmt;
 use std::sync::OnceLock;
@@ -17,7 +17,7 @@ impl fmt::Display for Program {
     }
 }
 
-/// Sets the name of the running program; a second call has no effect.
+/// Sets the name of the running program. Only the first call has an effect.
 pub fn run_as(name: &str) {
     NAME.get_or_init(|| name.to_owned());
 }

@@ -2,7 +2,7 @@
 //! cost. Each family has a file of its own.
 //!
 //! A delay is in nanoseconds and includes the wire to the next cell. The head of a family's file says which of its delays were
-//! measured, and how. `benches/pipeline/delays.py` measures.
+//! measured, and how. The script `benches/pipeline/delays.py` measures delays.
 
 mod ecp5;
 mod gatemate;
@@ -29,13 +29,14 @@ pub struct DelayMemory {
     pub words: u32,
     /// The number of bits of a word.
     pub width: u32,
-    /// The number of look-up tables that it occupies, including the tables that write it.
+    /// The number of look-up tables of the memory, including the tables that write it.
     pub tables: u32,
 }
 
 impl DelayMemory {
-    /// Returns whether a memory of `words` words of `bits` bits, with its address counter, takes fewer look-up tables and
-    /// registers than the registers that it replaces. For example, on ECP5 this is true of 3 words of 4 bits, but not of 2.
+    /// Returns whether a memory of `words` words of `bits` bits takes fewer look-up tables and registers, with its address
+    /// counter, than the registers that it replaces. For example, on ECP5 the result is true for 3 words of 4 bits, and false for
+    /// 2.
     pub fn pays(self, words: usize, bits: u32) -> bool {
         let words = words as u32;
         let memories = bits.div_ceil(self.width) * words.div_ceil(self.words);
@@ -44,7 +45,8 @@ impl DelayMemory {
     }
 }
 
-/// The delays of a multiplier with a register at its output, in nanoseconds. They do not include the delay of an ordinary register.
+/// The delays of a multiplier with a register at its output, in nanoseconds. They do not include the delay of an ordinary
+/// register.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Registered {
     /// The delay from the operands of the multiplier to the setup of its output register.
@@ -58,11 +60,11 @@ pub struct Registered {
 pub struct Timing {
     /// The name of the target, which the configuration key `pipeline.target` gives.
     pub name: &'static str,
-    /// The largest operand widths of a multiplier, unsigned, the wider operand first.
+    /// The largest widths of a multiplier's unsigned operands in bits, the wider operand first. For example, (18, 18) on ECP5.
     pub multiplier: (u32, u32),
-    /// The largest size of a partial product that Glint adds up in look-up tables instead of using a multiplier: the number of bits
-    /// in all its rows. On ECP5 three rows of 21 bits and their sums take about 110 look-up tables, and four rows of 22 bits take
-    /// 160. The limit is higher for iCE40, because its smaller chips have few multipliers.
+    /// The largest size of a partial product that Glint adds up in look-up tables instead of a multiplier. The size is the number
+    /// of bits in all rows. On ECP5 three rows of 21 bits and their sums take about 110 look-up tables, and four rows of 22 bits
+    /// take about 160. The limit is higher for iCE40, because its smaller chips have few multipliers.
     pub row_bits: u32,
     /// The delay from the rising edge to the output of a register, plus the wire to the next register and the setup of that
     /// register.
@@ -71,7 +73,8 @@ pub struct Timing {
     pub input: f64,
     /// The delay of one level of look-up tables, with the wire to the next level.
     pub logic: f64,
-    /// The delay that each bit of its address beyond the third adds to a word of a table in look-up tables.
+    /// The delay of a table in look-up tables, for each bit of its address beyond the third. For example, a table of 64 words (6
+    /// bits of address) takes three times this delay.
     pub word_bit: f64,
     /// The delay of the start and the end of a carry chain together, whatever its length.
     pub carry: f64,
@@ -79,12 +82,12 @@ pub struct Timing {
     pub carry_bit: f64,
     /// The delay of a multiplier that has no output register.
     pub product: f64,
-    /// The delays of a multiplier with an output register, if they were measured.
+    /// The delays of a multiplier with an output register; `None` if they were not measured.
     pub registered: Option<Registered>,
     /// The delay from the rising edge to the output of a block memory, without the delay of a register.
     pub block: f64,
-    /// The extra delay of the wire to the address of a block memory, compared with a wire to a register: block memories
-    /// occupy only a few columns of the chip.
+    /// The extra delay of the wire to the address of a block memory, compared with a wire to a register. Block memories occupy
+    /// only a few columns of the chip.
     pub address: f64,
     /// The size of a block memory, and the ROMs that synthesis puts into block memories.
     pub blocks: BlockMemory,
@@ -98,15 +101,15 @@ pub struct Timing {
 pub struct BlockMemory {
     /// The number of bits of a block.
     pub bits: u64,
-    /// The width of a block's widest word, in bits.
+    /// The width of a block's widest word, in bits. For example, 36 on ECP5.
     pub widest: u64,
-    /// Synthesis puts a ROM into blocks if it has more bits than this for each block that it needs.
+    /// Synthesis puts a ROM into blocks if the ROM has more bits than this number for each block that it takes.
     pub most_bits_without: u64,
 }
 
 impl BlockMemory {
-    /// Returns the number of blocks for a ROM. Twice the words halve the width of a block. For example, a block of 18 432 bits has 512
-    /// words of 36 bits, or 1024 words of 18 bits.
+    /// Returns the number of blocks for a ROM of `words` words of `width` bits. A block can have twice the words if each has half
+    /// the width. For example, a block of 18 432 bits has 512 words of 36 bits, or 1024 words of 18 bits.
     pub fn count(&self, words: u64, width: u64) -> u64 {
         let mut block_width = self.widest;
         while block_width > 0 {
@@ -118,8 +121,8 @@ impl BlockMemory {
         (words * width).div_ceil(self.bits)
     }
 
-    /// Returns whether synthesis puts a synchronous ROM into blocks. For example, ECP5 has 64 words of 33 bits in a block, and 64 words
-    /// of 32 bits in look-up tables.
+    /// Returns whether synthesis puts a synchronous ROM into blocks. For example, on ECP5 64 words of 33 bits go into a block,
+    /// and 64 words of 32 bits into look-up tables.
     pub fn takes(&self, words: u64, width: u64) -> bool {
         words * width > self.most_bits_without * self.count(words, width)
     }
@@ -137,9 +140,9 @@ pub struct Chip {
 }
 
 impl Chip {
-    /// Returns the resources that a design needs more of than the chip has. For each it gives the index of the resource (0: look-up
-    /// tables, 1: DSP blocks, 2: block RAMs), the amount that the design needs, and the amount on the chip. For example, a design
-    /// with 6000 look-up tables and 8 DSP blocks gives `(0, 6000, 5280)` on the iCE40 UP5K.
+    /// Returns the resources that the chip has too few of for a design. `wanted` has the numbers of look-up tables, DSP blocks
+    /// and block RAMs. Each entry of the result has the index of the resource in `wanted`, the number that the design needs, and
+    /// the number on the chip. For example, 6000 look-up tables and 8 DSP blocks give `(0, 6000, 5280)` on the iCE40 UP5K.
     pub fn lack(&self, wanted: [u64; 3]) -> Vec<(usize, u64, u64)> {
         let all = wanted.into_iter().zip(self.has).enumerate();
         all.filter(|(_, (wanted, has))| wanted > has)
@@ -151,14 +154,15 @@ impl Chip {
 /// The numbers with which Glint estimates the cost of a core without running synthesis.
 #[derive(Debug)]
 pub struct Estimate {
-    /// The weight of each number in `tune::Features` in the estimate of look-up tables. One weight is the constant number of
-    /// look-up tables of every core.
+    /// The weight of each number in `tune::Features` for the estimated number of look-up tables. One weight is the constant
+    /// number of look-up tables of every core.
     pub weights: [f64; 6],
-    /// The measured clock period divided by the clock period that the delays predict.
+    /// The factor for the predicted clock period: the measured period divided by the period that the delays predict.
     pub scale: f64,
     /// The number of bits by which a signed operand of a DSP block may be wider than an unsigned one.
     pub sign: u32,
-    /// Partial products with fewer bits than this become look-up tables.
+    /// A product, or a part of a wide product, becomes look-up tables instead of a DSP block if its result has fewer bits than
+    /// this.
     pub least_product: u32,
 }
 
@@ -178,7 +182,7 @@ pub struct Family {
     pub timing: Timing,
     /// The Yosys command that reads the models of the cells which a core may instantiate, or an empty text.
     pub library: &'static str,
-    /// The Yosys commands that precede `command`.
+    /// The Yosys commands that precede `command`, or an empty text. `{top}` in them is replaced by the name of the top module.
     pub prepare: &'static str,
     /// The Yosys command that synthesises for the family, without the name of the top module.
     pub command: &'static str,
@@ -186,8 +190,8 @@ pub struct Family {
     pub least_yosys: (u32, u32),
     /// The cells that count as look-up tables. A carry cell that replaces two look-up tables counts as two.
     pub luts: Kinds,
-    /// The kind of cell that multiplies in look-up tables, if the family has no DSP blocks, and the number of look-up tables that such
-    /// a cell takes for operands of two widths.
+    /// For a family without DSP blocks, the kind of cell that multiplies in look-up tables, and a function for its number of
+    /// look-up tables. The function takes the widths of both operands. Otherwise `None`.
     pub fabric_product: Option<(&'static str, LutsOfProduct)>,
     /// The cells that count as DSP blocks. Empty for a family without DSP blocks.
     pub dsps: Kinds,
@@ -219,7 +223,7 @@ impl Family {
     }
 }
 
-/// The families that Glint's Verilog is meant for.
+/// The FPGA families for which Glint can synthesise cores.
 pub const FAMILIES: [Family; 7] = [ICE40, ECP5, XILINX7, GOWIN, GOWIN_GW1N, NEXUS, GATEMATE];
 
 /// The families for which datasheets, `compare` and `verify` synthesise every core.
@@ -249,7 +253,7 @@ pub const TIMING_NAMES: [&str; TIMINGS.len()] = {
 };
 
 impl Timing {
-    /// Returns the target with this name.
+    /// Returns the target with this name, such as `ecp5`, or `None` if Glint has no such target.
     pub fn named(name: &str) -> Option<&'static Self> {
         TIMINGS.iter().find(|timing| timing.name == name)
     }
@@ -274,7 +278,7 @@ pub struct Usage {
 }
 
 impl Usage {
-    /// Returns the numbers of look-up tables, DSP blocks and block RAMs.
+    /// Returns the numbers of look-up tables, DSP blocks and block RAMs, in this order.
     pub fn taken(&self) -> [u64; 3] {
         [self.luts, self.dsps, self.block_rams]
     }
@@ -284,7 +288,8 @@ impl Usage {
 mod tests {
     use super::*;
 
-    /// Yosys 0.23 and 0.70 put synchronous ROMs, given as words and width, into look-up tables or into blocks.
+    /// Compares the rule with Yosys 0.23 and 0.70: a synchronous ROM with a number of words and a width goes into look-up tables
+    /// or into blocks.
     #[test]
     fn roms_are_where_synthesis_puts_them() {
         let in_tables = [

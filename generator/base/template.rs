@@ -5,7 +5,7 @@ pub use askama;
 pub use askama::Template;
 pub use glint_templates::template;
 
-/// Returns the text of a filled template. Askama drops the newline at the end of a template; the returned text always has it.
+/// Returns the text of a filled template. The text always ends with a newline, which Askama drops from the end of a template.
 ///
 /// # Errors
 /// Fails if a value cannot be printed.
@@ -17,7 +17,8 @@ pub fn render(template: &impl Template) -> Result<String> {
     Ok(text)
 }
 
-/// Returns the text of a template: its fields with their types and, where no variable has the name of the field, their values.
+/// Fills a template and returns its text, as `render` does. The arguments are the path of the template, and its fields with their
+/// types. A field takes the stated value, or without a value the variable of the same name.
 #[macro_export]
 macro_rules! fill {
     ($path:tt { $($field:ident: $kind:ty $(= $value:expr)?),* $(,)? }) => {{

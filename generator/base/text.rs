@@ -13,7 +13,7 @@ pub fn grouped(number: u64) -> String {
     text
 }
 
-/// Returns a number with its noun, in the plural if needed. For example, `1 net` and `12 nets`.
+/// Returns a number with its noun, in the plural unless the number is 1. For example, `1 net`, `12 nets` and `1 200 nets`.
 pub fn counted(number: usize, thing: &str) -> String {
     let plural = if number == 1 { "" } else { "s" };
     format!("{} {thing}{plural}", grouped(number as u64))

@@ -16,9 +16,9 @@ use crate::transient::Directory;
 /// A Verilog simulator: Icarus Verilog, which is event-driven, or Verilator, which compiles.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum VerilogSimulator {
-    /// Icarus Verilog: starts at once, runs slowly.
+    /// Icarus Verilog: starts at once, and runs slowly.
     Icarus,
-    /// Verilator: compiles for seconds, runs fast, knows two states only.
+    /// Verilator: compiles for seconds, runs fast, and knows only the values 0 and 1 (no x, no z).
     Verilator,
 }
 
@@ -52,15 +52,15 @@ impl fmt::Display for VerilogSimulator {
     }
 }
 
-/// Builds the bench `top` from `files`, pairs of a plain file name and contents, in a temporary directory and runs it
-/// there. The simulator compiles files that end in `.v` or `.sv`, in the given order. Other files, such as `.mem`, only
-/// lie beside them. The bench must end by itself after a line that begins with `PASS` or `FAIL`. For example, a last
-/// line `PASS rsqrt: 3210 clocks, no difference` is a verdict.
+/// Builds the bench `top` from `files`, pairs of a plain file name and contents, in a temporary directory, and runs it there. The
+/// simulator compiles files that end in `.v` or `.sv`, in the given order. Other files, such as `.mem`, are in the same
+/// directory. The bench must end by itself after a line that begins with `PASS` or `FAIL`. For example, a last line
+/// `PASS rsqrt: 3210 clocks, no difference` is a verdict.
 ///
 /// # Errors
-/// Fails if the simulator is missing or rejects the sources (Verilator: or warns of them). Fails if building and
-/// running take more than `limit` in all, or if the bench crashes or ends without a verdict. A bench that fails is no
-/// error but an outcome.
+/// Fails if the simulator is missing or rejects the sources (Verilator: or warns of them), or if no file is Verilog. Fails if
+/// building and running take more than `limit` together, or if the bench crashes or ends without a verdict. A failing bench is no
+/// error; the outcome says so.
 pub fn run_bench<N: AsRef<str>, C: AsRef<[u8]>>(
     simulator: VerilogSimulator,
     files: &[(N, C)],
@@ -71,7 +71,7 @@ pub fn run_bench<N: AsRef<str>, C: AsRef<[u8]>>(
     run_bench_in(&search, simulator, files, top, limit)
 }
 
-/// Does the same as [`run_bench`], with another search path than `PATH` for the simulator.
+/// Builds and runs a bench as [`run_bench`] does. Looks for the simulator on the search path `search` instead of `PATH`.
 pub(super) fn run_bench_in<N: AsRef<str>, C: AsRef<[u8]>>(
     search: &OsStr,
     simulator: VerilogSimulator,
@@ -96,12 +96,13 @@ pub struct BuiltBench {
 }
 
 impl BuiltBench {
-    /// Builds a bench, with `files` as in [`run_bench`]. The bench writes a waveform only if it calls `$dumpvars`;
-    /// `waveform` must then be [`Waveform::Written`].
+    /// Builds the bench `top` in a temporary directory from `files`, pairs of a plain file name and contents. Files that end in
+    /// `.v` or `.sv` are compiled, in the given order. If the bench calls `$dumpvars` to write a waveform, `waveform` must be
+    /// [`Waveform::Written`].
     ///
     /// # Errors
-    /// Fails if the simulator is missing or rejects the sources (Verilator: or warns of them), or if building takes
-    /// more than `limit`.
+    /// Fails if the simulator is missing or rejects the sources (Verilator: or warns of them), or if building takes more than
+    /// `limit`.
     pub fn build<N: AsRef<str>, C: AsRef<[u8]>>(
         simulator: VerilogSimulator,
         files: &[(N, C)],
@@ -121,7 +122,7 @@ impl BuiltBench {
         waveform: Waveform,
         limit: Duration,
     ) -> Result<Self> {
-        // A missing tool must be an error before anything is written.
+        // A missing tool must be an error before any file is written.
         let (compiler, runner) = match simulator {
             VerilogSimulator::Icarus => {
                 (Tool::find_in("iverilog", search)?, Some(Tool::find_in("vvp", search)?))
@@ -135,7 +136,7 @@ impl BuiltBench {
         let mut arguments: Vec<&str> = match simulator {
             VerilogSimulator::Icarus => vec!["-g2012", "-Wall", "-s", top, "-o", "bench.vvp"],
             VerilogSimulator::Verilator => {
-                // The time scale is for sources without one, if other sources have one.
+                // The time scale applies to sources without one, if other sources have one.
                 let options = "--binary --timing --timescale 1ns/1ps -j 1 --Mdir build -o bench";
                 options.split(' ').chain(["--top-module", top]).collect()
             }
@@ -148,7 +149,7 @@ impl BuiltBench {
             .run_to_success(arguments, directory, limit)
             .with_context(|| format!("{simulator} cannot build the bench `{top}`"))?;
         let program: (Tool, &[&str]) = match runner {
-            // -n: a $stop ends the run instead of asking the terminal.
+            // With -n, a $stop ends the run; otherwise vvp would wait for input from the terminal.
             Some(vvp) => (vvp, &["-n", "bench.vvp"]),
             None => {
                 let built = directory.join("build");
@@ -169,11 +170,11 @@ impl BuiltBench {
         self.dir.path()
     }
 
-    /// Runs the bench.
+    /// Runs the bench and returns its outcome.
     ///
     /// # Errors
-    /// Fails if the bench takes more than `limit`, crashes, or ends without a verdict. A bench that fails is no error
-    /// but an outcome.
+    /// Fails if the bench takes more than `limit`, crashes, or ends without a verdict. A failing bench is no error; the outcome
+    /// says so.
     pub fn run(&self, limit: Duration) -> Result<BenchOutcome> {
         let (top, simulator) = (&self.top, self.simulator);
         let (program, arguments) = &self.program;
@@ -200,8 +201,8 @@ impl BuiltBench {
     }
 }
 
-/// Writes the files, and returns the names of the files to compile. Each name must be plain: for example,
-/// `core/rsqrt.v` and `-o.v` are errors.
+/// Writes the files, and returns the names of the files to compile, in order. Fails if a name contains a directory, begins with a
+/// dash, or occurs twice, or if no file is Verilog. For example, `core/rsqrt.v` and `-o.v` are refused.
 fn write_files<'a, N: AsRef<str>, C: AsRef<[u8]>>(
     directory: &Path,
     files: &'a [(N, C)],
@@ -223,8 +224,8 @@ fn write_files<'a, N: AsRef<str>, C: AsRef<[u8]>>(
     Ok(sources)
 }
 
-/// Returns whether there is a PASS line and no FAIL line; `None` when there is neither. The word must be the first of
-/// its line: for example, `PASS rsqrt: 9 clocks` is a PASS line, and `PASSED` is none.
+/// Returns whether the transcript has a PASS line and no FAIL line, or `None` if it has neither. The word must be the first of
+/// its line: for example, `PASS rsqrt: 9 clocks` is a PASS line, and `PASSED` is not.
 fn verdict(transcript: &str) -> Option<bool> {
     let says = |word| {
         let first = |line: &str| line.split(|c: char| !c.is_alphanumeric()).next() == Some(word);

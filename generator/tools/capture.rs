@@ -1,17 +1,17 @@
-//! Reads the output of a child process to its end, so that the process never blocks on a full pipe. If the output is long, only its
-//! beginning and its end are kept in memory.
+//! Reads the output of a child process to its end, so that the process never blocks on a full pipe. If the output is long, only
+//! its beginning and its end are kept in memory.
 
 use std::collections::VecDeque;
 use std::io::Read;
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// The bytes that are kept of the beginning of a long output ...
+/// The number of bytes that are kept of the beginning of a long output.
 const KEEP_FIRST: usize = 64 << 10;
-/// ... and this many of the end, which has verdicts and errors.
+/// The number of bytes that are kept of the end of a long output, where verdicts and errors are.
 const KEEP_LAST: usize = 1 << 20;
-/// Lines of output that an error quotes.
+/// The number of lines of output that an error quotes.
 const QUOTED_LINES: usize = 12;
-/// Characters of a line that an error quotes.
+/// The largest number of characters of a line that an error quotes.
 const QUOTED_CHARACTERS: usize = 200;
 
 /// The output of a child process so far. Clones share the text, so that one thread can read output while another quotes it.
@@ -26,7 +26,7 @@ struct CaptureBuffer {
 }
 
 impl Capture {
-    /// Reads output until it ends or cannot be read.
+    /// Reads output until it ends or a read fails. Returns only then.
     pub(super) fn drain(&self, reader: &mut impl Read) {
         let mut buffer = vec![0; 64 << 10];
         while let Ok(count @ 1..) = reader.read(&mut buffer) {
@@ -35,8 +35,8 @@ impl Capture {
         }
     }
 
-    /// Returns the text that was kept, with bytes that are not UTF-8 replaced. If the middle of the output was dropped, a line
-    /// between the two parts says how many bytes, for example `... 4096 bytes left out ...`.
+    /// Returns the text that was kept, with a replacement character for bytes that are not UTF-8. If the middle of the output was
+    /// dropped, a line between the two parts says how many bytes, for example `... 4096 bytes left out ...`.
     pub(super) fn text(&self) -> String {
         let kept = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         let mut bytes = kept.first.clone();
@@ -65,8 +65,9 @@ impl CaptureBuffer {
     }
 }
 
-/// Returns the last lines of `output` as the end of an error message, indented and without control characters. For
-/// example, the output `no module` gives `; its last lines:`, followed by `no module` on a line of its own.
+/// Returns the last 12 non-empty lines of `output` as the end of an error message, indented and without control characters. For
+/// example, the output `no module` gives `; its last lines:`, followed by `no module` on a line of its own. An output without
+/// text gives `; it printed nothing`.
 pub(super) fn quote(output: &str) -> String {
     let lines: Vec<&str> = output.lines().filter(|line| !line.trim().is_empty()).collect();
     if lines.is_empty() {

@@ -26,18 +26,18 @@ pub struct BenchDifference {
 }
 
 impl BenchDifference {
-    /// Returns the first difference in the transcript of a bench, if there is one. For example, the line `clock 9:
-    /// red_out is 1f, expected 20` is a difference of the output `red_out` at clock 9.
+    /// Returns the first difference in the transcript of a bench, or `None` if the bench printed none. For example, the line
+    /// `clock 9: red_out is 1f, expected 20` is a difference of the output `red_out` at clock 9.
     pub fn first(transcript: &str) -> Option<Self> {
         transcript.lines().find_map(Self::of_line)
     }
 
-    /// Parses `clock 9, microinstruction 3 (result): red_out is 1f, expected 20`, or of a pipeline `clock 9: red_out is
-    /// 1f, expected 20`.
+    /// Parses a line such as `clock 9, microinstruction 3 (result): red_out is 1f, expected 20`; the line of a pipeline is
+    /// `clock 9: red_out is 1f, expected 20`. Returns `None` for any other line.
     fn of_line(line: &str) -> Option<Self> {
         let rest = line.strip_prefix("clock ")?;
         let (clock, rest) = rest.split_at(rest.find([',', ':'])?);
-        // A microinstruction's name may have anything in it.
+        // A microinstruction's name may contain any characters.
         let (executed, rest) = rest.rsplit_once(": ")?;
         let (signal, rest) = rest.split_once(" is ")?;
         let (simulated, expected) = rest.split_once(", expected ")?;
@@ -52,11 +52,13 @@ impl BenchDifference {
     }
 }
 
-/// Runs the bench `top` of `files` once more, as [`super::run_bench`] does; returns the waveform (VCD) of clocks `from`
-/// to `to`. For example, for the bench `rsqrt_tb` it adds a module `rsqrt_tb_window` in a file `rsqrt_tb_window.v`.
+/// Builds and runs the bench `top` of `files`, pairs of a file name and contents. Returns the waveform (VCD) of the clocks from
+/// `from` to `to`, both included. A module around the bench writes the waveform: for the bench `rsqrt_tb` it is `rsqrt_tb_window`
+/// in the file `rsqrt_tb_window.v`. Building and running may each take at most `limit`.
 ///
 /// # Errors
-/// Fails as [`super::run_bench`] does, or if there is no waveform.
+/// Fails if the simulator is missing or rejects the sources. Fails if the bench crashes, takes too long or ends without a
+/// verdict, or if it writes no waveform.
 pub fn bench_waveform(
     simulator: VerilogSimulator,
     files: &[(String, String)],

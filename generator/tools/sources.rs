@@ -23,7 +23,7 @@ impl<'a> YosysSources<'a> {
     /// Writes `files`, pairs of a file name and contents, into a temporary directory. Each run of Yosys may take at most `limit`.
     ///
     /// # Errors
-    /// Fails if the files cannot be written.
+    /// Fails if the directory or a file cannot be written.
     pub fn new(yosys: &'a Tool, files: &[(String, String)], limit: Duration) -> Result<Self> {
         let directory = Directory::new().context("cannot make a directory for synthesis")?;
         let names = files.iter().map(|(name, _)| name.as_str());
@@ -33,7 +33,8 @@ impl<'a> YosysSources<'a> {
         Ok(sources)
     }
 
-    /// Writes another file into the directory. `name` must not contain a path.
+    /// Writes another file into the directory. `name` must not contain a path. [`YosysSources::run`] does not read the file by
+    /// itself, even if it is Verilog.
     ///
     /// # Errors
     /// Fails if the file cannot be written.
@@ -47,11 +48,11 @@ impl<'a> YosysSources<'a> {
         self.directory.path()
     }
 
-    /// Lets Yosys read the Verilog files and then run `commands`. For example, for one file `rsqrt.v` and the commands `proc;
-    /// opt` the script is `read_verilog rsqrt.v; proc; opt`.
+    /// Lets Yosys read the Verilog files of [`YosysSources::new`] and then run `commands`. For example, for one file `rsqrt.v`
+    /// and the commands `proc; opt` the script is `read_verilog rsqrt.v; proc; opt`.
     ///
     /// # Errors
-    /// Fails if Yosys fails or takes too long.
+    /// Fails if Yosys exits with an error, does not start, or takes longer than the limit.
     pub fn run(&self, commands: &str) -> Result<()> {
         let script = format!("read_verilog {}; {commands}", self.verilog);
         self.yosys.run_to_success(["-q", "-p", &script], self.path(), self.limit)?;
@@ -61,16 +62,16 @@ impl<'a> YosysSources<'a> {
     /// Returns the text of a file that a tool has written into the directory, for example `statistics.json`.
     ///
     /// # Errors
-    /// Fails if the file is not there.
+    /// Fails if the file does not exist or is not UTF-8.
     pub fn text(&self, name: &str) -> Result<String> {
         fs::read_to_string(self.path().join(name))
             .with_context(|| format!("a tool wrote no `{name}`"))
     }
 
-    /// Parses a JSON file that a tool has written into the directory.
+    /// Parses a JSON file that a tool has written into the directory, and returns its value.
     ///
     /// # Errors
-    /// Fails if the file is not there, or is no JSON.
+    /// Fails if the file does not exist, or is no JSON.
     pub fn json(&self, name: &str) -> Result<Value> {
         let text = self.text(name)?;
         serde_json::from_str(&text).with_context(|| format!("`{name}` of a tool is no JSON"))

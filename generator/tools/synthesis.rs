@@ -10,11 +10,12 @@ use super::sources::YosysSources;
 pub use glint_base::target::Usage;
 use glint_base::target::{Family, Kinds};
 
-/// Synthesises the module `top` of Verilog and memory files, pairs of a plain name and contents.
+/// Synthesises the module `top` of Verilog and memory files, pairs of a plain name and contents, for an FPGA family. Returns the
+/// numbers of cells of the flat netlist.
 ///
 /// # Errors
-/// Fails if the files cannot be written, if Yosys fails or takes longer than `limit`, or if it does not say which
-/// cells the design takes.
+/// Fails if the files cannot be written, or if Yosys fails or takes longer than `limit`. Fails if its statistics do not list the
+/// cells of `top`.
 pub fn synthesise(
     yosys: &Tool,
     files: &[(String, String)],
@@ -28,24 +29,24 @@ pub fn synthesise(
         .with_context(|| format!("`{}` for {}", family.command, family.title))
 }
 
-/// Returns the commands of Yosys whose results [`usage`] reads. They must come after the synthesis in a script.
+/// Returns the commands of Yosys that write the files which [`usage`] reads. They must come after the synthesis in a script.
 pub fn statistics_commands(family: &Family) -> &'static str {
     match family.fabric_product {
         None => "tee -q -o statistics.json stat -json",
-        // Statistics do not tell the widths of products.
+        // The statistics do not contain the widths of products.
         Some(_) => "tee -q -o statistics.json stat -json; write_json cells.json",
     }
 }
 
-/// Reads the statistics that [`statistics_commands`] have written.
+/// Counts the resources of the module `top` from the files that [`statistics_commands`] have written.
 ///
 /// # Errors
-/// Fails if a file is not there, or does not tell the cells of the module `top`.
+/// Fails if a file does not exist, is no JSON, or does not list the cells of the module `top`.
 pub fn usage(sources: &YosysSources, top: &str, family: &Family) -> Result<Usage> {
     let text = sources.text("statistics.json").context("`yosys` wrote no statistics")?;
     let statistics: Value =
         serde_json::from_str(&text).context("the statistics of `yosys` are no JSON")?;
-    // The netlist is flat: the top module is all of it.
+    // The netlist is flat, so that the top module has all cells.
     let cells = statistics["modules"][format!("\\{top}")]["num_cells_by_type"]
         .as_object()
         .with_context(|| format!("the statistics of `yosys` do not tell the cells of `{top}`"))?;
@@ -66,8 +67,9 @@ pub fn usage(sources: &YosysSources, top: &str, family: &Family) -> Result<Usage
     })
 }
 
-/// Returns the look-up tables of all products of a netlist, which are cells of this kind. `luts` gives the look-up tables for two
-/// widths.
+/// Returns the number of look-up tables of all products in the netlist of `top`. The products are cells of this `kind`, and
+/// `luts` gives the look-up tables of one cell from its two operand widths. Fails if the netlist has no cells, or if a cell does
+/// not state its widths.
 fn luts_of_products(
     sources: &YosysSources,
     top: &str,
@@ -86,7 +88,8 @@ fn luts_of_products(
     Ok(sum)
 }
 
-/// Returns the number that a parameter of a cell has. Yosys writes it in binary, for example `00001001` for 9.
+/// Returns the value of a numeric parameter of a cell. Yosys writes it in binary, for example `00001001` for 9. Fails if the cell
+/// has no such parameter, or if the parameter is no binary number.
 fn number(cell: &Value, parameter: &str) -> Result<u64> {
     let digits = cell["parameters"][parameter].as_str();
     let value = digits.and_then(|digits| u64::from_str_radix(digits, 2).ok());

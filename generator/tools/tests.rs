@@ -1,4 +1,4 @@
-//! Tests how tools are run, with shell scripts in place of tools that misbehave in every way that a real one might.
+//! Tests how tools are run. Shell scripts take the place of tools, and misbehave in every way in which a real tool might.
 
 use std::io::Write;
 use std::path::PathBuf;

@@ -12,21 +12,21 @@ use serde::Deserialize;
 use super::Tool;
 use crate::transient::Directory;
 
-/// A task for a tool, and the text that the tool must print about it.
+/// A test of a tool: an input, and the text that the tool must print about it.
 #[derive(Deserialize)]
 struct Trial {
     tool: String,
-    /// The task, for people.
+    /// The input that the tool must accept or refuse, in words, for the error message.
     what: String,
     file: String,
     contents: String,
     arguments: Vec<String>,
-    /// Whether it exits with 0.
+    /// Whether the tool must exit with status 0.
     succeeds: bool,
     says: String,
 }
 
-/// The tasks, in `trials.toml`.
+/// All tests of tools, as in `trials.toml`.
 #[derive(Deserialize)]
 struct Trials {
     trial: Vec<Trial>,
@@ -34,10 +34,11 @@ struct Trials {
 
 impl Tool {
     /// Tests a tool with an input that it must reject. If the tool answers only by its exit status, it also gets an input that it
-    /// must accept. For example, `yosys` gets a false claim, and must print `proof did fail`.
+    /// must accept. For example, `yosys` gets a false claim, and must print `proof did fail`. Each run may take at most `limit`.
     ///
     /// # Errors
-    /// Fails if the tool does not tell them apart, or if it does not run.
+    /// Fails if the tool accepts a wrong input, rejects a correct one, or does not print the expected text. Fails if the tool
+    /// does not start or takes too long.
     pub fn ensure_works(&self, limit: Duration) -> Result<()> {
         let Trials { trial: trials } = toml::from_str(include_str!("trials.toml"))?;
         for trial in trials.iter().filter(|trial| trial.tool == self.name) {
@@ -58,8 +59,8 @@ impl Tool {
     }
 }
 
-/// Returns whether the words are in the output, and not at the end of another word. For example, the output `unsat`
-/// does not say `sat`.
+/// Returns whether `words` are in the output, and not as the end of a longer word. For example, the output `unsat` does not
+/// contain `sat`.
 fn says(output: &str, words: &str) -> bool {
     let before = |at: usize| output[..at].chars().next_back();
     let mut found = output.match_indices(words);

@@ -1,4 +1,4 @@
-//! Writes a Verilog module around a test bench that dumps the waveform of a range of clocks.
+//! Writes a Verilog module around a test bench. The module dumps the waveform of a range of clocks.
 
 use anyhow::Result;
 use glint_base::fill;
@@ -7,18 +7,18 @@ use glint_base::fill;
 /// not write a file of this name.
 pub const WINDOW_FILE: &str = "window.vcd";
 
-/// Units of time in which the bench has a clock.
+/// The number of units of simulated time in a clock of the bench.
 const CLOCK: u64 = 10;
 
-/// Returns the Verilog of a module `name` around the module `bench`, which must be a bench of
-/// `glint_core::package::emit`. The module writes the waveform of clocks `from` to `to` to [`WINDOW_FILE`], and ends
-/// the run as one that fails. For example, the waveform of clocks 3 to 5 begins at time 31 and has a length of 29,
-/// because a clock takes 10 units.
+/// Returns the Verilog of a module `name` around the module `bench`, which must be a bench of `glint_core::package::emit`. The
+/// module writes the waveform of the clocks from `from` to `to`, both included, to [`WINDOW_FILE`]. It then ends the run as a
+/// failing bench does. A clock takes 10 units of time. For example, the waveform of clocks 3 to 5 begins at time 31 and has a
+/// length of 29.
 ///
 /// # Errors
-/// Fails if the template fails, which would be a bug.
+/// Fails if the template cannot be filled, which would be a bug.
 pub fn window(name: &str, bench: &str, from: u64, to: u64) -> Result<String> {
-    // Not at the very beginning: the bench has set its variables then.
+    // The waveform begins one unit after the clock, when the bench has set its variables.
     let begin = from * CLOCK + 1;
     let length = (to + 1) * CLOCK - begin;
     fill!("window.v" {

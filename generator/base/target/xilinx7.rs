@@ -1,6 +1,7 @@
-//! Data of the AMD 7 series. The delays are estimates. The weights of the cost were sought near a fit of `benches/tune/fit` to the
-//! 20 cores in `records/synthesis/`, for the least median error. The estimate of half of the cores is within 10 % of the look-up
-//! tables; the worst is `schlick_pipelined` (51 % too few: its adders divide, and the adders of other cores go into DSP blocks).
+//! Data of the AMD 7 series. The delays are estimates. The weights for the cost were chosen near a fit of `benches/tune/fit` to
+//! the 20 cores in `records/synthesis/`, so that the median error is smallest. For half of the cores, the estimated number of
+//! look-up tables is within 10 % of the number after synthesis. The worst is `schlick_pipelined`: 51 % too few, because its
+//! adders divide, and the adders of other cores go into DSP blocks.
 
 use super::{BlockMemory, Chip, Estimate, Family, Timing};
 
@@ -26,7 +27,7 @@ pub const XILINX7: Family = Family {
     },
     library: "",
     prepare: "",
-    // Not -abc9: Yosys 0.23 crashes in it.
+    // Without -abc9, in which Yosys 0.23 crashes.
     command: "synth_xilinx -flatten",
     least_yosys: (0, 23),
     luts: &[("LUT1", 1), ("LUT2", 1), ("LUT3", 1), ("LUT4", 1), ("LUT5", 1), ("LUT6", 1)],

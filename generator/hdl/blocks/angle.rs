@@ -1,13 +1,13 @@
-//! Builds hardware for cosines of angles: it takes the magnitude of a signed angle and addresses a table of cosᵏ. The devices of
-//! scan lines, such as `quad-cosine`, use it.
+//! Builds hardware for cosines of angles: it takes the magnitude of a signed angle and addresses a table of cosᵏ. The
+//! devices of scan lines, such as `quad-cosine`, use it.
 //!
-//! Angles are in right angles, so 90° is 1.0. A signed angle is therefore outside −90° … 90° exactly if its integer bits differ
-//! from its sign, and the fraction bits of its magnitude address a table without any conversion.
+//! Angles are in right angles, so 90° is 1.0. A signed angle is therefore outside −90° … 90° exactly if its integer bits
+//! differ from its sign. The fraction bits of its magnitude address a table without any conversion.
 
 use crate::dsl::{Designer, Signal};
 use glint_base::fixed::{Format, Overflow, Rounding, exp2};
 
-/// The magnitude of a signed angle, as signals of the hardware.
+/// The magnitude of a signed angle, and whether the angle is within a right angle of 0, as signals of the hardware.
 #[derive(Clone, Copy)]
 pub struct Folded<'d> {
     /// The magnitude of the angle, as a fraction of a right angle. It is meaningful only if `within` is 1.
@@ -16,11 +16,11 @@ pub struct Folded<'d> {
     pub within: Signal<'d>,
 }
 
-/// Returns the magnitude of a signed `angle` to `fraction` bits. The angle must have at least as many fraction bits. For
-/// example, in `s1.4` the raw angles 5 and −6 both have the magnitude 5.
+/// Returns the magnitude of a signed `angle` with `fraction` fraction bits. The angle must have at least as many fraction bits.
+/// For example, in `s1.4` the raw angles 5 and −6 both have the magnitude 5.
 ///
-/// The magnitude of a negative angle is its complement: truncation has made a positive angle smaller by
-/// up to an ulp, and the complement makes a negative one smaller by as much, without an adder.
+/// The magnitude of a negative angle is the complement of its bits, which needs no adder. It is smaller than the exact magnitude
+/// by up to one unit in the last place, as truncation makes a positive angle smaller too.
 #[track_caller]
 pub fn fold<'d>(d: &'d Designer, angle: Signal<'d>, fraction: i32) -> Folded<'d> {
     let Format { int, frac, .. } = angle.format();
@@ -43,9 +43,9 @@ pub fn fold<'d>(d: &'d Designer, angle: Signal<'d>, fraction: i32) -> Folded<'d>
     Folded { magnitude, within }
 }
 
-/// Returns the address of a [`cosine_power_table`] for the angle `scaled`, unsigned, in right angles: its `bits`
-/// leading fraction bits. If the angle is a right angle or more, or `within` is 0, it is the address of the last
-/// word.
+/// Returns the address of a [`cosine_power_table`] for the unsigned angle `scaled`, in right angles: its first `bits` fraction
+/// bits. For example, 0.75 gives the address 3 with 2 bits. If the angle is a right angle or more, or `within` is 0, it is the
+/// address of the last word.
 #[track_caller]
 pub fn address<'d>(
     d: &'d Designer,
@@ -61,10 +61,11 @@ pub fn address<'d>(
     d.choose(name, within, [last, step])
 }
 
-/// Returns the words of a table of `cosᵏ` over a right angle, in `u0.fraction`, for the power k = `power`.
+/// Returns the words of a table of `cosᵏ` over a right angle, for the power k = `power`. They are raw values in `u0.F` with F =
+/// `fraction`.
 ///
-/// The table has 2^`bits` steps. A word is the mean of the values at the two ends of its step. The last word is 0,
-/// because it also serves all larger angles.
+/// The table has 2^`bits` steps. A word is the mean of the values at the two ends of its step. The last word is 0, because it
+/// also serves all larger angles.
 pub fn cosine_power_table(power: u32, bits: i32, fraction: i32) -> Vec<i128> {
     let format = Format::unsigned(0, fraction);
     let steps = 1u32 << bits;

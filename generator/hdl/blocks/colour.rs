@@ -7,16 +7,16 @@
 use crate::dsl::{Designer, InputOperand, Signal, Step, step};
 use glint_base::fixed::{Format, Overflow, Rounding};
 
-/// The numbers that the figure of the device's source gives to the blocks of one colour.
+/// The numbers of the blocks of one colour in the block diagram of the document that describes the device.
 #[derive(Clone, Copy, Debug)]
 pub struct ChannelBlocks {
-    /// The numbers of the data input and of the write strobe of the colour operand in the figure of the source.
+    /// The numbers of the data input and of the write strobe of the colour operand in the block diagram.
     pub inputs: (u16, u16),
-    /// The number of the operand register in the figure of the source.
+    /// The number of the operand register in the block diagram.
     pub register: u16,
-    /// The number of the multiplier that computes the colour output in the figure of the source.
+    /// The number of the multiplier for the colour output in the block diagram.
     pub multiplier: u16,
-    /// The number of the colour output in the figure of the source.
+    /// The number of the colour output in the block diagram.
     pub output: u16,
 }
 
@@ -29,15 +29,15 @@ pub struct Colours<'d> {
 }
 
 struct Channel<'d> {
-    /// The name of the output, without its `_out`.
+    /// The name of the output without `_out`, such as `red`.
     name: &'static str,
     operand: InputOperand<'d>,
     blocks: Option<ChannelBlocks>,
 }
 
 impl<'d> Colours<'d> {
-    /// Adds the operands `red`, `green` and `blue` of `bits` bits. `blocks` are their numbers in the figure of the source, if it
-    /// has them.
+    /// Adds the operands `red`, `green` and `blue` of `bits` bits, unsigned integers. `blocks` are the numbers of their blocks in
+    /// the block diagram of the document that describes the device; `None` if it does not number them.
     #[track_caller]
     pub fn new(designer: &'d Designer, bits: i32, blocks: Option<[ChannelBlocks; 3]>) -> Self {
         let format = Format::unsigned(bits, 0);
@@ -55,8 +55,8 @@ impl<'d> Colours<'d> {
         Self { designer, format, channels }
     }
 
-    /// Adds a single operand `amplitude` of `bits` bits, for the output `intensity_out`. A device has it if it computes one
-    /// colour channel, or light without a colour.
+    /// Adds a single operand `amplitude` of `bits` bits, an unsigned integer, for the output `intensity_out`. A device has this
+    /// operand if it computes one colour channel, or light without a colour.
     #[track_caller]
     pub fn amplitude(designer: &'d Designer, bits: i32, blocks: Option<ChannelBlocks>) -> Self {
         let format = Format::unsigned(bits, 0);
@@ -69,8 +69,9 @@ impl<'d> Colours<'d> {
         Self { designer, format, channels: vec![Channel { name: "intensity", operand, blocks }] }
     }
 
-    /// Adds outputs that one multiplier computes one after the other, and returns the microinstructions for that. Each output is
-    /// a register `<colour>_intensity`. `f` must not change meanwhile.
+    /// Adds outputs that one multiplier computes one after the other, and returns the microinstructions for that, one for each
+    /// output. Each output is a register `<colour>_intensity` with `f` times the operand, rounded by `rounding` and saturated to
+    /// the operand's width. `f` must not change meanwhile.
     #[must_use]
     #[track_caller]
     pub fn outputs_in_turn(&self, f: Signal<'d>, rounding: Rounding) -> Vec<Step> {
@@ -96,14 +97,15 @@ impl<'d> Colours<'d> {
         steps
     }
 
-    /// Adds the outputs `<colour>_out` or `intensity_out`, each f times its operand, rounded to an integer.
+    /// Adds the outputs `<colour>_out` or `intensity_out`. Each is `f` times its operand, rounded by `rounding` to an integer and
+    /// saturated to the operand's width.
     #[track_caller]
     pub fn outputs(&self, f: Signal<'d>, rounding: Rounding) {
         self.outputs_of(f, rounding, false);
     }
 
-    /// Adds the same outputs as `outputs`, with a register behind each multiplier. The register loads on every clock, so an output
-    /// shows the product of the clock before.
+    /// Adds the same outputs as [`Colours::outputs`], with a register behind each multiplier. The register loads on every clock,
+    /// so an output shows the product of the clock before.
     #[track_caller]
     pub fn outputs_staged(&self, f: Signal<'d>, rounding: Rounding) {
         self.outputs_of(f, rounding, true);
@@ -131,7 +133,8 @@ impl<'d> Colours<'d> {
     }
 }
 
-/// Returns the name of the rounded product on the output `<name>_out`.
+/// Returns the name of the rounded product on the output `<name>_out`: `red_intensity` for `red`, `intensity_rounded` for
+/// `intensity`.
 fn intensity_name(name: &str) -> String {
     match name {
         "intensity" => "intensity_rounded".to_owned(),

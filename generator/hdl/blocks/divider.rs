@@ -1,20 +1,20 @@
 //! Builds an iterative divider, which computes one bit of the quotient a clock by trial subtraction (restoring division).
 //!
 //! The first remainder is the dividend. A step doubles the remainder and subtracts the divisor if the difference is not negative.
-//! The next bit of the quotient, from the top bit down, is 1 if the step subtracted. The last remainder is exact, so every bit of
-//! the quotient is correct.
+//! Each step gives the next bit of the quotient, from the top bit down: 1 if the step subtracted. The last remainder is exact, so
+//! every bit of the quotient is correct.
 
 use crate::dsl::{Counter, Designer, Mux, Register, Signal, StepSetting};
 use glint_base::codes;
 use glint_base::fixed::{Format, Overflow, Rounding};
 
-/// `dividend / divisor`, truncated to a fraction `u0.Q`; neither may be negative, and the dividend
-/// must not exceed the divisor.
+/// Computes `dividend / divisor`, truncated to a fraction `u0.Q`. Neither operand may be negative, and the dividend must not
+/// exceed the divisor. For example, 1 / 3 with Q = 4 gives 5/16.
 ///
-/// A quotient of 1.0 comes out as `1.0 − ulp`, all ones, and so does the quotient by 0. A device that
-/// does not want the latter keeps the divisor above 0.
+/// A quotient of 1.0 becomes `1.0 − ulp` (all bits 1), and so does a division by 0. A device that must avoid the latter keeps
+/// the divisor above 0.
 ///
-/// A division takes a microinstruction that [loads](Self::load) and Q executions of a microinstruction that
+/// A division takes a microinstruction that [loads](Self::load) the operands, and Q executions of a microinstruction that
 /// [steps](Self::step), which is one microinstruction in a loop:
 ///
 /// ```
@@ -47,8 +47,9 @@ pub struct Divider<'d> {
 }
 
 impl<'d> Divider<'d> {
-    /// Makes a divider of `bits` quotient bits, which must be at least two. The register of the quotient is `name`; the others
-    /// are `<name>_divisor`, `<name>_remainder` and the counter `<name>_remaining`.
+    /// Makes a divider of `bits` quotient bits. The register of the quotient is `name`; the others are `<name>_divisor`,
+    /// `<name>_remainder` and the counter `<name>_remaining`. Reports a mistake if `bits` is less than 2, or if an operand can be
+    /// negative.
     #[track_caller]
     pub fn new(
         d: &'d Designer,
@@ -76,7 +77,7 @@ impl<'d> Divider<'d> {
         let frac = dividend.format().frac.max(divisor.format().frac);
         let aligned_divisor = divisor.with_fraction(frac);
         let format = aligned_divisor.format();
-        // Neither the dividend nor a remainder exceeds the divisor: their upper bits are 0.
+        // Neither the dividend nor a remainder exceeds the divisor, so that the upper bits are 0.
         let cut = |name: &str, signal: Signal<'d>| {
             d.narrow(name, signal, format, Rounding::Truncate, Overflow::Wrap)
         };
@@ -118,12 +119,12 @@ impl<'d> Divider<'d> {
         }
     }
 
-    /// Returns the quotient register in the format `u0.Q`. It holds the quotient after all Q steps.
+    /// Returns the output of the quotient register in the format `u0.Q`. It is the quotient after all Q steps.
     pub fn quotient(&self) -> Signal<'d> {
         self.quotient.q()
     }
 
-    /// Returns the settings with which a microinstruction loads dividend and divisor at its end.
+    /// Returns the settings with which a microinstruction loads dividend and divisor at the end of its clock.
     #[track_caller]
     pub fn load(&self) -> [StepSetting; 4] {
         [
@@ -134,7 +135,7 @@ impl<'d> Divider<'d> {
         ]
     }
 
-    /// Returns the settings with which a microinstruction computes the next bit of the quotient at its end.
+    /// Returns the settings with which a microinstruction computes the next bit of the quotient at the end of its clock.
     #[track_caller]
     pub fn step(&self) -> [StepSetting; 4] {
         [
@@ -146,7 +147,7 @@ impl<'d> Divider<'d> {
     }
 
     /// Returns the loop condition of the division: a bit that is 1 as long as the microinstruction with the step must be executed
-    /// again.
+    /// once more.
     pub fn more(&self) -> Signal<'d> {
         self.more
     }

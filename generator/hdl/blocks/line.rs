@@ -1,5 +1,5 @@
-//! Builds the accumulator that computes the angles of the points along a scan line: the register `angle` starts at the operand
-//! `zeta_start` and grows by the operand `delta_zeta` every clock.
+//! Builds the accumulator for the angles of the points along a scan line. Its register `angle` starts at the operand `zeta_start`
+//! and grows by the operand `delta_zeta` every clock.
 //!
 //! A line is a row of neighbouring points that the device computes after one `start`. The devices `quad-cosine` and
 //! `cosine-squared` use the accumulator. [`Line`] makes the operands, the adder, the mux, the register and the counter of
@@ -8,31 +8,32 @@
 use crate::dsl::{Counter, Designer, Mux, Register, Signal, end, jump_if, loop_while, step};
 use glint_base::fixed::Format;
 
-/// The numbers of an operand in the figure of the source: of its data input, its write strobe and its register.
+/// The numbers of an operand's data input, write strobe and register in the block diagram of the document that describes the
+/// device.
 #[derive(Clone, Copy, Debug)]
 pub struct OperandBlocks {
-    /// The numbers of the operand's data input and of its write strobe in the figure of the source.
+    /// The numbers of the operand's data input and of its write strobe in the block diagram.
     pub inputs: (u16, u16),
-    /// The number of the operand's register in the figure of the source.
+    /// The number of the operand's register in the block diagram.
     pub register: u16,
 }
 
-/// The numbers of the accumulator's blocks and lines in the figure of the source.
+/// The numbers of the accumulator's blocks and control lines in the block diagram of the document that describes the device.
 #[derive(Clone, Copy, Debug)]
 pub struct LineBlocks {
-    /// The operand `delta_zeta`, the difference of the angles of neighbouring points.
+    /// The numbers of the operand `delta_zeta`, the difference between the angles of neighbouring points.
     pub delta: OperandBlocks,
-    /// The operand `zeta_start`, the angle of the first point.
+    /// The numbers of the operand `zeta_start`, the angle of the first point.
     pub start: OperandBlocks,
-    /// The data input and the write strobe of the operand `length`, the number of intervals.
+    /// The numbers of the data input and the write strobe of the operand `length`, the number of intervals between points.
     pub length_inputs: (u16, u16),
-    /// The number of the counter of intervals in the figure of the source.
+    /// The number of the counter of intervals in the block diagram.
     pub counter: u16,
-    /// The number in the figure of the source of the adder, which adds `delta_zeta` to the angle.
+    /// The number of the adder, which adds `delta_zeta` to the angle, in the block diagram.
     pub adder: u16,
-    /// The number of the mux in front of the register `angle` in the figure of the source.
+    /// The number of the mux in front of the register `angle` in the block diagram.
     pub mux: u16,
-    /// The number of the register `angle` in the figure of the source.
+    /// The number of the register `angle` in the block diagram.
     pub register: u16,
     /// The number of the control line `count`, which makes the counter of intervals count.
     pub count: u16,
@@ -42,11 +43,11 @@ pub struct LineBlocks {
     pub write: u16,
 }
 
-/// The accumulator of a scan line: the operands `delta_zeta`, `zeta_start` and `length`, the register `angle`, and the outputs
-/// `count`, `accumulate` and `write_angle`, which show the control lines.
+/// The accumulator of a scan line: the operands `delta_zeta`, `zeta_start` and `length`, and the register `angle`. Its outputs
+/// `count`, `accumulate` and `write_angle` show the control lines.
 ///
-/// A line of `length` = l intervals has l + 1 points, one a clock. The angle is a signed word that wraps around. Its format must
-/// therefore represent every angle of a line, or wrap at a full turn.
+/// A line of l = `length` intervals has l + 1 points, one a clock. The angle is a signed number that wraps around. Its format
+/// must therefore represent every angle of a line, or wrap at a full turn.
 pub struct Line<'d> {
     designer: &'d Designer,
     start: Signal<'d>,
@@ -60,7 +61,8 @@ pub struct Line<'d> {
 
 impl<'d> Line<'d> {
     /// Makes a line with angles of `format`, which must be signed. The line may have up to 2^`length_bits` − 1 intervals. For
-    /// example, 12 bits allow 4095 intervals and 4096 points.
+    /// example, 12 bits allow 4095 intervals and 4096 points. `blocks` are the numbers in the block diagram of the document that
+    /// describes the device, if it has numbers.
     #[track_caller]
     pub fn new(
         d: &'d Designer,
@@ -112,14 +114,14 @@ impl<'d> Line<'d> {
         Self { designer: d, start: start.q(), sum, next, angle, intervals, empty, more }
     }
 
-    /// Returns the angle of the current point, the output of the register.
+    /// Returns the angle of the current point: the output of the register `angle`.
     pub fn angle(&self) -> Signal<'d> {
         self.angle.q()
     }
 
-    /// Sets the microprogram of a device that only computes lines. Its results are on the outputs `clocks` clocks after the
-    /// microinstruction that loads their angle: one clock for the register of the angle, and one for every register between it
-    /// and the outputs.
+    /// Sets the microprogram of a device that only computes lines. `clocks` is the number of clocks from a microinstruction that
+    /// loads an angle to its results on the outputs. It is one for the register of the angle, and one more for every further
+    /// register up to the outputs. A value of 0 counts as 1.
     #[track_caller]
     pub fn microprogram(&self, clocks: u32) {
         let delay = clocks.max(1);
@@ -153,7 +155,7 @@ impl<'d> Line<'d> {
     }
 }
 
-/// Returns the name of the microinstruction in which the last point is `left` clocks away from the outputs.
+/// Returns the name of the microinstruction in which the results of the last point reach the outputs after `left` clocks.
 fn drain(left: u32) -> String {
     match left {
         0 => "last point on the output".to_owned(),

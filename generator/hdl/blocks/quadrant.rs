@@ -6,19 +6,21 @@
 use crate::dsl::{Designer, Signal};
 use glint_base::fixed::Format;
 
-/// An angle, mapped to the first quadrant: |sin| of the angle is the sine of `way`, and `negative` gives the sign.
+/// An angle, mapped to the first quadrant: |sin| of the angle is the sine of `way`, and the sine is negative if `negative` is 1.
 #[derive(Clone, Copy)]
 pub struct Quadrant<'d> {
-    /// The distance of the angle from the nearer zero of the sine, in steps of `turn`. It is less than a quarter turn.
+    /// The distance of the angle from the nearer zero of the sine, in steps of the angle's format. It is less than a quarter
+    /// turn.
     pub way: Signal<'d>,
     /// A bit that is 1 if the sine is negative.
     pub negative: Signal<'d>,
 }
 
 /// Maps the angle `turn` to the first quadrant. `turn` must be an unsigned integer whose range is one whole turn; for example, 64
-/// steps in `u6.0`. `ahead` quadrants are added to the angle first, so that `ahead` = 1 gives the cosine.
+/// steps in `u6.0`. `ahead` quadrants (0 to 3) are added to the angle first, so that `ahead` = 1 gives the cosine.
 ///
-/// For example, step 20 of 64 is in the second quadrant, 12 steps before the next zero of the sine.
+/// For example, step 20 of 64 is in the second quadrant, 12 steps before the next zero of the sine. A distance of a
+/// whole quarter turn becomes one step less, as in [`mirrored`].
 #[track_caller]
 pub fn quadrant<'d>(d: &'d Designer, name: &str, turn: Signal<'d>, ahead: u32) -> Quadrant<'d> {
     let steps = turn.format().width() - 2;
@@ -36,8 +38,8 @@ pub fn quadrant<'d>(d: &'d Designer, name: &str, turn: Signal<'d>, ahead: u32) -
     Quadrant { way, negative: number.bit(1) }
 }
 
-/// Returns 2^w − `way` for the w bits of `way`; if `way` is 0, it returns the largest number 2^w − 1. For example, with 4 bits 5
-/// gives 11, and 0 gives 15.
+/// Returns 2^w − `way` for the w bits of the unsigned integer `way`. If `way` is 0, it returns the largest number 2^w − 1.
+/// For example, with 4 bits 5 gives 11, and 0 gives 15.
 #[track_caller]
 pub fn mirrored<'d>(d: &'d Designer, name: &str, way: Signal<'d>) -> Signal<'d> {
     let format = way.format();

@@ -1,47 +1,47 @@
 //! Builds a table that approximates a function of one operand by linear interpolation, in segments that become shorter toward 0.
 //! For example, `rough` has such a table of sines.
 //!
-//! The operand u is an integer of C bits, or exactly 2^C. It is cut into ranges by factors of four: range 0 is the upper three
-//! quarters of the values, range 1 the upper three quarters of the rest, and so on. Range j holds u in [2^(C−2j−2), 2^(C−2j)). In
-//! range j, u has C−2j bits, and its upper k_j bits select a segment. Below the last range, every value of u has its own entry.
-//! Segments are therefore short where a function such as √u is steep. The hardware needs a tree of muxes and no shifter.
+//! The operand u is an integer of C bits, or exactly 2^C. Range j has the values of u in [2^(C−2j−2), 2^(C−2j)): range 0 is
+//! the upper three quarters of all values, range 1 the upper three quarters of the rest. In range j, the upper k_j of the
+//! C−2j bits of u select a segment; below the last range, every value of u has its own entry.
 
 use crate::dsl::{Designer, Signal};
 use glint_base::fixed::{Format, Overflow, Rounding, exp2};
 
-/// How the operand of a table is cut into segments.
+/// The division of a table's operand into ranges and segments.
 #[derive(Clone, Debug)]
 pub struct Segmentation {
     /// The number C of bits of the operand.
     pub operand_bits: u32,
-    /// For each range j, the number k_j of bits that select a segment: log₂ of the number of segments if the range reached down
-    /// to 0.
+    /// For each range j, the number k_j of bits that select a segment. A range with k_j = 6 has 48 segments: three quarters of
+    /// 2^6, because the lowest quarter belongs to the next ranges.
     pub segments: Vec<u32>,
 }
 
-/// A block of entries: a range, or the values below the last range.
+/// The block of table entries for a range, or for the values below the last range.
 #[derive(Clone, Copy, Debug)]
 struct EntryBlock {
-    /// The number of bits of u within the range.
+    /// The number of bits of u in the range: C−2j for range j.
     bits: u32,
-    /// The number of address bits within the block of the range.
+    /// The number of address bits within the block, k_j for range j.
     prefix: u32,
-    /// The index of the first entry of the range.
+    /// The address of the first entry of the block in the table.
     base: u32,
 }
 
-/// One entry of the table: the value at the start of its segment, and the rise over the segment, as raw values in the formats of
-/// [`SegmentedFormats`].
+/// One entry of the table: the value at the start of its segment, and the rise over the segment. Both are raw values in the
+/// formats of [`SegmentedFormats`]. For example, with 8 fraction bits a base of 128 is 0.5.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Entry {
-    /// The value at the start of the segment.
+    /// The value at the start of the segment, as a raw value with S fraction bits.
     pub base: i128,
-    /// The rise over the whole segment, which is not negative.
+    /// The rise over the whole segment, which is not negative, as a raw value with D fraction bits.
     pub slope: i128,
 }
 
-/// Returns the entry whose straight line approximates a concave function with the smallest error. The slope is the slope of the
-/// chord, and the base makes the largest errors above and below equal.
+/// Returns the entry whose straight line approximates a concave, rising function with the smallest error over a segment. The
+/// slope is the slope of the chord, and the base makes the largest errors above and below equal. A segment of one value gives the
+/// exact value and the slope 0. `function` maps a value of u to a result from 0 to 1.
 pub fn chord(segment: Segment, shape: SegmentedFormats, function: impl Fn(f64) -> f64) -> Entry {
     let value = Format::unsigned(0, shape.fraction);
     let (from, length) = (segment.from as f64, segment.length as f64);
@@ -51,7 +51,7 @@ pub fn chord(segment: Segment, shape: SegmentedFormats, function: impl Fn(f64) -
     let scale = exp2(shape.slope_fraction);
     let slope = ((function(from + length) - function(from)) * scale + 0.5).floor();
     let residual = |at: f64| slope / scale * at / length - function(from + at);
-    // The greatest residual is at an end, the least where the curve is parallel to the line.
+    // The largest residual is at an end of the segment, and the smallest at the place where the curve is parallel to the line.
     let last = length - 1.0;
     let most = residual(0.0).max(residual(last));
     let (mut low, mut high) = (0.0, last);
@@ -91,8 +91,9 @@ pub struct SegmentedFormats {
 }
 
 impl Segmentation {
-    /// Returns the blocks by range, the exact one last. In the ROM larger blocks come first, which aligns
-    /// each to its size, so that an address is a constant beside a prefix.
+    /// Returns the blocks in the order of the ranges, with the block of the values below the last range at the end. In the ROM,
+    /// larger blocks come first. Each block is then aligned to its size, so that an address consists of constant upper bits and
+    /// the upper bits of u.
     fn blocks(&self) -> Vec<EntryBlock> {
         let ranges = self.segments.len() as u32;
         let rest = self.operand_bits - 2 * ranges;
@@ -111,12 +112,13 @@ impl Segmentation {
         blocks
     }
 
-    /// Returns the width of the remainder that the slope multiplies, in bits; one, a zero, when every entry is exact.
+    /// Returns the number of lower bits of u that the slope multiplies, in the range with the most. It is at least 1, even if
+    /// every segment has one value.
     fn rest_bits(&self) -> u32 {
         self.blocks().iter().map(|block| block.bits - block.prefix).max().unwrap_or(0).max(1)
     }
 
-    /// Returns the number of words of the table. For example, 20 bits and the segments 6, 8, 7, 6, 5, 4, 3, 3, 2 give the 584
+    /// Returns the number of words of the table. For example, C = 20 and the numbers k_j = 6, 8, 7, 6, 5, 4, 3, 3, 2 give the 584
     /// words of ROM 18 in `rough`.
     pub fn entries(&self) -> usize {
         self.blocks()
@@ -126,8 +128,8 @@ impl Segmentation {
             .unwrap_or(0)
     }
 
-    /// Returns the segment of each word of the table, or `None` if no value of u leads to the word. The word to which
-    /// u = 2^C leads has only that value.
+    /// Returns the segment of each word of the table, by address, or `None` for a word that no value of u reads. The word for u =
+    /// 2^C has only this value.
     pub fn segment_of_words(&self) -> Vec<Option<Segment>> {
         let mut words = vec![None; self.entries()];
         let blocks = self.blocks();
@@ -146,10 +148,11 @@ impl Segmentation {
     }
 }
 
-/// Returns the table as hardware: `u` must be an integer from 0 to 2^C; the result is `u0.S`.
+/// Makes the table as hardware, and returns its result in `u0.S`. `u` must be an integer from 0 to 2^C. `cut` divides its values
+/// into segments, and `entry` gives the table's entry for a segment. `block` is the number of the ROM in the block diagram of the
+/// document that describes the device.
 ///
-/// With `shape.synchronous` the ROM and the remainder are registered, and the result belongs to the
-/// `u` of the clock before.
+/// With `shape.synchronous` the ROM reads at the rising edge, so that the result belongs to the `u` of the clock before.
 #[track_caller]
 pub fn interpolate<'d>(
     d: &'d Designer,
@@ -196,14 +199,14 @@ pub fn interpolate<'d>(
         .bits(0, Format::unsigned(slope_bits as i32 - shape.slope_fraction, shape.slope_fraction))
         .named(&format!("{name}_slope"));
     let rise = d.mul(&format!("{name}_rise"), slope, rest);
-    // The rise over a part of a segment is below the slope, which is below 1.
+    // The rise over a part of a segment is less than the slope, which is less than 1.
     let rise =
         d.narrow(&format!("{name}_rise_cut"), rise, value, Rounding::Truncate, Overflow::Saturate);
     let sum = d.add(&format!("{name}_sum"), base, rise);
     d.narrow(&format!("{name}_value"), sum, value, Rounding::Truncate, Overflow::Saturate)
 }
 
-/// Returns the word and the remainder, left-justified, a fraction of the segment.
+/// Returns the address of the table's word for `u`, and the position of `u` within its segment, a fraction below 1.
 #[track_caller]
 fn address_and_rest<'d>(
     d: &'d Designer,
@@ -216,11 +219,11 @@ fn address_and_rest<'d>(
     let address_bits = usize::BITS - (cut.entries() - 1).leading_zeros();
     let address = Format::unsigned(address_bits as i32, 0);
     let rest = Format::unsigned(0, rest_bits as i32);
-    // One arm a block: {constant, prefix} and {remainder, zeros}.
+    // Each block gives an address from a constant and the upper bits of u, and a position from the lower bits of u and zeros.
     let arm = |block: &EntryBlock| {
         let base = d.raw_constant(&format!("{name}_base_word"), i128::from(block.base), address);
         let left = block.bits - block.prefix;
-        // Below the last range there may be only the one value 0.
+        // Below the last range, 0 may be the only value.
         let word = if block.prefix == 0 {
             base
         } else {
@@ -245,20 +248,20 @@ fn address_and_rest<'d>(
     picker.pick(0, arms.len())
 }
 
-/// A word and a remainder.
+/// The address of a word, and the position within its segment.
 type Arm<'d> = (Signal<'d>, Signal<'d>);
 
-/// Chooses between the arms of the blocks, in a tree of two-input muxes.
+/// Selects among the addresses and positions of the blocks, by a tree of two-input muxes.
 struct Picker<'a, 'd> {
     d: &'d Designer,
     name: &'a str,
     arms: &'a [Arm<'d>],
-    /// 1 when u is in the range of that number or in one above it.
+    /// Returns a signal that is 1 if u is in the range with the given number or in a higher range (with a smaller number).
     in_range: &'a dyn Fn(usize) -> Signal<'d>,
 }
 
 impl<'d> Picker<'_, 'd> {
-    /// Chooses between the arms from number `from` to `to` − 1.
+    /// Selects among the blocks with the numbers from `from` to `to` − 1.
     #[track_caller]
     fn pick(&self, from: usize, to: usize) -> Arm<'d> {
         if to - from == 1 {

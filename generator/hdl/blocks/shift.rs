@@ -1,18 +1,18 @@
 //! Builds shifters whose shift amount is known only at run time, from rows of muxes.
 //!
-//! [`right_by`] shifts to the right by an operand, and [`normalise`] shifts a word to the left until its top bit is 1.
+//! [`right_by`] shifts to the right by an operand. [`normalise`] shifts the bits of a signal to the left until the top bit is 1.
 
 use crate::dsl::{Designer, Signal};
 use glint_base::fixed::Format;
 
-/// Divides `x` by 2^`places` and rounds down to the fraction bits that it has: a barrel shifter, with one row of muxes for each
-/// bit of `places`.
+/// Divides `x` by 2^`places`, and rounds down to the fraction bits that `x` has. This is a barrel shifter, with one row of muxes
+/// for each bit of `places`.
 ///
 /// `x` must be unsigned, and `places` an unsigned integer. For example, 13 in `u4.0` by 2 places gives 3.
 #[track_caller]
 pub fn right_by<'d>(d: &'d Designer, name: &str, x: Signal<'d>, places: Signal<'d>) -> Signal<'d> {
     let format = x.format();
-    // From the largest step down: a word that a large step has made narrow stays narrow in the rows that follow.
+    // The largest shift comes first. A value that a large shift has made narrow stays narrow in the rows that follow.
     (0..places.format().width()).rev().fold(x, |row, bit| {
         let step = 1u32.checked_shl(bit).unwrap_or(u32::MAX);
         let width = row.format().width();
@@ -26,32 +26,34 @@ pub fn right_by<'d>(d: &'d Designer, name: &str, x: Signal<'d>, places: Signal<'
     })
 }
 
-/// A word that was shifted left until its top bit is 1, and the number of bits by which it was shifted.
+/// The bits of a signal, shifted to the left until a top bit is 1, and the length of this shift.
 #[derive(Clone, Copy)]
 pub struct Normalised<'d> {
-    /// The word shifted left until its top bit is 1, as an integer of the same width.
+    /// The shifted bits, as an unsigned integer of the same width.
     pub word: Signal<'d>,
-    /// The number of leading zeros, by which the word was shifted.
+    /// The length of the shift as an unsigned integer: the number of leading zeros, or of pairs of leading zeros for
+    /// [`normalise_by_pairs`].
     pub zeros: Signal<'d>,
 }
 
 /// Shifts `x` to the left until its top bit is 1, and returns the shifted bits and the number of places.
 ///
-/// Each row of muxes gives one bit of the number, so the number needs no encoder. For a word of zeros, it returns zeros and a
-/// number whose bits are all ones. For example, 22 in 8 bits has 3 leading zeros and becomes 176.
+/// Each row of muxes gives one bit of the number, so the number needs no encoder. If `x` is 0, the shifted bits are zeros, and
+/// all bits of the number are 1. For example, 22 in 8 bits has 3 leading zeros and becomes 176.
 #[track_caller]
 pub fn normalise<'d>(d: &'d Designer, name: &str, x: Signal<'d>) -> Normalised<'d> {
     normalise_in_steps(d, name, x, 1)
 }
 
-/// Shifts `x` to the left by pairs of places until one of its two top bits is 1, and returns the shifted bits and the number of
-/// pairs. For example, 22 in 8 bits has one pair of leading zeros and becomes 88.
+/// Shifts `x` to the left by pairs of places until one of its two top bits is 1. Returns the shifted bits and the number of
+/// pairs. For example, 22 in 8 bits has one pair of leading zeros and becomes 88. If `x` is 0, all bits of the number are 1.
 #[track_caller]
 pub fn normalise_by_pairs<'d>(d: &'d Designer, name: &str, x: Signal<'d>) -> Normalised<'d> {
     normalise_in_steps(d, name, x, 2)
 }
 
-/// Shifts `x` to the left by multiples of `least` places, a power of two, until one of its `least` top bits is 1.
+/// Shifts `x` to the left by multiples of `least` places until one of its `least` top bits is 1. `least` must be a power of two.
+/// The number of places is in units of `least`.
 #[track_caller]
 fn normalise_in_steps<'d>(
     d: &'d Designer,

@@ -1,23 +1,24 @@
 //! Writes the microinstructions that raise a register to a power of two by repeated squaring. The devices `lyon` and
 //! `cosine-power` use it.
 //!
-//! The first squaring has its own microinstruction, since its operand comes from elsewhere. One more microinstruction squares the
-//! register itself; a counter repeats it. The device provides the multiplier and the muxes in front of it.
+//! The first squaring has its own microinstruction, since its operand is the base and not the register. One more microinstruction
+//! squares the register itself; a counter repeats it. The device provides the multiplier and the muxes in front of it.
 
 use crate::dsl::{Counter, Designer, Mux, Register, Signal, Step, StepSetting, loop_while, step};
 use glint_base::fixed::Format;
 
 /// The squarings that raise a base to a power of two. If there is more than one squaring, the counter `remaining` counts the
-/// squarings that are still to be done.
+/// squarings that still follow.
 pub struct Squarings<'d> {
     designer: &'d Designer,
     counter: Option<Counter<'d>>,
-    /// The start value of the counter, if there is a choice of it.
+    /// The mux for the start value of the counter, and its input for the squarings; `None` if the counter counts only squarings.
     start: Option<(Mux<'d>, Signal<'d>)>,
 }
 
 impl<'d> Squarings<'d> {
-    /// Makes `count` squarings, which must be 1 to 4: the power is 2^count. For example, 3 squarings give the eighth power.
+    /// Makes `count` squarings, which must be 1 to 4: the result is the base to the power 2^count. For example, 3 squarings give
+    /// the eighth power.
     #[track_caller]
     pub fn new(designer: &'d Designer, count: u32) -> Self {
         let counter = (count > 1).then(|| {
@@ -26,9 +27,9 @@ impl<'d> Squarings<'d> {
         Self { designer, counter, start: None }
     }
 
-    /// Makes `count` squarings whose counter also counts something else before them, so that one counter serves both. `other` is
-    /// the start value of that earlier count. Returns the squarings, the counter, and the settings that load the counter from
-    /// `other`.
+    /// Makes `count` squarings (1 to 4) whose counter also counts another loop before them, so that one counter serves both.
+    /// `other` is the start value for that loop. Returns the squarings, the counter, and the settings that load `other` into the
+    /// counter.
     #[track_caller]
     pub fn sharing(
         designer: &'d Designer,
@@ -48,7 +49,8 @@ impl<'d> Squarings<'d> {
         (squarings, counter, load_other)
     }
 
-    /// Returns the settings that load the counter, in a microinstruction before the second squaring.
+    /// Returns the settings that load the number of squarings after the first into the counter. A microinstruction before the
+    /// second squaring must have them. The list is empty for a single squaring.
     #[track_caller]
     pub fn load(&self) -> Vec<StepSetting> {
         let pick = self.start.map(|(mux, squarings)| mux.pick(squarings));
@@ -56,11 +58,11 @@ impl<'d> Squarings<'d> {
         pick.into_iter().chain(load).collect()
     }
 
-    /// Returns the microinstructions: `register` takes the square of a base, then its own square, until all squarings
-    /// are done.
+    /// Returns the microinstructions, one or two: `register` loads the square of the base, and then its own square until all
+    /// squarings are done.
     ///
-    /// The settings `first` bring the square of the base to the register. The settings `again` bring the square of
-    /// the register.
+    /// The settings `first` must bring the square of the base to the input of `register`, and the settings `again` the square of
+    /// `register`.
     #[track_caller]
     pub fn steps(
         &self,
@@ -86,7 +88,7 @@ impl<'d> Squarings<'d> {
     }
 }
 
-/// Returns the squarings after the first.
+/// Returns a constant with the number of squarings after the first.
 #[track_caller]
 fn start(designer: &Designer, count: u32) -> Signal<'_> {
     designer.raw_constant("squarings", i128::from(count) - 1, Format::unsigned(2, 0))

@@ -3,8 +3,11 @@
 use super::{Designer, Step, end, step, valid};
 use crate::netlist::Design;
 
-/// Returns a design whose microprogram consists of an idle microinstruction, the microinstructions that `describe` returns, and
-/// one that raises `valid`.
+/// Returns a design whose microprogram consists of an idle microinstruction, the microinstructions that `describe` returns, and a
+/// last one that raises `valid`.
+///
+/// # Panics
+/// Panics if the description has a mistake.
 pub fn design(describe: impl FnOnce(&Designer) -> Vec<Step>) -> Design {
     let d = Designer::new("device");
     let mut steps = vec![step("idle", [])];

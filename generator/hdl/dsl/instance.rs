@@ -1,10 +1,8 @@
-//! Instantiates a hardware description within another one, as a part. The operands of the part are signals of the surrounding
-//! description.
+//! Instantiates a hardware description within another one, as a *part* whose operands are signals of the surrounding description.
+//! For example, `shading` instantiates `dot-product`.
 //!
-//! A part is a whole design: its nets, registers and memories become part of the surrounding design, with the name of the
-//! instance in front. The parts run one after the other, in the order of their instances. The operand registers of a part are
-//! loaded in the microinstruction before the part's first one. A part has no ports, sequencer or handshake of its own. For
-//! example, `shading` instantiates `dot-product`.
+//! The nets, registers and memories of the part are added to the surrounding design, with the name of the instance in front. The
+//! parts run one after the other, in the order of their instances. A part has no ports, sequencer or handshake of its own.
 
 use std::collections::HashMap;
 use std::panic::Location;
@@ -21,19 +19,20 @@ use glint_base::cone;
 use glint_base::diagnostic::{Diagnostic, Diagnostics, SourceLocation};
 use glint_base::fixed::Format;
 
-/// The depth to which parts may contain parts. An instance of itself would have no end.
+/// The largest depth of parts inside parts. A description that instantiates itself, which would never end, exceeds this limit.
 const DEEPEST: u32 = 8;
 
-/// A part: an instance of another hardware description. It gives access to the results of the part.
+/// A part: an instance of another hardware description, as a handle for the results of the part.
 pub struct Instance<'d> {
     designer: &'d Designer,
     name: String,
-    /// The results of the part by name; `None` if the part has mistakes, which have been reported.
+    /// The results of the part, each with its name; `None` if the part has mistakes, which have been reported.
     outputs: Option<Vec<(String, Signal<'d>)>>,
 }
 
 impl<'d> Instance<'d> {
-    /// Returns the result with this name. A register holds it until the part computes again.
+    /// Returns the result of the part with the name `output`. A register stores the result until the part computes again. Reports
+    /// a mistake if the part has no such result, and returns a constant 0 of one bit.
     #[track_caller]
     pub fn out(&self, output: &str) -> Signal<'d> {
         let outputs = self.outputs.as_deref().unwrap_or_default();
@@ -51,8 +50,13 @@ impl<'d> Instance<'d> {
 }
 
 impl Designer {
-    /// Instantiates the description `describe` as a part called `name`, with a signal for each of its operands. The results of
-    /// the part are in registers. A description with parts calls [`Designer::dataflow`] instead of writing a microprogram.
+    /// Instantiates the description `describe` as a part called `name`, with a signal for each of its operands. The part's
+    /// operand registers are loaded in the microinstruction before the part's first one. The results of the part are in
+    /// registers. A description with parts calls [`Designer::dataflow`] instead of writing a microprogram.
+    ///
+    /// Reports a mistake if the names in `operands` differ from the part's operands, or if a signal does not fit its operand's
+    /// format. Reports a mistake if another part has the same name. Reports the mistakes of the part itself. A part must raise
+    /// `valid` by a microinstruction, for one result, and must not wait for `start`.
     ///
     /// ```
     /// use glint_rtl::dsl::{Designer, end, step, valid};
@@ -150,15 +154,15 @@ impl Designer {
     }
 
     /// Makes the microprogram from the parts: it executes them in the order of their instances, and then loads the outputs into
-    /// registers. Everything between the parts is combinational logic.
+    /// registers. All logic between the parts must be combinational.
     #[track_caller]
     pub fn dataflow(&self) {
         self.register_outputs();
         self.program(Vec::new(), true);
     }
 
-    /// Makes the parts the microprogram if [`Designer::dataflow`] asks for it. Without `dataflow`, parts are an
-    /// error.
+    /// Makes the microinstructions of the parts the microprogram, if the description calls [`Designer::dataflow`]. Otherwise
+    /// reports a mistake if the description has parts.
     pub(super) fn with_parts(&self, program: &mut MicroprogramSource) {
         let mut parts = self.with(|inner| std::mem::take(&mut inner.parts));
         if program.of_parts {
@@ -176,7 +180,8 @@ impl Designer {
     }
 }
 
-/// Returns the registers and synchronous memories between parts: each takes a clock that nothing waits for.
+/// Returns a mistake for each register and synchronous memory outside the parts. Such a register takes a clock for which the
+/// microprogram of a dataflow does not wait.
 fn delayed(inner: &mut Inner) -> Vec<Diagnostic> {
     let Inner { design, placed, .. } = inner;
     let mut delayed: Vec<NetId> = Vec::new();
@@ -206,7 +211,7 @@ fn delayed(inner: &mut Inner) -> Vec<Diagnostic> {
     found
 }
 
-/// Returns the reason why a design cannot be a part.
+/// Returns the reason why a design cannot be a part, or `None` if it can.
 fn unfit(design: &Design) -> Option<String> {
     let control = &design.control;
     let Some(valid) = control.fields.iter().position(|field| field.name == "valid_word") else {
@@ -225,7 +230,7 @@ fn unfit(design: &Design) -> Option<String> {
     None
 }
 
-/// A design that becomes a part of another.
+/// Adds a finished design to another one as a part.
 struct InstanceBuilder<'d, 'p> {
     designer: &'d Designer,
     name: &'p str,
@@ -235,8 +240,8 @@ struct InstanceBuilder<'d, 'p> {
 }
 
 impl<'d> InstanceBuilder<'d, '_> {
-    /// Adds the nets, registers, memories and microinstructions of the part to the design. The field `load` loads the
-    /// part's operands.
+    /// Adds the nets, registers, memories and microinstructions of the part to the surrounding design. `operands` has the signal
+    /// for each operand port, and the field `load` loads the part's operand registers.
     fn place(
         mut self,
         operands: &HashMap<NetId, NetId>,
@@ -287,7 +292,8 @@ impl<'d> InstanceBuilder<'d, '_> {
         Instance { designer: d, name: self.name.to_owned(), outputs: Some(outputs.collect()) }
     }
 
-    /// Returns the driver of a placed net, given its driver in the part. Registers and memories drive their nets when they are made.
+    /// Returns the driver of a net in the surrounding design, given its driver in the part. Nets of registers and memories get
+    /// their drivers when these are added.
     fn placed_driver(&self, driver: &Driver) -> Driver {
         match driver {
             Driver::Op(op) => Driver::Op(op.map(|id| self.nets[id])),
@@ -301,7 +307,7 @@ impl<'d> InstanceBuilder<'d, '_> {
         format!("{}_{name}", self.name)
     }
 
-    /// Puts a net into the whole, and the field that drives it.
+    /// Adds a net of the part to the surrounding design, and the field that drives it, if any.
     fn net(&mut self, id: NetId) {
         let (d, net) = (self.designer, self.design.net(id).clone());
         let name = self.named(&net.name);
@@ -318,7 +324,7 @@ impl<'d> InstanceBuilder<'d, '_> {
                 let fields = &mut inner.design.control.fields;
                 fields.push(Field { name, net: placed, kind, lines: Vec::new() });
                 let own = FieldId(fields.len() as u32 - 1);
-                // The part itself has already reported choices that are not used.
+                // The check of the part itself has already reported unused choices.
                 inner.partly_used.insert(own);
                 own
             });
@@ -326,8 +332,8 @@ impl<'d> InstanceBuilder<'d, '_> {
         }
     }
 
-    /// Appends the microinstructions of this part. The last microinstruction of the parts before it loads the
-    /// operands.
+    /// Appends the microinstructions of this part. The last microinstruction of the previous part (or of the idle device) gets
+    /// the setting that loads the operands.
     fn program(&self, load: FieldId, location: SourceLocation) {
         let (d, control) = (self.designer, &self.design.control);
         let named = |at: usize| format!("{}: {}", self.name, control.microprogram[at].name);
@@ -368,7 +374,8 @@ impl<'d> InstanceBuilder<'d, '_> {
     }
 }
 
-/// Returns the nets on which results and the program depend, except for the handshake, in order.
+/// Returns the nets on which the results `shown` and the conditions of the microprogram depend, in the order of the design. The
+/// nets of strobes, sequencer and handshake are not among them.
 fn kept(design: &Design, shown: &[(String, NetId)]) -> Vec<NetId> {
     let mut roots: Vec<NetId> = shown.iter().map(|(_, id)| *id).collect();
     for microinstruction in &design.control.microprogram {

@@ -1,13 +1,9 @@
 //! The description language: datapath, microprogram and ports of a device, in Rust.
 //!
-//! A description is a function that takes a [`Designer`] and builds with it. Handles ([`Signal`], [`Register`],
-//! [`Mux`], …) are `Copy`. Every signal has a fixed-point format *and* the interval of values that it can take. Both
-//! follow by rule from the operands, so that nothing can overflow unnoticed. Sums and products are exact. Only
-//! [`Designer::narrow`] gives up bits, and it states rounding and overflow.
-//!
-//! A microinstruction ([`step`]) is a list of settings, which the blocks make: [`Mux::pick`], [`Register::load`],
-//! [`Flag::raise`], [`Counter::load`] and [`Counter::count`]. Each setting gives a value to a field of the control
-//! word. The fields of the word are in the order in which the blocks were created.
+//! A description is a function that builds with a [`Designer`], by handles such as [`Signal`], [`Register`] and [`Mux`]. Every
+//! signal has a fixed-point format *and* the interval of values that it can take, so that nothing can overflow unnoticed. Only
+//! [`Designer::narrow`] drops bits of a value, with stated rounding and overflow. A microinstruction ([`step`]) is a list of
+//! settings, such as [`Register::load`] and [`Mux::pick`].
 //!
 //! ```
 //! use glint_rtl::dsl::{Designer, end, step, valid};
@@ -28,14 +24,14 @@
 //! assert_eq!(design.control.microprogram.len(), 3);
 //! ```
 //!
-//! Mistakes are collected, not thrown: [`Designer::finish`] reports all of them, each with the names of the signals
-//! and the Rust source line.
+//! The functions report mistakes of a description: they collect them, and continue with a substitute value. [`Designer::finish`]
+//! returns all of them, each with the names of the signals and the Rust source line.
 
-/// Adds methods by which a description documents a handle that is shown as a net.
+/// Adds methods to a handle by which a description documents the net of the handle.
 macro_rules! described {
     ($handle:ident, $net:ident) => {
         impl $handle<'_> {
-            /// Sets the number of this block in the figure of the device's source.
+            /// Sets the number of this block in the block diagram of the document that describes the device.
             #[must_use]
             pub fn block(self, number: u16) -> Self {
                 let _ = self.$net.block(number);
@@ -112,17 +108,17 @@ use glint_base::diagnostic::{Diagnostic, Diagnostics};
 use glint_base::fixed::Format;
 use glint_base::interval;
 
-/// The note on writes and results of a device with buffers.
+/// The note on writes and results of a device whose operands have buffers.
 const BUFFERED_NOTE: &str = "Operands have buffers: a write at any time is for the next computation, and start takes what \
                              was written, also in the clock of done. The outputs hold from valid at least until the next \
                              computation begins.";
 
-/// Builds a [`Design`] from a hardware description; see the [module documentation](self).
+/// Builds a [`Design`] from a hardware description; the [module documentation](self) has an example.
 pub struct Designer {
     inner: RefCell<Inner>,
-    /// Distinguishes the handles of this designer from the handles of another.
+    /// The number of this designer, which distinguishes its handles from the handles of another designer.
     serial: u64,
-    /// The number of descriptions that it is a part of.
+    /// The number of descriptions that contain this one as a part, one inside the other; 0 for a whole device.
     depth: u32,
     start: NetId,
     idle: NetId,
@@ -134,9 +130,9 @@ pub struct Designer {
 pub(crate) struct SelectedProduct {
     /// The field of the control word that selects the operands of the shared multiplier.
     pub field: FieldId,
-    /// The values of that field for which the net has the product that its format describes.
+    /// The values of this field for which the net has the product in its format.
     pub values: Vec<u64>,
-    /// The number of clocks between the selection and the product, because of registers behind the multiplier.
+    /// The number of clocks between the selection and the product: the number of registers between the muxes and the multiplier.
     pub delay: u32,
 }
 
@@ -144,37 +140,37 @@ pub(crate) struct Inner {
     design: Design,
     views: HashMap<NetId, SelectedProduct>,
     program: Option<MicroprogramSource>,
-    /// The microinstructions of the parts, in the order of execution.
+    /// The microinstructions of the parts (instances), in the order of execution.
     parts: Vec<Step>,
-    /// The nets of the parts.
+    /// The nets that belong to parts.
     placed: HashSet<NetId>,
-    /// The fields that a microinstruction sets.
+    /// The fields to which a microinstruction gives a value.
     picked: HashSet<FieldId>,
     /// Select lines for which the microprogram may leave choices unused.
     partly_used: HashSet<FieldId>,
-    /// The signal that `valid` follows, and how many clocks later, when no microinstruction raises it.
+    /// The signal that `valid` follows, and after how many clocks; `None` if microinstructions raise `valid`.
     valid: Option<(NetId, u32)>,
-    /// Whether results that are logic get registers.
+    /// Whether results that are combinational logic get registers.
     registers_outputs: bool,
-    /// Whether logic that depends on operands alone gets registers.
+    /// Whether logic that depends on operands alone may get registers.
     registers_operand_logic: bool,
-    /// The strobe that loads the operand registers from their buffers, if there are any.
+    /// The net that loads the operand registers from their buffers; `None` without buffers.
     taken: Option<NetId>,
-    /// The numbers of the lines of `valid_word` and of `go_on` in the source's figure.
+    /// The numbers of the lines `valid_word` and `go_on` in the block diagram of the document that describes the device.
     sequencer_lines: Option<[u16; 2]>,
     diagnostics: Vec<Diagnostic>,
     /// The names of all nets.
     names: HashSet<String>,
-    /// How many nets that the DSL added wanted the same name.
+    /// For each name that several added nets would have, the number that the last of them got.
     counts: HashMap<String, u32>,
     partition: Partition,
 }
 
 impl Designer {
-    /// Makes an empty design; `name` becomes the name of the top module. It must be a Verilog identifier.
+    /// Makes an empty design; `name` becomes the name of the top module, and must be a Verilog identifier.
     ///
-    /// The common handshake is there from the start: inputs `rst_n` and `start`, outputs `valid`,
-    /// `busy` and `done` (the outputs join when the microprogram is known).
+    /// The design has the handshake inputs `rst_n` and `start` at once. [`Designer::finish`] adds the outputs `valid`, `busy` and
+    /// `done`.
     #[track_caller]
     pub fn new(name: &str) -> Self {
         let inner = Inner {
@@ -224,8 +220,8 @@ impl Designer {
         self.inner.borrow_mut().design.about = about;
     }
 
-    /// Returns a constant in the given format, which must be able to represent `value` exactly. For example, `u0.8` can represent
-    /// 0.75 but not 0.1.
+    /// Returns a constant in the given format. Reports a mistake if the format cannot represent `value` exactly. For example,
+    /// `u0.8` can represent 0.75 but not 0.1.
     #[track_caller]
     pub fn constant(&self, name: &str, value: f64, format: Format) -> Signal<'_> {
         let format = self.sound(name, format);
@@ -238,7 +234,8 @@ impl Designer {
         self.signal(id)
     }
 
-    /// Returns the constant `raw`, an integer, in the given format.
+    /// Returns the constant with the raw value `raw` in the given format. For example, 192 in `u0.8` is 0.75. Reports a mistake
+    /// if `raw` does not fit.
     #[track_caller]
     pub fn raw_constant(&self, name: &str, mut raw: i128, format: Format) -> Signal<'_> {
         let format = self.sound(name, format);
@@ -250,14 +247,15 @@ impl Designer {
         self.signal(id)
     }
 
-    /// Returns a wire that is used before its driver exists. For example, a feedback path needs one. [`Designer::drive`] connects
-    /// the driver later.
+    /// Returns a wire that is used before its driver exists, as in a feedback path. [`Designer::drive`] must connect the driver
+    /// later.
     #[track_caller]
     pub fn wire(&self, name: &str, format: Format) -> Signal<'_> {
         self.signal(self.add_named(name, format, Driver::Undriven))
     }
 
-    /// Connects a [`Designer::wire`]. Every wire must have exactly one driver.
+    /// Connects the driver of a wire that [`Designer::wire`] made. Reports a mistake if the wire already has a driver, or if
+    /// `source` does not fit its format.
     #[track_caller]
     pub fn drive(&self, wire: Signal<'_>, source: Signal<'_>) {
         let wire = self.own(wire);
@@ -276,9 +274,9 @@ impl Designer {
 
     /// Adds a read-only memory. Its words are raw values of `format`; `address` selects the word that it reads.
     ///
-    /// `doc` of the returned handle adds a line about the meaning of an entry. The address must be an integer that
-    /// stays within the words. A `synchronous` ROM reads on the rising edge, as block RAM does: its output is the
-    /// word at the address of the clock before.
+    /// The address must be an integer that stays within the words; otherwise, and if a word does not fit `format`, a mistake is
+    /// reported. A `synchronous` ROM reads on the rising edge, as block RAM does: its output is the word at the address of the
+    /// clock before.
     #[track_caller]
     pub fn rom(
         &self,
@@ -299,7 +297,7 @@ impl Designer {
                 address.format()
             ));
         }
-        // A synchronous read starts from the power-up value 0.
+        // A synchronous ROM has the output 0 at power-up.
         let first = synchronous.then_some(0);
         let mut range = interval::of_values(words.iter().copied().chain(first)).unwrap_or((0, 0));
         if let Some((at, raw)) = words.iter().enumerate().find(|(_, raw)| !format.holds(**raw)) {
@@ -314,13 +312,13 @@ impl Designer {
         Rom { designer: self, id }
     }
 
-    /// Adds an output port that carries a result.
+    /// Adds an output port that carries a result, in the format of `source`, and returns its signal.
     #[track_caller]
     pub fn output<'d>(&'d self, name: &str, source: Signal<'d>) -> Signal<'d> {
         self.output_as(name, source, Role::Result)
     }
 
-    /// Adds an output port that shows a signal of the control unit, and no result.
+    /// Adds an output port that shows a signal of the control unit, and no result, and returns its signal.
     #[track_caller]
     pub fn status<'d>(&'d self, name: &str, source: Signal<'d>) -> Signal<'d> {
         self.output_as(name, source, Role::Status)
@@ -335,8 +333,9 @@ impl Designer {
         self.signal(id)
     }
 
-    /// Sets the microprogram. A description cannot have two. The device waits for `start` in microinstruction 0, and executes
-    /// it once more after `start`, so that operands written together with `start` have settled.
+    /// Sets the microprogram. Reports a mistake if the description already has one. The device waits for `start` in
+    /// microinstruction 0, and executes this microinstruction once more after `start`, so that logic behind the operands has one
+    /// clock.
     #[track_caller]
     pub fn microprogram(&self, steps: impl IntoIterator<Item = Step>) {
         self.program(steps.into_iter().collect(), false);
@@ -350,12 +349,12 @@ impl Designer {
         }
     }
 
-    /// Makes `valid` follow `signal`, one bit, `clocks` clocks later.
+    /// Makes `valid` follow the one-bit `signal` with a delay of `clocks` clocks.
     ///
-    /// This serves a datapath with registers between the work that a microinstruction starts and the outputs, so that
-    /// a result may come in every clock. No microinstruction may raise [`valid`] then. The microprogram must end with
-    /// as many microinstructions as the last result needs to come out, so that the device is busy until then. A reset
-    /// drops the results on their way.
+    /// This serves a datapath with registers between the operation that a microinstruction starts and the outputs, so that a
+    /// result may come in every clock. No microinstruction may raise [`valid`] in this case. The microprogram must end with
+    /// enough microinstructions that the device is busy until the last result is on the outputs. A reset drops the results on
+    /// their way. Reports a mistake if `signal` has several bits, or if `valid` already follows a signal.
     #[track_caller]
     pub fn valid_after(&self, signal: Signal<'_>, clocks: u32) {
         let signal = self.own(signal);
@@ -368,27 +367,28 @@ impl Designer {
         }
     }
 
-    /// States the numbers, in the source's figure, of two lines that every control unit has: the one by which
-    /// a microinstruction sets `valid`, and the one by which it lets the program go on.
+    /// Sets the numbers of two control lines in the block diagram of the document that describes the device. By the line `valid`
+    /// a microinstruction raises `valid`, and by the line `go_on` it lets the program continue.
     pub fn sequencer_lines(&self, valid: u16, go_on: u16) {
         self.inner.borrow_mut().sequencer_lines = Some([valid, go_on]);
     }
 
-    /// Adds a register behind every output that is combinational logic. The microinstruction that raised `valid` now loads these
-    /// registers, and a new one after it raises `valid`. Other outputs do not change.
+    /// Requests a register behind every output that is combinational logic. A microinstruction that raises `valid` in the
+    /// description loads these registers instead, and [`Designer::finish`] adds one after it that raises `valid`. Other outputs
+    /// do not change.
     pub fn register_outputs(&self) {
         self.inner.borrow_mut().registers_outputs = true;
     }
 
-    /// Forbids [`Designer::finish`] to insert registers into logic that depends on operands alone, which it otherwise does if
-    /// there is a spare clock.
+    /// Forbids [`Designer::finish`] to insert registers into logic that depends on operands alone. Without this call, it inserts
+    /// them if there are spare clocks.
     pub fn keep_operand_logic(&self) {
         self.inner.borrow_mut().registers_operand_logic = false;
     }
 
     /// Adds a buffer in front of every operand register. A user may write the buffers at any time; `start` copies them into the
-    /// registers, and is accepted in the last clock of a computation too, so that no clock is lost between two computations. A
-    /// description must call this before it declares its first operand.
+    /// registers. The device accepts `start` in the last clock of a computation too, so that no clock is lost between two
+    /// computations. Reports a mistake if an operand is already declared.
     #[track_caller]
     pub fn buffer_operands(&self) {
         if self.with(|inner| inner.design.ports.iter().any(|it| it.role == Role::Strobe)) {
@@ -413,10 +413,10 @@ impl Designer {
         });
     }
 
-    /// Returns the finished and checked design. [`Design::warnings`] lists the logic that no output needs.
+    /// Returns the finished and checked design. [`Design::warnings`] lists the logic on which no output depends.
     ///
     /// # Errors
-    /// Fails if the description has mistakes. The error lists every mistake, with the signals and the Rust source
+    /// Fails if the description has mistakes. The error lists every mistake, with the names of the signals and the Rust source
     /// line.
     pub fn finish(self) -> Result<Design, Diagnostics> {
         let program = self.inner.borrow_mut().program.take();

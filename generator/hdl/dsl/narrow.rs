@@ -1,4 +1,5 @@
-//! Converts a signal to a narrower format, with stated rounding and overflow. Only this operation of the DSL drops bits.
+//! Converts a signal to a narrower format, with stated rounding and overflow. No other operation of the description language
+//! rounds or saturates.
 
 use std::panic::Location;
 
@@ -8,11 +9,12 @@ use glint_base::fixed::{Format, Overflow, Rounding};
 use glint_base::interval;
 
 impl Designer {
-    /// Converts `a` to `format`. For example, it rounds a product `u0.16` to `u0.8`.
+    /// Converts `a` to `format`. For example, it rounds a product `u0.16` to `u0.8`. `rounding` treats the dropped fraction bits,
+    /// `overflow` the values outside `format`.
     ///
-    /// It costs only the necessary logic. Truncation is wiring. Rounding to nearest is an incrementer. Saturation
-    /// tests only those upper bits that can differ within the range of `a`. With [`Overflow::Wrap`] the upper bits
-    /// are dropped.
+    /// Only necessary logic is made. Truncation is wiring. Rounding to nearest is an incrementer. Saturation tests only those
+    /// upper bits that can differ within the range of `a`. With [`Overflow::Wrap`] the upper bits are dropped. If `format` has
+    /// more fraction bits than `a`, zeros are appended.
     #[track_caller]
     pub fn narrow<'d>(
         &'d self,
@@ -37,7 +39,7 @@ impl Designer {
         self.signal(self.add_net(name, format, range, Driver::Op(op), true))
     }
 
-    /// Returns the value with `frac` fraction bits.
+    /// Returns `a` with `frac` fraction bits, rounded by `rounding`. The integer part grows if rounding up requires it.
     #[track_caller]
     fn rounded<'d>(
         &'d self,
@@ -52,7 +54,7 @@ impl Designer {
             return a.with_fraction(frac);
         }
         let places = places as u32;
-        // A value with no bits above the new ulp still needs one to be sliced.
+        // If no bit of the value lies above the dropped bits, the value is extended by one bit, so that a bit remains.
         let a = if have.width() > places {
             a
         } else {
@@ -83,18 +85,18 @@ impl Designer {
         }
     }
 
-    /// Returns the low bits of `a`, in `format`.
+    /// Returns the cell with the low bits of `a` in `format`.
     #[track_caller]
     fn low_bits(&self, a: Signal<'_>, format: Format) -> Op {
         if a.format().width() > format.width() {
             return Op::Slice { of: a.id(), low: 0 };
         }
-        // Only the meaning of the top bit changes.
+        // The width is at most the width of `format`, so that only the meaning of the top bit changes.
         let same = with_sign(format, a.format().signed);
         Op::Relabel(a.resized_as("wide", same, a.range()).id())
     }
 
-    /// Returns the saturation of `v`, whose range `format` does not hold.
+    /// Returns the cell with the saturation of `v` to `format`. The range of `v` must exceed `format`.
     #[track_caller]
     fn saturated<'d>(&'d self, name: &str, v: Signal<'d>, format: Format) -> Op {
         let (low, high) = v.range();
@@ -110,7 +112,7 @@ impl Designer {
                 self.add_wiring(&format!("{name}_{suffix}"), Format::BIT, (0, 1), Driver::Op(op));
             self.signal(id)
         };
-        // The bits that carry the value inside `format`; shorter values are extended first.
+        // The low bits, which carry the value if it lies inside `format`. A shorter value is extended first.
         let wide = if width < kept {
             self.resized(v, Format { int: have.int + (kept - width) as i32, ..have })
         } else {
@@ -132,7 +134,7 @@ impl Designer {
             (from < to).then(|| v.bits(from, Format::unsigned((to - from) as i32, 0)))
         };
         match (format.signed, have.signed) {
-            // Never negative: too large when any bit above the format is 1.
+            // `v` is never negative. It is too large if any bit above the format is 1.
             (_, false) => {
                 let magnitude = kept - u32::from(format.signed);
                 let over = upper(magnitude, width)
@@ -148,8 +150,8 @@ impl Designer {
                 });
                 mux(sign.id(), limited, constant("least", 0))
             }
-            // In range when all bits from the sign of the format up are equal to the sign: a test of
-            // sign bits, which is faster than a comparison of magnitudes.
+            // The value lies inside the format if all bits from the format's sign up are equal to the sign of `v`. Such a test of
+            // bits is faster than a comparison of magnitudes.
             (true, true) => {
                 let sign = v.bit(width - 1);
                 let Some(top) = upper(kept - 1, width - 1) else {
@@ -165,8 +167,8 @@ impl Designer {
                 if !below {
                     return over();
                 }
-                // One limit behind the other, rather than a choice of limits: the outer one becomes the
-                // synchronous reset of the register that takes the result.
+                // One mux follows the other, instead of one mux with both limits. The second mux becomes the synchronous reset of
+                // the register that loads the result.
                 let limited = if above { limited(over()) } else { inside };
                 let ones = flag("low", Op::All(top.id()));
                 let off = not(ones, "mixed");
@@ -177,7 +179,7 @@ impl Designer {
     }
 }
 
-/// Returns `format` with a sign bit or without, as wide.
+/// Returns a format of the same width and fraction as `format`, with a sign bit if `signed`. For example, `u8.0` becomes `s7.0`.
 fn with_sign(format: Format, signed: bool) -> Format {
     let int = format.int + i32::from(format.signed) - i32::from(signed);
     Format { signed, int, frac: format.frac }

@@ -2,7 +2,7 @@
 //!
 //! The operands have different formats, so an [`OperandMux`] carries bits without a binary point, as many as its widest input
 //! has. [`SharedProduct::of`] returns the product for a certain selection, exact and with its format and interval.
-//! [`Designer::finish`] proves that a register takes such a product only in microinstructions that select the operands of this
+//! [`Designer::finish`] proves that a register loads such a product only in microinstructions that select the operands of this
 //! product.
 
 use super::{Designer, Select, SelectedProduct, Signal, StepSetting};
@@ -19,14 +19,15 @@ pub struct OperandMux<'d> {
     field: FieldId,
     out: Signal<'d>,
     inputs: Vec<Signal<'d>>,
-    /// Registers behind the mux.
+    /// The number of registers behind the mux.
     delay: u32,
 }
 
 described!(OperandMux, out);
 
 impl Designer {
-    /// Returns a mux whose inputs may have different formats. `select` are its select lines.
+    /// Returns a mux whose inputs may have different formats, controlled by the select lines `select`. Reports a mistake unless
+    /// it has one input for each choice of the select lines.
     #[track_caller]
     pub fn bus<'d>(
         &'d self,
@@ -57,12 +58,13 @@ impl Designer {
         }
     }
 
-    /// Returns the shared product of two muxes that have the same select lines.
+    /// Returns the product of a multiplier between two muxes that have the same select lines. Reports a mistake if the muxes
+    /// differ in select lines, number of inputs or registers behind them.
     ///
-    /// If only one of the buses has negative inputs, the multiplier takes the bits of that bus below its sign as an
-    /// unsigned number. Each factor then needs one bit less than in a product of signed numbers, which may save DSP
-    /// blocks: for example, 18 bits fit and 19 do not. For a negative operand, this product is too large by the other
-    /// operand at the weight of the sign. [`SharedProduct::of`] subtracts that amount.
+    /// If only one of the muxes has negative inputs, the multiplier takes the bits of that mux below its sign as an unsigned
+    /// number. Each factor then has one bit less than in a product of signed numbers, which may save DSP blocks. For example, 18
+    /// bits fit and 19 do not. For a negative operand, this product is too large by the other operand at the weight of the sign.
+    /// [`SharedProduct::of`] subtracts that amount.
     #[track_caller]
     pub fn shared_mul<'d>(
         &'d self,
@@ -79,7 +81,7 @@ impl Designer {
         }
         let [a, b] = [first, second].map(|bus| bus.out.format());
         let (out, excess) = match (a.signed, b.signed) {
-            // Below a sign alone there are no bits.
+            // If the signal is a sign bit alone, no bits lie below it.
             (true, false) if a.width() > 1 => {
                 self.unsigned_core(name, [first, second], |low| (low, second.out))
             }
@@ -97,8 +99,8 @@ impl Designer {
         }
     }
 
-    /// Returns the product of the bits of `signed` below its sign and the bus `other`, and the amount to subtract
-    /// above these bits. `ordered` puts the factors in the order of the multiplier.
+    /// Returns the product of `other` and the bits of `signed` below its sign, and the amount to subtract if the sign is set.
+    /// `ordered` puts the factors into the order of the multiplier.
     #[track_caller]
     fn unsigned_core<'d>(
         &'d self,
@@ -109,7 +111,7 @@ impl Designer {
         let low = signed.out.format().width() - 1;
         let (first, second) = ordered(signed.out.bits(0, Format::unsigned(low as i32, 0)));
         let out = self.mul(name, first, second);
-        // The amount has only as many bits as the inputs of the other bus that are opposite negative inputs.
+        // The amount has only as many bits as the largest input of the other mux that is multiplied by a negative input.
         let opposite = signed.inputs.iter().zip(&other.inputs);
         let most = opposite
             .filter(|(input, _)| input.range().0 < 0)
@@ -130,16 +132,19 @@ impl Designer {
 }
 
 impl<'d> OperandMux<'d> {
-    /// Returns the setting with which a microinstruction selects `input`, which must be an input of the mux.
+    /// Returns the setting with which a microinstruction selects `input`. Reports a mistake unless `input` is exactly one
+    /// input of the mux.
     #[track_caller]
     pub fn pick(&self, input: Signal<'d>) -> StepSetting {
         StepSetting::pick_of(self.designer, self.field, &self.name, input, &self.inputs)
     }
 
-    /// Adds a register `<name>_held` behind the mux. It holds the operand that the previous microinstruction selected.
+    /// Adds a register `<name>_held` behind the mux, which loads on every clock. It has the operand that the previous
+    /// microinstruction selected.
     ///
-    /// For a program that settles the operands in one microinstruction and takes the product in the next,
-    /// under the same selection: the multiplier then has the second of the two clocks to itself.
+    /// A microprogram selects the operands in one microinstruction, and loads the product in the next one under the same
+    /// selection ([`hold`](super::hold)). The mux then takes time of the first clock, and the multiplier has the second clock to
+    /// itself.
     #[must_use]
     #[track_caller]
     pub fn held(self) -> Self {
@@ -150,21 +155,22 @@ impl<'d> OperandMux<'d> {
     }
 }
 
-/// The excess of a product of unsigned numbers if an operand is negative.
+/// The amount by which a product of unsigned numbers is too large if an operand is negative.
 #[derive(Clone, Copy)]
 struct Excess<'d> {
-    /// The other operand, or 0.
+    /// The other operand if the sign of the negative operand is set, and otherwise 0.
     amount: Signal<'d>,
-    /// The weight of its lowest bit: the number of the operand's sign bit.
+    /// The weight of the lowest bit of `amount`, as a power of two: the number of the operand's sign bit.
     low: u32,
 }
 
-/// The product of a multiplier whose two factors come from muxes. A microinstruction selects the factors.
+/// The product of a multiplier whose two factors come from muxes. Each microinstruction selects the factors, and with them the
+/// product.
 #[derive(Clone)]
 pub struct SharedProduct<'d> {
     out: Signal<'d>,
     excess: Option<Excess<'d>>,
-    /// Registers in front of the multiplier.
+    /// The number of registers between the muxes and the multiplier.
     delay: u32,
     field: FieldId,
     pairs: Vec<(Signal<'d>, Signal<'d>)>,
@@ -173,14 +179,16 @@ pub struct SharedProduct<'d> {
 described!(SharedProduct, out);
 
 impl<'d> SharedProduct<'d> {
-    /// Returns the product of `first` and `second`, which must be the inputs of the two muxes under the same selection.
+    /// Returns the product of `first` and `second`, exact, in a format that its interval determines. Reports a mistake unless
+    /// `first` and `second` are inputs of the two muxes under the same selection.
     #[track_caller]
     pub fn of(&self, first: Signal<'d>, second: Signal<'d>) -> Signal<'d> {
         self.of_any(&[(first, second)])
     }
 
-    /// Returns the product of any of the `pairs`, which must all have the same binary point. For example, a register
-    /// that takes a different product in each of several microinstructions takes this signal.
+    /// Returns the product of any of the `pairs`, in one format that can represent all of these products. For example, a register
+    /// that loads a different product in each of several microinstructions loads this signal. Reports a mistake if the products
+    /// have different binary points, or if a pair is never multiplied.
     #[track_caller]
     pub fn of_any(&self, pairs: &[(Signal<'d>, Signal<'d>)]) -> Signal<'d> {
         let d = self.out.designer();
@@ -223,7 +231,7 @@ impl<'d> SharedProduct<'d> {
         view
     }
 
-    /// Returns the product in `format` less the excess.
+    /// Returns the product in `format` after subtraction of the excess.
     #[track_caller]
     fn corrected(&self, format: Format, range: Interval, excess: Excess<'d>) -> Signal<'d> {
         let d = self.out.designer();

@@ -1,7 +1,8 @@
-//! Adds registers behind outputs that are combinational logic. A description asks for this by [`Designer::register_outputs`].
+//! Adds registers behind outputs that are combinational logic. A description requests this by [`Designer::register_outputs`].
 //!
-//! The microinstruction that raised `valid` now loads these registers, and a new microinstruction after it raises `valid`. A
-//! result therefore comes one clock later. If `valid` follows a signal instead, the registers load on every clock.
+//! The microinstruction that raises `valid` in the description loads these registers instead, and an additional microinstruction
+//! after it raises `valid`. A result therefore comes one clock later. If `valid` follows a signal, the registers load on every
+//! clock.
 
 use super::program::{MicroprogramSource, SettingKind, Step};
 use super::{Designer, StepSetting, hold, step, valid};
@@ -9,7 +10,7 @@ use crate::netlist::{Design, Driver, FieldKind, NetId, Op, RegisterKind, Role};
 use glint_base::codes;
 use glint_base::diagnostic::Diagnostic;
 
-/// Inserts the registers, and the microinstructions that they take.
+/// Inserts the registers and the additional microinstructions. Nothing changes if every result is already a register.
 pub(super) fn insert(d: &Designer, program: &mut MicroprogramSource) {
     let results = d.with(|inner| logic(&inner.design));
     if results.is_empty() {
@@ -42,7 +43,7 @@ pub(super) fn insert(d: &Designer, program: &mut MicroprogramSource) {
     d.replace_note(note);
 }
 
-/// Returns the ports of results that are no registers.
+/// Returns the ports of results that a register does not drive directly.
 fn logic(design: &Design) -> Vec<NetId> {
     let results = design.ports.iter().filter(|port| port.role == Role::Result);
     let is_register =
@@ -50,13 +51,14 @@ fn logic(design: &Design) -> Vec<NetId> {
     results.map(|port| port.net).filter(|&port| !is_register(port)).collect()
 }
 
-/// Puts the register `<port>_reg` between a port and its driver.
+/// Inserts the register `<port>_reg` between a port and its driver. `enable` is its load enable; without it the register loads on
+/// every clock.
 fn behind(d: &Designer, port: NetId, kind: RegisterKind, enable: Option<NetId>) {
     let net = d.net(port);
     let Driver::Op(Op::Relabel(source)) = net.driver else {
         unreachable!("an output port names what it shows")
     };
-    // It holds 0 from power-up to its first load.
+    // The register is 0 from power-up to its first load.
     let range = (net.range.0.min(0), net.range.1.max(0));
     let q = d.located(net.location, || {
         d.add_register(&format!("{}_reg", net.name), net.format, range, kind)
@@ -70,7 +72,8 @@ fn behind(d: &Designer, port: NetId, kind: RegisterKind, enable: Option<NetId>) 
     });
 }
 
-/// Makes every microinstruction that sets `valid` load instead, and one after it set `valid`.
+/// Changes every microinstruction that raises `valid`: it gets the setting `load` instead, and a new microinstruction after it
+/// raises `valid`. Reports a mistake if such a microinstruction has a loop or a jump.
 fn loaded(d: &Designer, steps: &mut Vec<Step>, load: &StepSetting) {
     let mut at = 0;
     while at < steps.len() {
@@ -93,7 +96,7 @@ fn loaded(d: &Designer, steps: &mut Vec<Step>, load: &StepSetting) {
     }
 }
 
-/// Adds a microinstruction at the end, while the last result goes through the registers.
+/// Adds a microinstruction at the end, so that the device is busy while the last result passes the registers.
 fn followed(steps: &mut Vec<Step>) {
     let after = steps.last_mut().map(Step::divided);
     steps.extend(after);
@@ -109,10 +112,10 @@ impl Step {
         self
     }
 
-    /// Keeps the settings of registers in this microinstruction, and returns a new microinstruction for the settings
-    /// that say where control goes next. `valid` is dropped.
+    /// Moves the settings that determine the next microinstruction into a new microinstruction, and returns it. All other
+    /// settings stay, except that `valid` is dropped. The new microinstruction keeps the selections.
     fn divided(&mut self) -> Self {
-        // The selections stay, for a microinstruction after it that holds them.
+        // With `hold`, the new microinstruction has the same selections, so that a microinstruction behind it may hold them too.
         let mut after = step(&format!("{}, in output registers", self.name), [hold()]);
         after.location = self.location;
         for setting in std::mem::take(&mut self.settings) {

@@ -12,11 +12,11 @@ use crate::netlist::{
 use glint_base::codes;
 use glint_base::diagnostic::{Diagnostic, SourceLocation};
 
-/// The value that a microinstruction gives to one field, or its choice of a successor.
+/// A setting of a microinstruction: the value of one field, or the choice of the next microinstruction.
 #[derive(Clone)]
 pub struct StepSetting {
     pub(super) kind: SettingKind,
-    /// The designer that the field or the condition belongs to; `None` if there is neither.
+    /// The designer to which the field or the condition belongs; `None` for a setting without field and condition.
     of: Option<DesignerIdentity>,
     location: SourceLocation,
 }
@@ -44,7 +44,7 @@ pub(super) enum SettingKind {
         to: String,
     },
     End,
-    /// Already reported.
+    /// A setting whose mistake has already been reported.
     Wrong,
 }
 
@@ -60,15 +60,15 @@ impl StepSetting {
         Self { kind, of: None, location: Location::caller() }
     }
 
-    /// Returns the setting with which `mux` passes on `input`. The inputs of the mux's net give the value of the
-    /// field.
+    /// Returns the setting with which the mux named `mux` passes `input`. The value of `field` is the position of `input` among
+    /// the inputs of the mux's net. Reports a mistake unless `input` is exactly one input.
     #[track_caller]
     pub(crate) fn pick(d: &Designer, field: FieldId, mux: &str, input: Signal<'_>) -> Self {
         let inputs = match d.with(|inner| inner.design.find(mux)).map(|id| d.net(id).driver) {
             Some(Driver::Op(Op::Mux { inputs, .. })) => inputs,
             _ => Vec::new(),
         };
-        // An input may have been widened to the mux's format.
+        // The net at an input may be an extended or renamed form of `input`.
         let stands_for = |id: NetId| {
             id == input.id()
                 || matches!(d.net(id).driver,
@@ -106,35 +106,35 @@ impl StepSetting {
     }
 }
 
-/// Returns the setting that keeps all selections of the previous microinstruction, except those which this microinstruction
-/// states itself.
+/// Returns the setting that keeps all selections (values of select lines) of the previous microinstruction, except those which
+/// this microinstruction states itself. In microinstruction 0 it has no effect.
 #[track_caller]
 pub fn hold() -> StepSetting {
     StepSetting::sequence(SettingKind::Hold)
 }
 
-/// Returns the setting that raises `valid`, which means that the results are on the outputs. A microinstruction may raise it only
-/// after the results are loaded.
+/// Returns the setting that raises `valid`, which means that the results are on the outputs. A microinstruction that loads a
+/// result register must not raise it; the next one may.
 #[track_caller]
 pub fn valid() -> StepSetting {
     StepSetting::sequence(SettingKind::Valid)
 }
 
-/// Returns the setting that continues with the next microinstruction. It is the default.
+/// Returns the setting that continues with the microinstruction at the next address. It is the default.
 #[track_caller]
 pub fn next() -> StepSetting {
     StepSetting::sequence(SettingKind::Next)
 }
 
 /// Returns the setting that repeats this microinstruction until `start` is high. The device is not busy meanwhile.
-/// Microinstruction 0 always has this setting.
+/// Microinstruction 0 always waits, with or without this setting.
 #[track_caller]
 pub fn wait_for_start() -> StepSetting {
     StepSetting::sequence(SettingKind::WaitForStart)
 }
 
-/// Returns the setting that jumps back to the microinstruction named `to` while the bit `condition` is 1, and then continues with
-/// the next one. The loop must change the condition, so that it ends.
+/// Returns the setting that jumps back to the microinstruction named `to` while the bit `condition` is 1, and otherwise continues
+/// with the next one. A microinstruction of the loop must be able to change the condition, so that the loop ends.
 #[track_caller]
 pub fn loop_while(condition: Signal<'_>, to: &str) -> StepSetting {
     let kind = SettingKind::LoopWhile { condition: condition.id(), to: to.to_owned() };
@@ -142,14 +142,14 @@ pub fn loop_while(condition: Signal<'_>, to: &str) -> StepSetting {
 }
 
 /// Returns the setting that jumps ahead to the microinstruction named `to` if the bit `condition` is 1, and otherwise continues
-/// with the next one. For example, it skips a loop that need not run even once.
+/// with the next one. For example, a jump skips a loop that may run zero times.
 #[track_caller]
 pub fn jump_if(condition: Signal<'_>, to: &str) -> StepSetting {
-    // To the sequencer a jump is a jump, whichever way it goes.
+    // The sequencer treats a jump ahead like a jump back.
     loop_while(condition, to)
 }
 
-/// Returns the setting of the last microinstruction, which raises `done`. The device is idle after it.
+/// Returns the setting that ends the computation. The device raises `done` in this microinstruction, and is idle after it.
 #[track_caller]
 pub fn end() -> StepSetting {
     StepSetting::sequence(SettingKind::End)
@@ -163,8 +163,8 @@ pub struct Step {
     pub(super) location: SourceLocation,
 }
 
-/// Makes a microinstruction with a name and settings. Muxes without a setting pass on their first input; registers without one
-/// keep their value.
+/// Makes a microinstruction with a name and settings. Muxes without a setting pass their first input; registers without a setting
+/// keep their value. For example, `step("load", [y.load()])` loads the register `y`.
 #[track_caller]
 pub fn step(name: &str, settings: impl IntoIterator<Item = StepSetting>) -> Step {
     Step {
@@ -174,15 +174,16 @@ pub fn step(name: &str, settings: impl IntoIterator<Item = StepSetting>) -> Step
     }
 }
 
-/// A microprogram in the form in which a description states it, before it is translated to control words.
+/// A microprogram as a description states it: microinstructions with settings, not yet control words.
 pub struct MicroprogramSource {
     pub(crate) steps: Vec<Step>,
-    /// Whether it executes the parts of the description.
+    /// Whether the microprogram executes the parts (instances) of the description.
     pub(crate) of_parts: bool,
     pub(crate) location: SourceLocation,
 }
 
-/// Lowers the program: microinstructions, control ROM, sequencer, and the outputs of the handshake.
+/// Translates a microprogram to hardware: the values of the fields, the control ROM, the sequencer, and the outputs of the
+/// handshake. Reports a mistake if the microprogram has fewer than two microinstructions.
 pub(crate) fn assemble(d: &Designer, program: &MicroprogramSource) {
     let steps = &program.steps;
     if steps.len() < 2 {
@@ -245,7 +246,8 @@ pub(crate) fn assemble(d: &Designer, program: &MicroprogramSource) {
     sequencer.build(d, microinstructions, program.location);
 }
 
-/// Returns whether a setting is of another designer, which is reported: its numbers would mean other nets and fields here.
+/// Returns whether a setting belongs to another designer, and reports each such setting. The numbers in it would mean other nets
+/// and fields in this designer.
 fn foreign(d: &Designer, steps: &[Step]) -> bool {
     let own = origin(d);
     let settings = steps.iter().flat_map(|step| step.settings.iter().map(move |it| (step, it)));
@@ -269,6 +271,8 @@ fn foreign(d: &Designer, steps: &[Step]) -> bool {
     any
 }
 
+/// Returns the rule for the microinstruction after `step`. Reports a mistake if its settings state two different rules. Reports a
+/// mistake if a jump leads to an unknown name or has a condition of several bits.
 fn sequence(d: &Designer, steps: &[Step], step: &Step) -> Sequence {
     let mut found: Option<(Sequence, SourceLocation)> = None;
     let own = &step.name;
@@ -276,7 +280,7 @@ fn sequence(d: &Designer, steps: &[Step], step: &Step) -> Sequence {
         let wrong = |code, message| Diagnostic::new(code, message, setting.location);
         let sequence = match &setting.kind {
             SettingKind::Next => Sequence::Next,
-            // Microinstruction 0 waits anyhow.
+            // Microinstruction 0 waits for `start` with or without this setting.
             SettingKind::WaitForStart if std::ptr::eq(step, &steps[0]) => Sequence::Next,
             SettingKind::WaitForStart => {
                 if d.with(|inner| inner.taken.is_some()) {
@@ -322,6 +326,8 @@ fn sequence(d: &Designer, steps: &[Step], step: &Step) -> Sequence {
     found.map_or(Sequence::Next, |(sequence, _)| sequence)
 }
 
+/// Returns the microinstructions with a value for each field of the control word. Reports a mistake if two microinstructions have
+/// the same name, or if two settings give a field different values.
 fn microinstructions(
     d: &Designer,
     steps: &[Step],

@@ -1,4 +1,5 @@
-//! Builds registers, operands, flags, counters and select lines. Each has methods that return settings for microinstructions.
+//! Builds registers, operands, flags, counters and select lines. Their methods return the settings by which microinstructions
+//! control them.
 
 use super::{Designer, Signal, StepSetting};
 use crate::netlist::{self, Driver, FieldId, FieldKind, NetId, Op, RegisterKind, Role};
@@ -7,15 +8,15 @@ use glint_base::fixed::Format;
 use glint_base::interval::Interval;
 
 impl Designer {
-    /// Adds an operand: the input port `name`, its write strobe `<name>_write` and the register `<name>_reg`. A write loads the
-    /// register unless the device is busy.
+    /// Adds an operand: the input port `name`, its write strobe `<name>_write` and the register `<name>_reg`. A write while the
+    /// device is busy is ignored. After [`Designer::buffer_operands`], a write loads a buffer instead, at any time.
     #[track_caller]
     pub fn operand(&self, name: &str, format: Format) -> InputOperand<'_> {
         self.operand_port(name, format, |port| port)
     }
 
-    /// Adds an operand whose register is limited to the values from `low` to `high`: a write of a smaller or larger value loads
-    /// the limit. The format must be able to represent both.
+    /// Adds an operand whose register is limited to the values from `low` to `high`, rounded to `format`. A write of a smaller or
+    /// larger value loads the limit. For example, with limits 0 and 1 in `u1.20`, a write of 1.5 loads 1.
     #[track_caller]
     pub fn operand_clamped(
         &self,
@@ -43,7 +44,7 @@ impl Designer {
                 let range = (value.range().0, most);
                 let one_bit = most > 0 && range.0 >= 0 && most.count_ones() == 1 && to < 2 * most;
                 let over = if one_bit {
-                    // At the limit it makes no difference which of the two is taken.
+                    // At the limit itself, the value and the limit are equal, so that one bit suffices as the condition.
                     value.bit(most.trailing_zeros()).named(&format!("{name}_over"))
                 } else {
                     self.less(&format!("{name}_over"), limit("most", most), value)
@@ -55,7 +56,7 @@ impl Designer {
         })
     }
 
-    /// Makes a two-input mux whose result is known to stay within `range`.
+    /// Makes a two-input mux whose result stays within `range`, as the caller knows.
     #[track_caller]
     fn chosen_within<'d>(
         &'d self,
@@ -93,7 +94,7 @@ impl Designer {
                 let buffer = self.add_register(&own, data.format(), data.range(), kind);
                 self.set_doc(buffer, "for the next computation");
                 self.connect(buffer, data.id(), Some(strobe));
-                // A value that is written in the clock of `start` is taken at once.
+                // If the strobe and `start` come in the same clock, the register loads the written value directly.
                 let (name, range) = (format!("{name}_next"), data.range());
                 let inputs = [self.signal(buffer), data];
                 (self.chosen_within(&name, self.signal(strobe), inputs, range), taken)
@@ -106,9 +107,9 @@ impl Designer {
     }
 
     /// Adds a register that certain microinstructions load; its field is `<name>_load`. For example, the register `reg11_cos_cos`
-    /// of `rough` has the field `reg11_cos_cos_load`.
+    /// of `rough` has the field `reg11_cos_cos_load`. The description must connect its input by [`Register::takes`].
     ///
-    /// It has no reset, and an operand cannot have its name, because both would own `<name>_load`.
+    /// The register has no reset. It must not have the name of an operand, because both would have a net `<name>_load`.
     #[track_caller]
     pub fn register(&self, name: &str, format: Format) -> Register<'_> {
         let field = self.add_field(&format!("{name}_load"), 1, FieldKind::Enable);
@@ -119,20 +120,21 @@ impl Designer {
         Register { q: self.signal(q), field }
     }
 
-    /// Adds a register that loads on every clock. It delays `source` by one clock.
+    /// Adds a register that loads on every clock, and returns its output: `source`, delayed by one clock.
     #[track_caller]
     pub fn pipeline<'d>(&'d self, name: &str, source: Signal<'d>) -> Signal<'d> {
         let source = self.own(source);
         let (low, high) = source.range();
-        // It holds 0 from power-up to the first clock.
+        // The register is 0 from power-up to the first clock.
         let range = (low.min(0), high.max(0));
         let q = self.add_register(name, source.format(), range, RegisterKind::Internal);
         self.connect(q, source.id(), None);
         self.signal(q)
     }
 
-    /// Adds select lines that several muxes share. `choices` names each value of the lines, which selects one input of every such
-    /// mux. For example, `select("operand_select", &["cosines", "sines", "half_n", "square"])` has two lines.
+    /// Adds select lines that several muxes share. `choices` names each value of the lines, from 0 on; a value selects the input
+    /// with this number in every such mux. For example, `select("operand_select", &["cosines", "sines", "half_n", "square"])` has
+    /// two lines.
     #[track_caller]
     pub fn select(&self, name: &str, choices: &[&str]) -> Select<'_> {
         let width = usize::BITS - choices.len().saturating_sub(1).leading_zeros();
@@ -141,8 +143,7 @@ impl Designer {
         Select { designer: self, field }
     }
 
-    /// Returns the select lines. If `select` belongs to another designer, this reports an error and returns new lines
-    /// with the same choices.
+    /// Returns `select`. If it belongs to another designer, reports a mistake and returns new lines with the same choices.
     #[track_caller]
     pub(crate) fn own_select<'d>(&'d self, select: Select<'d>) -> Select<'d> {
         if self.serial == select.designer.serial {
@@ -154,7 +155,7 @@ impl Designer {
         self.select(&format!("{line}_own"), &choices)
     }
 
-    /// Adds an output of one bit that microinstructions raise.
+    /// Adds an output port `name` of one bit that is 1 in the microinstructions with the setting [`Flag::raise`].
     #[track_caller]
     pub fn flag(&self, name: &str) -> Flag<'_> {
         let field = self.add_field(&format!("{name}_flag"), 1, FieldKind::Flag);
@@ -163,9 +164,10 @@ impl Designer {
         Flag { designer: self, field }
     }
 
-    /// Adds a counter that counts down, with the fields `<name>_load` and `<name>_count`.
+    /// Adds a counter that counts down, with the fields `<name>_load` and `<name>_count`. Its format is the format of `start`.
     ///
-    /// The field `load` loads the value of `start`, and `count` subtracts one. If a microinstruction sets both, `load` wins.
+    /// A microinstruction that sets the first field loads the value of `start`; one that sets the second subtracts one. If a
+    /// microinstruction sets both, the counter is loaded. Below 0 the counter wraps around.
     #[track_caller]
     pub fn down_counter<'d>(&'d self, name: &str, start: Signal<'d>) -> Counter<'d> {
         let start = self.own(start);
@@ -189,7 +191,7 @@ impl Designer {
         self.change(q, |it| (it.data, it.enable) = (Some(data), enable));
     }
 
-    /// Changes the register that drives a net.
+    /// Calls `change` with the register that drives the net `q`. Does nothing if no register drives it.
     pub(crate) fn change(&self, q: NetId, change: impl FnOnce(&mut netlist::NetlistRegister)) {
         self.with(|inner| {
             if let Driver::Register(id) = inner.design.net(q).driver {
@@ -199,7 +201,8 @@ impl Designer {
     }
 }
 
-/// An operand of a device: a value that the user writes before a computation. It has an input port, a write strobe and a register.
+/// An operand of a device: a value that the user writes before a computation. It consists of an input port, a write strobe and a
+/// register.
 #[derive(Clone, Copy)]
 pub struct InputOperand<'d> {
     port: Signal<'d>,
@@ -208,19 +211,19 @@ pub struct InputOperand<'d> {
 }
 
 impl<'d> InputOperand<'d> {
-    /// Returns the signal of the operand register, the value that the user has written.
+    /// Returns the output of the operand register: the value that the user has written.
     pub fn q(self) -> Signal<'d> {
         self.q
     }
 
-    /// Sets the number of the register in the figure of the source.
+    /// Sets the number of the register in the block diagram of the document that describes the device.
     #[must_use]
     pub fn block(self, number: u16) -> Self {
         let _ = self.q.block(number);
         self
     }
 
-    /// Sets the numbers of the data input and of the write strobe in the figure of the source.
+    /// Sets the numbers of the data input and of the write strobe in the block diagram of the document that describes the device.
     #[must_use]
     pub fn inputs(self, data: u16, strobe: u16) -> Self {
         let _ = self.port.block(data);
@@ -228,7 +231,7 @@ impl<'d> InputOperand<'d> {
         self
     }
 
-    /// Sets a comment of one line, which the Verilog shows.
+    /// Sets a comment of one line, which the Verilog shows at the port and at the register.
     #[must_use]
     pub fn doc(self, line: &str) -> Self {
         let _ = self.port.doc(line);
@@ -237,7 +240,8 @@ impl<'d> InputOperand<'d> {
     }
 }
 
-/// A register that loads its data input in the microinstructions that say so, and otherwise keeps its value.
+/// A register that loads its data input in the microinstructions with the setting [`Register::load`], and otherwise keeps its
+/// value.
 #[derive(Clone, Copy)]
 pub struct Register<'d> {
     q: Signal<'d>,
@@ -262,7 +266,8 @@ impl<'d> Register<'d> {
         self.q.designer().field_net(self.field)
     }
 
-    /// Connects the data input. The formats must agree; [`Designer::narrow`] converts a signal first.
+    /// Connects the data input. The format of the register must have the binary point of `data` and represent its range;
+    /// [`Designer::narrow`] converts a signal first. Reports a mistake if it does not, or if the input is already connected.
     #[track_caller]
     pub fn takes(self, data: Signal<'d>) {
         let d = self.q.designer();
@@ -279,7 +284,7 @@ impl<'d> Register<'d> {
         }
     }
 
-    /// Returns the setting with which a microinstruction loads the register at its end.
+    /// Returns the setting with which a microinstruction loads the register at the end of its clock.
     #[track_caller]
     pub fn load(self) -> StepSetting {
         StepSetting::field(self.q.designer(), self.field, 1, format!("{}.load", self.q.name()))
@@ -303,22 +308,22 @@ impl<'d> Select<'d> {
         self.field
     }
 
-    /// Sets the numbers of the lines in the figure of the source, the most significant first.
+    /// Sets the numbers of the lines in the block diagram of the document that describes the device, the most significant first.
     #[must_use]
     pub fn lines(self, numbers: &[u16]) -> Self {
         self.designer.set_lines(self.field, numbers);
         self
     }
 
-    /// Allows the microprogram to leave some choices of these lines unused, for example choices for other configurations.
-    /// Otherwise [`Designer::finish`] warns of them.
+    /// Allows the microprogram to leave some choices of these lines unused, for example choices for other configurations. Without
+    /// this call, [`Designer::finish`] warns of unused choices.
     #[must_use]
     pub fn partly_used(self) -> Self {
         self.designer.with(|inner| inner.partly_used.insert(self.field));
         self
     }
 
-    /// Returns the names of its values.
+    /// Returns the names of the choices, from the value 0 on.
     fn choices(self) -> Vec<String> {
         self.designer.with(|inner| match &inner.design.control.fields[self.field.index()].kind {
             FieldKind::Select(choices) => choices.clone(),
@@ -326,7 +331,7 @@ impl<'d> Select<'d> {
         })
     }
 
-    /// Checks that mux `name` has as many inputs as the field has values.
+    /// Reports a mistake unless the mux `name` has as many `inputs` as the select lines have choices.
     #[track_caller]
     pub(crate) fn check_inputs(self, name: &str, inputs: usize) {
         let choices = self.choices().len();
@@ -357,7 +362,8 @@ impl Flag<'_> {
     }
 }
 
-/// A counter that a microinstruction can load with a start value, and that subtracts one in each microinstruction that says so.
+/// A counter that a microinstruction loads with a start value ([`Counter::load`]), and from which a microinstruction subtracts
+/// one ([`Counter::count`]).
 #[derive(Clone, Copy)]
 pub struct Counter<'d> {
     q: Signal<'d>,
@@ -378,13 +384,13 @@ impl<'d> Counter<'d> {
         self.q.designer().field_net(self.count)
     }
 
-    /// Returns the setting with which a microinstruction loads the start value into the counter at its end.
+    /// Returns the setting with which a microinstruction loads the start value into the counter at the end of its clock.
     #[track_caller]
     pub fn load(self) -> StepSetting {
         StepSetting::field(self.q.designer(), self.load, 1, format!("{}.load", self.q.name()))
     }
 
-    /// Returns the setting with which a microinstruction decrements the counter at its end.
+    /// Returns the setting with which a microinstruction subtracts one from the counter at the end of its clock.
     #[track_caller]
     pub fn count(self) -> StepSetting {
         StepSetting::field(self.q.designer(), self.count, 1, format!("{}.count", self.q.name()))

@@ -1,4 +1,5 @@
-//! The handle of a read-only memory (ROM) in a hardware description. It gives the word that the ROM reads, and sets comments.
+//! Defines the handle of a read-only memory (ROM) in a hardware description. The handle returns the word that the ROM reads, and
+//! sets comments.
 
 use super::{Designer, Signal};
 use crate::netlist::RomId;
@@ -17,21 +18,22 @@ impl<'d> Rom<'d> {
         self.designer.signal(data)
     }
 
-    /// Sets the number of the ROM in the figure of the device's source.
+    /// Sets the number of the ROM in the block diagram of the document that describes the device.
     #[must_use]
     pub fn block(self, number: u16) -> Self {
         self.designer.with(|inner| inner.design.roms[self.id.index()].block = Some(number));
         self
     }
 
-    /// Adds a line to the ROM's comment, about the meaning of an entry.
+    /// Adds a line to the ROM's comment on the meaning of a word.
     #[must_use]
     pub fn doc(self, line: &str) -> Self {
         self.designer.with(|inner| inner.design.roms[self.id.index()].doc.push(line.to_owned()));
         self
     }
 
-    /// Sets a comment for each word of the ROM, which the memory file shows.
+    /// Sets a comment for each word of the ROM, from address 0. The memory file shows them.
+    /// [`Designer::finish`](super::Designer::finish) reports a mistake if their number differs from the number of words.
     #[must_use]
     pub fn comments(self, comments: Vec<String>) -> Self {
         self.designer.with(|inner| inner.design.roms[self.id.index()].comments = comments);

@@ -12,9 +12,9 @@ use crate::netlist::{
 use glint_base::diagnostic::SourceLocation;
 use glint_base::fixed::{Format, MAX_WIDTH};
 
-/// The fields of the control word that the sequencer itself uses, as far as the microprogram needs them.
+/// The fields of the control word that the sequencer itself uses. A field is `None` if the microprogram does not need it.
 pub struct SequenceFields {
-    /// The field that raises `valid`; `None` if `valid` follows a signal.
+    /// The field that raises `valid`; `None` if `valid` follows a signal instead.
     pub valid: Option<FieldId>,
     pub wait: Option<FieldId>,
     pub again: Option<FieldId>,
@@ -23,13 +23,13 @@ pub struct SequenceFields {
     pub go_on: FieldId,
 }
 
-/// The description of a sequencer, from which `build` makes the hardware.
+/// The properties of a sequencer, from which [`Sequencer::build`] makes the hardware.
 pub struct Sequencer {
     /// The fields that the sequencer uses.
     pub fields: SequenceFields,
     /// The one-bit conditions of loops and jumps. A condition that several microinstructions use is listed once.
     pub conditions: Vec<NetId>,
-    /// The microinstructions to which loops and jumps lead, as addresses. Each is listed once.
+    /// The addresses of the microinstructions to which loops and jumps lead. Each address is listed once.
     pub targets: Vec<usize>,
     /// The number of bits of the microinstruction address.
     pub address_width: u32,
@@ -57,7 +57,7 @@ impl Sequencer {
         let address = d.add_register("word_address", wide, (0, last_word), RegisterKind::Sequencer);
         d.set_doc(address, "the microinstruction that is executed");
         let following = op("following_word", wide, Op::Add { a: address, b: one, carry: None });
-        // Where control goes while the program goes on: around a loop, or to the following microinstruction.
+        // The next address while the microprogram continues: the target of a loop or jump, or the following address.
         let mut onward = following;
         if let Some(again) = fields.again {
             let condition = match (fields.condition, &conditions[..]) {
@@ -132,8 +132,8 @@ impl Sequencer {
     }
 }
 
-/// Returns the net that drives `valid`: the signal of [`Designer::valid_after`], delayed by its number of clocks, or
-/// the run flag without such a signal. A reset drops the results on their way.
+/// Returns the net that drives `valid`: the signal of [`Designer::valid_after`], delayed by its number of clocks. A reset clears
+/// the registers of this delay, and so drops the results on their way.
 fn valid_line(d: &Designer) -> NetId {
     let Some((mut source, clocks)) = d.with(|inner| inner.valid) else {
         return d.run;
@@ -155,7 +155,8 @@ fn valid_line(d: &Designer) -> NetId {
     source
 }
 
-/// Moves fields of parts, the last first, into memories beside the control ROM, until the others fit a control word.
+/// Limits the control word to 64 bits. While the fields are wider, moves fields of parts, the last field first, into additional
+/// ROMs with the same address. Fields of the description itself stay in the control word.
 fn moved_beside(d: &Designer, microinstructions: &mut [Microinstruction], address: NetId) {
     let width_of = |field: &Field| d.net(field.net).format.width();
     let mut fields = d.with(|inner| inner.design.control.fields.clone());

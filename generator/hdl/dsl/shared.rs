@@ -1,4 +1,5 @@
-//! Gives the modules of the description language access to the state of a designer: its nets, registers, fields and mistakes.
+//! Gives the modules of the description language access to the state of a designer: nets, registers, fields, and the collected
+//! mistakes.
 
 use std::panic::Location;
 
@@ -11,7 +12,7 @@ use glint_base::diagnostic::{Diagnostic, SourceLocation};
 use glint_base::fixed::{Format, MAX_POINT, MAX_WIDTH};
 use glint_base::interval::Interval;
 
-/// Access to the shared state.
+/// Access to the state of a designer, for the other modules of the description language.
 impl Designer {
     pub(crate) fn signal(&self, id: NetId) -> Signal<'_> {
         Signal::new(self, id)
@@ -25,14 +26,15 @@ impl Designer {
         act(&mut self.inner.borrow_mut())
     }
 
-    /// Returns a net that the author named.
+    /// Adds a net that the author named, with the whole range of its format, and returns it.
     #[track_caller]
     pub(crate) fn add_named(&self, name: &str, format: Format, driver: Driver) -> NetId {
         let format = self.sound(name, format);
         self.add_net(name, format, format.range(), driver, true)
     }
 
-    /// Returns a net that the DSL adds; `name` is made distinct.
+    /// Adds an unnamed net, such as an extension, that the description language makes itself, and returns it. If another net has
+    /// the name, a number is added: a second `sum_wide` becomes `sum_wide_2`.
     #[track_caller]
     pub(crate) fn add_wiring(
         &self,
@@ -57,7 +59,7 @@ impl Designer {
         self.add_net(&name, format, range, driver, false)
     }
 
-    /// Runs `act`, whose nets get the location `location`, wherever in the builder they are made: their names may be wrong.
+    /// Runs `act`, and gives all nets and ROMs that it adds the source location `location`.
     pub(crate) fn located<T>(&self, location: SourceLocation, act: impl FnOnce() -> T) -> T {
         let own = self.with(|inner| (inner.design.nets.len(), inner.design.roms.len()));
         let made = act();
@@ -72,8 +74,8 @@ impl Designer {
         made
     }
 
-    /// Returns the format if a net can have it. Otherwise this reports an error and returns the format of one bit, so
-    /// that the rest of the description is checked too.
+    /// Returns `format` if a net can have it. Otherwise reports a mistake and returns a format of one bit, so that the rest of
+    /// the description can be checked too. A net has 1 to [`MAX_WIDTH`] bits and −[`MAX_POINT`] to [`MAX_POINT`] fraction bits.
     #[track_caller]
     pub(crate) fn sound(&self, name: &str, format: Format) -> Format {
         let width = i64::from(format.int) + i64::from(format.frac) + i64::from(format.signed);
@@ -162,8 +164,8 @@ impl Designer {
         self.signal(net)
     }
 
-    /// Returns the signal. If the signal belongs to another designer, this reports an error and returns a constant
-    /// with the same format, so that the rest is checked too.
+    /// Returns `signal`. If it belongs to another designer, reports a mistake and returns a constant with the same format. The
+    /// rest of the description can then be checked too.
     #[track_caller]
     pub(crate) fn own(&self, signal: Signal<'_>) -> Signal<'_> {
         let other = signal.designer();
@@ -184,7 +186,8 @@ impl Designer {
         self.signal(self.add_wiring(&signal.name(), signal.format(), signal.range(), driver))
     }
 
-    /// Checks several signals. (In a closure the caller would be this library.)
+    /// Returns several signals, each replaced by a constant if it belongs to another designer ([`Designer::own`]). A loop
+    /// replaces a closure, because in a closure the reported source line would be in this file.
     #[track_caller]
     pub(crate) fn own_all(&self, signals: &[Signal<'_>]) -> Vec<Signal<'_>> {
         let mut own = Vec::with_capacity(signals.len());
@@ -194,8 +197,8 @@ impl Designer {
         own
     }
 
-    /// Returns `source` as a net of exactly `format`. Otherwise it reports an error; `what` names the purpose of the
-    /// net.
+    /// Returns `source` as a net of exactly `format`. If `format` has another binary point or cannot represent the range of
+    /// `source`, reports a mistake and returns `None`. `what` names the purpose of the net in the message.
     #[track_caller]
     pub(crate) fn fitted(&self, source: Signal<'_>, format: Format, what: &str) -> Option<NetId> {
         let (low, high) = source.range();

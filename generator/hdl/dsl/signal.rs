@@ -38,19 +38,19 @@ impl<'d> Signal<'d> {
         self.designer.with(|inner| inner.design.net(self.id).format)
     }
 
-    /// Returns the interval of raw values that the signal can have.
+    /// Returns the interval of raw values that the signal can have: the smallest and the largest.
     pub fn range(self) -> Interval {
         self.designer.with(|inner| inner.design.net(self.id).range)
     }
 
-    /// Sets the number of this block in the figure of the device's source.
+    /// Sets the number of this block in the block diagram of the document that describes the device.
     #[must_use]
     pub fn block(self, number: u16) -> Self {
         self.designer.with(|inner| inner.design.nets[self.id.index()].block = Some(number));
         self
     }
 
-    /// Sets the one-line comment that the Verilog shows at the signal.
+    /// Sets a comment of one line, which the Verilog shows at the signal.
     #[must_use]
     pub fn doc(self, line: &str) -> Self {
         self.designer.set_doc(self.id, line);
@@ -64,7 +64,8 @@ impl<'d> Signal<'d> {
         self.doc(line)
     }
 
-    /// Names a net that is mere wiring. Verilog and waveforms then show it under this name.
+    /// Gives the signal a name. A net that the description language made as wiring is then shown under this name in Verilog and
+    /// waveforms.
     #[must_use]
     pub fn named(self, name: &str) -> Self {
         self.designer.with(|inner| {
@@ -94,8 +95,8 @@ impl<'d> Signal<'d> {
         self.shift_right(places.saturating_neg())
     }
 
-    /// Appends zeros up to `frac` fraction bits. The signal must not have more fraction bits than that. For example,
-    /// `with_fraction(12)` makes `u0.12` of `u0.8`.
+    /// Appends zeros up to `frac` fraction bits. For example, `with_fraction(12)` turns `u0.8` into `u0.12`. Reports a mistake if
+    /// the signal has more than `frac` fraction bits.
     #[must_use]
     #[track_caller]
     pub fn with_fraction(self, frac: i32) -> Self {
@@ -121,7 +122,9 @@ impl<'d> Signal<'d> {
         self.wiring("scaled", scaled, range, Op::Concat(vec![self.id, zeros.id]))
     }
 
-    /// Returns the bits `low` to `low + width − 1`, read as a number of `format`, which must be as wide.
+    /// Returns as many bits as `format` is wide, from bit `low` up, as a number of `format`. For example,
+    /// `x.bits(4, Format::unsigned(4, 0))` is the upper half of a `u8.0` signal `x`. Reports a mistake if the signal has too few
+    /// bits.
     #[must_use]
     #[track_caller]
     pub fn bits(self, low: u32, format: Format) -> Self {
@@ -133,22 +136,23 @@ impl<'d> Signal<'d> {
             self.designer.error(codes::WIDTH, message);
             return self.designer.raw_constant("zeros", 0, format);
         }
-        // All bits of a value that is never negative are still within its range.
+        // If the top bits of a value that is never negative are taken, their interval follows from the interval of the value.
         let (from, to) = self.range();
         let top = low + format.width() == have && !format.signed && from >= 0;
         let range = if top { (from >> low, to >> low) } else { format.range() };
         self.wiring("bits", format, range, Op::Slice { of: self.id, low })
     }
 
-    /// Returns bit number `at` of the signal as a signal of one bit. Bit 0 is the lowest.
+    /// Returns bit number `at` of the signal as a signal of one bit. Bit 0 is the lowest. Reports a mistake if the signal has no
+    /// such bit.
     #[must_use]
     #[track_caller]
     pub fn bit(self, at: u32) -> Self {
         self.bits(at, Format::BIT)
     }
 
-    /// Appends the bits of `low` below the bits of this signal, and reads the result in `format`. `format` must be as wide as both
-    /// together. For example, a shift register takes itself above the bit that enters.
+    /// Appends the bits of `low` below the bits of this signal, and reads the result in `format`. For example, a shift register
+    /// loads its own bits above the bit that enters. Reports a mistake unless `format` is as wide as both together.
     #[must_use]
     #[track_caller]
     pub fn above(self, low: Signal<'d>, format: Format) -> Self {
@@ -177,8 +181,8 @@ impl<'d> Signal<'d> {
         self.designer.signal(self.designer.resized(self, signed))
     }
 
-    /// Reads the bits in another format, which must have the same width. The bit pattern is not converted. For example, 255 in
-    /// `u8.0` is read as −1 in `s7.0`.
+    /// Reads the low bits in another format, without conversion. For example, 255 in `u8.0` is read as −1 in `s7.0`. Reports a
+    /// mistake if `format` is wider than the signal.
     #[must_use]
     #[track_caller]
     pub fn read_as(self, format: Format) -> Self {
@@ -191,7 +195,7 @@ impl<'d> Signal<'d> {
         self.wiring("shifted", format, range, Op::Relabel(self.id))
     }
 
-    /// Makes a wiring net named after this one.
+    /// Makes a wiring net whose name consists of the name of this signal and `suffix`.
     #[track_caller]
     pub(crate) fn wiring(self, suffix: &str, format: Format, range: Interval, op: Op) -> Self {
         let name = format!("{}_{suffix}", self.name());
@@ -199,7 +203,8 @@ impl<'d> Signal<'d> {
         self.designer.signal(id)
     }
 
-    /// Returns the low bits, or all of them and zeros or signs above, as `format`, under a name after this one's.
+    /// Returns the low bits of this signal, or all its bits extended by sign or zeros, as a net of `format`. The name consists of
+    /// the name of this signal and `suffix`.
     #[track_caller]
     pub(crate) fn resized_as(self, suffix: &str, format: Format, range: Interval) -> Self {
         let op = match format.width().cmp(&self.format().width()) {
@@ -211,7 +216,7 @@ impl<'d> Signal<'d> {
     }
 }
 
-/// The arithmetic blocks. Results are exact: their formats hold every value that the operands can give.
+/// The arithmetic blocks. Results are exact: their formats can represent every value that the operands can give.
 impl Designer {
     /// Returns `a + b`, exact. Signals with different binary points are aligned first. For example, two `u0.8` signals that may
     /// have any value give `u1.8`.
@@ -220,7 +225,8 @@ impl Designer {
         self.sum(name, a, b, None)
     }
 
-    /// Returns `a + b`, plus one ulp of the operand with more fraction bits if the bit `carry` is 1. The sum is exact.
+    /// Returns `a + b`, plus one unit in the last place (of the operand with more fraction bits) if the bit `carry` is 1. The sum
+    /// is exact.
     #[track_caller]
     pub fn add_carry<'d>(
         &'d self,
@@ -254,8 +260,8 @@ impl Designer {
         self.signal(self.add_net(name, format, range, Driver::Op(op), true))
     }
 
-    /// Returns `a + b` modulo 2^width, plus the carry if there is one. Both signals must have the same format. The patent's
-    /// arithmetic of `rough` uses it.
+    /// Returns `a + b` modulo 2^width, plus the bit `carry` in the last place if there is one. For example, 200 + 100 in `u8.0`
+    /// gives 44. Reports a mistake unless both signals have the same format. The patent's arithmetic of `rough` uses this sum.
     #[track_caller]
     pub fn add_modulo<'d>(
         &'d self,
@@ -279,8 +285,8 @@ impl Designer {
         self.signal(self.add_net(name, format, format.range(), Driver::Op(op), true))
     }
 
-    /// Returns `a − b`, aligned as in [`Designer::add`]. The result is unsigned if the ranges show that it is never negative.
-    /// For example, two operands `u0.8` that may have any value give `s0.8`.
+    /// Returns `a − b`, exact. Signals with different binary points are aligned first. The result is unsigned if the ranges
+    /// show that it is never negative. For example, two operands `u0.8` that may have any value give `s0.8`.
     #[track_caller]
     pub fn sub<'d>(&'d self, name: &str, a: Signal<'d>, b: Signal<'d>) -> Signal<'d> {
         let (a, b) = aligned(self.own(a), self.own(b));
@@ -291,7 +297,8 @@ impl Designer {
         self.signal(self.add_net(name, format, range, Driver::Op(op), true))
     }
 
-    /// Returns `a · b`, exact. For example, two `u0.8` signals give `u0.16`.
+    /// Returns `a · b`, exact. For example, two `u0.8` signals give `u0.16`. If only one of the signals is signed, the other one
+    /// becomes signed first, one bit wider.
     #[track_caller]
     pub fn mul<'d>(&'d self, name: &str, a: Signal<'d>, b: Signal<'d>) -> Signal<'d> {
         let (a, b) = (self.own(a), self.own(b));
@@ -308,7 +315,8 @@ impl Designer {
         self.signal(self.add_net(name, format, range, Driver::Op(Op::Mul(a.id(), b.id())), true))
     }
 
-    /// Returns every bit inverted: `−a − ulp` for a signed signal, `largest − a` for an unsigned one.
+    /// Returns every bit inverted. In raw values, this is `−a − 1` for a signed signal, and `largest − a` for an unsigned
+    /// one.
     #[track_caller]
     pub fn not<'d>(&'d self, name: &str, a: Signal<'d>) -> Signal<'d> {
         let a = self.own(a);
@@ -320,9 +328,9 @@ impl Designer {
         self.signal(net)
     }
 
-    /// Puts `high` and `low` side by side, by wiring: an address made of two parts. Both must be integers without a sign,
-    /// because the bits of a signed part would be read as another number. For example, 2 in `u2.0` and 5 in `u3.0` give 21 in
-    /// `u5.0`.
+    /// Joins the bits of `high` and `low` by wiring, for example an address that consists of two parts. For example, 2 in `u2.0`
+    /// and 5 in `u3.0` give 21 in `u5.0`. Reports a mistake if a part is signed, because its bits would be read as another
+    /// number.
     #[track_caller]
     pub fn concat<'d>(&'d self, name: &str, high: Signal<'d>, low: Signal<'d>) -> Signal<'d> {
         let (mut high, mut low) = (self.own(high), self.own(low));
@@ -345,8 +353,8 @@ impl Designer {
         self.signal(self.add_net(name, format, range, Driver::Op(op), true))
     }
 
-    /// Returns the constant `high` whose low bits are replaced by `low`. These low bits of `high` must be 0. For example, `high` =
-    /// 0b1000 and a `low` of three bits give the addresses 8 to 15, without logic.
+    /// Returns the constant `high` whose low bits are replaced by `low`, in `format`. These low bits of `high` must be 0. For
+    /// example, `high` = 0b1000 and a `low` of three bits give the addresses 8 to 15, without logic.
     #[track_caller]
     pub fn beside<'d>(&'d self, high: Signal<'d>, low: Signal<'d>, format: Format) -> Signal<'d> {
         let low_bits = low.format().width();
@@ -358,8 +366,8 @@ impl Designer {
         low.wiring("beside", format, (from, to), Op::Concat(vec![top.id(), low.id()]))
     }
 
-    /// Concatenates the parts, the first in the top bits, and reads the result in `format`. `format` must be as wide as all parts
-    /// together. No logic is needed.
+    /// Joins the bits of all parts by wiring, the first part in the top bits, and reads the result in `format`. Reports a mistake
+    /// unless `format` is as wide as all parts together.
     #[track_caller]
     pub fn join<'d>(&'d self, name: &str, parts: &[Signal<'d>], format: Format) -> Signal<'d> {
         let parts = self.own_all(parts);
@@ -371,7 +379,8 @@ impl Designer {
             self.error(codes::WIDTH, message);
             return self.raw_constant("zeros", 0, format);
         }
-        // Side by side, unsigned parts are the larger the larger each is.
+        // If no part can be negative, the smallest values of all parts give the smallest result, and the largest values the
+        // largest.
         let ends = parts.iter().try_fold((0, 0), |(low, high), part| {
             let (from, to) = part.range();
             let width = part.format().width();
@@ -385,35 +394,35 @@ impl Designer {
         self.signal(self.add_wiring(name, format, range, Driver::Op(Op::Concat(nets))))
     }
 
-    /// Returns a bit that is 1 if both `a` and `b` are 1. Both must have one bit.
+    /// Returns a bit that is 1 if both `a` and `b` are 1. Reports a mistake unless both have one bit.
     #[track_caller]
     pub fn and<'d>(&'d self, name: &str, a: Signal<'d>, b: Signal<'d>) -> Signal<'d> {
         let (a, b) = (self.one_bit(a), self.one_bit(b));
         self.signal(self.add_named(name, Format::BIT, Driver::Op(Op::And(a, b))))
     }
 
-    /// Returns a bit that is 1 if `a` or `b` is 1. Both must have one bit.
+    /// Returns a bit that is 1 if `a` or `b` is 1. Reports a mistake unless both have one bit.
     #[track_caller]
     pub fn or<'d>(&'d self, name: &str, a: Signal<'d>, b: Signal<'d>) -> Signal<'d> {
         let (a, b) = (self.one_bit(a), self.one_bit(b));
         self.signal(self.add_named(name, Format::BIT, Driver::Op(Op::Or(a, b))))
     }
 
-    /// Returns a bit that is 1 if one of `a` and `b` is 1, and the other one 0. Both must have one bit.
+    /// Returns a bit that is 1 if exactly one of `a` and `b` is 1. Reports a mistake unless both have one bit.
     #[track_caller]
     pub fn xor<'d>(&'d self, name: &str, a: Signal<'d>, b: Signal<'d>) -> Signal<'d> {
         let (a, b) = (self.one_bit(a), self.one_bit(b));
         self.signal(self.add_named(name, Format::BIT, Driver::Op(Op::Xor(a, b))))
     }
 
-    /// Returns a bit that is 1 if `a < b` as values, so the binary points are aligned first.
+    /// Returns a bit that is 1 if `a` is less than `b`. The values are compared, so binary points and signs may differ.
     #[track_caller]
     pub fn less<'d>(&'d self, name: &str, a: Signal<'d>, b: Signal<'d>) -> Signal<'d> {
         let (a, b) = self.comparable(a, b);
         self.signal(self.add_named(name, Format::BIT, Driver::Op(Op::Less(a, b))))
     }
 
-    /// Returns a bit that is 1 if `a = b` as values, so the binary points are aligned first.
+    /// Returns a bit that is 1 if `a` equals `b`. The values are compared, so binary points and signs may differ.
     #[track_caller]
     pub fn equal<'d>(&'d self, name: &str, a: Signal<'d>, b: Signal<'d>) -> Signal<'d> {
         let (a, b) = self.comparable(a, b);
@@ -432,8 +441,8 @@ impl Designer {
         self.signal(self.add_named(name, Format::BIT, Driver::Op(Op::All(self.own(a).id()))))
     }
 
-    /// Returns input 0 or input 1, as the bit `select` says. `select` is a signal of the datapath. The inputs must have the same
-    /// binary point; the result can represent both.
+    /// Returns input 0 if the bit `select` is 0, and input 1 if it is 1. `select` is a signal of the datapath. Reports a mistake
+    /// if the inputs have different binary points. The format of the result can represent both inputs.
     #[track_caller]
     pub fn choose<'d>(
         &'d self,
@@ -447,8 +456,8 @@ impl Designer {
 
     /// Returns a mux that the microprogram controls by its own select field, `<name>_select`.
     ///
-    /// The inputs must have one binary point ([`Signal::with_fraction`] aligns them; [`Designer::bus`] carries any); integer
-    /// bits and signs may differ.
+    /// Integer bits and signs of the inputs may differ. Reports a mistake if the inputs have different binary points;
+    /// [`Signal::with_fraction`] aligns them, and [`Designer::bus`] takes inputs with different binary points.
     #[track_caller]
     pub fn mux<'d>(&'d self, name: &str, inputs: impl IntoIterator<Item = Signal<'d>>) -> Mux<'d> {
         let inputs: Vec<_> = inputs.into_iter().collect();
@@ -458,7 +467,8 @@ impl Designer {
         self.mux_on(name, select, inputs)
     }
 
-    /// Returns a mux that is controlled by shared select lines. It must have an input for each value of the lines.
+    /// Returns a mux that shared select lines control. Reports a mistake unless the mux has one input for each choice of the
+    /// lines, and all inputs have the same binary point.
     #[track_caller]
     pub fn mux_on<'d>(
         &'d self,
@@ -516,9 +526,8 @@ impl Designer {
         (self.resized(a, format), self.resized(b, format))
     }
 
-    /// Returns `a` as a net of exactly `format`, which must have the same binary point. If the format does not hold
-    /// the range of `a`, the upper bits are dropped. This is right for an operand of a sum whose result the format
-    /// holds.
+    /// Returns `a` as a net of exactly `format`, which must have the same binary point. If the format cannot represent the range
+    /// of `a`, the upper bits are dropped. This is harmless for an operand of a sum whose result fits the format.
     #[track_caller]
     pub(crate) fn resized(&self, a: Signal<'_>, format: Format) -> NetId {
         let a = self.own(a);
@@ -538,7 +547,7 @@ impl Designer {
     }
 }
 
-/// Returns both with as many fraction bits as the finer one.
+/// Returns `a` and `b` with the same number of fraction bits, the larger of both.
 #[track_caller]
 fn aligned<'d>(a: Signal<'d>, b: Signal<'d>) -> (Signal<'d>, Signal<'d>) {
     let frac = a.format().frac.max(b.format().frac);
@@ -560,13 +569,14 @@ impl<'d> Mux<'d> {
         self.out
     }
 
-    /// Returns the setting with which a microinstruction selects `input`, which must be an input of the mux.
+    /// Returns the setting with which a microinstruction selects `input`. Reports a mistake unless `input` is exactly one
+    /// input of the mux.
     #[track_caller]
     pub fn pick(self, input: Signal<'d>) -> StepSetting {
         StepSetting::pick(self.out.designer(), self.field, &self.out.name(), input)
     }
 
-    /// Returns the select line or lines of the mux, as a signal.
+    /// Returns the select lines of the mux as one signal.
     pub fn select(self) -> Signal<'d> {
         self.out.designer().field_net(self.field)
     }

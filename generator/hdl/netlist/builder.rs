@@ -23,13 +23,14 @@ impl Design {
         }
     }
 
-    /// Adds a net, whose name must be unique in the design.
+    /// Adds a net, whose name must be unique in the design, and returns its identifier.
     pub fn add_net(&mut self, net: Net) -> NetId {
         self.nets.push(net);
         NetId(self.nets.len() as u32 - 1)
     }
 
-    /// Makes a new register the driver of the net `q`. The register has no data input yet; the caller must connect one.
+    /// Makes a new register the driver of the net `q`, and returns the register. The register has no data input yet; the caller
+    /// must connect one.
     pub fn add_register(&mut self, q: NetId, kind: RegisterKind) -> &mut NetlistRegister {
         let at = self.registers.len();
         self.nets[q.index()].driver = Driver::Register(RegId(at as u32));
@@ -37,7 +38,7 @@ impl Design {
         &mut self.registers[at]
     }
 
-    /// Adds a ROM, and makes it the driver of its data net.
+    /// Adds a ROM, makes it the driver of its data net, and returns its identifier.
     pub fn add_rom(&mut self, rom: NetlistRom) -> RomId {
         let id = RomId(self.roms.len() as u32);
         self.nets[rom.data.index()].driver = Driver::Rom(id);
@@ -47,7 +48,7 @@ impl Design {
 }
 
 impl Net {
-    /// Returns a named net of the datapath whose interval is the whole range of its format.
+    /// Makes a named net of the datapath whose interval is the whole range of its format, without a comment and a block number.
     pub fn new(name: String, format: Format, driver: Driver, location: SourceLocation) -> Self {
         Self {
             name,
@@ -65,7 +66,7 @@ impl Net {
 }
 
 impl NetlistRom {
-    /// Returns a ROM that is read without a clock.
+    /// Makes a ROM that is read without a clock, without comments and a block number. `words` are bit patterns, from address 0.
     pub fn new(
         name: &str,
         address: NetId,

@@ -9,17 +9,19 @@ use super::NetId;
 pub enum Op<N = NetId> {
     /// The bits of the operand, under another name or format; same width.
     Relabel(N),
-    /// The operand with copies of its sign bit (signed operand) or zeros (unsigned) above it; the
-    /// result is wider.
+    /// The operand with copies of its sign bit (signed operand) or zeros (unsigned operand) above it; the result is wider. For
+    /// example, `10` extended to 4 bits is `1110` if signed, and `0010` if unsigned.
     Extend(N),
-    /// The bits of the operand from `low` up, as many as the result is wide.
+    /// The bits of the operand from `low` up, as many as the result is wide. For example, `low` 2 and a result of 3 bits give the
+    /// bits 2, 3 and 4.
     Slice {
         /// The operand whose bits are taken.
         of: N,
-        /// The lowest bit taken.
+        /// The number of the lowest bit that is taken.
         low: u32,
     },
-    /// The bits of all operands joined, the first operand in the top bits; the result is as wide as all operands together.
+    /// The bits of all operands joined, the first operand in the top bits; the result is as wide as all operands together. For
+    /// example, `10` and `011` give `10011`.
     Concat(Vec<N>),
     /// Every bit inverted; same width.
     Not(N),
@@ -35,7 +37,7 @@ pub enum Op<N = NetId> {
         a: N,
         /// The second operand of the sum.
         b: N,
-        /// The carry into the adder, one bit.
+        /// The carry into the adder, one bit; `None` is a carry of 0.
         carry: Option<N>,
     },
     /// Difference `a − b` modulo 2^width; same width.
@@ -44,8 +46,8 @@ pub enum Op<N = NetId> {
     Mul(N, N),
     /// A bit that is 1 if the operands are equal. Both operands have the same width.
     Equal(N, N),
-    /// A bit that is 1 if the first operand is less than the second. The operands have the same width, and both are signed or both
-    /// unsigned.
+    /// A bit that is 1 if the first operand is less than the second. The operands have the same width, and both are signed or
+    /// both unsigned.
     Less(N, N),
     /// A bit that is 1 if any bit of the operand is 1.
     Any(N),
@@ -54,7 +56,7 @@ pub enum Op<N = NetId> {
     /// The input with the number `select`; all inputs and the result have the same width. A number beyond the last input selects
     /// the last input.
     Mux {
-        /// The select signal, as wide as the number of inputs needs.
+        /// The number of the input that passes. For example, four inputs need a select of at least 2 bits.
         select: N,
         /// The inputs of the mux, two or more.
         inputs: Vec<N>,
@@ -62,8 +64,8 @@ pub enum Op<N = NetId> {
 }
 
 impl<N> Op<N> {
-    /// Returns the same kind of cell with other operands, such as `x + y` for `a + b`. `of` gives the new operand for each one, in
-    /// the order in which the cell states them.
+    /// Returns the same kind of cell with other operands, such as `x + y` for `a + b`. `of` returns the new operand for each
+    /// operand, in the order of the variant's fields.
     pub fn map<M>(&self, mut of: impl FnMut(&N) -> M) -> Op<M> {
         match self {
             Self::Relabel(a) => Op::Relabel(of(a)),
@@ -89,7 +91,7 @@ impl<N> Op<N> {
         }
     }
 
-    /// Returns the operands in the order in which the cell states them.
+    /// Returns the operands in the order of the variant's fields. For example, a mux has its select first, and then its inputs.
     pub fn operands(&self) -> Vec<N>
     where
         N: Copy,

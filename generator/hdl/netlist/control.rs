@@ -6,7 +6,7 @@ use glint_base::diagnostic::SourceLocation;
 /// The control unit of a device: an address counter, a run flag and a ROM of microinstructions.
 ///
 /// An idle device has the address 0 and the run flag 0. `start` sets the flag. From then on the device executes one
-/// microinstruction a clock, and [`Sequence`] says which comes next.
+/// microinstruction a clock, and the [`Sequence`] of a microinstruction determines its successor.
 #[derive(Clone, Debug)]
 pub struct Control {
     /// The fields of the control word, the most significant first.
@@ -19,26 +19,26 @@ pub struct Control {
     pub address: RegId,
     /// The register with the run flag, which is 1 during a computation.
     pub run: RegId,
-    /// Whether the device accepts `start` in the last clock of a computation too. It does if the operand registers have buffers.
+    /// Whether the device accepts `start` in the last clock of a computation too, because the operand registers have buffers.
     pub overlaps: bool,
 }
 
-/// A field of the control word: bits of a microinstruction that control one thing in the device. For example, `rough` has the field
-/// `operand_select` of two bits, which chooses among four pairs of factors.
+/// A field of the control word: bits of a microinstruction that control one thing in the device. For example, `rough` has the
+/// field `operand_select` of two bits, which chooses among four pairs of factors.
 #[derive(Clone, Debug)]
 pub struct Field {
     /// The name of this field of the control word, such as `operand_select`. It must be a legal Verilog identifier.
     pub name: String,
     /// The net that the field drives.
     pub net: NetId,
-    /// The kind of thing that the field controls.
+    /// Whether the field selects inputs of muxes, loads registers, drives an output, or controls the sequencer.
     pub kind: FieldKind,
-    /// The numbers of the field's lines in the block diagram of the document that describes the device, the most significant first.
-    /// It is empty if the diagram does not show them.
+    /// The numbers of the field's bits (its lines) in the block diagram of the document that describes the device, the most
+    /// significant first. The list is empty if the diagram does not show them.
     pub lines: Vec<u16>,
 }
 
-/// The kind of thing that a field of the control word controls.
+/// The purpose of a field of the control word.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum FieldKind {
     /// The field drives select lines of muxes. The texts are the names of the choices, from the value 0 on.
@@ -71,7 +71,8 @@ pub enum Sequence {
     Next,
     /// The same microinstruction follows until `start` is high, and then the next one. The device is not busy here.
     WaitStart,
-    /// Microinstruction `to` follows if `condition` is 1, otherwise the next one. `to` may lie behind or ahead.
+    /// Microinstruction `to` follows if `condition` is 1, otherwise the microinstruction at the next address. `to` may be a lower
+    /// address (a loop), the same one, or a higher one (a jump).
     LoopWhile {
         /// The condition of the jump, a net of one bit in the datapath.
         condition: NetId,
@@ -83,7 +84,8 @@ pub enum Sequence {
 }
 
 impl Control {
-    /// Returns the control unit of a pipeline, which has no microinstructions, fields or sequencer.
+    /// Returns the control unit of a pipeline, which has no microinstructions, fields or sequencer. Its identifiers of ROM and
+    /// registers are invalid.
     pub fn none() -> Self {
         Self {
             fields: Vec::new(),
@@ -95,9 +97,9 @@ impl Control {
         }
     }
 
-    /// Returns the microinstructions that can follow microinstruction `at`, in ascending order. If the last microinstruction
-    /// does not end, its successor is the number of microinstructions. An idle device stays in microinstruction 0. For example,
-    /// microinstruction 0 has the successors 0 and 1.
+    /// Returns the addresses of the microinstructions that can follow microinstruction `at`, in ascending order. If the last
+    /// microinstruction does not end the computation, its successor is the number of microinstructions. An idle device stays in
+    /// microinstruction 0. For example, microinstruction 0 has the successors 0 and 1.
     pub fn successors(&self, at: usize) -> Vec<usize> {
         let next = at + 1;
         let mut successors = match self.microprogram[at].sequence {
@@ -113,8 +115,8 @@ impl Control {
         successors
     }
 
-    /// Returns the microinstructions from which control reaches microinstruction `at` in exactly `clocks` clocks, in ascending
-    /// order.
+    /// Returns the addresses of the microinstructions from which control reaches microinstruction `at` in exactly `clocks`
+    /// clocks, in ascending order. With 0 clocks, this is `at` itself.
     pub fn predecessors(&self, at: usize, clocks: u32) -> Vec<usize> {
         let mut after = vec![at];
         for _ in 0..clocks {
@@ -131,8 +133,8 @@ impl Control {
 }
 
 impl Design {
-    /// Returns the position of the lowest bit of each field in the control word. It is empty for a pipeline, which has no control
-    /// word. For example, `rough` has 7 for `operand_select` and 0 for `go_on`.
+    /// Returns the position of the lowest bit of each field in the control word, in the order of the fields. The list is empty
+    /// for a pipeline, which has no control word. For example, `rough` has 7 for `operand_select` and 0 for `go_on`.
     pub fn field_positions(&self) -> Vec<u32> {
         if self.control.fields.is_empty() {
             return Vec::new();

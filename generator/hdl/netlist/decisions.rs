@@ -1,16 +1,16 @@
 //! Finds the microinstructions whose successor depends on an operand, and the delay from the control word to `valid`.
 //!
-//! Before the first such microinstruction, every computation executes the same microinstructions in the same clocks, whatever the
+//! Up to the first such microinstruction, every computation executes the same microinstructions in the same clocks, whatever the
 //! operands are. This follows by induction over the clocks. The module assumes that a computation loads a register before the
-//! register decides about a successor. For example, the operand `shift` of `lyon` decides how often a loop runs.
+//! register affects a successor. For example, the operand `shift` of `lyon` determines how often a loop runs.
 
 use std::collections::HashSet;
 
 use super::{Design, Driver, NetId, Role, Sequence};
 use glint_base::cone;
 
-/// Returns the addresses of the microinstructions whose successor depends on an operand, for example by a loop that runs until a
-/// value is small.
+/// Returns the addresses of the microinstructions whose successor depends on an operand, in ascending order. For example, the
+/// condition of a loop may be that a value computed from an operand is not 0.
 pub fn decided_by_data(design: &Design) -> Vec<usize> {
     let microprogram = design.control.microprogram.iter().enumerate();
     let decided = microprogram.filter(|(_, microinstruction)| match microinstruction.sequence {
@@ -22,8 +22,8 @@ pub fn decided_by_data(design: &Design) -> Vec<usize> {
     decided.map(|(at, _)| at).collect()
 }
 
-/// Returns the smallest number of registers on a path from the control word (the output of the control ROM) to the output `valid`.
-/// Returns `None` if an operand affects `valid`, or if the design has no `valid`.
+/// Returns the smallest number of registers on a path from the control word (the output of the control ROM) to the output
+/// `valid`. Returns `None` if an operand affects `valid`, or if the design has no `valid`.
 pub fn delay_of_valid(design: &Design) -> Option<u32> {
     let valid = design.port(|role| role == Role::Valid)?;
     registers_from_control(design, valid.net)
@@ -38,8 +38,9 @@ fn is_control(design: &Design, net: NetId) -> bool {
     }
 }
 
-/// Returns the registers between the control word and a net on the shortest way, or all that there are if the control word
-/// has no influence; `None` if an operand has.
+/// Returns the smallest number of registers on a path from the control word to `net`. If the control word does not affect the
+/// net, returns a number that is larger than the registers on any path to it. Returns `None` if an operand or an undriven net
+/// affects `net`.
 fn registers_from_control(design: &Design, net: NetId) -> Option<u32> {
     let inputs = |net| match is_control(design, net) {
         true => Vec::new(),
@@ -48,7 +49,7 @@ fn registers_from_control(design: &Design, net: NetId) -> Option<u32> {
     let (mut seen, mut front) = (HashSet::new(), vec![net]);
     let (mut delay, mut shortest) = (0, None);
     while !front.is_empty() {
-        // Nets behind one more register.
+        // The nets in front of the registers that this round meets.
         let mut behind = Vec::new();
         for net in cone::reached(front, inputs) {
             seen.insert(net);
@@ -80,7 +81,7 @@ fn registers_from_control(design: &Design, net: NetId) -> Option<u32> {
     Some(shortest.unwrap_or(delay))
 }
 
-/// Returns whether an input of this `role` lets the environment time the device.
+/// Returns whether an input of this `role` is a signal of the handshake, not an operand.
 fn is_handshake(role: Role) -> bool {
     matches!(role, Role::Start | Role::Reset | Role::InValid | Role::OutReady)
 }

@@ -5,8 +5,8 @@ use std::collections::BTreeMap;
 
 use super::{Design, Driver, NetId, Op, Pipeline, RegId};
 
-/// A delay line of a pipeline: registers that carry values from one stage to a later one, with no reader in between. All its values
-/// travel between the same two stages.
+/// A delay line of a pipeline: registers that carry values from one stage to a later one, with no reader in between. All its
+/// values travel between the same two stages.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct DelayLine {
     /// The number of the stage that computes the values.
@@ -15,11 +15,11 @@ pub struct DelayLine {
     pub to: usize,
     /// The net that says when the values move to the next stage; `None` if they always move.
     pub enable: Option<NetId>,
-    /// The values that travel through this delay line, in the order of their registers.
+    /// The values that travel through this delay line, in the order of their first registers in the design.
     pub values: Vec<Delayed>,
 }
 
-/// A value of a pipeline that travels through the registers of several stages.
+/// A value of a delay line, which passes through one register in each of several stages.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Delayed {
     /// The net with the value that enters the delay line, the data input of its first register.
@@ -30,7 +30,7 @@ pub struct Delayed {
 
 impl DelayLine {
     /// Returns the number of words of a memory that replaces the registers of the delay line. One more register behind the memory
-    /// holds its output. For example, five registers become a memory of four words.
+    /// stores the output of the memory. For example, five registers become a memory of four words.
     pub fn words(&self) -> usize {
         self.values[0].passed().len()
     }
@@ -49,12 +49,12 @@ impl Delayed {
 }
 
 impl Design {
-    /// Returns the delay lines that the Verilog writes as memories: the lines that are smaller as memories, if the target has
-    /// small memories.
+    /// Returns the delay lines that the Verilog writes as memories. A delay line is written as a memory if the target has small
+    /// memories and a memory takes fewer look-up tables and registers. The list is empty for a design that is no pipeline.
     ///
-    /// Points read the same values there as in the registers, whatever the enable does. After a reset, which drops
-    /// all points, a memory begins with its first word again. The side channel stays in registers, because the proof
-    /// by induction follows its value from stage to stage. Registers inside a multiplier stay registers too.
+    /// A memory returns the same value for each point as the registers would, however often the enable stops the pipeline. After
+    /// a reset, which drops all points, a memory begins with its first word again. The side channel stays in registers, because
+    /// the proof by induction follows its value from stage to stage. Registers inside a multiplier stay registers too.
     pub fn delay_lines(&self) -> Vec<DelayLine> {
         let Some(pipeline) = &self.pipeline else { return Vec::new() };
         let Some(memory) = pipeline.delay_memory else { return Vec::new() };
@@ -67,7 +67,8 @@ impl Design {
             if next.contains(&Some(at)) {
                 continue;
             }
-            // A word of a block memory comes too late in its clock to be written to another on the way.
+            // The word of a block memory arrives too late in its clock for a write to a second memory. Its first register
+            // therefore stays a register.
             let word = self.is_of_block_memory(data);
             let Some(first) = (if word { next[at] } else { Some(at) }) else { continue };
             let data = if word { register.q } else { data };
@@ -91,7 +92,9 @@ impl Design {
         lines
     }
 
-    /// Returns the register that alone reads register number `at`, if it differs from it by its stage only.
+    /// Returns the number of the register that follows register `at` in a delay line. It is the only reader of register `at`,
+    /// with the same enable. Returns `None` if another net reads register `at`, or if one of the registers has a reset. Returns
+    /// `None` if register `at` belongs to the side channel or is inside a multiplier.
     fn next_of_line(
         &self,
         pipeline: &Pipeline,
@@ -109,7 +112,7 @@ impl Design {
         is_alike.then_some(next)
     }
 
-    /// Returns whether a net is, through wires, a word of a ROM that is read on the clock.
+    /// Returns whether a net has, directly or through wiring, a word of a synchronous ROM.
     fn is_of_block_memory(&self, id: NetId) -> bool {
         match &self.net(id).driver {
             Driver::Rom(rom) => self.roms[rom.index()].synchronous,
@@ -120,7 +123,7 @@ impl Design {
         }
     }
 
-    /// Returns the readers of each net.
+    /// Returns for each net the list of its readers.
     fn readers(&self) -> Vec<Vec<NetReader>> {
         let mut readers = vec![Vec::new(); self.nets.len()];
         for (at, register) in self.registers.iter().enumerate() {
@@ -143,11 +146,11 @@ impl Design {
     }
 }
 
-/// Who reads a net.
+/// A reader of a net.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum NetReader {
-    /// A register, as its data.
+    /// The data input of the register with this number.
     Register(usize),
-    /// Anything else.
+    /// Any other reader: an enable, a ROM, a cell or a port.
     Other,
 }

@@ -20,14 +20,14 @@ pub struct Handshake {
 }
 
 impl Role {
-    /// Returns whether the net is an output of the handshake: `valid`, `busy` or `done`.
+    /// Returns whether the port is an output of the handshake: `valid`, `busy` or `done`, or `in_ready` of a pipeline.
     pub fn is_status(self) -> bool {
         matches!(self, Self::Valid | Self::Busy | Self::Done | Self::InReady)
     }
 }
 
 impl Design {
-    /// Returns the position of a net among the input ports of the design.
+    /// Returns the position of a net among the input ports of the design, from 0.
     ///
     /// # Errors
     /// Fails if the net is no input.

@@ -1,19 +1,19 @@
 //! Inserts registers into logic that depends only on operands, to shorten the longest path of a device.
 //!
 //! Operands cannot change while the device is busy. Logic that depends only on operands and constants is therefore *steady*: it
-//! may take all clocks from the first microinstruction after `start` to the microinstruction that first uses its value. A
-//! register in steady logic shortens a path without adding a clock. The module inserts none before outputs, which follow the
-//! operand registers at once, and none before nets that the first microinstruction uses.
+//! may take several clocks, up to the microinstruction that first uses its value. A register in steady logic shortens a path
+//! without adding a clock. The module inserts no register before outputs, or before nets that the first microinstruction uses.
 
 use std::collections::{BTreeMap, BTreeSet, HashSet};
 
 use super::needed::needed;
 use super::{Design, Driver, NetId, Op, RegId, RegisterKind, Sequence};
 
-/// Inserts registers, named `<name>_held`, so that the longest path from an operand becomes as short as possible. Among positions
-/// with an equally short path, it chooses the nets with the fewest bits.
+/// Inserts registers, named `<name>_held`, into steady logic so that the longest path from an operand becomes as short as
+/// possible. Among positions with an equally short path, it chooses nets with the fewest bits. At most two registers lie on a
+/// path.
 ///
-/// A device that waits for `start` in the middle of its program stays as it is: its operands change there.
+/// A device that waits for `start` in the middle of its microprogram is not changed, because its operands may change there.
 pub fn register_held(design: &mut Design) {
     let microprogram = &design.control.microprogram;
     if microprogram.iter().any(|it| it.sequence == Sequence::WaitStart) {
@@ -40,7 +40,7 @@ pub fn register_held(design: &mut Design) {
     }
 }
 
-/// The places that the search tries at a time, of the first register on a path and of the second.
+/// The largest number of positions that the search tries at a time, for each of the two registers on a path.
 const TRIED: usize = 32;
 
 /// A cell or a register that reads a net.
@@ -52,27 +52,29 @@ enum OperandReader {
     Cell(NetId),
 }
 
-/// The two places at which a path is cut. Cells that settle by the first place are computed in clock 0, by the second
-/// in clock 1, and all others in clock 2. Places are in hundredths of a nanosecond after the operands, in ascending
-/// order; the third is always 0.
+/// Two limits that divide steady logic among three clocks, in ascending order. A limit is a delay from the operand registers in
+/// hundredths of a nanosecond. A cell whose value arrives by the first limit is computed in clock 0, by the second limit in clock
+/// 1, and any other cell in clock 2. The third entry is always 0. For example, with `[500, 900, 0]` a cell whose value arrives
+/// after 6 ns is computed in clock 1.
 type CutPlaces = [u32; 3];
 
-/// When a cell is computed, or a register loaded: not before clock k + 1 if place k is below number k.
+/// The numbers that determine in which clock a cell is computed or a register is loaded. The clock is the number of entries that
+/// are greater than the entry of [`CutPlaces`] at the same index. For example, `[600, 600, 0]` with the limits `[500, 900, 0]`
+/// gives clock 1.
 type Thresholds = [u32; 3];
 
-/// Returns the `thresholds` of a net that can be computed in any clock, up to the clock `needed` in which it is first
-/// used.
+/// Returns `thresholds` with 0 in the entries from index `needed` on. The net is then computed no later than in clock `needed`,
+/// in which it is first used.
 fn until(needed: usize, thresholds: Thresholds) -> Thresholds {
     std::array::from_fn(|clock| if needed > clock { thresholds[clock] } else { 0 })
 }
 
-/// Returns the clock, counted from the clock of the first microinstruction, from which on a net with these thresholds
-/// is computed.
+/// Returns the clock in which a net with these thresholds is computed. The clock of the first microinstruction has the number 0.
 fn clock(thresholds: Thresholds, places: CutPlaces) -> usize {
     thresholds.iter().zip(places).filter(|(limit, place)| place < *limit).count()
 }
 
-/// A cell that reads nets.
+/// A cell whose operands are nets of the design.
 struct OperandCell {
     net: NetId,
     /// The delay of the cell, in hundredths of a nanosecond.
@@ -81,18 +83,20 @@ struct OperandCell {
     operands: Vec<NetId>,
 }
 
-/// The nets that depend on operands alone, and their readers.
+/// The steady nets of a design, which depend on operands alone, and the readers of all nets.
 struct Steady<'a> {
     design: &'a Design,
     /// All cells, each after the cells on which it depends within a clock.
     cells: Vec<OperandCell>,
-    /// The thresholds of each net.
+    /// The thresholds of each net, which determine the clock in which it is computed.
     thresholds: Vec<Thresholds>,
-    /// Whether a register may follow each net: the net depends only on operand registers and constants, and is more than wiring.
+    /// For each net, whether a register may follow it: the net is steady, and more than wiring lies between it and the operand
+    /// registers.
     holds: Vec<bool>,
-    /// The registers, each with the net that it loads.
+    /// The registers, each with the net that it loads and the thresholds of its load.
     registers: Vec<(RegId, NetId, Thresholds)>,
-    /// The estimated delays from the operand registers to the nets that may settle later than in clock 0, in ascending order.
+    /// The estimated delays from the operand registers to the steady nets that may be computed later than in clock 0. They are in
+    /// hundredths of a nanosecond, in ascending order, and include 0.
     places: Vec<u32>,
 }
 
@@ -103,7 +107,7 @@ impl<'a> Steady<'a> {
         };
         let count = design.nets.len();
         let needed = needed(design);
-        // Whether a net depends on operand registers and constants alone, and on one operand at least.
+        // For each net, whether it depends on operand registers and constants alone, and on at least one operand.
         let mut steady = vec![false; count];
         let mut arrival = vec![0; count];
         let mut cells = Vec::new();
@@ -132,7 +136,7 @@ impl<'a> Steady<'a> {
             }
         }
         let mut thresholds = vec![[0; 3]; count];
-        // The earliest reader of each net.
+        // For each net, the thresholds of its earliest reader.
         let mut read: Vec<Option<Thresholds>> = vec![None; count];
         let mut registers = Vec::new();
         for (number, register) in design.registers.iter().enumerate() {
@@ -150,7 +154,7 @@ impl<'a> Steady<'a> {
                 &design.net(cell.net).driver,
                 Driver::Op(Op::Relabel(_) | Op::Extend(_) | Op::Concat(_))
             );
-            // Wiring takes the thresholds of its readers, so that registers hold no copies.
+            // Wiring takes the thresholds of its readers, so that no register stores a copy of bits that another register has.
             let wanted = match (steady[at], wiring) {
                 (false, _) => [u32::MAX; 3],
                 (true, true) => read[at].unwrap_or([0; 3]),
@@ -174,8 +178,9 @@ impl<'a> Steady<'a> {
         Self { design, cells, thresholds, holds, registers, places }
     }
 
-    /// Returns the best pair of places. It tries all pairs while there are few. Otherwise it tries pairs that are
-    /// evenly spread, and then again pairs between the neighbours of the best one.
+    /// Returns the pair of limits with the shortest longest path, and among several the fewest register bits. The function tries
+    /// all pairs if there are few. Otherwise it tries pairs that are evenly spread, and then again pairs between the
+    /// neighbours of the best one.
     fn best(&self) -> CutPlaces {
         let mut windows = [(0, self.places.len() - 1); 2];
         loop {
@@ -204,17 +209,19 @@ impl<'a> Steady<'a> {
         }
     }
 
+    /// Returns the limits at two positions in `self.places`.
     fn at(&self, [first, second]: [usize; 2]) -> CutPlaces {
         [self.places[first], self.places[second], 0]
     }
 
-    /// Returns whether a register costs no time between a net and its readers from clock `by` on.
+    /// Returns whether a register follows `net` for a reader in clock `by`. It does if a register may follow the net, and if the
+    /// net is computed in an earlier clock than `by`.
     fn is_cut(&self, net: NetId, by: usize, places: CutPlaces) -> bool {
         self.holds[net.index()] && by > clock(self.thresholds[net.index()], places)
     }
 
-    /// Returns the longest path that starts at an operand register or at an inserted one, in hundredths of a nanosecond, and the
-    /// bits of the inserted registers.
+    /// Returns the delay of the longest path from an operand register or an inserted register, in hundredths of a nanosecond, and
+    /// the number of bits of the inserted registers.
     fn cost(&self, places: CutPlaces) -> (u32, u32) {
         let mut arrival: Vec<Option<u32>> = vec![None; self.thresholds.len()];
         let mut held = vec![false; self.thresholds.len()];
@@ -248,8 +255,8 @@ impl<'a> Steady<'a> {
         (longest, bits)
     }
 
-    /// Returns the nets that are followed by a register, each with the readers that take the register in its place.
-    /// These readers compute in a later clock.
+    /// Returns the nets behind which registers are inserted. Each has a list of the readers that take the output of the register
+    /// instead of the net, because they compute in a later clock.
     fn cut(&self, places: CutPlaces) -> BTreeMap<NetId, Vec<OperandReader>> {
         let cells = self.cells.iter().flat_map(|cell| {
             let own = self.thresholds[cell.net.index()];
@@ -267,17 +274,18 @@ impl<'a> Steady<'a> {
     }
 }
 
-/// Notes a reader of a net that reads it in these clocks. `earliest` is the earliest reader that is known.
+/// Notes a reader with the thresholds `by`. `earliest` becomes the smaller of both for each entry; it is `None` before the first
+/// reader.
 fn note_reader(earliest: &mut Option<Thresholds>, by: Thresholds) {
     let known = earliest.unwrap_or([u32::MAX; 3]);
     *earliest = Some(std::array::from_fn(|at| known[at].min(by[at])));
 }
 
-/// Estimates how long a cell of an FPGA takes, with the wires to it, in hundredths of a nanosecond. Only which of two places is
-/// the better one depends on it.
+/// Estimates the delay of a cell on an FPGA, with the wires to it, in hundredths of a nanosecond. The estimate only serves to
+/// compare positions of registers.
 fn delay(design: &Design, op: &Op) -> u32 {
     let width = op.operands().iter().map(|&of| design.width(of)).max().unwrap_or(0);
-    // Trees of LUTs with four inputs.
+    // The number of levels of a tree of look-up tables with four inputs each.
     let levels = |inputs: u32| inputs.max(2).next_power_of_two().ilog2().div_ceil(2);
     match op {
         Op::Relabel(_) | Op::Extend(_) | Op::Slice { .. } | Op::Concat(_) | Op::Not(_) => 0,
@@ -285,7 +293,7 @@ fn delay(design: &Design, op: &Op) -> u32 {
         Op::Mux { inputs, .. } => 80 * (inputs.len() as u32).next_power_of_two().ilog2(),
         Op::Any(_) | Op::All(_) => 90 * levels(width),
         Op::Equal(..) => 90 * levels(2 * width),
-        // Carries of adders in a row ripple together.
+        // The carry chains of adders in a row work at the same time, so that only the first one counts with its length.
         Op::Add { .. } | Op::Sub(..) | Op::Less(..) => {
             let in_a_row = op.operands().into_iter().any(|of| ends_in_a_sum(design, of));
             if in_a_row { 150 } else { 150 + 4 * width }
@@ -295,7 +303,8 @@ fn delay(design: &Design, op: &Op) -> u32 {
     }
 }
 
-/// Returns whether a net is a sum, or the product of operands too wide for one multiplier, or bits of one.
+/// Returns whether a net is a sum, a difference, or a product with a factor wider than 18 bits. Wiring and inversion behind it do
+/// not count.
 fn ends_in_a_sum(design: &Design, net: NetId) -> bool {
     match &design.net(net).driver {
         Driver::Op(Op::Relabel(of) | Op::Extend(of) | Op::Not(of) | Op::Slice { of, .. }) => {
@@ -307,14 +316,15 @@ fn ends_in_a_sum(design: &Design, net: NetId) -> bool {
     }
 }
 
-/// Adds a register that takes `net` on every clock; returns the net that it drives.
+/// Adds a register that loads `net` on every clock, and returns the net that it drives. Its name is `<name>_held`, with `_` added
+/// until no net in `taken` has the name.
 fn add_register(design: &mut Design, net: NetId, taken: &mut HashSet<String>) -> NetId {
     let of = design.net(net).clone();
     let mut name = format!("{}_held", of.name);
     while !taken.insert(name.clone()) {
         name.push('_');
     }
-    // It holds 0 from power-up to the first clock.
+    // The register is 0 from power-up to its first load.
     let range = (of.range.0.min(0), of.range.1.max(0));
     let doc = format!("{}, delayed by a clock: the operands do not change", of.name);
     let q = design.add_net(super::Net { name, range, block: None, doc, named: true, ..of });
@@ -331,7 +341,7 @@ mod tests {
 
     const BYTE: Format = Format::unsigned(8, 0);
 
-    /// A chain with thousands of places for each of two registers: to try all pairs would never end.
+    /// Describes a chain with thousands of positions for each of two registers. Trying all pairs would take too long.
     #[test]
     fn a_long_chain_is_cut_in_three() {
         let design = fixture::design(|d| {
@@ -354,7 +364,7 @@ mod tests {
         };
         let mut held: Vec<u32> = design.nets.iter().filter_map(name).collect();
         held.sort_unstable();
-        // Register `y` takes the third register in the last clock.
+        // Register `y` loads the output of the third inserted register in the last clock.
         let [first, second, 2999] = held[..] else { panic!("{held:?}") };
         assert!((990..1010).contains(&first) && (1990..2010).contains(&second), "{held:?}");
     }
@@ -373,7 +383,8 @@ mod tests {
         assert!(design.nets.iter().all(|net| !net.name.ends_with("_held")));
     }
 
-    /// Makes a device with the sum of two operands on an output at once, its cube in a register by the microprogram's load.
+    /// Makes a device that shows the sum of two operands on an output without a clock. The microprogram loads the third power of
+    /// the sum into a register.
     fn device(program: fn(Step, Step) -> Vec<Step>) -> Design {
         let d = Designer::new("device");
         let (a, b) = (d.operand("a", BYTE), d.operand("b", BYTE));
@@ -390,7 +401,7 @@ mod tests {
         d.finish().unwrap_or_else(|mistakes| panic!("{mistakes}"))
     }
 
-    /// Returns the factors of the two products.
+    /// Returns the names of the factors of the products `square` and `cube`.
     fn factors(design: &Design) -> [Vec<&str>; 2] {
         ["square", "cube"].map(|name| {
             let inputs = design.combinational_inputs(design.find(name).expect("a product"));
@@ -402,7 +413,7 @@ mod tests {
     fn registers_stand_where_they_halve_the_path_and_not_before_an_output() {
         let design = device(|load, end| vec![step("idle", []), load, end]);
         assert_eq!(factors(&design), [["sum", "sum"], ["square_held", "sum_held"]]);
-        // With a clock more to spare each product has one to itself.
+        // With one more clock before the load, a register lies before each product.
         let design = device(|load, end| vec![step("idle", []), step("settle", []), load, end]);
         assert_eq!(factors(&design), [["sum_held", "sum_held"], ["square_held", "sum_held"]]);
         let shown = design.find("shown_out").expect("an output");

@@ -5,9 +5,9 @@ use super::Op;
 use glint_base::fixed::{Format, mask};
 use glint_base::interval::{Interval, hull, product, wrap};
 
-/// Returns the interval of raw values that a cell with the result `format` can produce. If nothing closer is known, it is the range
-/// of the format. `of` gives the interval of an operand, `format_of` its format. A product of a net with itself is a square, which
-/// is not negative.
+/// Returns the interval of raw values that a cell with the result `format` can produce. If no narrower interval is known, it is
+/// the whole range of the format. `of` gives the interval of an operand, `format_of` its format. For example, a product of a net
+/// with itself is a square, whose interval begins at 0 or above.
 pub fn of_cell<N: Copy + PartialEq>(
     op: &Op<N>,
     format: Format,
@@ -25,8 +25,8 @@ pub fn of_cell<N: Copy + PartialEq>(
         Op::Slice { of: a, low } => wrapped((of(*a).0 >> low, of(*a).1 >> low)),
         Op::Concat(parts) => wrapped(parts.iter().fold((0, 0), |(low, high), part| {
             let width = format_of(*part).width();
-            // A signed part contributes its bits, whose values are not in order. On top of a signed number, it is the
-            // sign and stays in order.
+            // A negative value of a signed part contributes its bit pattern, so that all patterns count. If the part is the
+            // top of a signed number, its sign is the sign of the number, and the order of values remains.
             let is_sign = format.signed && Some(part) == parts.first();
             let own = if of(*part).0 < 0 && !is_sign { (0, mask(width).into()) } else { of(*part) };
             ((low << width) + own.0, (high << width) + own.1)
@@ -51,7 +51,7 @@ pub fn of_cell<N: Copy + PartialEq>(
         }
         Op::Less(a, b) => bit(of(*a).0 >= of(*b).1, of(*a).1 < of(*b).0),
         Op::Any(a) => bit(of(*a) == (0, 0), of(*a).0 > 0 || of(*a).1 < 0),
-        // No more bits than the smaller one has.
+        // The result of a bitwise and of two numbers is not greater than the smaller one.
         Op::And(a, b) if of(*a).0 >= 0 && of(*b).0 >= 0 => match format.width() {
             1 => (of(*a).0.min(of(*b).0), of(*a).1.min(of(*b).1)),
             _ => (0, of(*a).1.min(of(*b).1)),
@@ -72,7 +72,7 @@ mod tests {
     use super::*;
     use crate::netlist::{NetId, eval};
 
-    /// Operands of three bits: every interval, and every value in it.
+    /// Tries operands of three bits: every pair of intervals, and every pair of values in them.
     #[test]
     fn what_a_cell_gives_is_in_its_interval() {
         let [a, b] = [NetId(0), NetId(1)];

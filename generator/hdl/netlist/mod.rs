@@ -1,17 +1,9 @@
-//! Defines the netlist of a device: its nets, registers, ROMs, ports and control unit. The description language builds it; the
-//! simulator, the pipeline builder and the Verilog emitter read it.
+//! Defines the netlist of a device, which the description language builds, and which the simulator, the pipeline builder and the
+//! Verilog emitter read.
 //!
-//! A [`Design`] is a set of *nets* in an arena. Every net has a name, a [`Format`], the interval of
-//! raw values that it can take, and exactly one driver: an input port, a constant, a register, a ROM,
-//! a field of the control word, or a combinational [`Op`]. There is one clock; registers and
-//! synchronous ROMs change on its rising edge and nothing else holds state.
-//!
-//! Invariants that [`Design::verify`] establishes and everything downstream relies on:
-//!
-//! * operands have the widths that the [`Op`] documents; nothing is extended or cut implicitly;
-//! * the combinational part is acyclic ([`Design::levelise`] gives an evaluation order);
-//! * names are distinct, legal Verilog identifiers, and no net is wider than 64 bits;
-//! * a value never leaves the interval of its net, and the interval fits the format.
+//! A [`Design`] is a list of *nets*. Every net has a [`Format`], the interval of its raw values, and exactly one [`Driver`], such
+//! as a register or a combinational [`Op`]. [`Design::verify`] checks widths, names and drivers, and [`Design::levelise`] finds
+//! combinational loops. There is one clock; only registers and synchronous ROMs have state, and they change on its rising edge.
 
 mod builder;
 mod cell;
@@ -53,7 +45,8 @@ macro_rules! id {
         pub struct $name(pub u32);
 
         impl $name {
-            /// Returns the position of the item in the design's list of nets, registers, ROMs or fields.
+            /// Returns the identifier as an index into the list of its kind: nets, registers, ROMs or fields of a design, or
+            /// nodes of a graph.
             pub fn index(self) -> usize {
                 self.0 as usize
             }
@@ -63,19 +56,19 @@ macro_rules! id {
 pub(crate) use id;
 
 id!(
-    /// A net of a [`Design`].
+    /// The identifier of a net: its position in [`Design::nets`].
     NetId
 );
 id!(
-    /// A register of a [`Design`].
+    /// The identifier of a register: its position in [`Design::registers`].
     RegId
 );
 id!(
-    /// A ROM of a [`Design`].
+    /// The identifier of a ROM: its position in [`Design::roms`].
     RomId
 );
 id!(
-    /// A field of the control word of a [`Design`].
+    /// The identifier of a field of the control word: its position in [`Control::fields`].
     FieldId
 );
 
@@ -99,7 +92,8 @@ pub struct Net {
     pub range: Interval,
     /// The one thing that drives the net, such as an input port, a register or a cell.
     pub driver: Driver,
-    /// The number of the block that drives this net, in the block diagram of the document that describes the device.
+    /// The number of the block that drives this net, in the block diagram of the document that describes the device. `None` if
+    /// the diagram does not number it.
     pub block: Option<u16>,
     /// A comment of one line on the net, which the Verilog shows, or an empty text.
     pub doc: String,
@@ -140,9 +134,9 @@ pub struct NetlistRegister {
     pub q: NetId,
     /// The data input; `None` is an error that [`Design::verify`] reports.
     pub data: Option<NetId>,
-    /// The load enable, one bit. Without it the register loads on every rising edge.
+    /// The load enable, one bit. If it is `None`, the register loads on every rising edge.
     pub enable: Option<NetId>,
-    /// The bit pattern that the register loads on a rising edge with `rst_n` low. Without it a reset does not affect the
+    /// The bit pattern that the register loads on a rising edge with `rst_n` low. If it is `None`, a reset does not affect the
     /// register.
     pub reset: Option<u64>,
     /// The purpose of the register.
@@ -153,7 +147,7 @@ pub struct NetlistRegister {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RegisterKind {
     /// An operand register. The write strobe loads it from an input port, or `start` loads it from its buffer. It does not change
-    /// while the device is busy. For example, `cos_gamma_reg` of `rough`.
+    /// during a computation. For example, `cos_gamma_reg` of `rough`.
     Operand,
     /// A buffer in front of an operand register, which accepts the next operand at any time.
     Buffer,
@@ -171,16 +165,17 @@ pub struct NetlistRom {
     /// The name of the ROM, which must be a legal Verilog identifier. The contents go to `<design>_<name>.mem`. For example, the
     /// ROM `sine` of `rough` is in `rough_sine.mem`.
     pub name: String,
-    /// The net with the address of the word to read. Its interval must lie within the number of words.
+    /// The net with the address of the word to read. Its interval must lie between 0 and the number of words less one.
     pub address: NetId,
     /// The net with the word that was read. It must be wide enough for every word.
     pub data: NetId,
     /// Whether the ROM is read at the rising edge (block RAM) rather than without a clock (logic).
     pub synchronous: bool,
-    /// The read enable of a synchronous ROM, one bit. The ROM keeps its output while it is 0; without it, the ROM reads at every
-    /// edge.
+    /// The read enable of a synchronous ROM, one bit. The ROM keeps its output while the enable is 0. If it is `None`, the ROM
+    /// reads at every rising edge.
     pub enable: Option<NetId>,
-    /// A ROM with the same words, if this ROM is the second read port of its memory.
+    /// The first read port of this ROM's memory, if this ROM is the second read port; it must have the same words. Otherwise
+    /// `None`.
     pub shares: Option<RomId>,
     /// The contents of the ROM: its words as bit patterns, from address 0.
     pub words: Vec<u64>,
@@ -188,7 +183,8 @@ pub struct NetlistRom {
     pub doc: Vec<String>,
     /// A comment for each word of the ROM, or an empty list.
     pub comments: Vec<String>,
-    /// The number of the ROM in the block diagram of the document that describes the device.
+    /// The number of the ROM in the block diagram of the document that describes the device. `None` if the diagram does not
+    /// number it.
     pub block: Option<u16>,
     /// The place in the Rust source where the device's description makes the ROM.
     pub location: SourceLocation,
@@ -208,16 +204,17 @@ pub struct Port {
 pub enum Role {
     /// Input `rst_n`, the reset: active low, synchronous.
     Reset,
-    /// Input `start`, which begins a computation if the device is not busy.
+    /// Input `start`, which begins a computation if the device is not busy. If operands have buffers, it also does so in the last
+    /// clock of a computation.
     Start,
-    /// Input for the data of an operand register.
+    /// Input for the value of an operand, which the write strobe loads.
     Operand {
-        /// The net of the write strobe, an input of one bit that loads the operand register.
+        /// The net of the write strobe, an input of one bit that loads the operand register or its buffer.
         strobe: NetId,
     },
     /// Input, the write strobe of an operand register. For example, `cos_gamma_write` writes `cos_gamma_reg`.
     Strobe,
-    /// Input `in_valid` of a pipeline: the operand inputs hold a point. The pipeline accepts it in this clock if `in_ready` is 1.
+    /// Input `in_valid` of a pipeline: the operand inputs have a point. The pipeline accepts it in this clock if `in_ready` is 1.
     InValid,
     /// Input, an operand of the point that the environment offers to a pipeline.
     Point,
@@ -229,7 +226,7 @@ pub enum Role {
     InReady,
     /// Output `side_out` of a pipeline: the value of `side_in` that came with the point whose results are on the outputs.
     SideOut,
-    /// Output `valid`, high exactly in the microinstructions that raise it. The results are then on the outputs.
+    /// Output `valid`, or `out_valid` of a pipeline: high while the results of a point are on the outputs.
     Valid,
     /// Output `busy`, high from the clock after `start` to the end of the computation.
     Busy,
@@ -237,7 +234,7 @@ pub enum Role {
     Done,
     /// Output that carries a result of the computation.
     Result,
-    /// Output that shows a signal of the control unit for which no other role exists.
+    /// Output that shows a signal of the control unit, such as a control line, and no result.
     Status,
 }
 
@@ -267,7 +264,8 @@ pub struct About {
     pub title: String,
     /// The formula that the device computes, as text.
     pub formula: String,
-    /// The document that describes the device, and the part of it, as text for people; empty without one.
+    /// The document that describes the device, and the part of the document, as text for people. Empty if no document describes
+    /// the device.
     pub source: String,
     /// Paragraphs about the device: how its description interprets the source document, its formats and its limits.
     pub notes: Vec<Note>,
@@ -295,7 +293,8 @@ pub struct Note {
 pub enum Topic {
     /// The paragraph is about the device itself, whatever its architecture.
     Device,
-    /// The paragraph is about hardware that a microprogram uses several times: multipliers, the control ROM, the clocks of a loop.
+    /// The paragraph is about hardware that a microprogram uses several times: multipliers, the control ROM, the clocks of a
+    /// loop.
     Microprogram,
     /// The paragraph is about writes to operands, and how long the outputs keep their values.
     Writes,
@@ -333,9 +332,9 @@ pub struct Design {
     pub ports: Vec<Port>,
     /// The control unit; for a pipeline it is [`Control::none`].
     pub control: Control,
-    /// The facts about the stages, if the design is a pipeline.
+    /// The facts about the stages of a pipeline; `None` for any other design.
     pub pipeline: Option<Pipeline>,
-    /// Warnings about logic that no output needs.
+    /// Warnings about logic on which no output depends, and about choices that no microinstruction makes.
     pub warnings: Vec<Diagnostic>,
 }
 
@@ -345,7 +344,7 @@ impl Design {
         &self.nets[id.index()]
     }
 
-    /// Returns the width of the net `id`.
+    /// Returns the width of the net `id` in bits.
     pub fn width(&self, id: NetId) -> u32 {
         self.net(id).format.width()
     }
@@ -355,8 +354,8 @@ impl Design {
         &self.registers[id.index()]
     }
 
-    /// Returns whether `rom` stores control words: it is the control ROM, or another ROM for the fields that do not fit into the
-    /// words of the control ROM.
+    /// Returns whether `rom` stores control words. It does if it is the control ROM, or another ROM at the same address, for
+    /// fields that do not fit into the control ROM.
     pub fn is_control_memory(&self, rom: &NetlistRom) -> bool {
         self.roms.get(self.control.rom.index()).is_some_and(|it| it.address == rom.address)
     }
@@ -372,7 +371,7 @@ impl Design {
         Some(NetId(at as u32))
     }
 
-    /// Follows nets that only rename another net. Returns the net with the original name, which may be `id` itself.
+    /// Returns the net that net `id` only renames, directly or through several names. Returns `id` itself if it renames no net.
     pub fn renamed(&self, id: NetId) -> NetId {
         match self.net(id).driver {
             Driver::Op(Op::Relabel(of)) => self.renamed(of),
@@ -385,23 +384,23 @@ impl Design {
         self.nets.iter().enumerate().map(|(at, net)| (NetId(at as u32), net))
     }
 
-    /// Returns the ports that are inputs, in order.
+    /// Returns the ports that are inputs, in the order of declaration.
     pub fn inputs(&self) -> impl Iterator<Item = &Port> {
         self.ports.iter().filter(|port| port.role.is_input())
     }
 
-    /// Returns the ports that are outputs, in order.
+    /// Returns the ports that are outputs, in the order of declaration.
     pub fn outputs(&self) -> impl Iterator<Item = &Port> {
         self.ports.iter().filter(|port| !port.role.is_input())
     }
 
-    /// Returns the first port of the design for whose role `wanted` returns true, or `None`.
+    /// Returns the first port of the design for whose role `wanted` returns true, or `None` if no port has such a role.
     pub fn port(&self, wanted: impl Fn(Role) -> bool) -> Option<&Port> {
         self.ports.iter().find(|port| wanted(port.role))
     }
 
-    /// Returns the nets on which net `id` depends within one clock: operands of its cell, the address of an asynchronous ROM, the
-    /// control ROM behind a field. Nothing for inputs, constants, registers and synchronous ROMs.
+    /// Returns the nets on which net `id` depends within one clock: operands of its cell, the address of an asynchronous ROM, or
+    /// the control word of a field. The list is empty for inputs, constants, registers and synchronous ROMs.
     pub fn combinational_inputs(&self, id: NetId) -> Vec<NetId> {
         match &self.net(id).driver {
             Driver::Op(op) => op.operands(),
@@ -415,10 +414,11 @@ impl Design {
         }
     }
 
-    /// Returns all nets of the design in an order in which each follows the nets that it depends on within one clock.
+    /// Returns all nets of the design in an order in which each net follows the nets on which it depends within one clock.
     ///
     /// # Errors
-    /// Fails if there is a combinational loop. The error is the nets along the loop.
+    /// Fails if there is a combinational loop. The error is the nets along the loop: each net depends on the next one, and the
+    /// last on the first.
     pub fn levelise(&self) -> Result<Vec<NetId>, Vec<NetId>> {
         #[derive(Clone, Copy, PartialEq)]
         enum VisitMark {
@@ -432,7 +432,7 @@ impl Design {
             if mark[root as usize] != VisitMark::New {
                 continue;
             }
-            // Each entry: a net and the inputs of it that are still to be visited.
+            // Each entry has a net, and its inputs that the search has not visited.
             let mut path = vec![(NetId(root), self.combinational_inputs(NetId(root)))];
             mark[root as usize] = VisitMark::Open;
             while let Some((net, pending)) = path.last_mut() {
@@ -462,7 +462,7 @@ impl Design {
         Ok(order)
     }
 
-    /// Returns the number of bits in all ROMs of the design together.
+    /// Returns the number of bits in all ROMs of the design together: the number of words times their width, added up.
     pub fn rom_bits(&self) -> u64 {
         self.roms.iter().map(|rom| rom.words.len() as u64 * u64::from(self.width(rom.data))).sum()
     }

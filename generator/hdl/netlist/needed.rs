@@ -1,16 +1,17 @@
-//! Finds, for each net, the first clock of a computation in which its value is used. Logic of operands alone that is first used
-//! after the first microinstruction may take several clocks; the module `held` puts registers there, which cost no clock.
+//! Finds, for each net, the first clock of a computation in which its value is used. Logic that depends on operands alone, and is
+//! first used after the first microinstruction, may take several clocks. The module `held` inserts registers into such logic.
 
 use std::collections::{HashSet, VecDeque};
 
 use super::{Design, Driver, Microinstruction, NetId, Op};
 use glint_base::fixed::mask;
 
-/// Returns for each net of the design the clock in which its value is first used: it reaches an output, the sequencer, or a
-/// register that is loaded. Clocks are counted from the clock of the first microinstruction of a computation. The result is
-/// `usize::MAX` for a net that is never used.
+/// Returns for each net of the design the first clock in which its value is used. A value is used if it reaches an output, the
+/// sequencer, or a register that is loaded. The clock of the first microinstruction has the number 0. The result is `usize::MAX`
+/// for a net that is never used.
 ///
-/// If a microinstruction controls a mux, it needs only the chosen input.
+/// If a microinstruction determines the select of a mux, only the chosen input counts as used. Outputs, enables and the sequencer
+/// use their nets in every clock.
 pub fn needed(design: &Design) -> Vec<usize> {
     let mut walk = UseSearch {
         design,
@@ -41,8 +42,8 @@ pub fn needed(design: &Design) -> Vec<usize> {
     walk.needed
 }
 
-/// Returns the value of a control line, such as the select of a mux, while a microinstruction is executed. Returns `None` if the
-/// line depends on anything but fields of the control word.
+/// Returns the value of a control line, such as the select of a mux, while `microinstruction` is executed. Returns `None` if the
+/// value depends on anything but fields of the control word and constants.
 pub fn setting_of(
     design: &Design,
     microinstruction: &Microinstruction,
@@ -63,8 +64,8 @@ pub fn setting_of(
     }
 }
 
-/// Returns the nets on which a net depends within the clock of a microinstruction. If the microinstruction controls a
-/// mux, the mux depends only on its chosen input.
+/// Returns the nets on which `net` depends within the clock of `microinstruction`. If the microinstruction determines the
+/// select of a mux, the mux depends only on its chosen input.
 pub fn passed_on(design: &Design, microinstruction: &Microinstruction, net: NetId) -> Vec<NetId> {
     if let Driver::Op(Op::Mux { select, inputs }) = &design.net(net).driver
         && let Some(chosen) = setting_of(design, microinstruction, *select)
@@ -76,19 +77,20 @@ pub fn passed_on(design: &Design, microinstruction: &Microinstruction, net: NetI
 
 struct UseSearch<'a> {
     design: &'a Design,
-    /// The smallest number of clocks from the first microinstruction to each microinstruction.
+    /// For each microinstruction, the smallest number of clocks after microinstruction 0; `usize::MAX` if it is never executed.
     clocks: Vec<usize>,
     needed: Vec<usize>,
     seen: HashSet<(usize, NetId)>,
 }
 
 impl UseSearch<'_> {
-    /// Notes that `net` matters in every clock.
+    /// Notes that `net` is used in every microinstruction.
     fn at_once(&mut self, net: NetId) {
         (0..self.design.control.microprogram.len()).for_each(|at| self.from(at, net));
     }
 
-    /// Notes that `net`, and every net that it depends on, is used in microinstruction `at`.
+    /// Notes that `net`, and every net on which it depends, is used in microinstruction `at`. The search goes through registers
+    /// without an enable and synchronous ROMs to the microinstructions before.
     fn from(&mut self, at: usize, net: NetId) {
         let design = self.design;
         let mut pending = vec![(at, net)];
@@ -120,6 +122,7 @@ impl UseSearch<'_> {
     }
 }
 
+/// Returns the smallest number of clocks from microinstruction 0 to each microinstruction, or `usize::MAX` if none leads there.
 fn clocks_to(design: &Design) -> Vec<usize> {
     let mut clocks = vec![usize::MAX; design.control.microprogram.len()];
     let mut pending = VecDeque::from([(0, 0)]);

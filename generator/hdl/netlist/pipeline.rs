@@ -1,6 +1,6 @@
 //! Defines the facts about a pipeline that its netlist alone does not state: stages, handshake, shared multipliers, and
-//! checkpoints. A checkpoint is a value that a register of the sequential design also holds, so that checks can compare both
-//! designs there.
+//! checkpoints. A checkpoint is a value that a register of the sequential design has at some time too, so that checks can compare
+//! both designs.
 
 use std::collections::BTreeMap;
 
@@ -16,11 +16,11 @@ pub struct Pipeline {
     pub clock_mhz: f64,
     /// The highest clock frequency that any number of stages can reach, in MHz. The slowest single operation limits it.
     pub most_mhz: f64,
-    /// The interval: the smallest number of clocks between two points. A counter counts slots from 0 to this number less one; the
-    /// pipeline accepts a point in slot 0, and a point is in stage s while the slot is s modulo the interval. For example, with
+    /// The interval: the smallest number of clocks between two points. A counter counts slots from 0 to this number less one, and
+    /// the pipeline accepts a point in slot 0. A point is in stage s while the slot is s modulo the interval. For example, with
     /// an interval of 4 a point is in stage 6 while the slot is 2.
     pub interval: usize,
-    /// The counter of slots, if the interval is longer than 1. It counts one further whenever the points move to the next stage.
+    /// The counter of slots, or `None` if the interval is 1. It counts one further whenever the points move to the next stage.
     pub slot: Option<NetId>,
     /// For each slot in which registers load a value that they must keep for a whole interval, the net that enables these
     /// registers.
@@ -31,26 +31,26 @@ pub struct Pipeline {
     pub stall: bool,
     /// The number of bits of the side channel, which carries data of the user along with each point.
     pub side: u32,
-    /// The kind of memory with which the Verilog replaces delay lines (chains of registers that only carry a value to a later
-    /// stage); `None` if the registers stay.
+    /// The kind of memory with which the Verilog replaces delay lines, chains of registers that only carry a value to a later
+    /// stage. `None` if the registers stay.
     pub delay_memory: Option<DelayMemory>,
     /// The stages, from the operands on. The results are in the registers behind the last stage, so there are as many stages as
     /// clocks from a point to its results. For example, `rough_pipelined` has 18 stages.
     pub stages: Vec<Stage>,
-    /// The number of the stage for each net. A register in stage k holds a value that stage k − 1 computed.
+    /// The number of the stage for each net. A register in stage k has a value that stage k − 1 computed.
     pub stage_of: Vec<usize>,
     /// For each net, the name of the value that it carries. The name is the same in every stage through which the value travels.
     pub value_of: Vec<String>,
-    /// The nets of the handshake, which say which stages have a point and when points move.
+    /// The nets of the handshake: the valid bits, the slot counter, and the nets that determine when points move.
     pub handshake: Vec<NetId>,
-    /// For each stage from 1 on, including the results, the net that says whether it has a point.
+    /// For each stage from 1 on, including the results, the net that is 1 if the stage has a point.
     pub valid: Vec<NetId>,
     /// For each stage from 1 on, the net that carries the side channel's data. It is empty if there is no side channel.
     pub side_values: Vec<NetId>,
     /// The registers that become output registers of multipliers, inside a DSP block of the FPGA.
     pub registered: Vec<RegId>,
-    /// The checkpoints: values of the pipeline that a register of the sequential design also holds at some time. Checks compare
-    /// both designs there.
+    /// The checkpoints: values of the pipeline that a register of the sequential design has at some time too. Checks compare
+    /// these values of both designs.
     pub checkpoints: Vec<Checkpoint>,
 }
 
@@ -60,14 +60,15 @@ pub struct Pipeline {
 pub struct Unit {
     /// The name of the multiplier in the Verilog, and of the register behind it.
     pub name: String,
-    /// The nets of the multiplier's muxes, its operand registers and its product, followed by the net of the register behind it.
+    /// The nets of the multiplier: its muxes if it has any, its two operand registers, its product, and the register behind it.
     pub nets: Vec<NetId>,
-    /// For each slot (clock modulo the interval), the name of the product that the multiplier computes in it.
+    /// For each slot (clock modulo the interval), the name of the product that the multiplier computes in this slot; `None` if it
+    /// computes none.
     pub serves: Vec<Option<String>>,
 }
 
-/// A stage of a pipeline: the logic between two rows of registers. For example, the first stage of `rough_pipelined` has 4.4 ns of
-/// logic and 86 register bits.
+/// A stage of a pipeline: the logic between two rows of registers. For example, the first stage of `rough_pipelined` has 4.4 ns
+/// of logic and 86 register bits.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Stage {
     /// The microinstructions of the sequential design that compute the values of this stage.
@@ -78,17 +79,17 @@ pub struct Stage {
     pub slack_ns: f64,
     /// The number of bits in the pipeline registers at the end of the stage.
     pub register_bits: u32,
-    /// The number of bits that memories hold in place of registers at the end of the stage.
+    /// The number of bits that memories store in place of registers at the end of the stage.
     pub delayed_bits: u32,
 }
 
-/// A checkpoint: a value of a pipeline that a register of the sequential design also holds in some microinstruction. Checks compare
+/// A checkpoint: a value of a pipeline that a register of the sequential design has in some microinstruction too. Checks compare
 /// both values.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Checkpoint {
     /// The name of the register in the sequential design.
     pub register: String,
-    /// The address of the microinstruction in which the sequential design's register holds the value.
+    /// The address of the microinstruction in which the sequential design's register has the value.
     pub address: usize,
     /// The number of earlier executions of this microinstruction in the same computation.
     pub visit: usize,
@@ -97,8 +98,8 @@ pub struct Checkpoint {
 }
 
 impl Pipeline {
-    /// Returns the first clock in which a net of the pipeline has its value for a point. The pipeline accepts the point in clock 0,
-    /// so this is the stage of the net.
+    /// Returns the first clock in which a net of the pipeline has its value for a point. The pipeline accepts the point in clock
+    /// 0, so this is the stage of the net.
     pub fn clock_of(&self, net: NetId) -> usize {
         self.stage_of[net.index()]
     }
@@ -108,8 +109,8 @@ impl Pipeline {
         self.units.iter().any(|unit| unit.nets.contains(&net))
     }
 
-    /// Returns the named nets whose logic is in stage number `stage` of the pipeline, with the names of their values, in the order
-    /// of the design. It leaves out nets of the handshake.
+    /// Returns the named nets whose logic is in stage number `stage`, each with the name of its value, in the order of the
+    /// design. It leaves out nets of the handshake.
     pub fn computed<'a>(
         &'a self,
         design: &'a Design,
@@ -119,7 +120,7 @@ impl Pipeline {
         for ((id, net), &at) in design.iter().zip(&self.stage_of) {
             let is_computed_here = match net.driver {
                 Driver::Op(_) => at == stage,
-                // The word of a block memory is there a stage after its address.
+                // The word of a block memory is available one stage after its address.
                 Driver::Rom(rom) => at == stage + usize::from(design.rom(rom).synchronous),
                 _ => false,
             };

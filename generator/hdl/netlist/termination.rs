@@ -1,30 +1,30 @@
 //! Computes an upper limit of the clocks that a computation can take, from its microprogram alone.
 //!
-//! A loop of one microinstruction ends because its condition depends only on a counter that counts down. The module does not
-//! check that the counter counts in every iteration; the formal proof checks that.
+//! A loop is accepted only if it consists of one microinstruction and its condition depends on one register alone, a counter. The
+//! module does not check that the counter counts down in every iteration; the formal proof checks this.
 
 use crate::netlist::{Design, Driver, NetId, RegId, Sequence};
 use glint_base::cone;
 
-/// An upper limit of the number of clocks from a microinstruction to the clock in which `done` is high. For example, 3 clocks plus
-/// the value of the counter `remaining`.
+/// An upper limit of the number of clocks from a microinstruction to the clock in which `done` is high. For example, 3 clocks
+/// plus the value of the counter `remaining`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Left {
-    /// The number of clocks that do not depend on a counter.
+    /// The part of the limit that does not depend on a counter, in clocks.
     pub clocks: u64,
-    /// The counter register that decides how often the microinstruction repeats itself. Its current value must be added to
-    /// `clocks`. `None` if the microinstruction does not repeat itself.
+    /// The counter register that determines how often the microinstruction repeats itself. The limit is `clocks` plus the current
+    /// value of this register. `None` if the microinstruction does not repeat itself.
     pub counter: Option<RegId>,
 }
 
-/// Returns for each microinstruction of a design an upper limit of the clocks from its execution to `done`.
+/// Returns for each microinstruction of a design an upper limit of the clocks from its execution to the clock with `done`.
 ///
-/// Returns `None` if a microinstruction waits for `start`, if a loop has several microinstructions, or if anything but a counter
-/// decides about a loop.
+/// Returns `None` if a microinstruction waits for `start`, or if a loop has several microinstructions. Returns `None` if the
+/// condition of a loop depends on anything but one register. A jump forward has no such restriction.
 pub fn remaining(design: &Design) -> Option<Vec<Left>> {
     let microprogram = &design.control.microprogram;
     let mut left: Vec<Left> = Vec::with_capacity(microprogram.len());
-    // From the last microinstruction, with a place for those before it.
+    // The list is built from the last microinstruction to the first.
     for (at, microinstruction) in microprogram.iter().enumerate().rev() {
         let entering = |to: usize| -> Option<u64> {
             let Left { clocks, counter } = *left.get((microprogram.len() - 1).checked_sub(to)?)?;
@@ -48,8 +48,8 @@ pub fn remaining(design: &Design) -> Option<Vec<Left>> {
     Some(left)
 }
 
-/// Returns the number of the latest clock in which the output `done` can be high, counted from the clock that accepts `start`.
-/// Returns `None` if the microprogram has no such limit.
+/// Returns the number of the latest clock in which the output `done` can be high. Clock 0 is the clock that accepts `start`.
+/// Returns `None` if [`remaining`] finds no limit, or if the design has no microprogram.
 pub fn latest_done(design: &Design) -> Option<u32> {
     // Microinstruction 0 is executed in clock 1.
     let first = *remaining(design)?.first()?;
@@ -57,12 +57,13 @@ pub fn latest_done(design: &Design) -> Option<u32> {
     u32::try_from(1 + first.clocks + most).ok()
 }
 
-/// Returns the largest value of a register.
+/// Returns the largest value that the width of a register allows. For example, a register of 3 bits gives 7.
 fn largest(design: &Design, register: RegId) -> u64 {
     glint_base::fixed::mask(design.width(design.register(register).q))
 }
 
-/// Returns the one register on which a net depends, without its own clock.
+/// Returns the one register on which `net` depends within one clock. Returns `None` if the net depends on no register or on
+/// several, on an input, on a ROM or on a field.
 fn decides(design: &Design, net: NetId) -> Option<RegId> {
     let mut found = None;
     for net in cone::reached([net], |net| design.combinational_inputs(net)) {
@@ -84,7 +85,7 @@ mod tests {
 
     type Condition = for<'d> fn(&'d Designer, Signal<'d>, Signal<'d>) -> Signal<'d>;
 
-    /// Makes a counter of three bits that goes from the operand to 0 in microinstruction 2.
+    /// Makes a design with a counter of three bits, which counts from the operand down to 0 in microinstruction 2.
     fn counted(condition: Condition) -> Design {
         design(|d| {
             let x = d.operand("x", Format::unsigned(3, 0));

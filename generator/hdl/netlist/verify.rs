@@ -14,8 +14,8 @@ use glint_base::fixed::{MAX_WIDTH, mask};
 use glint_base::identifier;
 
 impl Design {
-    /// Returns every mistake in the design's names and structure, such as a net with two drivers. If there are none, it returns the
-    /// mistakes in the microprogram.
+    /// Returns every mistake in the design's names and structure, such as a net with two drivers. Only if the list is empty, the
+    /// mistakes in the microprogram are searched and returned instead.
     pub fn verify(&self) -> Vec<Diagnostic> {
         let mut found = self.verify_structure();
         self.names(&mut found);
@@ -25,8 +25,8 @@ impl Design {
         found
     }
 
-    /// Returns the mistakes that make a design meaningless: references to things that do not exist, nets without a driver or with
-    /// two, widths that do not match, and combinational loops. It does not check the names and the microprogram.
+    /// Returns the mistakes that make a design meaningless: references to missing parts, nets without a driver or with two, wrong
+    /// widths, and combinational loops. It does not check the names and the microprogram.
     pub fn verify_structure(&self) -> Vec<Diagnostic> {
         let mut found = Vec::new();
         // The later checks must not index parts that do not exist, or ask for an impossible width.
@@ -219,7 +219,7 @@ impl Design {
         }
     }
 
-    /// Checks that a cell and its operands have the widths that its [`Op`] asks for.
+    /// Checks that a cell and its operands have the widths and signs that its [`Op`] documents. The error is the violated rule.
     fn cell(&self, id: NetId, op: &Op) -> Result<(), &'static str> {
         let width = |id: NetId| self.width(id);
         let signed = |id: NetId| self.net(id).format.signed;
@@ -352,7 +352,7 @@ impl Design {
     }
 }
 
-/// Returns `why` as an error unless the condition holds.
+/// Returns `why` as an error if `holds` is false.
 fn ok(holds: bool, why: &'static str) -> Result<(), &'static str> {
     if holds { Ok(()) } else { Err(why) }
 }

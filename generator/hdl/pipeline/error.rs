@@ -1,4 +1,4 @@
-//! Defines the error for a pipeline that cannot be made as requested. It states the nearest request that can be satisfied.
+//! Defines the error for a pipeline that cannot be made as requested. The error states the nearest request that can be satisfied.
 
 use std::fmt;
 
@@ -6,9 +6,11 @@ use crate::netlist::Design;
 use glint_base::codes;
 use glint_base::diagnostic::{Diagnostic, SourceLocation};
 
-/// The reason why Glint cannot turn a sequential design into a pipeline with the clock, stages or interval that the user requested.
+/// The reason why Glint cannot turn a sequential design into a pipeline with the clock, stages or interval that the user
+/// requested.
 ///
-/// A variant states the nearest possible value. For example, a request for 900 MHz may fail with `Clock { nearest: 130.0, .. }`.
+/// Most variants state the nearest possible value. For example, a request for 900 MHz may fail with
+/// `Clock { nearest: 130.0, .. }`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum PipelineErrorKind {
     /// The microprogram cannot be unrolled into a computation without loops.
@@ -17,32 +19,32 @@ pub enum PipelineErrorKind {
     Clock {
         /// The highest clock frequency that can be reached, in MHz.
         nearest: f64,
-        /// Whether the clock could be reached if multipliers had output registers.
+        /// Whether the clock can be reached if products use the output registers of multipliers.
         needs_registered: bool,
     },
-    /// The pipeline would have more stages than make it faster.
+    /// The requested number of stages is larger than useful: the additional stages would not make the pipeline faster.
     TooManyStages {
-        /// The largest number of stages that is of use.
+        /// The largest useful number of stages: more stages make the pipeline no faster.
         most: usize,
     },
-    /// The memories and the registers of multipliers need more stages than requested.
+    /// The requested number of stages is too small. Block memories and the registers of multipliers need more stages.
     TooFewStages {
-        /// The smallest number of stages.
+        /// The smallest possible number of stages.
         least: usize,
     },
-    /// The interval exceeds the number of clocks that the sequential core takes for a point.
+    /// The requested interval exceeds the number of clocks that the sequential core takes for a point.
     Interval {
-        /// The largest interval, in clocks.
+        /// The largest possible interval in clocks: the number of clocks that the sequential core takes for a point.
         most: usize,
     },
     /// The user requested a rate in points per second together with a number of stages. A rate needs a clock frequency instead.
     RateWithoutClock,
-    /// The rate exceeds one point a clock.
+    /// The requested rate exceeds one point a clock.
     Rate {
         /// The highest rate, in million points a second.
         most: f64,
     },
-    /// Every interval needs more multipliers than requested.
+    /// Every possible interval needs more multipliers than the user allows.
     Multipliers {
         /// The smallest number of multipliers that is possible.
         fewest: usize,
@@ -54,7 +56,7 @@ pub enum PipelineErrorKind {
 /// The error for a pipeline that Glint cannot make as the user requested.
 #[derive(Clone, Debug)]
 pub struct PipelineError {
-    /// The reason why the pipeline cannot be made, with the nearest possible value.
+    /// The reason why the pipeline cannot be made, in most cases with the nearest possible value.
     pub kind: PipelineErrorKind,
     /// The reason as a message for the user, with the line of the Rust source that it concerns.
     pub diagnostic: Diagnostic,
@@ -67,7 +69,8 @@ impl PipelineError {
         Self { kind: PipelineErrorKind::Microprogram, diagnostic }
     }
 
-    /// Makes the error for an option of the pipeline that the design as a whole cannot satisfy, such as a rate.
+    /// Makes the error for an option of the pipeline that the design as a whole cannot satisfy, such as a rate. The source line
+    /// is the line of the design's first net.
     pub(super) fn of_design(design: &Design, kind: PipelineErrorKind, message: String) -> Self {
         Self::at(design.nets[0].location, kind, message)
     }

@@ -1,8 +1,8 @@
 //! Replaces two-input muxes by gates if one input has constant bits, to shorten the longest path of a pipeline.
 //!
-//! Synthesis implements such a mux by the set or the reset of the register behind it, and combines the select of the mux with the
-//! clock enable in a look-up table. The path from there to the register's set or reset is longer than any path through a gate; it
-//! is too long for clocks at which products need output registers. Synthesis treats each bit separately, and so does this pass.
+//! Synthesis implements such a mux by the set or the reset of the register behind it. A look-up table combines the select of the
+//! mux with the clock enable. The path from this table to the register is too long for clocks at which products need output
+//! registers. Synthesis treats each bit separately, and so does this pass.
 
 use super::graph::{Cell, Graph, Label, NodeId, NodeOp};
 use super::rebuild::rebuilt;
@@ -35,10 +35,12 @@ pub fn gated(unrolled: &Unrolled) -> Unrolled {
     })
 }
 
-/// A bit of each input, if it is known.
+/// One bit position of a mux with two inputs: the bit of input 0 and the bit of input 1. A bit is `None` if it is not constant.
 type BitPair = (Option<bool>, Option<bool>);
 
-/// Returns the bits from `low` on of a mux, of whose inputs the same is known in each.
+/// Returns `width` bits of a mux, from bit `low` on. The mux has the inputs `zero` and `one`. `pair` states for each input which
+/// constant all these bits have in it, or `None` if they are not constant. For example, with constant 0 in `zero` only, the
+/// result is `one & select`.
 fn part(
     graph: &mut Graph,
     select: NodeId,
@@ -62,7 +64,7 @@ fn part(
             let all = spread(graph, select, !one, width, label);
             return graph.op(NodeOp::Relabel(all), format, label);
         }
-        // The input that is not known shows while the select is the other's.
+        // The input that is not constant passes while `select` chooses it. Otherwise the gate forces the constant.
         (Some(constant), None) => (one, false, constant),
         (None, Some(constant)) => (zero, true, constant),
     };
@@ -73,14 +75,15 @@ fn part(
     graph.op(op, format, label)
 }
 
-/// Returns the bit `select`, or its inverse, on every one of `width` bits.
+/// Returns a node of `width` bits, each of which equals the bit `select`, or its inverse if `inverted`.
 fn spread(graph: &mut Graph, select: NodeId, inverted: bool, width: u32, label: &Label) -> NodeId {
     let bit = if inverted { graph.op(NodeOp::Not(select), Format::BIT, label) } else { select };
     let sign = graph.op(NodeOp::Relabel(bit), Format::signed(0, 0), label);
     graph.resize(sign, width, true)
 }
 
-/// Returns the bits of a node that wiring alone determines, from the lowest up.
+/// Returns the bits of a node, from the lowest up. A bit is `None` unless constants and wiring alone determine it. For example,
+/// the concatenation of a variable bit and the constant `01` gives 1, 0, `None`.
 fn known(graph: &Graph, id: NodeId) -> Vec<Option<bool>> {
     let node = graph.node(id);
     let width = graph.width(id) as usize;
@@ -109,7 +112,7 @@ mod tests {
     use super::*;
     use crate::pipeline::text::{computed, parsed};
 
-    /// A mux with bits of every kind: both known, either, none.
+    /// A mux with every kind of bit pair: both bits constant, only one bit constant, no bit constant.
     const MUX: &str = "
 select u1.0
 a u2.0

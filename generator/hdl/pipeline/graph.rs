@@ -1,7 +1,8 @@
 //! The graph of an unrolled computation: an acyclic graph of values, each computed once.
 //!
-//! A node is the value of one net in one clock of the computation. Equal nodes are merged, constants are folded, and wiring
-//! without an effect disappears. The remaining nodes are the operations for one point (one set of operands).
+//! A node is the value of one net in one clock of the computation. Equal nodes are merged, constant operations are replaced by
+//! their results, and wiring without an effect disappears. The remaining nodes are the operations for one point (one set of
+//! operands).
 
 use std::collections::HashMap;
 use std::panic::Location;
@@ -24,11 +25,11 @@ pub type NodeOp = netlist::Op<NodeId>;
 pub enum Cell {
     /// An operand of the design. The number is its position among all operands.
     Operand(usize),
-    /// An unknown value: the content of the named register before its first load.
+    /// An unknown value: the content of the named register or ROM output before its first load.
     Unknown(String),
     /// A constant bit pattern.
     Constant(u64),
-    /// The word at an address of a ROM.
+    /// A read of a ROM: the word at an address.
     Read {
         /// The ROM of the sequential design that is read.
         rom: RomId,
@@ -39,33 +40,33 @@ pub enum Cell {
     Op(NodeOp),
 }
 
-/// What people need to read a value in Verilog and in diagrams: its name, its comment, and the number that its block has in the
-/// block diagram of the device's source, if any.
+/// The texts by which people recognise a value in Verilog and in diagrams: its name, its comment, and the number of its block.
 #[derive(Clone, Debug)]
 pub struct Label {
     /// The name of the net or register in the sequential design that has the value. For example, `product`.
     pub name: String,
     /// A comment of one line, taken from the sequential design.
     pub doc: String,
-    /// The number of the block that computes the value, in the block diagram of the document that describes the device; `None`
-    /// without a number.
+    /// The number of the block that computes the value, in the block diagram of the document that describes the device. `None` if
+    /// the diagram does not number it.
     pub block: Option<u16>,
     /// Whether the author of the device's description chose the name. Glint generates all other names.
     pub named: bool,
-    /// The name of the whole value, if the node is a part of it. For example, the part `base_low` has `base` here.
+    /// The name of the whole value if the node is a part of a value; otherwise `None`. For example, the part `base_low` has
+    /// `base` here.
     pub part_of: Option<String>,
     /// The line of the Rust source that describes the value.
     pub location: &'static Location<'static>,
 }
 
 impl Label {
-    /// Makes the label of a value that its author named.
+    /// Makes the label of a value whose name the author of the description chose.
     pub fn new(name: String, location: &'static Location<'static>) -> Self {
         Self { name, doc: String::new(), block: None, named: true, part_of: None, location }
     }
 
-    /// Returns the label of a part of the labelled value, such as its low bits. A part of a part is named after the whole value, so
-    /// that names stay short. For example, the part `low` of `base` is named `base_low`, and the part `high` of that part
+    /// Returns the label of a part of the labelled value, such as its low bits. A part of a part is named after the whole value,
+    /// so that names stay short. For example, the part `low` of `base` is named `base_low`, and the part `high` of that part
     /// `base_high`.
     pub fn part(&self, name: &str) -> Self {
         let whole = self.part_of.as_ref().unwrap_or(&self.name);
@@ -74,7 +75,7 @@ impl Label {
     }
 }
 
-/// A value of the computation: the operation that computes it, and its format and interval.
+/// A value of the computation: the operation that computes it, its format, and its interval.
 #[derive(Clone, Debug)]
 pub struct Node {
     /// The operation that computes the value, such as a sum of two other nodes.
@@ -85,9 +86,9 @@ pub struct Node {
     pub range: Interval,
     /// The name, the comment and the source line of the value.
     pub label: Label,
-    /// The first executed microinstruction that needs the value, as a position in [`super::unroll::Unrolled::steps`].
+    /// The first executed microinstruction whose execution made the value, as a position in [`super::unroll::Unrolled::steps`].
     pub step: usize,
-    /// Whether a register of the sequential design loads the value.
+    /// Whether a register of the sequential design loads the value, so that the node has the register's label.
     pub held: bool,
 }
 
@@ -97,8 +98,8 @@ pub struct Graph {
     /// The nodes of the graph. The number of a node is its index in this list.
     pub nodes: Vec<Node>,
     known: HashMap<(Cell, u32, bool), NodeId>,
-    /// The microinstruction that is being unrolled, as a position in [`super::unroll::Unrolled::steps`]. New nodes get this number
-    /// as their `step`.
+    /// The microinstruction that is being unrolled, as a position in [`super::unroll::Unrolled::steps`]. New nodes get this
+    /// number as their `step`.
     pub step: usize,
 }
 
@@ -128,8 +129,8 @@ impl Graph {
         (0..live.len()).filter(|&at| live[at]).map(|at| NodeId(at as u32)).collect()
     }
 
-    /// Narrows the interval of node `id`, its smallest and largest raw value, to the intersection with `range`. It keeps the
-    /// interval if the intersection is empty. Returns `id`.
+    /// Narrows the interval of node `id`, its smallest and largest raw value, to the intersection with `range`. The interval
+    /// stays as it is if the intersection is empty. Returns `id`.
     pub fn refine(&mut self, id: NodeId, range: Interval) -> NodeId {
         let node = &mut self.nodes[id.index()];
         // On a path that is never taken, the intersection can be empty.
@@ -147,15 +148,16 @@ impl Graph {
         }
     }
 
-    /// Returns the node of a constant with the bit pattern `bits`, and adds it to the graph unless it has an equal constant.
+    /// Returns the node of a constant, and adds it to the graph unless the graph has an equal constant. Bits of `bits` beyond the
+    /// width of `format` are dropped.
     pub fn constant(&mut self, bits: u64, format: Format, label: &Label) -> NodeId {
         let bits = bits & mask(format.width());
         let raw = format.raw(bits);
         self.insert(Cell::Constant(bits), format, (raw, raw), label)
     }
 
-    /// Returns the node for the word that a ROM with the contents `words` has at `address`, and adds it to the graph unless it is
-    /// there.
+    /// Returns the node for the word at `address` of a ROM with the contents `words`. Adds the node to the graph unless the graph
+    /// has it. If `address` is a constant, the returned node is the constant word, or 0 behind the last word.
     pub fn read(
         &mut self,
         rom: RomId,
@@ -176,8 +178,9 @@ impl Graph {
         self.insert(Cell::Read { rom, address }, format, range, label)
     }
 
-    /// Returns the node for the operation `cell`, and adds it unless the graph has an equal node. The interval of an equal node
-    /// narrows to `range`.
+    /// Returns the node for the operation `cell`, and adds it unless the graph has an equal node. Two nodes are equal if
+    /// operation, width and sign agree; the place of the binary point does not matter. The interval of an equal node narrows to
+    /// `range`. An equal node whose name was generated takes `label` if an author chose the name in `label`.
     pub fn insert(&mut self, cell: Cell, format: Format, range: Interval, label: &Label) -> NodeId {
         let key = (cell.clone(), format.width(), format.signed);
         if let Some(&id) = self.known.get(&key) {
@@ -194,8 +197,8 @@ impl Graph {
         id
     }
 
-    /// Returns a node with the low `width` bits of node `id`, or with its bits extended to `width`. The result is signed if
-    /// `signed`.
+    /// Returns a node with the low `width` bits of node `id`, or with its bits extended to `width`. The bits are extended by the
+    /// sign if node `id` is signed, and otherwise by zeros. The result is signed if `signed`.
     pub fn resize(&mut self, id: NodeId, width: u32, signed: bool) -> NodeId {
         let node = self.node(id);
         let (format, label) = (node.format, Label { named: false, ..node.label.clone() });
@@ -208,8 +211,8 @@ impl Graph {
         }
     }
 
-    /// Returns a node with the value of the combinational cell `op`. It may be an existing or a simpler node. For example, a sum of
-    /// two constants becomes a constant.
+    /// Returns a node with the value of the combinational cell `op`, which is an existing, a simpler or a new node. For example,
+    /// a sum of two constants becomes a constant.
     pub fn op(&mut self, op: NodeOp, format: Format, label: &Label) -> NodeId {
         if let Some(id) = self.fold(&op, format, label) {
             let node = &mut self.nodes[id.index()];
@@ -227,8 +230,8 @@ impl Graph {
         self.insert(Cell::Op(op), format, range, label)
     }
 
-    /// Returns the limit of a choice between a value and a limit: the choice takes the value if it is less, else the
-    /// limit.
+    /// Returns an upper limit for a mux of the form `value < limit ? value : limit`: the largest value of `limit`. Returns `None`
+    /// if `op` has another form.
     fn limit(&self, op: &NodeOp) -> Option<i128> {
         let NodeOp::Mux { select, inputs } = op else { return None };
         match (&self.node(*select).cell, &inputs[..]) {
@@ -241,7 +244,8 @@ impl Graph {
         }
     }
 
-    /// Returns whether a value is never above a limit, a power of two, whose bit selects the limit.
+    /// Returns whether the mux `select ? limit : value` is superfluous because `value` never exceeds the constant `limit`. This
+    /// is so if `limit` is a power of two, and `select` is the bit of `value` with this weight.
     fn is_kept(&self, value: NodeId, select: NodeId, limit: u64) -> bool {
         let (low, high) = self.node(value).range;
         let Cell::Op(NodeOp::Slice { of, low: bit }) = self.node(select).cell else { return false };
@@ -252,7 +256,8 @@ impl Graph {
             && limit.is_power_of_two()
     }
 
-    /// Returns a node that already has the value of the cell, or a simpler node with that value.
+    /// Returns a simpler node with the value of the cell `op`, or an existing node with this value. Returns `None` if no
+    /// simplification applies. For example, `x + 0` gives `x`.
     fn fold(&mut self, op: &NodeOp, format: Format, label: &Label) -> Option<NodeId> {
         let known = op.operands().into_iter();
         let known: Option<HashMap<NodeId, [u64; 1]>> =
@@ -356,12 +361,14 @@ impl Graph {
         }
     }
 
-    /// Returns whether a node is another one inverted.
+    /// Returns whether the node `inverse` is the inverted node `of`.
     fn is_inverse(&self, inverse: NodeId, of: NodeId) -> bool {
         matches!(self.node(inverse).cell, Cell::Op(NodeOp::Not(it)) if it == of)
     }
 
-    /// Returns the bits of a slice without the zeros in front of a number, if there are such zeros.
+    /// Returns a slice without the zeros that an extension has put above an unsigned number. Returns `None` if the slice has no
+    /// such zeros. For example, if a number of 3 bits is extended to 8, the slice of all 8 bits becomes the slice of the lowest
+    /// 3.
     fn without_zeros(&mut self, slice: NodeId, label: &Label) -> Option<NodeId> {
         let Cell::Op(NodeOp::Slice { of, low }) = self.node(slice).cell else { return None };
         let Cell::Op(NodeOp::Extend(number)) = self.node(of).cell else { return None };
@@ -373,6 +380,8 @@ impl Graph {
         })
     }
 
+    /// Simplifies the slice of node `of` that begins at bit `low` and is as wide as `format`. For example, a slice of a slice
+    /// becomes one slice. Returns `None` if no simplification applies.
     fn fold_slice(
         &mut self,
         of: NodeId,
@@ -404,7 +413,7 @@ impl Graph {
                 (low >= inner.width() && !inner.signed).then(|| self.constant(0, format, label))
             }
             Cell::Op(NodeOp::Concat(parts)) => {
-                // From the lowest part up: the bits of each that are wanted.
+                // The parts are visited from the lowest one up, and the bits of each part that the slice takes are listed.
                 let (mut from, mut wanted) = (0, Vec::new());
                 for part in parts.into_iter().rev() {
                     let end = from + self.width(part);
@@ -429,8 +438,8 @@ impl Graph {
         }
     }
 
-    /// Returns the product of operands that are no wider than their values need, and unsigned if no value is
-    /// negative. Returns `None` if the operands already have this form.
+    /// Returns a product whose factors are no wider than their values require. The factors are unsigned if neither can be
+    /// negative. Returns `None` if the product of `a` and `b` already has this form.
     fn fold_product(
         &mut self,
         a: NodeId,
@@ -457,7 +466,8 @@ impl Graph {
 }
 
 impl Cell {
-    /// Returns the nodes that the operation reads, such as the two factors of a product.
+    /// Returns the nodes that the operation reads, in order, such as the two factors of a product. The list is empty for
+    /// operands, constants and unknown values.
     pub fn operands(&self) -> Vec<NodeId> {
         match self {
             Self::Op(op) => op.operands(),
@@ -466,8 +476,8 @@ impl Cell {
         }
     }
 
-    /// Returns whether the operation needs no logic: it is a constant, or it renames, extends, slices or concatenates the bits of
-    /// other nodes.
+    /// Returns whether the operation takes no logic: it is a constant, or it renames, extends, slices or joins the bits of other
+    /// nodes.
     pub fn is_wiring(&self) -> bool {
         matches!(
             self,
@@ -478,7 +488,8 @@ impl Cell {
     }
 }
 
-/// Returns how many bits a number of this range needs. For example, 0 to 5 need 3 bits, and −4 to 3 need 3 with the sign.
+/// Returns how many bits a number of this range takes, at least 1; `signed` includes the sign. For example, 0 to 5 take 3 bits,
+/// and −4 to 3 take 3 with the sign.
 fn bits_for(range: Interval, signed: bool) -> u32 {
     let [low, high] = [range.0, range.1].map(|raw| {
         let magnitude = if raw < 0 { !raw } else { raw };

@@ -8,7 +8,7 @@ use super::schedule::ScheduleProblem;
 use super::{Goal, Options};
 use crate::netlist::Design;
 
-/// How the interval of a pipeline is chosen. The interval is the number of clocks from one point to the next.
+/// The way in which Glint chooses the interval of a pipeline. The interval is the number of clocks from one point to the next.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum IntervalGoal {
     /// The interval itself, in clocks.
@@ -20,12 +20,16 @@ pub enum IntervalGoal {
     Multipliers(usize),
 }
 
-/// Returns the interval of a pipeline, the number of clocks from one point to the next, that reaches the goal in `options`. `most`
-/// is the number of clocks in which the sequential core computes a point. `problems` makes the scheduling problem for an interval.
+/// Returns the interval of a pipeline in clocks, from one point to the next, as `options.interval` requests it. `most` is the
+/// number of clocks in which the sequential core computes a point. `problems` makes the scheduling problem for an interval.
+///
+/// For a rate, the function returns the longest interval that reaches the rate and the clock. For a number of multipliers, it
+/// returns the shortest interval that needs no more. If no interval reaches the clock, it returns 1, and the scheduler reports
+/// the error.
 ///
 /// # Errors
-/// Fails if the interval is longer than the sequential core's, or if no interval reaches the rate. Fails if a rate is wanted
-/// without a clock. Fails if every interval needs more multipliers than the options allow.
+/// Fails if the requested interval exceeds `most`. Fails if the rate exceeds one point a clock, or if the options give a rate
+/// without a clock frequency. Fails if every interval needs more multipliers than the options allow.
 pub fn clocks<'a>(
     sequential: &Design,
     options: &Options,
@@ -34,7 +38,7 @@ pub fn clocks<'a>(
 ) -> Result<usize, PipelineError> {
     let name = &sequential.name;
     let error = |kind, message| Err(PipelineError::of_design(sequential, kind, message));
-    // Muxes before a multiplier take time of the clock.
+    // The muxes in front of a shared multiplier take time too, so that some intervals do not reach the clock.
     let reaches = |interval: &usize| match options.goal {
         Goal::ClockMhz(clock) => {
             problems(*interval).fastest().is_none_or(|it| it.period <= 1000.0 / clock + 1e-9)
@@ -78,7 +82,7 @@ pub fn clocks<'a>(
                 }
             }
             let Some((interval, fewest)) = best else {
-                // The schedule says why.
+                // No interval reaches the clock. The scheduler reports the error.
                 return Ok(1);
             };
             let message = format!(

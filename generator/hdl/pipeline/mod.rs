@@ -1,9 +1,8 @@
 //! Turns a design with a microprogram into a pipeline, which accepts a point (a set of operands) every clock or every few clocks.
 //!
-//! `unroll` turns the design into a graph of values. `passes` rewrite the graph; the first splits its products to fit the
-//! multipliers of a [`Timing`]. `request` finds a schedule (`schedule`), which assigns every value to a stage. `stages` builds
-//! the pipeline: it has no microprogram, and a register wherever a value crosses from one stage to the next. None of these
-//! modules knows a particular device.
+//! `unroll` turns the design into a graph of values. `passes` rewrite the graph, for example to split products that are too wide
+//! for the multipliers of the FPGA target. `request` finds a schedule (`schedule`), which assigns every value to a stage.
+//! `stages` builds the pipeline, which has no microprogram, and a register wherever a value passes from one stage to the next.
 
 mod delay;
 mod error;
@@ -41,7 +40,7 @@ pub use unroll::{
     unroll_in_powers, unroll_line,
 };
 
-/// The goal when Glint divides a computation into pipeline stages: a clock frequency or a number of stages.
+/// The goal with which Glint divides a computation into pipeline stages: a clock frequency or a number of stages.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Goal {
     /// The pipeline must reach this clock frequency in MHz, with as few register bits as possible.
@@ -53,13 +52,14 @@ pub enum Goal {
 /// The way in which a pipeline stores a value that no stage reads for several stages.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Delays {
-    /// A waiting value is stored in a small memory, if the target has one.
+    /// A waiting value is stored in a small memory of look-up tables, if the target has such memories and if they take fewer
+    /// resources than registers.
     Memory,
-    /// A waiting value is stored in a register in each stage.
+    /// A waiting value is stored in a register at the end of each stage.
     Registers,
 }
 
-/// The options with which a user requests a pipeline.
+/// The options with which a user requests a pipeline. For example, a clock of 100 MHz on ECP5, a point every clock, no stalls.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Options {
     /// The FPGA target whose delays and multipliers the schedule assumes.
@@ -72,8 +72,8 @@ pub struct Options {
     pub registered: bool,
     /// Whether the environment can stall the pipeline by setting `out_ready` to 0.
     pub stall: bool,
-    /// The number of bits of the side channel. The side channel carries data of the user, such as a pixel's position, along with a
-    /// point.
+    /// The number of bits of the side channel. The side channel carries data of the user along with a point, such as a pixel's
+    /// position.
     pub side: u32,
     /// How the pipeline stores values that no stage reads for several stages: in registers or in small memories.
     pub delays: Delays,
@@ -93,11 +93,12 @@ pub fn pass_results(
     Ok(passes::results(unrolled, options))
 }
 
-/// Turns a sequential design, which executes a microprogram, into a pipeline with the same results, and returns it.
+/// Turns a sequential design, which executes a microprogram, into a pipeline with the same results, and returns the pipeline.
 ///
 /// # Errors
-/// Fails if the microprogram cannot be unrolled; the error has its source line. Fails if a clock or a number of stages cannot be
-/// reached; the error has the nearest value that can.
+/// Fails if the microprogram cannot be unrolled into a computation without loops; the error has the source line. Fails if the
+/// requested clock, number of stages, interval, rate or number of multipliers cannot be reached. The error then states the
+/// nearest value that can be reached.
 pub fn pipeline(sequential: &Design, options: &Options) -> Result<Design, PipelineError> {
     let mut results = pass_results(sequential, options)?;
     let Some(PassResult { computation, .. }) = results.pop() else {

@@ -12,7 +12,7 @@ use super::text::printed;
 use super::unroll::Unrolled;
 use glint_base::target::Timing;
 
-/// The name of the first [`PassResult`], which no pass has rewritten.
+/// The name of the first [`PassResult`], the computation before all passes.
 const UNROLL: &str = "unroll";
 
 /// A pass: a rewriting of a computation before Glint schedules it as a pipeline. The results of the computation stay the same.
@@ -23,7 +23,7 @@ pub struct Pass {
     pub description: &'static str,
     /// Returns whether Glint runs the pass for a pipeline with these options.
     pub applies: fn(&Options) -> bool,
-    /// Returns the computation as the pass rewrites it for an FPGA target.
+    /// Returns the computation after the pass has rewritten it for an FPGA target.
     pub run: fn(&Unrolled, &Timing) -> Unrolled,
 }
 
@@ -45,7 +45,7 @@ pub static PASSES: [Pass; 2] = [
 
 /// A computation that a pass has rewritten.
 pub struct PassResult {
-    /// The name of the pass, or `unroll` for the computation that the microprogram states.
+    /// The name of the pass, or `unroll` for the computation before all passes.
     pub name: &'static str,
     /// A sentence about what the pass does.
     pub description: &'static str,
@@ -59,12 +59,12 @@ impl PassResult {
         printed(&self.computation)
     }
 
-    /// Returns the number of operations of the computation that the results need, without operands and constants.
+    /// Returns the number of operations on which the results depend, wiring included. Operands and constants do not count.
     pub fn operations(&self) -> usize {
         self.count(|cell| matches!(cell, Cell::Op(_) | Cell::Read { .. }))
     }
 
-    /// Returns the number of multiplications of the computation that the results need.
+    /// Returns the number of multiplications on which the results depend.
     pub fn products(&self) -> usize {
         self.count(|cell| matches!(cell, Cell::Op(NodeOp::Mul(..))))
     }
@@ -98,11 +98,11 @@ mod tests {
     use super::{PASSES, printed};
     use glint_base::target::TIMINGS;
 
-    /// Combinations of operands that are computed of a test.
+    /// The largest number of combinations of operand values that one test file may have.
     const MOST: u64 = 1 << 16;
 
-    /// In every file: the pass makes the computation behind the arrow, and the results are the same for every
-    /// operand.
+    /// For every test file, the pass must return the computation behind the arrow `->`. The results of both computations must be
+    /// the same for every combination of operand values.
     #[test]
     fn passes_make_what_their_files_say() {
         let place = Path::new(env!("CARGO_MANIFEST_DIR")).join("pipeline/passes");

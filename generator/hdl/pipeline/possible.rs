@@ -1,4 +1,4 @@
-//! Decides whether a condition can ever be 1, by trying all combinations of the bits on which it depends.
+//! Finds out whether a condition can ever be 1, by trying all combinations of the bits on which it depends.
 
 use std::collections::{HashMap, HashSet};
 
@@ -6,15 +6,15 @@ use super::graph::{Cell, Graph, NodeId};
 use crate::netlist::eval;
 use glint_base::fixed::mask;
 
-/// The number of bits that a condition may depend on. With more, the combinations cannot all be tried.
+/// The largest number of bits on which a condition may depend. With more bits, there are too many combinations to try.
 const MOST_BITS: u32 = 16;
 
-/// The most bits of a node that selects among a number for each of its values.
+/// The largest width in bits of the node for which [`count`] returns a list. With 6 bits, the list has 64 entries.
 const MOST_SELECTED: u32 = 6;
 
-/// Returns whether some values of the leaves make `condition`, one bit, 1. The nodes `free` count as leaves: they may have any
-/// value in their range. Returns `None` if `condition` depends on more than 16 bits. For example, `count > 3` can be 1 if `count`
-/// is a leaf of 3 bits, and cannot if it has 2.
+/// Returns whether `condition`, a node of one bit, is 1 for any values of the leaves on which it depends. Leaves are operands,
+/// unknown values, ROM words and the nodes `free`; each may have any value in its range. Returns `None` if `condition` depends on
+/// more than 16 bits. For example, `count > 3` can be 1 if `count` is a leaf of 3 bits, and cannot if it has 2.
 pub fn ever(graph: &Graph, condition: NodeId, free: &[NodeId]) -> Option<bool> {
     let cone = Cone::of(graph, &[condition], free);
     if cone.bits > MOST_BITS {
@@ -24,11 +24,12 @@ pub fn ever(graph: &Graph, condition: NodeId, free: &[NodeId]) -> Option<bool> {
     Some(cases.any(|values| values[&condition] == [1]))
 }
 
-/// Counts the `conditions` that are 1, for each value of the one node on which all of them depend. This node is a leaf or one of
-/// `free`. Returns the node, and for each of its bit patterns the number of conditions that are 1. The number is `None` for a bit
-/// pattern that the node never has. Returns `None` if the conditions depend on several nodes, or on a node with too many bits.
+/// Counts the `conditions` that are 1, for each value of the one leaf on which all of them depend. A leaf is an operand, an
+/// unknown value, a ROM word, or one of the nodes `free`. Returns the leaf, and for each of its bit patterns the number of
+/// conditions that are 1. The number is `None` for a bit pattern outside the range of the leaf.
 ///
-/// For example, the conditions `count > 0` and `count > 1` give 0, 1, 2 and 2 for a `count` of two bits.
+/// Returns `None` if the conditions depend on no leaf or on several, or if the leaf has more than 6 bits. For example, the
+/// conditions `count > 0` and `count > 1` give 0, 1, 2 and 2 for a `count` of two bits.
 pub fn count(
     graph: &Graph,
     conditions: &[NodeId],
@@ -51,17 +52,18 @@ pub fn count(
     Some((leaf, counts))
 }
 
-/// The nets on which conditions depend.
+/// The nodes on which some conditions depend.
 struct Cone {
     leaves: Vec<NodeId>,
-    /// The bits of all leaves.
+    /// The number of bits of all leaves together.
     bits: u32,
     /// The nodes from the leaves to the conditions, each after its operands.
     inside: Vec<NodeId>,
 }
 
 impl Cone {
-    /// Finds the nodes on which conditions depend, down to leaves and the nodes `free`.
+    /// Finds the nodes on which `conditions` depend. The search stops at the leaves: operands, unknown values, ROM words and the
+    /// nodes `free`.
     fn of(graph: &Graph, conditions: &[NodeId], free: &[NodeId]) -> Self {
         let free: HashSet<NodeId> = free.iter().copied().collect();
         let (mut seen, mut pending) = (HashSet::new(), conditions.to_vec());
@@ -84,8 +86,8 @@ impl Cone {
         Self { leaves, bits, inside }
     }
 
-    /// Returns the values of all nodes if `number` gives the bits of the leaves. Returns `None` if a leaf never has
-    /// its value.
+    /// Returns the bit pattern of every node for one combination of leaf values. The first leaf has the lowest bits of `number`,
+    /// the next leaf the bits above, and so on. Returns `None` if a leaf's value is outside its range.
     fn values(&self, graph: &Graph, number: u64) -> Option<HashMap<NodeId, [u64; 1]>> {
         let mut values: HashMap<NodeId, [u64; 1]> = HashMap::new();
         let mut rest = number;

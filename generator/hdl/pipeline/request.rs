@@ -25,21 +25,23 @@ impl<'a> Request<'a> {
         Self { sequential, unrolled, options, results }
     }
 
-    /// Returns the scheduling problem of the computation for a given `interval` in clocks. `registered` says whether products use
-    /// the output registers of multipliers.
+    /// Returns the scheduling problem of the computation for a given `interval` in clocks. If `registered` is true, products use
+    /// the output registers of multipliers, provided that the target states a delay for them.
     pub fn problems(&self, registered: bool, interval: usize) -> ScheduleProblem<'_> {
         let target = self.options.target;
         let registered = target.registered.filter(|_| registered);
         ScheduleProblem::new(&self.unrolled.graph, target, registered, interval, &self.results)
     }
 
-    /// Returns the interval that the user requests, the number of clocks from one point to the next.
+    /// Returns the interval in clocks, the number of clocks from one point to the next, that satisfies the user's options.
     ///
     /// # Errors
-    /// Fails if [`interval::clocks`] fails.
+    /// Fails if the requested interval is longer than the sequential core takes for a point. Fails if the rate exceeds one point
+    /// a clock, or if the options give a rate without a clock frequency. Fails if every interval needs more multipliers than the
+    /// options allow.
     pub fn interval(&self) -> Result<usize, PipelineError> {
-        // With the clock of `start`, in which the operands are written. Iterations that operands decide on are counted at
-        // their most.
+        // The sequential core takes one clock for each microinstruction, plus the clock of `start`, which writes the operands. If
+        // operands decide the number of iterations, the largest number counts.
         let steps = self.unrolled.steps.len();
         let decided = !decided_by_data(self.sequential).is_empty();
         let mut most = steps;
@@ -54,7 +56,9 @@ impl<'a> Request<'a> {
     /// Returns the assignment of operations to stages that reaches the requested clock frequency or number of stages.
     ///
     /// # Errors
-    /// Fails if a clock or a number of stages cannot be reached. The error has the nearest value that can.
+    /// Fails if one operation takes longer than the clock period. Fails if the requested number of stages is more than useful, or
+    /// fewer than memories and multipliers need. Each of these errors has the nearest value that can be reached. Fails if the
+    /// solver finds no schedule.
     pub fn schedule(
         &self,
         problems: &ScheduleProblem<'_>,
@@ -72,6 +76,7 @@ impl<'a> Request<'a> {
         }
     }
 
+    /// Returns the schedule with exactly `stages` stages.
     fn in_stages(
         &self,
         problems: &ScheduleProblem<'_>,
@@ -103,7 +108,8 @@ impl<'a> Request<'a> {
         Ok(schedule)
     }
 
-    /// Returns the error of a clock for which one operation alone is too slow.
+    /// Returns the error for a clock frequency (`clock`, in MHz) whose period is shorter than the delay of the single operation
+    /// in `limit`.
     fn too_fast(&self, clock: f64, interval: usize, limit: &Unreachable) -> PipelineError {
         let Unreachable { limiting, period } = *limit;
         let nearest = schedule::megahertz(period);
@@ -119,7 +125,8 @@ impl<'a> Request<'a> {
         self.error(kind, message, Some(limiting))
     }
 
-    /// Returns whether a clock can be reached only with products in the registers of multipliers.
+    /// Returns whether `clock`, in MHz, can be reached only if products use the output registers of multipliers. Returns `false`
+    /// if the options request these registers already.
     fn needs_registered(&self, clock: f64, interval: usize) -> bool {
         if self.options.registered {
             return false;
@@ -128,14 +135,15 @@ impl<'a> Request<'a> {
         fastest.is_some_and(|limit| limit.period * clock <= 1000.0)
     }
 
-    /// Returns the error of a problem for which the solver finds no solution, although there always is one.
+    /// Returns the error for a problem in which the solver finds no schedule, although a schedule always exists. `at` is the node
+    /// at which the solver's result is wrong, if known.
     fn unsolved(&self, why: &str, at: Option<NodeId>) -> PipelineError {
         let name = &self.sequential.name;
         let message = format!("`{name}` has no schedule: {why}; this is a mistake of Glint's");
         self.error(PipelineErrorKind::Unsolved, message, at)
     }
 
-    /// Returns an error that concerns a node, or else the design as a whole.
+    /// Returns an error with the source line of `node`, or with the source line of the design's first net if `node` is `None`.
     fn error(
         &self,
         kind: PipelineErrorKind,

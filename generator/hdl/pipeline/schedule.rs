@@ -1,13 +1,10 @@
 //! Assigns each node of a computation to a stage of the pipeline, with the fewest register bits.
 //!
-//! The stage of a node is not before the stages of its operands. It is a later stage if a block memory lies between them, or if
-//! the path through the logic from an earlier node takes longer than the clock. A value needs registers at every boundary between
-//! stages up to its last use, one register bit for each of its bits and boundaries. All constraints are on differences of two
-//! stages, so the linear program has an integer solution (Cong and Zhang, "An efficient and versatile scheduling algorithm based
-//! on SDC formulation", 2006).
-//!
-//! If products share multipliers, they get their stages first: one after another, as early as the constraints allow, in the first
-//! slot in which a multiplier is free (`sharing`). The linear program then places all other nodes around them.
+//! The node must be in a later stage than an operand if a block memory lies between them, or if the logic between them is too
+//! slow for the clock. A value takes one register bit for each of its bits and for each boundary between stages up to its last
+//! use. All constraints are on differences of two stages, so a linear program finds an integer solution. (The method is from Cong
+//! and Zhang, "An efficient and versatile scheduling algorithm based on SDC formulation", 2006.) Products that share multipliers
+//! (`sharing`) get their stages before the linear program runs.
 
 use std::cmp::Reverse;
 use std::collections::{BTreeMap, BTreeSet};
@@ -22,7 +19,8 @@ use glint_base::target::{Registered, Timing};
 /// A schedule for a pipeline: the stage of every node of the computation's graph, and the clock period that the stages reach.
 #[derive(Clone, Debug)]
 pub struct Schedule {
-    /// The stage of each node of the computation's graph. It is meaningless for constants and for nodes that no result needs.
+    /// The stage of each node of the computation's graph. It is meaningless for constants and for nodes on which no result
+    /// depends.
     pub stage: Vec<usize>,
     /// The number of register rows from the operands to the results, which is the latency in clocks.
     pub latency: usize,
@@ -32,16 +30,17 @@ pub struct Schedule {
     pub logic: Vec<f64>,
 }
 
-/// The reason why the scheduler found no assignment of a computation's nodes to pipeline stages.
+/// The reason why the scheduler returns no assignment of a computation's nodes to pipeline stages.
 #[derive(Clone, Debug)]
 pub enum ScheduleRefusal {
-    /// The requested clock period is too short for an operation.
+    /// The requested clock period is too short for a single operation.
     Unreachable(Unreachable),
-    /// The solver failed, or its solution violates a constraint. The fields are the reason, and the node with the wrong stage.
+    /// The solver failed, or its solution violates a constraint. The fields are the reason as text, and the node in a wrong
+    /// stage, if known.
     Unsolved(String, Option<NodeId>),
 }
 
-/// The operation that makes a requested clock period of a pipeline impossible.
+/// The operation that limits the clock period of a pipeline, and the shortest period.
 #[derive(Clone, Debug)]
 pub struct Unreachable {
     /// The slowest node of the computation's graph, which limits the clock period.
@@ -55,34 +54,36 @@ pub struct Unreachable {
 pub struct ScheduleProblem<'a> {
     graph: &'a Graph,
     target: &'a Timing,
-    /// The nodes to schedule, in order.
+    /// The nodes to schedule, each after its operands. Constants are not among them, nor are extensions that are no results.
     live: Vec<NodeId>,
     results: &'a [NodeId],
-    /// For each node, the scheduled nodes that use it; empty for constants.
+    /// For each node, the scheduled nodes that read it, directly or through extensions. The list is empty for constants.
     users: Vec<Vec<NodeId>>,
     delay: Vec<f64>,
-    /// For each node, the extra setup time of a register behind it.
+    /// For each node, the additional setup time of a register behind it, in nanoseconds.
     setup: Vec<f64>,
-    /// For each node that chooses between a value and a constant, the select signal, if a register behind it can make this choice
-    /// by its reset.
+    /// For each mux between a value and a constant, its select, if the register behind the mux can make the choice by its reset.
+    /// `None` for all other nodes.
     reset_by: Vec<Option<NodeId>>,
-    /// The timing of the nodes that a rising edge computes: block memories and registered products.
+    /// For each node that a rising edge computes (a word of a block memory, or a product behind a register), its timing. `None`
+    /// for all other nodes.
     clocked: Vec<Option<ClockedNode>>,
     /// The interval: the smallest number of clocks from one point to the next.
     interval: usize,
-    /// The groups of products that share multipliers.
+    /// The groups of products whose products share multipliers.
     kinds: Vec<ProductGroup>,
 }
 
-/// A node that the clock makes: a word of a block memory, a product in the register of a multiplier, or one of a multiplier
-/// that others use too.
+/// The timing of a node that gets its value at a rising edge. It is a word of a block memory, a product in the register of a
+/// multiplier, or a product of a shared multiplier.
 #[derive(Clone, Copy, Debug)]
 struct ClockedNode {
-    /// The time from the operands to the rising edge, in addition to the path to an ordinary register.
+    /// The time from the operands to the rising edge in nanoseconds, as far as it exceeds the path to an ordinary register.
     operands: f64,
-    /// The delay of the logic between two registers that the operands pass afterwards, if there is any.
+    /// The delay of the logic between two registers that the operands pass afterwards, in nanoseconds: the multiplier behind its
+    /// operand registers. It is 0 without such logic.
     inside: f64,
-    /// The number of boundaries from the operands to the node.
+    /// The number of stage boundaries from the operands to the node: 2 for a shared multiplier, otherwise 1.
     apart: usize,
 }
 
@@ -92,7 +93,8 @@ pub fn megahertz(period: f64) -> f64 {
     (10_000.0 / period).floor() / 10.0
 }
 
-/// Returns whether an operation is made of other things than look-up tables that could take logic before it with them.
+/// Returns whether an operation is a carry chain or a product. The look-up tables of any other operation can include a mux in
+/// front of it.
 fn takes_no_logic(cell: &Cell) -> bool {
     matches!(
         cell,
@@ -103,10 +105,10 @@ fn takes_no_logic(cell: &Cell) -> bool {
 /// `(from, to, apart)`: the stage of node `to` is at least `apart` stages after the stage of node `from`.
 type StageDifference = (NodeId, NodeId, usize);
 
-/// The stages of the products that share multipliers.
+/// The stages of the products that share multipliers, which are chosen before all other stages.
 type Taken = BTreeMap<NodeId, usize>;
 
-/// Returns the inverters whose bits are, through wiring, factors of products.
+/// Returns the inverters among the nodes whose outputs are factors of products in `live`, directly or through wiring.
 fn inverted_factors(graph: &Graph, live: &[NodeId]) -> Vec<NodeId> {
     let mut open: Vec<NodeId> = Vec::new();
     for &id in live {
@@ -126,12 +128,13 @@ fn inverted_factors(graph: &Graph, live: &[NodeId]) -> Vec<NodeId> {
 }
 
 /// Returns whether a node only extends or renames another node. Each stage that uses such a node makes it again, so that the
-/// registers between stages hold the narrower operand.
+/// registers between stages store the narrower operand.
 pub fn is_extension(graph: &Graph, id: NodeId) -> bool {
     matches!(graph.node(id).cell, Cell::Op(NodeOp::Extend(_) | NodeOp::Relabel(_)))
 }
 
-/// Returns the node that registers hold for the users of `id`.
+/// Returns the node that registers store for the readers of `id`. For an extension that is no result, this is the node that it
+/// extends; for any other node, `id` itself.
 fn held(graph: &Graph, results: &[NodeId], mut id: NodeId) -> NodeId {
     while is_extension(graph, id) && !results.contains(&id) {
         id = graph.node(id).cell.operands()[0];
@@ -139,8 +142,8 @@ fn held(graph: &Graph, results: &[NodeId], mut id: NodeId) -> NodeId {
     id
 }
 
-/// Returns the delay of a node, and how the clock makes it, if it does. `shares` says that it is a product of a
-/// multiplier that several products share.
+/// Returns the delay of a node in nanoseconds, and its timing if a rising edge computes it. `shares` says whether the node is a
+/// product of a multiplier that several products share.
 fn node_timing(
     graph: &Graph,
     target: &Timing,
@@ -174,8 +177,9 @@ fn node_timing(
 }
 
 impl<'a> ScheduleProblem<'a> {
-    /// Makes the scheduling problem for the nodes of `graph` that `results` need. `interval` is the number of clocks from one point
-    /// to the next. `registered` is `None` if products do not use the output registers of multipliers.
+    /// Makes the scheduling problem for the nodes of `graph` on which `results` depend. `interval` is the number of clocks from
+    /// one point to the next. `registered` has the delays of multipliers with output registers; it is `None` if products do not
+    /// use these registers.
     pub fn new(
         graph: &'a Graph,
         target: &'a Timing,
@@ -212,8 +216,9 @@ impl<'a> ScheduleProblem<'a> {
             let select = delay::reset_by(graph, id);
             reset_by.push(select.map(|select| held(graph, results, select)));
         }
-        // Look-up tables and sums take an inverter with them, a multiplier does not. Where its clock is short one that others
-        // take too counts as well: it is not worth a second one.
+        // Look-up tables and adders include an inverter without extra delay; a multiplier does not. With registered multipliers,
+        // the inverter's delay counts even if other operations read the inverter too, because a second inverter would not be
+        // worth its cost.
         for id in inverted_factors(graph, &live) {
             let for_products_alone = users[id.index()].iter().all(|user| {
                 let cell = &graph.node(*user).cell;
@@ -238,7 +243,8 @@ impl<'a> ScheduleProblem<'a> {
         }
     }
 
-    /// Returns the number of multipliers of the FPGA target that the products of the computation take together.
+    /// Returns the number of multipliers of the FPGA target that all products of the computation take together. Shared
+    /// multipliers count once.
     pub fn multipliers(&self) -> usize {
         let mut multipliers = sharing::products(self.graph, self.target, &self.live).len();
         for kind in &self.kinds {
@@ -247,14 +253,14 @@ impl<'a> ScheduleProblem<'a> {
         multipliers
     }
 
-    /// Returns the operation that limits the clock period most, with the shortest period that it allows. The time that the
-    /// environment takes for an operand never makes a period unreachable.
+    /// Returns the operation that limits the clock period most, with the shortest period that it allows. Operands of the design
+    /// and ROMs whose words are all equal do not count. Returns `None` if the computation has no other node.
     pub fn fastest(&self) -> Option<Unreachable> {
         let mut limiting: Option<(NodeId, f64)> = None;
         for &id in &self.live {
             let is_settled = match self.graph.node(id) {
                 Node { cell: Cell::Operand(_), .. } => true,
-                // Nor does a memory whose words are all the same: synthesis makes a constant of it.
+                // A memory whose words are all the same limits nothing: synthesis makes a constant of it.
                 Node { cell: Cell::Read { .. }, range, .. } => range.0 == range.1,
                 _ => false,
             };
@@ -270,7 +276,7 @@ impl<'a> ScheduleProblem<'a> {
         Some(Unreachable { limiting, period: alone + self.target.register })
     }
 
-    /// Returns the nanoseconds that a node takes by itself between two registers.
+    /// Returns the nanoseconds that a node alone takes between two registers, without the delay of the registers themselves.
     fn delay_alone(&self, id: NodeId) -> f64 {
         let logic = self.delay[id.index()] + self.setup[id.index()];
         match self.clocked[id.index()] {
@@ -279,8 +285,8 @@ impl<'a> ScheduleProblem<'a> {
         }
     }
 
-    /// Returns the schedule that reaches a clock period in nanoseconds. It has as few stages as possible, and then the fewest
-    /// register bits.
+    /// Returns the schedule that reaches a clock period in nanoseconds. It has as few stages as possible, and among these
+    /// schedules the fewest register bits.
     ///
     /// # Errors
     /// Fails if an operation takes longer than the period, or if the solver fails.
@@ -293,8 +299,8 @@ impl<'a> ScheduleProblem<'a> {
         self.solve(period, 0)
     }
 
-    /// Returns the schedule with this number of stages and the shortest clock period. If there are more stages than useful, the
-    /// slowest operation decides the period.
+    /// Returns the schedule with the shortest clock period for this number of stages. With more stages than useful, the slowest
+    /// operation determines the period. The schedule has more stages than `stages` if no period allows so few.
     ///
     /// # Errors
     /// Fails if the solver fails.
@@ -306,7 +312,7 @@ impl<'a> ScheduleProblem<'a> {
             true => fastest,
             false => self.target.register + all + 1.0,
         };
-        // To a picosecond.
+        // The search ends at a picosecond.
         while high - low > 0.001 {
             let middle = f64::midpoint(low, high);
             if self.least_stages(middle) <= stages {
@@ -324,7 +330,7 @@ impl<'a> ScheduleProblem<'a> {
         self.least_stages(self.fastest_period())
     }
 
-    /// Returns the period of [`Self::fastest`]; 0 without any operation.
+    /// Returns the period of [`Self::fastest`] in nanoseconds, or 0 if no operation limits the period.
     fn fastest_period(&self) -> f64 {
         match self.fastest() {
             Some(unreachable) => unreachable.period,
@@ -332,14 +338,15 @@ impl<'a> ScheduleProblem<'a> {
         }
     }
 
-    /// Returns the fewest stages for a period in nanoseconds.
+    /// Returns the smallest number of stages with which a pipeline reaches a clock period in nanoseconds.
     fn least_stages(&self, period: f64) -> usize {
         let differences = self.differences(period);
         self.latency(&differences, &self.taken(&differences))
     }
 
-    /// Returns the number of rows of pipeline registers that must lie between the operands of node `user` and its value. For
-    /// example, the word of a block memory needs one row.
+    /// Returns the number of rows of pipeline registers that must lie between the operands of node `user` and its value. It is 0
+    /// for combinational logic, 1 for a word of a block memory or a product with a register, and 2 for a product of a shared
+    /// multiplier.
     pub fn apart(&self, user: NodeId) -> usize {
         match self.clocked[user.index()] {
             Some(clocked) => clocked.apart,
@@ -347,17 +354,18 @@ impl<'a> ScheduleProblem<'a> {
         }
     }
 
-    /// Returns the number of registers between two nodes that are too far apart for one stage. Block memories and
-    /// multipliers lie in columns of their own. If one register leaves too little time on the way to a multiplier,
-    /// the value of a memory takes a register near each of the two.
+    /// Returns the number of register rows between the nodes `from` and `user`, whose path takes longer than the `most`
+    /// nanoseconds of a stage. The number is 2 if a block memory's value goes to a multiplier and the time does not suffice for
+    /// the wire; otherwise it is 1. Block memories and multipliers lie in separate columns of the chip, so that one register is
+    /// placed near each of the two.
     fn registers_between(&self, from: NodeId, user: NodeId, most: f64) -> usize {
         let product = matches!(self.graph.node(user).cell, Cell::Op(NodeOp::Mul(..)));
         let far = product && delay::is_block(self.target, self.graph, from);
         1 + usize::from(far && self.delay[user.index()] + self.target.logic > most)
     }
 
-    /// Returns the nanoseconds until a register behind `user` has its value, if the operand `from` is there after
-    /// `after` nanoseconds. A mux that becomes a reset delays its select alone.
+    /// Returns the nanoseconds until the setup of a register behind `user`, if the operand `from` arrives after `after`
+    /// nanoseconds. If the register makes the choice of a mux by its reset, the delay of the mux counts for the select alone.
     fn until_register(&self, from: NodeId, user: NodeId, after: f64) -> f64 {
         match self.reset_by[user.index()] {
             Some(select) if select != from => after,
@@ -365,6 +373,8 @@ impl<'a> ScheduleProblem<'a> {
         }
     }
 
+    /// Returns the constraints of a clock period in nanoseconds: for each pair of dependent nodes the least difference of their
+    /// stages. They are sorted, and each pair occurs once.
     fn differences(&self, period: f64) -> Vec<StageDifference> {
         let most = period - self.target.register + 1e-9;
         let mut differences = Vec::new();
@@ -374,15 +384,15 @@ impl<'a> ScheduleProblem<'a> {
             for &user in &self.users[from.index()] {
                 differences.push((from, user, self.apart(user)));
             }
-            // Forward through logic, as far as the clock goes.
+            // From each node, the search follows the logic forward until the path takes longer than the clock period.
             let mut pending = BTreeSet::from([from]);
-            // The part of a clock that the environment takes never makes the clock unreachable.
+            // The delay of an operand counts at most as a full clock period, so that it never makes the period unreachable.
             longest[from.index()] = self.delay[from.index()].min(most);
             reached[from.index()] = from;
             while let Some(at) = pending.pop_first() {
                 for &user in &self.users[at.index()] {
                     if let Some(ClockedNode { operands, apart, .. }) = self.clocked[user.index()] {
-                        // Room for a register between the logic and the memory or the multiplier.
+                        // If the time does not suffice, a register must lie between the logic and the memory or the multiplier.
                         if longest[at.index()] + operands > most {
                             differences.push((from, user, apart + 1));
                         }
@@ -410,7 +420,8 @@ impl<'a> ScheduleProblem<'a> {
         differences
     }
 
-    /// Returns the fewest boundaries: the longest chain of differences, and one behind the results.
+    /// Returns the smallest possible latency in clocks: the longest chain of differences up to a result, plus the register row
+    /// behind the results.
     fn latency(&self, differences: &[StageDifference], taken: &Taken) -> usize {
         let earliest = self.earliest(differences, taken);
         let mut latency = 1;
@@ -422,8 +433,8 @@ impl<'a> ScheduleProblem<'a> {
         latency
     }
 
-    /// Returns the earliest stage of each node. The differences must be sorted by their first node; a node comes
-    /// after its operands.
+    /// Returns the earliest stage of each node. `differences` must be sorted by the first node of each entry, and a node must
+    /// have a higher number than its operands.
     fn earliest(&self, differences: &[StageDifference], taken: &Taken) -> Vec<usize> {
         let mut earliest = vec![0; self.graph.nodes.len()];
         for (id, stage) in taken {
@@ -435,8 +446,8 @@ impl<'a> ScheduleProblem<'a> {
         earliest
     }
 
-    /// Returns the stages of products that share multipliers. They are placed one after another. The product that can
-    /// be placed earliest comes first; among several, the product that the most stages must follow.
+    /// Returns the stages of products that share multipliers. The products get their stages one after another. The product that
+    /// can have the earliest stage comes first. Among several, the product that the most stages must follow comes first.
     fn taken(&self, differences: &[StageDifference]) -> Taken {
         let mut after = vec![0; self.graph.nodes.len()];
         for &(from, to, apart) in differences.iter().rev() {
@@ -466,13 +477,14 @@ impl<'a> ScheduleProblem<'a> {
         taken
     }
 
-    /// Returns the last stage that a node can have. Operands are there from the beginning, and results need a
-    /// boundary behind them.
+    /// Returns the last stage that a node may have. It is 0 for an operand, because operands are available from the beginning. It
+    /// is `latency` − 1 for any other node, because a register row follows the results.
     fn last_stage(&self, id: usize, latency: usize) -> usize {
         if matches!(self.graph.nodes[id].cell, Cell::Operand(_)) { 0 } else { latency - 1 }
     }
 
-    /// Checks that stages keep every constraint, whoever found them.
+    /// Checks that the stages satisfy every constraint. `differences` are the constraints between two nodes; `latency` is the
+    /// number of stages.
     ///
     /// # Errors
     /// Fails if the stages break a constraint. The error is the first such constraint.
@@ -520,7 +532,8 @@ impl<'a> ScheduleProblem<'a> {
         Ok(())
     }
 
-    /// Returns the schedule with the fewest register bits for a period, in no fewer stages than `least`.
+    /// Returns the schedule with the fewest register bits for a period in nanoseconds, with at least `least` stages. Fails if the
+    /// solver finds no solution, or one that violates a constraint.
     fn solve(&self, period: f64, least: usize) -> Result<Schedule, ScheduleRefusal> {
         let differences = self.differences(period);
         let taken = self.taken(&differences);
@@ -533,7 +546,8 @@ impl<'a> ScheduleProblem<'a> {
                 Some(&stage) => (stage as f64, stage as f64),
                 None => (0.0, self.last_stage(at, latency) as f64),
             };
-            // Of schedules of as many register bits one whose products are late: their operands have registers of their own.
+            // Among schedules with equally many register bits, the solver prefers one with late products, because the operands of
+            // products have registers of their own.
             let weight = match node.cell {
                 Cell::Op(NodeOp::Mul(..)) => -1e-3,
                 _ => 0.0,
@@ -556,7 +570,7 @@ impl<'a> ScheduleProblem<'a> {
                 problem.add_constraint(terms, ComparisonOp::Ge, last);
             }
         }
-        // A reset is a look-up table a bit where anything takes it in its own stage.
+        // A mux that its register makes by a reset takes one look-up table a bit if a node in its own stage reads it.
         for &id in &self.live {
             if self.reset_by[id.index()].is_none() {
                 continue;
@@ -589,7 +603,7 @@ impl<'a> ScheduleProblem<'a> {
         Ok(Schedule { stage: solved, latency, period, logic })
     }
 
-    /// Returns the readers of a node, through wires.
+    /// Returns the nodes that read node `id`, directly or through wiring.
     fn beyond_wiring(&self, id: NodeId) -> Vec<NodeId> {
         let (mut open, mut users) = (self.users[id.index()].clone(), Vec::new());
         while let Some(user) = open.pop() {
@@ -604,13 +618,13 @@ impl<'a> ScheduleProblem<'a> {
         users
     }
 
-    /// Returns the longest way through the logic of each stage.
+    /// Returns the delay of the slowest path through the logic of each stage, in nanoseconds.
     fn logic(&self, stage: &[usize], latency: usize) -> Vec<f64> {
         let mut arrival = vec![0.0f64; self.graph.nodes.len()];
         let mut longest = vec![0.0f64; latency];
         for &id in &self.live {
             let at = stage[id.index()];
-            // The operands of the same stage.
+            // The operands in the same stage; all others come from registers.
             let mut before: Vec<NodeId> = Vec::new();
             if !self.is_clocked(id) {
                 for operand in self.graph.node(id).cell.operands() {
@@ -648,18 +662,19 @@ impl<'a> ScheduleProblem<'a> {
         longest
     }
 
-    /// Returns the part of the clock period that pipeline registers take, in nanoseconds: clock-to-output delay plus setup.
+    /// Returns the part of the clock period that pipeline registers take, in nanoseconds: clock-to-output delay, wire and setup.
     pub fn register_ns(&self) -> f64 {
         self.target.register
     }
 
-    /// Returns the nodes on which a result of the computation depends. The schedule must assign a stage to each.
+    /// Returns the nodes to which the schedule must assign a stage, each after its operands: all nodes on which a result depends,
+    /// except constants and extensions.
     pub fn live(&self) -> &[NodeId] {
         &self.live
     }
 
-    /// Returns for each node of the computation's graph the last stage that reads it. Registers must hold the value up to that
-    /// stage.
+    /// Returns for each node of the computation's graph the last stage that reads its value. Registers must carry the value up to
+    /// that stage. For a result, this is the latency.
     pub fn last_use(&self, schedule: &Schedule) -> Vec<usize> {
         let mut last = schedule.stage.clone();
         for &id in &self.live {
@@ -674,8 +689,8 @@ impl<'a> ScheduleProblem<'a> {
         last
     }
 
-    /// Returns the multipliers that serve several products under this schedule, with the product that each computes in each slot. A
-    /// slot is the number of a clock modulo the interval, the number of clocks between points.
+    /// Returns the multipliers that serve several products under this schedule, with the product that each computes in each slot.
+    /// A slot is the number of a clock modulo the interval, the number of clocks between points.
     pub fn units(&self, schedule: &Schedule) -> Vec<MultiplierUnit> {
         let mut units = Vec::new();
         for kind in &self.kinds {
@@ -685,8 +700,8 @@ impl<'a> ScheduleProblem<'a> {
         units
     }
 
-    /// Returns whether a node gets its value at a rising edge. Such a node is the word of a block memory, or a product in the
-    /// output register of a multiplier.
+    /// Returns whether a node gets its value at a rising edge: it is the word of a block memory, or a product in the register
+    /// behind a multiplier.
     pub fn is_clocked(&self, id: NodeId) -> bool {
         self.clocked[id.index()].is_some()
     }

@@ -1,13 +1,15 @@
-//! Merges two limits of a value into one. Two limits follow each other if the computation repeats a step that limits its result.
+//! Merges two muxes that limit a value to a constant into one mux. Two such muxes follow each other if a computation repeats a
+//! step that limits (saturates) its result.
 //!
-//! For example, in `over₂ ? most : f(over₁ ? most : x)`, the condition `over₂` tests a bit of the inner choice. The pass merges
-//! both choices: the result is `most` if either condition holds, and otherwise `f(x)`.
+//! For example, in `over₂ ? most : f(over₁ ? most : x)`, `f` is wiring, and the condition `over₂` is a bit of the inner
+//! mux. The module returns one mux: the result is `most` if either condition holds, and otherwise `f(x)`.
 
 use super::graph::{Cell, Graph, Label, NodeId, NodeOp};
 use glint_base::fixed::Format;
 
-/// Merges a choice between a constant and a value with an earlier such choice inside the value, and returns the new node. Returns
-/// `id` if the node is no choice of this kind.
+/// Returns a node with the value of node `id`. If `id` is a mux `over ? most : rest` with a constant `most`, the returned mux
+/// bypasses inner muxes of this kind in `rest`. It bypasses those whose condition must be 0 if the new condition is 0. Returns
+/// `id` itself if the node is no mux of this kind.
 pub fn settled(graph: &mut Graph, id: NodeId) -> NodeId {
     let node = graph.node(id).clone();
     let Some((over, rest, most)) = limit(graph, id) else { return id };
@@ -16,7 +18,8 @@ pub fn settled(graph: &mut Graph, id: NodeId) -> NodeId {
     graph.op(NodeOp::Mux { select: over, inputs: vec![rest, most] }, node.format, &node.label)
 }
 
-/// Matches `over ? most : rest` with a constant: `over`, `rest` and the constant.
+/// Matches node `id` with the form `over ? most : rest`, in which `most` is a constant. Returns the nodes `over`, `rest` and
+/// `most`, or `None` if the node has another form.
 fn limit(graph: &Graph, id: NodeId) -> Option<(NodeId, NodeId, NodeId)> {
     let Cell::Op(NodeOp::Mux { select, inputs }) = &graph.node(id).cell else { return None };
     match inputs[..] {
@@ -25,7 +28,8 @@ fn limit(graph: &Graph, id: NodeId) -> Option<(NodeId, NodeId, NodeId)> {
     }
 }
 
-/// Returns a condition that tests a bit of a choice, rewritten to read the choice's inputs instead.
+/// Rewrites the condition `id` if it is one bit of a mux `over ? most : rest` whose constant `most` has a 1 at this bit. The
+/// returned condition is `over`, or the same bit of `rest`, and does not read the mux. Returns `id` for any other condition.
 fn flag(graph: &mut Graph, id: NodeId) -> NodeId {
     let node = graph.node(id).clone();
     let Cell::Op(NodeOp::Slice { of, low }) = node.cell else { return id };
@@ -38,7 +42,8 @@ fn flag(graph: &mut Graph, id: NodeId) -> NodeId {
     either(graph, over, bit, &label)
 }
 
-/// Returns whether one of two bits is 1; of bits side by side, whether any is.
+/// Returns a node that is 1 if bit `a` or bit `b` is 1. If `b` is the bit directly below the bits that `a` tests, the node is one
+/// [`NodeOp::Any`] of all these bits.
 fn either(graph: &mut Graph, a: NodeId, b: NodeId, label: &Label) -> NodeId {
     if let (Some((of, low, width)), Some((other, below, 1))) = (run(graph, a), run(graph, b))
         && of == other
@@ -51,7 +56,9 @@ fn either(graph: &mut Graph, a: NodeId, b: NodeId, label: &Label) -> NodeId {
     graph.op(NodeOp::Or(a, b), Format::BIT, label)
 }
 
-/// Returns the bits that a condition tests for any 1: their net, the lowest bit and the number of bits.
+/// Returns which bits the condition `id` tests for a 1: the node with the bits, the lowest bit, and the number of bits. For
+/// example, `Any` of the bits 4 to 6 of `x` gives `(x, 4, 3)`. Returns `None` if the condition is no slice and no `Any` of a
+/// slice.
 fn run(graph: &Graph, id: NodeId) -> Option<(NodeId, u32, u32)> {
     match graph.node(id).cell {
         Cell::Op(NodeOp::Any(of)) => run(graph, of),
@@ -60,8 +67,8 @@ fn run(graph: &Graph, id: NodeId) -> Option<(NodeId, u32, u32)> {
     }
 }
 
-/// Returns `id` for the case that `over` is 0, looking through wiring. If this implies that the condition of an inner
-/// choice is 0 too, the choice is replaced by its value below the limit.
+/// Returns a node that equals `id` whenever the condition `over` is 0. The search passes through wiring to an inner choice
+/// between a value and a constant. If its condition must be 0 when `over` is 0, the value replaces the choice.
 fn below(graph: &mut Graph, id: NodeId, over: NodeId) -> NodeId {
     let node = graph.node(id).clone();
     if let Some((inner, rest, _)) = limit(graph, id) {
@@ -79,7 +86,7 @@ fn below(graph: &mut Graph, id: NodeId, over: NodeId) -> NodeId {
     }
 }
 
-/// Returns whether `inner` is 0 wherever `over` is.
+/// Returns whether the condition `inner` must be 0 whenever the condition `over` is 0.
 fn follows(graph: &Graph, over: NodeId, inner: NodeId) -> bool {
     match (run(graph, over), run(graph, inner)) {
         _ if over == inner => true,

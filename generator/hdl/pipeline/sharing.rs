@@ -1,9 +1,9 @@
 //! Assigns products to multipliers, so that one multiplier serves several products of a pipeline, each in its own slot.
 //!
-//! A pipeline that accepts a point every k clocks counts slots from 0 to k − 1: a point is in stage s while the slot is s modulo
-//! k. A product in a known stage therefore needs a multiplier in one slot of k, and products of different slots can share one.
-//! Muxes in front of the multiplier select the factors into its operand registers, and the product goes into the register behind
-//! it.
+//! A pipeline that accepts a point every k clocks counts slots from 0 to k − 1. A point is in stage s while the slot is s
+//! modulo k. A product in a known stage therefore needs a multiplier in one slot of k, and products of different slots can
+//! share one. Muxes in front of the multiplier select the factors for its operand registers, and a register behind the
+//! multiplier takes the product.
 
 use std::cmp::Reverse;
 
@@ -15,26 +15,25 @@ use glint_base::target::{FAMILIES, Timing};
 pub struct ProductGroup {
     /// The products of the group, in the order of the computation.
     pub products: Vec<NodeId>,
-    /// The number of multipliers that the group needs. It is less than the number of products, because one multiplier serves a
-    /// product in each slot.
+    /// The number of multipliers for the group, less than the number of products: one multiplier computes a product in each slot.
     pub units: usize,
     /// Whether the multipliers take signed factors.
     signed: bool,
 }
 
-/// A multiplier of a pipeline, with the products that it computes in turn.
+/// A multiplier of a pipeline that several products share, with the product of each slot.
 #[derive(Clone, Debug)]
 pub struct MultiplierUnit {
     /// The widths of the multiplier's two factors, in bits.
     pub widths: [u32; 2],
     /// Whether the multiplier takes signed factors.
     pub signed: bool,
-    /// For each slot (clock modulo the interval), the product that the multiplier computes in it, and the factors of this product
-    /// in the order of the multiplier's operands.
+    /// For each slot (clock modulo the interval), the product that the multiplier computes in it, and the two factors in the
+    /// order of the multiplier's operands. `None` if it computes no product.
     pub serves: Vec<Option<(NodeId, [NodeId; 2])>>,
 }
 
-/// Returns the factors of a product.
+/// Returns the two factors of node `id`, or `None` if the node is no product.
 fn factors(graph: &Graph, id: NodeId) -> Option<[NodeId; 2]> {
     match graph.node(id).cell {
         Cell::Op(NodeOp::Mul(a, b)) => Some([a, b]),
@@ -42,8 +41,8 @@ fn factors(graph: &Graph, id: NodeId) -> Option<[NodeId; 2]> {
     }
 }
 
-/// Returns the products of a computation for which synthesis uses multipliers of the target. It leaves out narrow products, which
-/// become look-up tables.
+/// Returns the products among the nodes `live` for which synthesis uses multipliers of the target. It leaves out narrow products,
+/// which become look-up tables. For example, it leaves out a product of 5 by 5 bits on iCE40.
 pub fn products(graph: &Graph, target: &Timing, live: &[NodeId]) -> Vec<NodeId> {
     let least = match FAMILIES.iter().find(|family| family.name() == target.name) {
         Some(family) => family.estimate.least_product,
@@ -58,16 +57,17 @@ pub fn products(graph: &Graph, target: &Timing, live: &[NodeId]) -> Vec<NodeId> 
     products
 }
 
-/// Returns groups of the products of a computation that can share multipliers; none with an interval of 1. Products without a sign
-/// join the signed products if the multiplier has a bit to spare and this saves multipliers. For example, six products with an
-/// interval of 4 need two multipliers.
+/// Returns the groups of products that can share multipliers. A group that would save no multiplier is left out, so that an
+/// interval of 1 has no groups. Products without a sign join the signed products if the multiplier has a bit to spare and this
+/// saves multipliers. For example, six products with an interval of 4 need two multipliers.
 pub fn kinds(
     graph: &Graph,
     target: &Timing,
     live: &[NodeId],
     interval: usize,
 ) -> Vec<ProductGroup> {
-    // Products with a sign and without; then also with products that have room for a sign among those with one.
+    // One grouping separates signed and unsigned products. The other also puts unsigned products among the signed ones if their
+    // factors leave a bit for a sign.
     let (mut signed, mut unsigned) = (Vec::new(), Vec::new());
     let (mut with_room, mut without_room) = (Vec::new(), Vec::new());
     for id in products(graph, target, live) {
@@ -89,7 +89,7 @@ pub fn kinds(
     kinds
 }
 
-/// Returns whether a multiplier of the target has a bit to spare for a sign of each factor of a product.
+/// Returns whether both factors of a product are narrower than the multiplier's operands, so that each leaves a bit for a sign.
 fn has_room(graph: &Graph, target: &Timing, product: NodeId) -> bool {
     let mut widths =
         factors(graph, product).unwrap_or([product; 2]).map(|factor| graph.width(factor));
@@ -97,7 +97,8 @@ fn has_room(graph: &Graph, target: &Timing, product: NodeId) -> bool {
     widths[1] < target.multiplier.0 && widths[0] < target.multiplier.1
 }
 
-/// Makes a group of the products that take a signed multiplier, and one of the others.
+/// Makes a group of the products `signed`, which take signed multipliers, and a group of the products `unsigned`. A group of n
+/// products needs n / `interval` multipliers, rounded up.
 fn group(signed: Vec<NodeId>, unsigned: Vec<NodeId>, interval: usize) -> [ProductGroup; 2] {
     [(signed, true), (unsigned, false)].map(|(products, signed)| {
         let units = products.len().div_ceil(interval);
@@ -106,7 +107,8 @@ fn group(signed: Vec<NodeId>, unsigned: Vec<NodeId>, interval: usize) -> [Produc
 }
 
 /// Assigns the products of the group `kind` to multipliers, and returns the multipliers. `stage` has the pipeline stage of each
-/// node. Among the multipliers that are free in its slot, a product takes the multiplier whose muxes and registers grow the least.
+/// node. Wider products are assigned first. Among the multipliers that are free in its slot, a product takes the one whose muxes
+/// and registers grow the least.
 pub fn units(
     graph: &Graph,
     target: &Timing,
@@ -114,7 +116,7 @@ pub fn units(
     stage: &[usize],
     interval: usize,
 ) -> Vec<MultiplierUnit> {
-    // A factor without a sign is one bit wider if the multiplier is signed.
+    // A signed multiplier takes a factor without a sign with a zero above it, which is one more bit.
     let width = |id: NodeId| {
         let format = graph.node(id).format;
         format.width() + u32::from(kind.signed && !format.signed)

@@ -1,12 +1,9 @@
 //! Splits products that are too wide for the multipliers of an FPGA target into sums of narrower products.
 //!
-//! An operand that is too wide is cut in two: as many upper bits as a multiplier takes, and the remaining lower bits. If only a
-//! few bits remain, their product is added row by row in look-up tables, as in multiplication by hand; synthesis would use a
-//! whole multiplier. Otherwise they become a product of their own.
-//!
-//! Two special cases cost less. In the square `(u·2^r + l)² = u²·4^r + l·(u·2^(r+1) + l)`, both partial products with the rest l
-//! share one factor. If a factor has a power of two as its largest value, such as a cosine with 1.0, its highest bit is set only
-//! if all its other bits are 0.
+//! A factor that is too wide is divided into as many upper bits as a multiplier takes, and the remaining lower bits. A few lower
+//! bits are multiplied row by row in look-up tables; more lower bits become a product of their own. In the square
+//! `(u·2^r + l)² = u²·4^r + l·(u·2^(r+1) + l)`, both partial products with the lower bits l share one factor. If a factor's
+//! highest bit is 1 only if all other bits are 0, the product is either the other factor, shifted, or a product without this bit.
 
 use super::graph::{Graph, Label, NodeId, NodeOp};
 use super::rebuild::rebuilt;
@@ -15,11 +12,11 @@ use super::unroll::Unrolled;
 use glint_base::fixed::Format;
 use glint_base::target::Timing;
 
-/// The most bits of an operand that become rows in look-up tables.
+/// The largest number of lower bits of an operand whose product becomes rows in look-up tables.
 const MOST_ROWS: u32 = 4;
 
 /// Returns a copy of the computation in which products that are too wide for the target's multipliers are sums of narrower
-/// products.
+/// products. Sums and differences are rewritten too, so that their carry chains are short (`sums::shortened`).
 pub fn split(unrolled: &Unrolled, target: &Timing) -> Unrolled {
     rebuilt(unrolled, |graph, op, node| {
         Some(match op {
@@ -29,7 +26,8 @@ pub fn split(unrolled: &Unrolled, target: &Timing) -> Unrolled {
     })
 }
 
-/// Returns `a·b`, exact; both are signed, or neither is.
+/// Returns a node with the exact product of `a` and `b`, made of products that fit the target's multipliers. Either both factors
+/// are signed, or neither.
 fn product(
     graph: &mut Graph,
     target: &Timing,
@@ -45,7 +43,8 @@ fn product(
     }
 }
 
-/// Returns the terms whose sum is `a·b`.
+/// Returns terms whose sum is the product of `a` and `b`. It is one term if the target's multipliers take the factors or if a
+/// special case applies.
 fn parts(
     graph: &mut Graph,
     target: &Timing,
@@ -54,7 +53,7 @@ fn parts(
     label: &Label,
 ) -> Vec<ShiftedValue> {
     let (wide, narrow) = if graph.width(a) >= graph.width(b) { (a, b) } else { (b, a) };
-    // The sizes of the target are of unsigned operands; most multipliers take a sign bit with them.
+    // The target states the sizes for unsigned operands. Most multipliers take a sign bit in addition.
     let (most, other) = target.multiplier;
     let limit = if graph.width(narrow) <= other { most } else { other };
     let value = if graph.width(wide) <= limit {
@@ -69,14 +68,15 @@ fn parts(
     vec![ShiftedValue { value, places: 0 }]
 }
 
-/// Returns whether the greatest value of an unsigned factor is a power of two, with a bit that no other value has.
+/// Returns whether the largest value of an unsigned factor is the power of two whose only 1 is the factor's highest bit. For
+/// example, this is true of a factor of 5 bits with values up to 16.
 fn reaches_a_power_of_two(graph: &Graph, factor: NodeId) -> bool {
     let (low, high) = graph.node(factor).range;
     low >= 0 && high == 1 << (graph.width(factor) - 1)
 }
 
-/// Returns a product for a factor `wide` that is a power of two if its highest bit is set. In that case, the product
-/// is the other factor, shifted. Otherwise it is the product of the bits below and the other factor.
+/// Returns a product with a factor `wide` whose highest bit is 1 only if all its other bits are 0. If the highest bit is 1, the
+/// product is the factor `narrow`, shifted. Otherwise it is the product of the other bits of `wide` and `narrow`.
 fn below_the_highest(
     graph: &mut Graph,
     target: &Timing,
@@ -97,7 +97,7 @@ fn below_the_highest(
         let other = NodeOp::Mux { select: highest, inputs: vec![zero, narrow] };
         let other = graph.op(other, unsigned(width), &label.part("at_highest"));
         let upper = slice(graph, product, places, unsigned(width), label);
-        // One of the two is 0.
+        // One of the two operands is always 0.
         let upper = graph.op(NodeOp::Or(upper, other), unsigned(width), &unnamed(label));
         NodeOp::Concat(vec![upper, slice(graph, product, 0, unsigned(places), label)])
     };
@@ -106,16 +106,17 @@ fn below_the_highest(
     graph.op(NodeOp::Extend(whole), format, label)
 }
 
-/// Returns the one of two signed factors that is never negative, and the other, which has bits below its sign.
+/// Returns `a` and `b` in an order in which the first factor is signed and never negative, and the second has bits besides its
+/// sign. Returns `None` if no order of `a` and `b` has this form.
 fn with_a_sign(graph: &Graph, [a, b]: [NodeId; 2]) -> Option<[NodeId; 2]> {
     let positive = |id: NodeId| graph.node(id).format.signed && graph.node(id).range.0 >= 0;
     let factors = if positive(a) { [a, b] } else { [b, a] };
     (positive(factors[0]) && graph.width(factors[1]) > 1).then_some(factors)
 }
 
-/// Returns the product of `positive`, which is never negative, and `other`, which may be. It is the product of
-/// `positive` and the bits of `other` below the sign. If the sign is set, `positive` is subtracted at the weight of
-/// the sign. A product of two signed factors would need more bits to be cut.
+/// Returns the product of two signed factors: `positive`, which is never negative, and `other`, which may be. The product of
+/// `positive` and the bits of `other` without the sign is computed first. If the sign is set, `positive` is then subtracted at
+/// the weight of the sign. This takes narrower multipliers than a product of two signed factors.
 fn below_the_sign(
     graph: &mut Graph,
     target: &Timing,
@@ -142,14 +143,14 @@ fn below_the_sign(
     graph.op(NodeOp::Extend(whole), format, label)
 }
 
-/// A number in units of two to the power of `places`.
+/// A number in units of two to the power of `places`. For example, the value 3 with 2 places is the number 12.
 #[derive(Clone, Copy)]
 struct ShiftedValue {
     value: NodeId,
     places: u32,
 }
 
-/// Returns the sum of the parts of a product.
+/// Returns the sum of the terms `parts` of a product, in the format `format`.
 fn summed(
     graph: &mut Graph,
     mut parts: Vec<ShiftedValue>,
@@ -157,7 +158,7 @@ fn summed(
     label: &Label,
 ) -> NodeId {
     parts.sort_by_key(|term| std::cmp::Reverse(width_with_places(graph, term)));
-    // The widest last: no other sum is as wide.
+    // The widest term comes last, so that only the last addition is as wide as this term.
     parts.rotate_left(1);
     let mut terms = parts.into_iter();
     let mut sum = terms.next().expect("a product has parts");
@@ -174,12 +175,12 @@ fn summed(
     graph.op(NodeOp::Relabel(value), format, label)
 }
 
-/// Returns the number of bits of a value, with the places by which it is shifted up.
+/// Returns the number of bits of a term, including the places by which its value is shifted to the left.
 fn width_with_places(graph: &Graph, term: &ShiftedValue) -> u32 {
     term.places + graph.width(term.value)
 }
 
-/// Returns a term as a number of this width and sign.
+/// Returns a node with the number that a term denotes, resized to `width` bits and signed if `signed`.
 fn in_ones(
     graph: &mut Graph,
     term: ShiftedValue,
@@ -191,7 +192,7 @@ fn in_ones(
     graph.resize(shifted, width, signed)
 }
 
-/// Returns a term as a number, with a zero for each of its places.
+/// Returns a node with the number that a term denotes: the value with a zero below it for each place.
 fn shifted(
     graph: &mut Graph,
     ShiftedValue { value, places }: ShiftedValue,
@@ -206,9 +207,9 @@ fn shifted(
     graph.op(NodeOp::Concat(vec![value, zeros]), format, &unnamed(label))
 }
 
-/// Returns the terms of a product whose wider factor is cut into its `limit` upper bits and the rest. For example, a limit of
-/// 18 bits cuts a factor of 21 bits into 18 upper bits and 3 lower bits. On ECP5 the lower bits become rows if the other factor
-/// has at most 22 bits.
+/// Returns the terms of a product whose wider factor is divided into its `limit` upper bits and the remaining lower bits. For
+/// example, a limit of 18 bits divides a factor of 21 bits into 18 upper bits and 3 lower bits. On ECP5 the lower bits become
+/// rows if the other factor has at most 22 bits.
 fn cut(
     graph: &mut Graph,
     target: &Timing,
@@ -219,7 +220,8 @@ fn cut(
 ) -> Vec<ShiftedValue> {
     let rest = graph.width(wide) - limit;
     let upper_bits = slice(graph, wide, rest, integer(signed, limit), &label.part("upper_bits"));
-    // The factor of the upper bits, the factor of the rest, and the places by which the upper product is shifted up.
+    // The factor of the upper bits, the factor of the lower bits, and the places by which the upper product is shifted to the
+    // left.
     let (upper_factor, rest_factor, places) = if wide == narrow {
         let lower = slice(graph, wide, 0, unsigned(rest), &label.part("lower_bits"));
         let zero = graph.constant(0, Format::BIT, &unnamed(label));
@@ -250,7 +252,8 @@ fn cut(
     terms
 }
 
-/// Returns the product of the lowest `rest` bits of `wide` with `narrow`, a row for each.
+/// Returns the product of the lowest `rest` bits of `wide` with `narrow`, as a sum of one row for each of these bits. `rest` must
+/// not be 0. For example, the row of bit 2 is `narrow · 4` if the bit is 1, and otherwise 0.
 fn rows(graph: &mut Graph, wide: NodeId, rest: u32, narrow: NodeId, label: &Label) -> NodeId {
     let signed = graph.node(narrow).format.signed;
     let width = graph.width(narrow);
@@ -276,15 +279,17 @@ fn rows(graph: &mut Graph, wide: NodeId, rest: u32, narrow: NodeId, label: &Labe
     sum.expect("there is a row for every bit of the rest, which is not empty")
 }
 
+/// Returns the format of an integer with `width` bits in total, including the sign if `signed`.
 pub(super) fn integer(signed: bool, width: u32) -> Format {
     Format { signed, int: width as i32 - i32::from(signed), frac: 0 }
 }
 
+/// Returns the format of an unsigned integer with `width` bits.
 fn unsigned(width: u32) -> Format {
     integer(false, width)
 }
 
-/// Returns a label for a node that needs no name.
+/// Returns a copy of a label without comment, for a node whose name is generated.
 fn unnamed(label: &Label) -> Label {
     Label { doc: String::new(), named: false, ..label.clone() }
 }
@@ -302,7 +307,7 @@ mod tests {
     use glint_base::fixed::Format;
     use glint_base::target::{TIMINGS, Timing};
 
-    /// Returns a product in one stage, of a device whose multipliers take 4 bits by 4.
+    /// Returns a pipeline of one stage with the product of two factors, for a target whose multipliers take 4 bits by 4.
     fn product(factors: impl for<'d> Fn(&'d Designer) -> [Signal<'d>; 2]) -> Design {
         let design = design(|d| {
             let [a, b] = factors(d);
@@ -326,7 +331,7 @@ mod tests {
         pipeline(&design, &options).expect("a pipeline")
     }
 
-    /// Returns the result for the bit patterns of its operands.
+    /// Returns the bit pattern of the result for the bit patterns of the operands.
     fn result(design: &Design, operands: &[u64]) -> u64 {
         let mut device = Interpreter::new(design).expect("no loop");
         let mut operands = operands.iter();
@@ -343,7 +348,7 @@ mod tests {
         device.value(design.find("product_out").expect("a result"))
     }
 
-    /// Returns how many multipliers there are; none takes more than it can.
+    /// Returns the number of multipliers, and checks that no factor has more than 4 bits.
     fn multipliers(design: &Design) -> usize {
         let products = design.iter().filter_map(|(_, net)| match net.driver {
             Driver::Op(Op::Mul(a, b)) => Some([a, b]),

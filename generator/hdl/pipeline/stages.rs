@@ -1,4 +1,5 @@
-//! Builds the pipelined design: places every node of the graph in its stage and adds the registers between stages.
+//! Builds the pipelined design from a schedule: places every node of the graph in its stage, and adds the registers between
+//! stages and the handshake.
 
 use std::collections::{BTreeSet, HashMap, HashSet};
 
@@ -15,6 +16,8 @@ use crate::netlist::{
 use glint_base::fixed::Format;
 
 /// Builds the netlist of a pipeline from a schedule: the logic of every stage, the registers between stages, and the handshake.
+/// `sequential` is the design that was unrolled; names, comments and notes come from it. `interval` is the number of clocks from
+/// one point to the next.
 pub fn assemble(
     sequential: &Design,
     unrolled: &Unrolled,
@@ -80,7 +83,7 @@ pub fn assemble(
     design
 }
 
-/// Counts separately the bits that memories hold in place of registers.
+/// Moves the bits that memories store in place of registers from the stages' `register_bits` to their `delayed_bits`.
 fn count_delayed(design: &mut Design) {
     let lines = design.delay_lines();
     let passed = lines.iter().flat_map(|line| &line.values).flat_map(Delayed::passed);
@@ -102,20 +105,21 @@ struct StageBuilder<'a> {
     design: Design,
     /// The pipeline built so far. Its stages and checkpoints are added last.
     pipeline: Pipeline,
-    /// A net that is 1 if every point moves to the next stage; `None` if points always move.
+    /// A net that is 1 if every point moves to the next stage; `None` if the pipeline cannot stall, so that points always move.
     advance: Option<NetId>,
-    /// The register behind the multiplier, for each product that shares one.
+    /// For each product that shares a multiplier, the register behind this multiplier.
     shared: HashMap<NodeId, NetId>,
     taken: HashSet<String>,
-    /// The name of each node's value, without a stage.
+    /// The name of each node's value, without the suffix of a stage.
     names: HashMap<NodeId, String>,
-    /// The net with the value of a node in a stage.
+    /// The net with the value of a node in a stage. Constants have stage 0.
     values: HashMap<(NodeId, usize), NetId>,
-    /// The ROMs that serve as read ports of each memory.
+    /// For each ROM of the sequential design, the ROMs of the pipeline that are its read ports.
     memories: HashMap<RomId, Vec<RomId>>,
 }
 
 impl StageBuilder<'_> {
+    /// Adds a net to `stage`. Its source line is the line of the sequential design's first net, until `labelled` changes it.
     fn net(&mut self, name: String, stage: usize, format: Format, driver: Driver) -> NetId {
         self.taken.insert(name.clone());
         self.pipeline.stage_of.push(stage);
@@ -129,6 +133,7 @@ impl StageBuilder<'_> {
         id
     }
 
+    /// Gives a net the interval, block number, comment and source line of a node.
     fn labelled(&mut self, id: NetId, node: NodeId) -> NetId {
         if let Some(name) = self.names.get(&node) {
             name.clone_into(&mut self.pipeline.value_of[id.index()]);
@@ -147,6 +152,7 @@ impl StageBuilder<'_> {
         (register.data, register.enable, register.reset) = (Some(data), enable, reset);
     }
 
+    /// Adds a port of `width` bits with the comment `doc`. Inputs belong to stage 0, outputs to the last stage.
     fn port(&mut self, name: &str, width: u32, role: Role, doc: &str) -> NetId {
         let format = Format::unsigned(width as i32, 0);
         let stage = if role.is_input() { 0 } else { self.schedule.latency };
@@ -155,7 +161,7 @@ impl StageBuilder<'_> {
         self.documented(id, doc)
     }
 
-    /// Makes the inputs, and keeps the names of the outputs for them.
+    /// Makes the input ports, and reserves the names of the output ports.
     fn ports(&mut self, unrolled: &Unrolled, options: &Options) {
         self.port("rst_n", 1, Role::Reset, "reset, active low: drops the points on their way");
         self.port("in_valid", 1, Role::InValid, "the operands are those of a point");
@@ -178,14 +184,14 @@ impl StageBuilder<'_> {
         if options.stall {
             self.port("out_ready", 1, Role::OutReady, "the results are taken in this clock");
         }
-        // Names of outputs are theirs.
+        // No other net may take the name of an output port.
         let outputs =
             unrolled.results.iter().map(|(port, _)| self.sequential.net(*port).name.clone());
         let outputs: Vec<String> = outputs.collect();
         self.taken.extend(outputs);
     }
 
-    /// Gives every value a name.
+    /// Gives the value of every node a distinct name.
     fn names(&mut self) {
         for &id in self.problems.live() {
             if !self.names.contains_key(&id) {
@@ -196,7 +202,7 @@ impl StageBuilder<'_> {
         }
     }
 
-    /// Returns `wish`, with a number added if another value has that name in any stage. For example, a second value `base` is
+    /// Returns `wish`, with a number added if another value has this name in any stage. For example, a second value `base` is
     /// named `base_2`.
     fn distinct(&self, wish: &str) -> String {
         let mut name = wish.to_owned();
@@ -208,12 +214,13 @@ impl StageBuilder<'_> {
         name
     }
 
-    /// Returns `name` in a stage, as no other net has it. For example, `base` in stage 3 is `base_s3`.
+    /// Returns the name of the value `name` in a stage, with `_` added until no other net has this name. For example, `base` in
+    /// stage 3 is `base_s3`.
     fn staged(&self, name: &str, stage: usize) -> String {
         self.free(format!("{name}_s{stage}"))
     }
 
-    /// Returns `name`, or one like it that no other net has.
+    /// Returns `name`, with `_` added until no other net has this name.
     fn free(&self, mut name: String) -> String {
         while self.taken.contains(&name) {
             name.push('_');
@@ -221,12 +228,12 @@ impl StageBuilder<'_> {
         name
     }
 
-    /// Returns the net of the port with this role, if there is one.
+    /// Returns the net of the port with this role, or `None` if the pipeline has no such port.
     fn net_with(&self, role: Role) -> Option<NetId> {
         self.design.port(|it| it == role).map(|it| it.net)
     }
 
-    /// Makes the valid bits of the points on their way, and says when points move.
+    /// Makes the valid bit of each stage, the stall signal `advance`, the slot counter, the side channel, and the ports for them.
     fn handshake(&mut self) {
         let latency = self.schedule.latency;
         let offered = self.net_with(Role::InValid).expect("every pipeline has the port");
@@ -293,7 +300,7 @@ impl StageBuilder<'_> {
         }
     }
 
-    /// Returns a net of the handshake without a name of its own.
+    /// Adds a net of the handshake whose name is generated.
     fn inner(&mut self, name: &str, format: Format, driver: Driver) -> NetId {
         let id = self.net(self.free(name.to_owned()), 0, format, driver);
         self.design.nets[id.index()].named = false;
@@ -301,8 +308,8 @@ impl StageBuilder<'_> {
         id
     }
 
-    /// Makes the counter of the slots, and returns the net that says whether it is at slot 0. Returns `None` if there
-    /// is one slot.
+    /// Makes the counter of the slots (clocks modulo the interval), and returns the net that is 1 in slot 0. Returns `None` if
+    /// the interval is 1.
     fn slots(&mut self) -> Option<NetId> {
         let last = self.pipeline.interval.checked_sub(1).filter(|last| *last > 0)?;
         let bits = usize::BITS - last.leading_zeros();
@@ -325,7 +332,7 @@ impl StageBuilder<'_> {
         Some(first)
     }
 
-    /// Returns a net that says whether the counter is at slot `number`.
+    /// Returns a net that is 1 while the counter `slot` is `number`.
     fn is_slot(&mut self, slot: NetId, number: usize) -> NetId {
         let format = self.design.net(slot).format;
         let value = Driver::Constant(number as u64);
@@ -333,8 +340,9 @@ impl StageBuilder<'_> {
         self.inner("slot_is", Format::BIT, Driver::Op(Op::Equal(slot, number)))
     }
 
-    /// Returns the enable of the registers that take the values of `stage` and hold them until the next point is
-    /// there.
+    /// Returns the enable of the registers behind `stage`, which store its values until the next point arrives there. It is 1 in
+    /// the one slot in which a point leaves `stage`. With an interval of 1, it is the net `advance`, or `None` if points always
+    /// move.
     fn load(&mut self, stage: usize) -> Option<NetId> {
         let Some(slot) = self.pipeline.slot else { return self.advance };
         let number = stage % self.pipeline.interval;
@@ -350,7 +358,8 @@ impl StageBuilder<'_> {
         Some(load)
     }
 
-    /// Returns the multipliers that products share, without the logic that selects their factors.
+    /// Makes the multipliers that several products share, without the logic that selects their factors. Returns each multiplier
+    /// with the nets of its two operand registers. `registered` says whether products use the registers inside the multipliers.
     fn units(&mut self, registered: bool) -> Vec<(sharing::MultiplierUnit, [NetId; 2])> {
         let mut made = Vec::new();
         for (number, unit) in (1..).zip(self.problems.units(self.schedule)) {
@@ -388,7 +397,8 @@ impl StageBuilder<'_> {
         made
     }
 
-    /// Makes the factors of shared multipliers: registers behind a choice by the slot, two stages before the product is there.
+    /// Makes the operand registers of shared multipliers, with muxes before them that choose the factors by the slot. A factor
+    /// leaves its stage two stages before the product is available.
     fn muxes(&mut self, units: Vec<(sharing::MultiplierUnit, [NetId; 2])>) {
         for (at, (unit, factors)) in units.into_iter().enumerate() {
             for (side, q) in factors.into_iter().enumerate() {
@@ -398,7 +408,7 @@ impl StageBuilder<'_> {
                     let value = self.value(of[side], stage);
                     inputs[stage % self.pipeline.interval] = Some(self.widened(value, q));
                 }
-                // In slots without a product any value may come: the value of the slot before.
+                // In a slot without a product, the factor has no effect. The mux then takes the same input as in the slot before.
                 let first = inputs.iter().rev().flatten().next().copied();
                 let mut known = first.unwrap_or(q);
                 let mut filled: Vec<NetId> = Vec::new();
@@ -423,7 +433,7 @@ impl StageBuilder<'_> {
         }
     }
 
-    /// Returns a value with as many bits as another net.
+    /// Returns the net of `value`, extended to the width of the net `as_many` if that net is wider.
     fn widened(&mut self, value: NetId, as_many: NetId) -> NetId {
         let format = self.design.net(as_many).format;
         if self.design.width(value) == format.width() {
@@ -436,7 +446,8 @@ impl StageBuilder<'_> {
         wide
     }
 
-    /// Makes the value of every node in its stage, and registers up to its last use: each holds it until the next point is there.
+    /// Makes the value of every node in its stage, and the registers that carry the value to its last use. With an interval above
+    /// 1, such a register stores the value until the next point arrives.
     fn cells(&mut self) {
         let last = self.problems.last_use(self.schedule);
         for &id in self.problems.live() {
@@ -457,7 +468,7 @@ impl StageBuilder<'_> {
             self.values.insert((id, stage), value);
             let last = last[id.index()];
             for from in (stage..last).step_by(self.pipeline.interval) {
-                // A value that only the next stage reads need not stay.
+                // If only the next stage reads the value, the register may load on every clock.
                 let enable = if last - stage > 1 { self.load(from) } else { self.advance };
                 value = self.behind(id, value, from + 1, enable);
                 let held = from + 1..=last.min(from + self.pipeline.interval);
@@ -466,7 +477,7 @@ impl StageBuilder<'_> {
         }
     }
 
-    /// Returns the bits of a shared multiplier's register that are a product, in its stage.
+    /// Returns a net with the bits of a shared multiplier's register that are the product `id`.
     fn shared_product(&mut self, id: NodeId, stage: usize) -> NetId {
         let (of, format) = (self.shared[&id], self.graph.node(id).format);
         let op = match self.design.width(of) == format.width() {
@@ -476,7 +487,7 @@ impl StageBuilder<'_> {
         self.of_node(id, stage, Driver::Op(op), self.graph.node(id).label.named)
     }
 
-    /// Makes the net of a node in a stage, under the name of its value.
+    /// Makes the net of a node in a stage. Its name consists of the name of the node's value and the stage.
     fn of_node(&mut self, id: NodeId, stage: usize, driver: Driver, named: bool) -> NetId {
         let name = self.staged(&self.names[&id], stage);
         let net = self.net(name, stage, self.graph.node(id).format, driver);
@@ -485,19 +496,22 @@ impl StageBuilder<'_> {
         net
     }
 
-    /// Makes a cell in a stage.
+    /// Makes the combinational cell of a node in a stage.
     fn cell(&mut self, id: NodeId, op: &graph::NodeOp, stage: usize) -> NetId {
         let cell = op.map(|&operand| self.value(operand, stage));
         self.of_node(id, stage, Driver::Op(cell), self.graph.node(id).label.named)
     }
 
-    /// Returns a register of `stage` that takes the `value` that the stage before has for node `id`.
+    /// Makes a register in `stage` for the value of node `id`, and returns its output. `value` is the net with this value in the
+    /// stage before. `enable` is the load enable.
     fn behind(&mut self, id: NodeId, value: NetId, stage: usize, enable: Option<NetId>) -> NetId {
         let q = self.of_node(id, stage, Driver::Undriven, true);
         self.register(q, value, enable, None);
         q
     }
 
+    /// Returns the net with the value of node `id` in `stage`. A constant, or an extension of a value in this stage, is made if
+    /// necessary.
     fn value(&mut self, id: NodeId, stage: usize) -> NetId {
         let node = self.graph.node(id);
         let key = if let Cell::Constant(_) = node.cell { (id, 0) } else { (id, stage) };
@@ -520,7 +534,7 @@ impl StageBuilder<'_> {
         net
     }
 
-    /// Makes an extension in a stage, from the bits that registers hold.
+    /// Makes the net of an extension in `stage`, from the narrower value that registers carry to this stage.
     fn extension(&mut self, id: NodeId, stage: usize) -> NetId {
         let node = self.graph.node(id);
         let Cell::Op(op) = &node.cell else {
@@ -529,21 +543,21 @@ impl StageBuilder<'_> {
         let wiring = op.map(|&operand| self.value(operand, stage));
         let name = self.distinct(&node.label.name);
         self.names.entry(id).or_insert(name);
-        // It is wiring: written where it is used.
+        // The extension is wiring. The Verilog has it in the expression that reads it.
         let net = self.of_node(id, stage, Driver::Op(wiring), false);
         self.values.insert((id, stage), net);
         net
     }
 
-    /// Makes a read port of a memory, and returns its data. The word of a block memory comes a stage after the
-    /// address.
+    /// Makes a read port of a memory, and returns its data. The word of a block memory comes a stage after the address. Two reads
+    /// share a memory, which has two ports; a third read starts a second copy of the memory.
     fn read(&mut self, id: NodeId, rom: RomId, address: NodeId, stage: usize) -> NetId {
         let synchronous = self.problems.is_clocked(id);
         let address = self.value(address, stage - usize::from(synchronous));
         let source = self.sequential.rom(rom).clone();
         let number = RomId(self.design.roms.len() as u32);
         let data = self.of_node(id, stage, Driver::Rom(number), true);
-        // A memory has two ports.
+        // A memory has two read ports.
         let ports = self.memories.entry(rom).or_default();
         let shares = (ports.len() % 2 == 1).then(|| ports[ports.len() - 1]);
         ports.push(number);
@@ -563,7 +577,7 @@ impl StageBuilder<'_> {
         data
     }
 
-    /// Makes the outputs.
+    /// Makes the output ports.
     fn results(&mut self, unrolled: &Unrolled) {
         let latency = self.schedule.latency;
         for &(port, id) in &unrolled.results {
@@ -580,7 +594,8 @@ impl StageBuilder<'_> {
         }
     }
 
-    /// Describes each stage.
+    /// Returns the facts of each stage: its microinstructions, the delay of its logic, the slack, and the register bits behind
+    /// it.
     fn stages(&self, unrolled: &Unrolled) -> Vec<Stage> {
         let mut stages = Vec::new();
         for stage in 0..self.schedule.latency {
@@ -596,7 +611,7 @@ impl StageBuilder<'_> {
         stages
     }
 
-    /// Returns the names of the microinstructions that compute something in a stage.
+    /// Returns the names of the microinstructions whose operations are computed in a stage, in the order of execution.
     fn microinstructions(&self, unrolled: &Unrolled, stage: usize) -> Vec<String> {
         let mut steps: BTreeSet<usize> = BTreeSet::new();
         for &id in self.problems.live() {
@@ -617,8 +632,8 @@ impl StageBuilder<'_> {
         names
     }
 
-    /// Returns the number of register bits at the end of a stage. The register inside a multiplier takes no register of the fabric,
-    /// nor does the register of a block memory.
+    /// Returns the number of register bits in the row with the number `boundary`, which is behind the stage `boundary` − 1.
+    /// Registers inside multipliers and block memories do not count.
     fn register_bits(&self, boundary: usize) -> u32 {
         let mut bits = 0;
         for (id, register) in (0..).map(RegId).zip(&self.design.registers) {
@@ -630,14 +645,15 @@ impl StageBuilder<'_> {
         bits
     }
 
-    /// Returns the stage whose logic computes a node. For a product in the register of a multiplier, it is the stage
-    /// before the node's own.
+    /// Returns the stage whose logic computes a node. It is the node's own stage, or for a product with a register behind it the
+    /// stage before.
     fn computed_in(&self, id: NodeId) -> usize {
         let product = matches!(self.graph.node(id).cell, Cell::Op(_));
         self.schedule.stage[id.index()] - usize::from(product && self.problems.is_clocked(id))
     }
 
-    /// Returns the nets that show the values of architectural registers.
+    /// Returns the nets that have the values of architectural registers, each with the executed microinstruction at which the
+    /// register has this value.
     fn checkpoints(&self, unrolled: &Unrolled) -> Vec<Checkpoint> {
         let mut before: HashMap<RegId, NodeId> = HashMap::new();
         let mut checkpoints = Vec::new();

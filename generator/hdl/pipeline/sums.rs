@@ -1,16 +1,17 @@
 //! Rewrites sums and differences so that they take fewer look-up tables. For example, `a + ~b + 1` becomes `a - b`.
 //!
-//! Synthesis implements sums as they are written, and the schedule counts their cost. If an operand of a sum has zeros in its
-//! lowest bits, the lowest bits of the other operand bypass the adder. A choice between a value and a constant is moved behind a
-//! sum with a constant, where a register can make the choice by its reset.
+//! If an operand of a sum has zeros in its lowest bits, the lowest bits of the other operand bypass the adder. A choice between a
+//! value and a constant moves behind a sum with a constant, where a register can make the choice by its reset. For example,
+//! `(s ? 5 : x) + 3` becomes `s ? 8 : x + 3`.
 
 use super::graph::{Cell, Graph, Label, NodeId, NodeOp};
 use crate::netlist::interval::of_cell;
 use glint_base::fixed::Format;
 use glint_base::interval::Interval;
 
-/// Inserts a node for the combinational cell `op` into the graph, and returns it. For a sum or a difference, low bits that need no
-/// carry bypass the adder, so that its carry chain is short.
+/// Returns the node for the combinational cell `op`, and adds it to the graph unless it exists. In a sum or a difference, low
+/// bits that need no carry bypass the adder, so that its carry chain is short. For example, the lowest two bits of `x + 4` are
+/// the lowest two bits of `x`.
 pub fn shortened(
     graph: &mut Graph,
     op: NodeOp,
@@ -18,7 +19,7 @@ pub fn shortened(
     range: Interval,
     label: &Label,
 ) -> NodeId {
-    // One choice before an inverter takes no clock, two do.
+    // In a sum, a single choice stays in front of the adder. A choice between choices moves behind it.
     let behind = match op {
         NodeOp::Add { a, .. } => choice(graph, a)
             .is_some_and(|(_, inputs)| inputs.iter().any(|&it| choice(graph, it).is_some())),
@@ -27,7 +28,8 @@ pub fn shortened(
     within(graph, op, format, range, label, behind)
 }
 
-/// Returns a cell as [`shortened`] does. With `behind`, choices are made behind a sum with a constant.
+/// Returns a node with the value of the cell `op`, in which low bits bypass an adder as [`shortened`] describes. If `behind` is
+/// true, a choice between a value and a constant moves behind a sum with a constant.
 fn within(
     graph: &mut Graph,
     op: NodeOp,
@@ -74,7 +76,9 @@ fn within(
     graph.insert(Cell::Op(NodeOp::Concat(vec![upper, lower])), format, range, label)
 }
 
-/// Returns a constant and a choice between a value and a constant: the choice between their sums, or differences.
+/// Moves a choice between a value and a constant behind the sum or difference `op` with another constant. For example,
+/// `(s ? 5 : x) + 3` becomes `s ? 8 : x + 3`, and `7 - (s ? 5 : x)` becomes `s ? 2 : 7 - x`. Returns `None` if `op` has another
+/// form.
 fn chosen_behind(
     graph: &mut Graph,
     op: &NodeOp,
@@ -108,8 +112,8 @@ fn chosen_behind(
     Some(graph.insert(Cell::Op(NodeOp::Mux { select, inputs: sums }), format, range, label))
 }
 
-/// Returns the select and the inputs of a choice between a value and a constant, if a node is such a choice or has
-/// its bits.
+/// Returns the select and the two inputs of a mux between a value and a constant. Node `id` is this mux, or renames it. Returns
+/// `None` for any other node.
 fn choice(graph: &Graph, id: NodeId) -> Option<(NodeId, Vec<NodeId>)> {
     match &graph.node(id).cell {
         Cell::Op(NodeOp::Relabel(of)) => choice(graph, *of),
@@ -121,7 +125,8 @@ fn choice(graph: &Graph, id: NodeId) -> Option<(NodeId, Vec<NodeId>)> {
     }
 }
 
-/// Returns how many of the lowest bits are always 0.
+/// Returns how many of the lowest bits of node `id` are always 0, as far as constants and wiring show it. For example, a value
+/// with the constant `00` joined below it has 2.
 fn zeros(graph: &Graph, id: NodeId) -> u32 {
     let width = graph.width(id);
     match &graph.node(id).cell {

@@ -19,7 +19,7 @@ fn options(goal: Goal) -> Options {
     }
 }
 
-/// Returns a quotient of 8 bits, a bit a clock.
+/// Returns a divider for a quotient of 8 bits, which computes one bit a clock.
 fn ratio() -> Design {
     design(|d| {
         let a = d.operand("a", Format::unsigned(8, 0));
@@ -125,7 +125,7 @@ fn what_an_earlier_computation_left_cannot_be_a_result() {
     assert!(super::carried(&power()).is_none());
 }
 
-/// Returns the fourth power of an operand, by two products.
+/// Returns a design that computes the fourth power of an operand, by two products.
 fn power() -> Design {
     design(|d| {
         let x = d.operand("x", Format::unsigned(9, 0));
@@ -154,7 +154,7 @@ fn a_registered_multiplier_is_named_where_it_reaches_the_clock_and_holds_every_p
     let inside: Vec<NetId> =
         registered.iter().filter_map(|&it| Some(made.multiplier(it)?.product)).collect();
     assert_eq!(inside, products);
-    // Nothing else takes the product inside a multiplier.
+    // No other cell or register reads the product inside a multiplier.
     let data = made.registers.iter().filter_map(|register| register.data);
     let taken = made.iter().flat_map(|(id, _)| made.combinational_inputs(id)).chain(data);
     assert_eq!(taken.filter(|net| products.contains(net)).count(), products.len());
@@ -172,7 +172,8 @@ fn without_registered_multipliers_no_register_is_inside_one() {
     assert!(registers.all(|register| made.multiplier(register).is_none()));
 }
 
-/// A product that waits is a value of its own: the memory begins behind the multiplier.
+/// A product that no stage reads for several stages is stored in a memory. This memory begins behind the multiplier's register,
+/// which stays a register.
 #[test]
 fn a_delay_line_begins_behind_a_registered_multiplier() {
     let goal = Goal::ClockMhz(165.0);
@@ -180,7 +181,7 @@ fn a_delay_line_begins_behind_a_registered_multiplier() {
     let registered = made.pipeline.as_ref().expect("a pipeline").registered.clone();
     let product = made.register(registered[0]).q;
     let second = made.multiplier(registered[1]).expect("a multiplier");
-    // A schedule holds the factors where they are no wider, so that the waiting is put here by hand.
+    // The scheduler delays the factors where they are narrower. The test therefore adds the delay by hand.
     let mut waiting = second.factors[0];
     for clocks in 1..=4 {
         let register = RegId(made.registers.len() as u32);
@@ -202,7 +203,7 @@ fn a_delay_line_begins_behind_a_registered_multiplier() {
     assert!(values.iter().all(|it| it.registers.iter().all(|at| !registered.contains(at))));
 }
 
-/// `(taken ? x : 0) + y` beside a fourth power, which leaves it time.
+/// Returns a design with `(taken ? x : 0) + y`, and a fourth power that takes longer, so that the scheduler may delay the sum.
 fn row_beside_a_power() -> Design {
     design(|d| {
         let x = d.operand("x", Format::unsigned(9, 0));
@@ -238,16 +239,16 @@ fn a_choice_that_a_reset_makes_is_held_before_a_sum() {
     assert!(stage(row) < stage(sum), "{} {}", stage(row), stage(sum));
 }
 
-/// The selection between a sum and 0.
+/// The signal that selects between a sum and 0.
 #[derive(Clone, Copy)]
 enum By {
     Nothing,
     Operand,
-    /// A bit of the sum.
+    /// Bit of the sum itself.
     Sum,
 }
 
-/// Returns the clock in MHz of a stage in which a sum goes to a register.
+/// Returns the clock frequency in MHz of a pipeline of one stage in which a register loads a sum.
 fn clock_of_a_sum(by: By) -> f64 {
     let design = design(|d| {
         let wide = Format::unsigned(40, 0);
@@ -278,7 +279,7 @@ fn what_a_reset_chooses_costs_the_select_time_and_the_value_none() {
     assert!(clock_of_a_sum(By::Sum) < sum);
 }
 
-/// Four products in a row, the first with a sign.
+/// Returns a design with three products, the first of them signed.
 fn products() -> Design {
     design(|d| {
         let a = d.operand("a", Format::signed(11, 0)).q();

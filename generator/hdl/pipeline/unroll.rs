@@ -1,12 +1,9 @@
 //! Unrolls a microprogram into a graph of values, by executing it symbolically with unknown operands.
 //!
-//! The execution follows one computation clock by clock, from the clock that accepts `start` to the clock with the results. In
-//! each clock the fields of the control word are constants, so muxes that they control disappear. Each load of a register makes a
-//! new value.
-//!
-//! If a condition is constant, it decides which microinstruction follows. If it depends on an operand, the execution follows both
-//! ways, and the condition chooses the value of each register where the ways meet. A loop is unrolled as often as it can run, and
-//! a jump is executed with and without the microinstructions that it skips.
+//! The execution follows one computation clock by clock, from the clock that accepts `start` to the clock with the results. The
+//! fields of the control word are constants in each clock, so that muxes with a field as their select disappear. If a condition
+//! depends on an operand, the execution follows both branches, and muxes choose the register contents behind them. A loop is
+//! unrolled as often as it can run.
 
 mod clock;
 mod cycle;
@@ -24,7 +21,7 @@ use glint_base::codes;
 use glint_base::diagnostic::{Diagnostic, Diagnostics};
 use glint_base::fixed::Format;
 
-/// The number of clocks that a microprogram may take. A longer one is not worth a pipeline.
+/// The largest number of clocks of a computation that is unrolled. A longer computation is not worth a pipeline.
 const MOST_CLOCKS: usize = 4096;
 
 /// A computation that Glint has unrolled from the microprogram of a design: a graph without loops, from the operands to the
@@ -33,7 +30,7 @@ const MOST_CLOCKS: usize = 4096;
 pub struct Unrolled {
     /// The graph with all values of the computation, each computed once.
     pub graph: Graph,
-    /// The operands, as nets of the design's input ports.
+    /// The nets of the design's operand ports, in the order of the ports. `Cell::Operand` has positions in this list.
     pub operands: Vec<NetId>,
     /// The results: the net of each output port, with the node of its value in the graph.
     pub results: Vec<(NetId, NodeId)>,
@@ -48,12 +45,12 @@ pub struct UnrolledStep {
     pub address: usize,
     /// The number of earlier executions of the same microinstruction in this computation.
     pub visit: usize,
-    /// The values of the architectural registers (the registers that the golden model predicts) while the microinstruction is
-    /// executed, each as a node of the computation's graph. A register without a known value is left out.
+    /// The values of the architectural registers while the microinstruction is executed, each as a node of the computation's
+    /// graph. (The golden model predicts these registers.) A register without a known value is left out.
     pub registers: Vec<(RegId, NodeId)>,
 }
 
-/// The point that an execution has reached.
+/// The state that an execution has reached: the register contents, and the address of the next microinstruction.
 struct At {
     state: State,
     address: usize,
@@ -64,7 +61,7 @@ struct Executor<'a> {
     iterations: Iterations,
     unrolled: Unrolled,
     visits: Vec<usize>,
-    /// The values of the results, once they are on the outputs.
+    /// The results, each as the net of an output port and the node of its value. `None` until a microinstruction sets `valid`.
     shown: Option<Vec<(NetId, NodeId)>>,
 }
 
@@ -72,43 +69,52 @@ struct Executor<'a> {
 /// loops. The description language must have accepted the design.
 ///
 /// # Errors
-/// Fails if the microprogram has no fixed bound, waits for `start` on the way or gives several results. Fails if a result depends
-/// on a value that an earlier computation has left.
+/// Fails if a loop has no bound, or one that depends on more than 16 bits, or if the computation takes more than 4096 clocks.
+/// Fails if the microprogram ends or waits for `start` before it sets `valid`, or if `valid` depends on a signal. Fails if a
+/// microinstruction under a condition sets `valid`. Fails if a result depends on a value that an earlier computation has left in
+/// a register.
 pub fn unroll(design: &Design) -> Result<Unrolled, Diagnostics> {
     run(design, Iterations::OneByOne).map_err(|diagnostic| Diagnostics(vec![diagnostic]))
 }
 
-/// Unrolls the microprogram of a design as [`unroll`] does, but with fewer values if several iterations of a loop can be merged. It
-/// merges iterations of a loop with a data-dependent trip count into blocks of 8, 4, 2 and 1.
+/// Unrolls the microprogram of a design as [`unroll`] does, but with fewer muxes for loops whose number of iterations depends on
+/// an operand. Such iterations become blocks of 8, 4, 2 and 1 iterations, each enabled by one bit of the number. The condition
+/// for this is that the iterations are alike and that a few bits determine their number.
 ///
 /// # Errors
-/// Fails if [`unroll`] would fail.
+/// Fails if a loop has no bound, or one that depends on more than 16 bits, or if the computation takes more than 4096 clocks.
+/// Fails if the microprogram does not set `valid` at a fixed place, or if a result depends on an earlier computation.
 pub fn unroll_in_powers(design: &Design) -> Result<Unrolled, Diagnostics> {
     unroll_for_pipeline(design).map_err(|diagnostic| Diagnostics(vec![diagnostic]))
 }
 
-/// Unrolls the microprogram of a design as [`unroll_in_powers`] does. It returns the one mistake that it finds as the error.
+/// Unrolls the microprogram of a design as [`unroll_in_powers`] does.
+///
+/// # Errors
+/// Fails if the microprogram cannot be unrolled, as [`unroll`] describes. The error is the first mistake that the execution
+/// meets.
 pub(super) fn unroll_for_pipeline(design: &Design) -> Result<Unrolled, Diagnostic> {
     run(design, Iterations::InPowers)
 }
 
-/// How to execute the iterations of a loop with a data-dependent trip count.
+/// The way in which the iterations of a loop are executed if their number depends on an operand.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Iterations {
-    /// Each iteration under the conditions of the iterations before it.
+    /// Each iteration is executed under the condition that all iterations up to it take place.
     OneByOne,
-    /// If a few bits determine the number and the iterations are alike: 8, 4, 2 and 1 iterations, each under a bit of
-    /// the number.
+    /// Blocks of 8, 4, 2 and 1 iterations are executed, each under one bit of the number of iterations. The condition for this is
+    /// that few bits determine the number and that the iterations are alike. Otherwise the loop is executed as with `OneByOne`.
     InPowers,
 }
 
-/// Returns a diagnostic if a result depends on a value that an earlier computation has left. Returns `None` if no
-/// result does, or if the microprogram cannot be executed to its results in this way.
+/// Returns a diagnostic if a result depends on a value that an earlier computation has left in a register or a memory output.
+/// Returns `None` if no result does, or if the microprogram cannot be unrolled.
 pub fn carried(design: &Design) -> Option<Diagnostic> {
     let (executor, results) = executed(design, Iterations::InPowers).ok()?;
     executor.determined(&results, "has a state between points, which nothing here speaks of").err()
 }
 
+/// Unrolls the microprogram of a design, and checks that no result depends on a value of an earlier computation.
 fn run(design: &Design, iterations: Iterations) -> Result<Unrolled, Diagnostic> {
     let (mut executor, results) = executed(design, iterations)?;
     executor.determined(&results, "cannot be a pipeline")?;
@@ -116,7 +122,8 @@ fn run(design: &Design, iterations: Iterations) -> Result<Unrolled, Diagnostic> 
     Ok(executor.unrolled)
 }
 
-/// Returns the execution to the results, and these.
+/// Executes the microprogram of a design up to the clock with the results. Returns the execution, and for each output port its
+/// net and the node of its value.
 fn executed(
     design: &Design,
     iterations: Iterations,
@@ -153,6 +160,7 @@ impl<'a> Executor<'a> {
         }
     }
 
+    /// Returns a state in which each register and each ROM output has an unknown value.
     fn power_up(&mut self) -> State {
         let design = self.design;
         let graph = &mut self.unrolled.graph;
@@ -165,13 +173,13 @@ impl<'a> Executor<'a> {
         State { registers, roms }
     }
 
-    /// Returns the clock that takes `start`, with all operands.
+    /// Executes the clock that accepts `start` and writes all operands. Returns the state after this clock.
     fn start(&mut self, state: &State) -> State {
         Clock::new(self, state, Some(0), true).edge()
     }
 
-    /// Executes from `at` on until the results are shown or `stop` is about to be executed; returns the
-    /// state there.
+    /// Executes microinstructions from `at` on, up to the clock with the results, or until the microinstruction with the address
+    /// `stop` comes next. Returns the state at `stop`, or `None` if the results came first. `self.shown` then has the results.
     fn follow(&mut self, mut at: At, stop: Option<usize>) -> Result<Option<State>, Diagnostic> {
         let design = self.design;
         loop {
@@ -222,12 +230,13 @@ impl<'a> Executor<'a> {
         }
     }
 
-    /// Executes every iteration but the first of the loop from `to` to `last`, and returns the state after them.
-    /// `condition` says whether there is another iteration; `state` is the state after the first one. The loop must
-    /// be bounded whatever the registers `free`, with which it begins, hold.
+    /// Executes every iteration but the first of the loop from address `to` to address `last`, and returns the state after them.
+    /// `condition` says whether the second iteration takes place; `state` is the state after the first one. The number of
+    /// iterations must have a bound for any values of `free`, the register contents before the last microinstruction of the first
+    /// iteration.
     ///
-    /// The values behind the condition go from iteration to iteration as if every iteration were taken. An iteration
-    /// counts only if all iterations before it were taken, and a counter needs no muxes then.
+    /// Registers on which the loop's condition depends go from iteration to iteration as if every iteration took place. This does
+    /// no harm, because an iteration counts only if all iterations before it took place, and it saves muxes for a counter.
     fn iterations(
         &mut self,
         mut state: State,
@@ -277,12 +286,13 @@ impl<'a> Executor<'a> {
         }
     }
 
-    /// Unrolls a loop with a data-dependent trip count as blocks of 8, 4, 2 and 1 iterations. One bit of the count
-    /// enables each block. The count is the number of `conditions` that hold. The returned state is wrong for the
-    /// registers that count the iterations.
+    /// Unrolls a loop whose number of iterations depends on an operand. It becomes blocks of 8, 4, 2 and 1 iterations, with fewer
+    /// or more blocks for other numbers. The number of `conditions` that are 1 is the number of further iterations after `first`,
+    /// the state behind the first iteration. One bit of this number enables each block. `counters` marks the registers that count
+    /// iterations; their values in the returned state are wrong.
     ///
-    /// Returns `None` if an iteration depends on these registers or on a memory, or if the count depends on more than
-    /// a few bits.
+    /// Returns `None` if an iteration depends on these registers or changes a memory's output, or if there are fewer than four
+    /// conditions. Returns `None` if the number depends on several nodes or on more than 6 bits.
     fn in_powers(
         &mut self,
         first: &State,
@@ -292,7 +302,7 @@ impl<'a> Executor<'a> {
         free: &[NodeId],
     ) -> Option<State> {
         let (count, iterations) = possible::count(&self.unrolled.graph, conditions, free)?;
-        // Three iterations are as many choices as two powers.
+        // With up to three iterations, blocks would need as many muxes as single iterations.
         let bits = conditions.len().checked_ilog2().filter(|&bits| bits > 1)? + 1;
         let (steps, visits) = (self.unrolled.steps.len(), self.visits.clone());
         let nodes = self.unrolled.graph.nodes.len();
@@ -348,7 +358,8 @@ impl<'a> Executor<'a> {
         Some(now)
     }
 
-    /// Returns one microinstruction: the state after it, and the condition of a loop.
+    /// Executes the microinstruction at `at`. Returns the state after it and, for a loop or a jump, the node of its condition. If
+    /// the microinstruction sets `valid`, `self.shown` gets the results, and the state stays as it was.
     fn execute(&mut self, at: &At) -> Result<(State, Option<NodeId>), Diagnostic> {
         let design = self.design;
         if self.unrolled.steps.len() == MOST_CLOCKS {
@@ -396,7 +407,8 @@ impl<'a> Executor<'a> {
         Ok((clock.edge(), condition))
     }
 
-    /// Returns each register as in `yes` if the condition holds, and else as in `no`.
+    /// Returns a state whose registers and ROM outputs have the values in `yes` if `condition` is 1, and the values in `no`
+    /// otherwise.
     fn either(&mut self, condition: NodeId, yes: &State, no: &State) -> State {
         let design = self.design;
         let graph = &mut self.unrolled.graph;
@@ -420,7 +432,8 @@ impl<'a> Executor<'a> {
         Diagnostic::new(codes::UNROLL, message, microinstruction.location)
     }
 
-    /// Checks that no result depends on a value that an earlier computation has left.
+    /// Checks that no result depends on a value that an earlier computation has left. `what` is the predicate of the message,
+    /// such as "cannot be a pipeline".
     fn determined(&self, results: &[(NetId, NodeId)], what: &str) -> Result<(), Diagnostic> {
         let graph = &self.unrolled.graph;
         for &(port, value) in results {
@@ -440,13 +453,13 @@ impl<'a> Executor<'a> {
     }
 }
 
-/// Adds a node with the unknown value that a net has at power-up.
+/// Adds a node for the unknown value that `net` has at power-up.
 fn unknown(graph: &mut Graph, net: &Net) -> NodeId {
     let cell = Cell::Unknown(net.name.clone());
     graph.insert(cell, net.format, net.format.range(), &label(net))
 }
 
-/// Replaces the registers that count iterations by their unknown values at power-up.
+/// Replaces the values of the registers that `counters` marks by their unknown values at power-up.
 fn forget(state: &mut State, counters: &[bool], unknown: &State) {
     for (at, &counts) in counters.iter().enumerate() {
         if counts {
@@ -455,8 +468,9 @@ fn forget(state: &mut State, counters: &[bool], unknown: &State) {
     }
 }
 
-/// Returns the bit of a word that has the value of bit `bit` of a count, if there is one. `counts` has the count for each value of the
-/// word, or `None` for a value that the word never has.
+/// Returns the position of a bit in a node of `width` bits that always equals bit `bit` of a count. `counts` has the count for
+/// each value of the node, or `None` for a value that the node never has. Returns `None` if no bit has this property. For
+/// example, the counts 0, 1, 2 and 3 for the values 0 to 3 and bit 1 give position 1.
 fn bit_with_count(width: u32, counts: &[Option<usize>], bit: u32) -> Option<u32> {
     (0..width).find(|place| {
         let mut values = counts.iter().enumerate();
@@ -464,7 +478,8 @@ fn bit_with_count(width: u32, counts: &[Option<usize>], bit: u32) -> Option<u32>
     })
 }
 
-/// Returns `yes` if the condition holds, and else `no`: a mux, unless both are the same node.
+/// Returns the node of a mux: `yes` if the condition is 1, and otherwise `no`. No mux is necessary if `yes` and `no` are the same
+/// node.
 fn choose(graph: &mut Graph, condition: NodeId, yes: NodeId, no: NodeId, net: &Net) -> NodeId {
     if yes == no {
         return yes;

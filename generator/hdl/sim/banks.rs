@@ -1,6 +1,5 @@
-//! Distributes the values of a compiled design over two banks of memory, one with slots of 32 bits and one with slots of 64 bits,
-//! and inserts conversions between the banks. Most values fit into 32 bits, and a vector of the processor holds twice as many of
-//! them.
+//! Distributes the values of a compiled design over two banks of memory with slots of 32 and of 64 bits, and inserts conversions
+//! between the banks. Most values fit into 32 bits, and a vector of the processor holds twice as many of them.
 
 use crate::sim::compiler::{Compiler, Ordered};
 use crate::sim::program::{
@@ -8,11 +7,11 @@ use crate::sim::program::{
     Sources, StepGroup, ValueSlot,
 };
 
-/// The width of a narrow slot.
+/// The width of a narrow slot in bits.
 const NARROW: u32 = u32::BITS;
 
-/// Gives every slot of the compiler its place, and inserts conversions before instructions that work on slots of both
-/// banks.
+/// Gives every value of the compiler, which has a slot of 64 bits there, a slot in one of the two banks. Inserts conversions
+/// before instructions that work on slots of both banks.
 ///
 /// Within a bank, slots are numbered in the order in which they are computed.
 pub(super) fn divide(
@@ -21,7 +20,7 @@ pub(super) fn divide(
     registers: &[RegisterEdge],
 ) -> CompiledDesign {
     let mut is_wide: Vec<bool> = widths(compiler).iter().map(|&bits| bits > NARROW).collect();
-    // A slot that takes a wide slot at the edge is itself wide, and so is a slot that takes that slot.
+    // A slot that loads a wide slot at the edge is itself wide, and so is a slot that loads this slot.
     let mut pairs: Vec<(Slot, Slot)> = Vec::new();
     pairs.extend(reads.iter().map(|edge| (edge.to, edge.address)));
     pairs.extend(registers.iter().map(|edge| (edge.q, edge.data)));
@@ -48,8 +47,8 @@ pub(super) fn divide(
     divider.program()
 }
 
-/// Returns a bound on the width of the value in each slot. The nets that share a slot are extensions of the narrowest
-/// among them.
+/// Returns an upper limit of the width of the value in each slot, in bits. The nets that share a slot are zero extensions of the
+/// narrowest of them.
 fn widths(compiler: &Compiler) -> Vec<u32> {
     let mut widths = vec![u64::BITS + 1; compiler.sources.len()];
     for (net, &slot) in compiler.of_net.iter().enumerate() {
@@ -67,7 +66,7 @@ fn widths(compiler: &Compiler) -> Vec<u32> {
         if widths[to] <= u64::BITS {
             continue;
         }
-        // A slot without a net of its own is part of a concatenation, or is held over the edge.
+        // A slot without a net is part of a concatenation, or a copy for the edge.
         widths[to] = match step.instruction {
             Instruction::Place { base, drop, shift, .. } => {
                 widths[base as usize].max(u64::BITS - u32::from(drop) + u32::from(shift))
@@ -81,11 +80,11 @@ fn widths(compiler: &Compiler) -> Vec<u32> {
 
 struct BankSplitter<'a> {
     compiler: &'a Compiler<'a>,
-    /// For each slot of the compiler, whether it needs a wide (64-bit) slot.
+    /// For each slot of the compiler, whether its value is wider than 32 bits and goes to the wide bank.
     is_wide: Vec<bool>,
     narrow: Bank,
     wide: Bank,
-    /// For each slot of the compiler, its slot in the narrow (32-bit) bank, if it already has one.
+    /// For each slot of the compiler, its slot in the narrow bank (32 bits); `None` as long as it has none.
     narrow_of: Vec<Option<Slot>>,
     wide_of: Vec<Option<Slot>>,
     steps: Vec<(Sources, SettlingStep)>,
@@ -93,14 +92,14 @@ struct BankSplitter<'a> {
 }
 
 impl BankSplitter<'_> {
-    /// Returns a new slot in the wanted bank.
+    /// Adds a slot with an initial value to the wide bank if `wide`, otherwise to the narrow bank, and returns it.
     fn fresh(&mut self, wide: bool, initial: u64) -> Slot {
         let bank = if wide { &mut self.wide } else { &mut self.narrow };
         bank.initial.push(initial);
         (bank.initial.len() - 1) as Slot
     }
 
-    /// Returns the new slot that takes the value of a slot of the compiler, in its own bank.
+    /// Adds a slot for the value in the compiler's slot `slot` to the bank for the width of the value, and returns the new slot.
     fn home(&mut self, slot: Slot) -> Slot {
         let wide = self.is_wide[slot as usize];
         let [initial] = self.compiler.initial[slot as usize];
@@ -118,7 +117,8 @@ impl BankSplitter<'_> {
         }
     }
 
-    /// Returns the place of a slot of the compiler, if it has one yet.
+    /// Returns the bank and the slot of the value in the compiler's slot `slot`. Returns `None` if the value has no slot in a
+    /// bank yet.
     fn place(&self, slot: Slot) -> Option<ValueSlot> {
         let slot = slot as usize;
         if *self.is_wide.get(slot)? {
@@ -128,10 +128,11 @@ impl BankSplitter<'_> {
         }
     }
 
-    /// Returns the slot that has the value of the compiler's `slot` in the narrow or the `wide` bank.
+    /// Returns the slot that has the value of the compiler's slot `slot`, in the wide bank if `wide`, otherwise in the narrow
+    /// one.
     ///
-    /// Constants, registers and ROMs get their places when they are first asked for. If a conversion is needed, it
-    /// becomes a step with these `sources`, and later calls share it.
+    /// Constants, registers and ROMs get their slots at the first call. If a conversion to the wide bank is necessary, it becomes
+    /// a step with these `sources`, and later calls use its result too.
     fn operand(&mut self, slot: Slot, wide: bool, sources: Sources) -> Slot {
         let of = if wide { &self.wide_of } else { &self.narrow_of };
         if let Some(there) = of[slot as usize] {
@@ -154,7 +155,7 @@ impl BankSplitter<'_> {
         to
     }
 
-    /// Returns the bits of a wide slot of the compiler, in a new narrow slot.
+    /// Adds a narrow slot with bits of the wide value in the compiler's slot `slot`: from bit `low` up, as many as `drop` says.
     fn cut(&mut self, slot: Slot, low: u8, drop: u8, sources: Sources) -> Slot {
         let a = self.operand(slot, true, sources);
         let to = self.fresh(false, 0);
@@ -172,7 +173,7 @@ impl BankSplitter<'_> {
                 let cut = self.cut(a, low, drop, sources);
                 self.narrow_of[to as usize] = Some(cut);
             }
-            // These cut their operand themselves; done beforehand, the rest is narrow.
+            // These instructions take bits of their operand. If a step takes them beforehand, the rest of the work is narrow.
             I::Field { a, low, drop, source, .. } if is_wide(a) => {
                 let a = self.cut(a, low, drop, sources);
                 let to = self.home(step.to);
@@ -218,7 +219,7 @@ impl BankSplitter<'_> {
         }
     }
 
-    /// Emits an instruction as it is, in the wide bank if any of its slots is there.
+    /// Adds an instruction without change, in the wide bank if any of its slots is wide, otherwise in the narrow bank.
     fn within_a_bank(&mut self, step: &Ordered, mut instruction: Instruction) {
         let sources = step.sources;
         let result_wide = self.is_wide[step.to as usize];
@@ -251,8 +252,8 @@ impl BankSplitter<'_> {
         }
     }
 
-    /// Performs the edge, in the bank of the slots that are written. Conversions are settled, so that they
-    /// hold the values from before the edge.
+    /// Adds the reads and loads of the clock edge, in the bank of the slots that they write. Conversions are steps of settling,
+    /// so that they have the values from before the edge.
     fn edge(&mut self, reads: &[ReadEdge], registers: &[RegisterEdge]) {
         for edge in reads {
             let wide = self.is_wide[edge.to as usize];
@@ -279,7 +280,7 @@ impl BankSplitter<'_> {
         }
     }
 
-    /// Returns the value of a slot of the compiler in a bank, once everything is settled.
+    /// Returns the slot in the wide or the narrow bank that has the value of the compiler's slot `slot` after settling.
     fn settled(&mut self, slot: Slot, wide: bool) -> Slot {
         self.operand(slot, wide, self.compiler.sources[slot as usize])
     }

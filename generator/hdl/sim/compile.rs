@@ -14,10 +14,11 @@ use glint_base::diagnostic::Diagnostics;
 use glint_base::fixed::mask;
 
 impl CompiledDesign {
-    /// Compiles a design.
+    /// Compiles a design to instructions of the simulator.
     ///
     /// # Errors
-    /// Fails with the mistakes that [`Design::verify_structure`] finds. Fails if the ROMs have more than 2^32 words.
+    /// Fails if [`Design::verify_structure`] finds mistakes, with these mistakes. Fails if the ROMs together have 2^32 words or
+    /// more.
     pub fn new(design: &Design) -> Result<Self> {
         let mistakes = design.verify_structure();
         ensure!(mistakes.is_empty(), Diagnostics(mistakes));
@@ -33,8 +34,8 @@ impl CompiledDesign {
 }
 
 impl<'a> Compiler<'a> {
-    /// Returns a slot with a field of the control word. The field is a source of its own, so that dependent steps are
-    /// settled when the field changes, rather than whenever the address does.
+    /// Returns a slot with a field of the control word, the `width` bits from bit `low` of the net `word`. The field is a source
+    /// of its own, so that a change of another field does not evaluate its readers again.
     fn field(&mut self, word: NetId, low: u32, width: u32) -> Slot {
         let a = self.of_net[word.index()];
         if self.known_value(a).is_some() || self.next_field == Sources::BITS {
@@ -48,7 +49,7 @@ impl<'a> Compiler<'a> {
         to
     }
 
-    /// Returns the slot of a net whose inputs have been compiled.
+    /// Returns the slot of a net. The nets on which it depends within a clock must already have slots.
     fn net(&mut self, id: NetId) -> Slot {
         let design = self.design;
         let width = design.width(id);
@@ -72,7 +73,7 @@ impl<'a> Compiler<'a> {
         }
     }
 
-    /// Returns the clock edge, and everything together.
+    /// Compiles what happens at the clock edge, orders the instructions, and returns the compiled design.
     fn finish(mut self) -> CompiledDesign {
         let design = self.design;
         let reset = design.port(|role| role == Role::Reset);
@@ -110,15 +111,14 @@ impl<'a> Compiler<'a> {
             });
         }
         self.drop_unneeded(&reads, &registers);
-        // An operand depends on no source that the result does not depend on, so its set is the smaller number. A
-        // field is the largest among its own number and the numbers of its operands. The order therefore remains an
-        // order of evaluation.
+        // The sources of an operand are among the sources of its result, so that their set, as a number, is not larger. A field
+        // has a larger source number than its operands. The sorted order therefore remains an order of evaluation.
         self.steps.sort_by_key(|step| step.sources);
         banks::divide(&self, &reads, &registers)
     }
 
-    /// Returns the registers in an order in which a register that takes the value of another comes before that other
-    /// one, except in circles. The value then need not be copied to be [`Compiler::stable`].
+    /// Returns the registers in an order in which a register that reads another register comes before it, except in circles. A
+    /// value that is read before it is overwritten need not be copied by [`Compiler::stable`].
     fn readers_first(&self) -> Vec<&'a NetlistRegister> {
         let registers = &self.design.registers;
         let mut by_slot: HashMap<Slot, usize> = HashMap::new();
@@ -144,7 +144,7 @@ impl<'a> Compiler<'a> {
         let mut placed = vec![false; registers.len()];
         let mut ready: Vec<usize> = (0..registers.len()).filter(|&at| readers[at] == 0).collect();
         while ordered.len() < registers.len() {
-            // In a circle, one register goes ahead of the registers that read it.
+            // In a circle, one register is overwritten before registers that read it.
             let next = ready.pop().or_else(|| placed.iter().position(|&placed| !placed));
             let Some(at) = next else { break };
             if placed[at] {
@@ -162,7 +162,8 @@ impl<'a> Compiler<'a> {
         ordered
     }
 
-    /// Drops the instructions that neither the edge nor a named net or a port needs. Their results have no slot then.
+    /// Removes the instructions whose results neither the clock edge nor a named net nor a port needs. Unnamed nets with such a
+    /// result then have no slot.
     fn drop_unneeded(&mut self, reads: &[ReadEdge], registers: &[RegisterEdge]) {
         let design = self.design;
         let mut needed = vec![false; self.sources.len()];
@@ -207,7 +208,8 @@ impl<'a> Compiler<'a> {
         }
     }
 
-    /// Returns the slot of an enable, unless it is always 1.
+    /// Returns the slot of an enable. Returns `None` if there is no enable or if it is always 1. `written` has the slots that the
+    /// edge has already written.
     fn enable(&mut self, enable: Option<NetId>, written: &HashSet<Slot>) -> Option<Slot> {
         let slot = self.of_net[enable?.index()];
         if self.known_value(slot) == Some(1) {
@@ -216,8 +218,9 @@ impl<'a> Compiler<'a> {
         Some(self.stable(slot, written))
     }
 
-    /// Returns a slot that holds the value of `a` until the edge is over, although the edge has written the
-    /// slots `written` before: the edge happens everywhere at once.
+    /// Returns a slot that has the value of `a` from before the edge. This is a copy if the edge has already written `a`, which
+    /// is then in `written`. All registers of a design change at the same time, but the simulator writes them one after the
+    /// other.
     fn stable(&mut self, a: Slot, written: &HashSet<Slot>) -> Slot {
         if written.contains(&a) { self.emit(&[a], |to| Instruction::Copy { to, a }) } else { a }
     }

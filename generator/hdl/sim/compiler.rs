@@ -1,4 +1,4 @@
-//! The state of the simulator's compiler while it compiles a design: slots, instructions, and facts about them.
+//! Holds the state of the simulator's compiler while it compiles a design: slots, instructions, and facts about them.
 
 use std::collections::{BTreeMap, HashMap};
 use std::mem;
@@ -8,57 +8,58 @@ use crate::sim::machine::execute;
 use crate::sim::program::{InputPort, Instruction, Slot, Sources, Span};
 use glint_base::fixed::mask;
 
-/// The most sources that are input ports. They have the first numbers, and change at another edge than the registers
-/// and ROMs that the edge writes.
+/// The largest number of sources for input ports. Input ports have the first numbers, because they change at another clock edge
+/// than registers and ROMs.
 const INPUTS: u32 = 16;
 
-/// Sources below this number change from outside settling and share numbers when they are many;
-/// from here on each is a field of the control word, numbered in order of evaluation.
+/// Sources with smaller numbers are input ports, registers and ROM outputs. If there are more of these than numbers, several
+/// share a number. From this number on, each source is a field of the control word, numbered in the order of evaluation.
 const FIRST_FIELD: u32 = 40;
 
-/// An instruction, and the data by which instructions are ordered.
+/// An instruction with the data by which the compiler orders instructions.
 pub(super) struct Ordered {
     pub(super) sources: Sources,
     pub(super) to: Slot,
-    /// All that it reads, the inputs of a mux too.
+    /// All slots that the instruction reads, including the inputs of a mux.
     pub(super) operands: Vec<Slot>,
     pub(super) instruction: Instruction,
 }
 
-/// To it there is one bank of slots, 64 bits wide; `banks` divides it.
+/// The compiler's state. All slots are 64 bits wide here; `banks` divides them into two banks later.
 pub(super) struct Compiler<'a> {
     pub(super) design: &'a Design,
-    /// For each slot: the [`Sources`] it depends on within one clock; none for constants.
+    /// For each slot, the set of [`Sources`] on which it depends within one clock. It is empty for constants.
     pub(super) sources: Vec<Sources>,
     /// The number of sources that are input ports.
     input_sources: u32,
     /// The number of the next source for a value that a rising edge writes.
     next_source: u32,
-    /// The sources of values that a rising edge writes only if an enable is 1.
+    /// For each enable, the source of the values that a rising edge writes only if this enable is 1.
     enabled: HashMap<NetId, u32>,
     /// The next source for a field.
     pub(super) next_field: u32,
-    /// The initial value of each slot. Its only lane is the lane of the folded constants.
+    /// The initial value of each slot. Each slot has one lane, in which constant instructions are evaluated.
     pub(super) initial: Vec<[u64; 1]>,
     constants: BTreeMap<u64, Slot>,
-    /// The instructions so far, as if they wrote slot 0, each with the slot of its result.
+    /// The instructions so far, each with the slot of its result. In the key, the result is slot 0, so that equal instructions
+    /// are found.
     known: HashMap<Instruction, Slot>,
     /// The instruction that writes each slot, unless it is a field of the control word.
     made_by: HashMap<Slot, Instruction>,
-    /// In an order of evaluation.
+    /// The instructions in an order in which each follows the instructions that compute its operands.
     pub(super) steps: Vec<Ordered>,
     pub(super) choices: Vec<Slot>,
     pub(super) words: Vec<u64>,
     pub(super) roms: Vec<Span>,
-    /// For each net; `Slot::MAX` until the net has been compiled.
+    /// For each net, its slot; `Slot::MAX` until the net has been compiled.
     pub(super) of_net: Vec<Slot>,
     pub(super) inputs: Vec<InputPort>,
-    /// For each field of the control word, the number of its lowest bit.
+    /// For each field of the control word, the position of its lowest bit.
     pub(super) fields: Vec<u32>,
 }
 
 impl<'a> Compiler<'a> {
-    /// Makes a compiler with the slots of the input ports and the contents of the ROMs; no net is compiled yet.
+    /// Makes a compiler with the slots of the input ports and the contents of the ROMs. No other net has a slot yet.
     pub(super) fn new(design: &'a Design) -> Self {
         let input_sources = (design.inputs().count() as u32).clamp(1, INPUTS);
         let mut compiler = Self {
@@ -105,9 +106,9 @@ impl<'a> Compiler<'a> {
         (self.sources.len() - 1) as Slot
     }
 
-    /// Returns a slot that the edge writes if `enable` is 1. All slots with the same enable change together and share
-    /// one source. A field of the control word is no such enable, because a microinstruction seldom changes all the
-    /// values that it loads.
+    /// Returns a new slot for a value that the rising edge writes if `enable` is 1. All slots with the same enable share one
+    /// source, because they change together. An enable that is a field of the control word is an exception, because a
+    /// microinstruction seldom changes all the values that it loads.
     pub(super) fn source(&mut self, enable: Option<NetId>) -> Slot {
         let shared = enable.filter(|net| !matches!(self.design.net(*net).driver, Driver::Field(_)));
         if let Some(enable) = shared
@@ -134,13 +135,14 @@ impl<'a> Compiler<'a> {
         slot
     }
 
-    /// Returns the value of a slot that is known already.
+    /// Returns the value of a slot if it is a constant, otherwise `None`.
     pub(super) fn known_value(&self, slot: Slot) -> Option<u64> {
         let constant = self.sources[slot as usize] == 0;
         constant.then(|| self.initial[slot as usize][0])
     }
 
-    /// Returns the slot with the result of an instruction, which `make` builds for a given destination.
+    /// Returns the slot with the result of an instruction, which `make` builds for a given result slot. An equal earlier
+    /// instruction, or a constant if all operands are constant, is used instead of a new instruction.
     pub(super) fn emit(&mut self, operands: &[Slot], make: impl Fn(Slot) -> Instruction) -> Slot {
         if let Some(slot) = self.known.get(&make(0)) {
             return *slot;
@@ -173,8 +175,9 @@ impl<'a> Compiler<'a> {
         sources.fold(0, |all, sources| all | sources)
     }
 
-    /// Returns the operand of a slice, its lowest bit and its width, as a `drop`. Returns `slot` itself if it is no
-    /// slice. Instructions that can cut use the operand directly, and the slice is often not needed then.
+    /// Returns the operand of the slice that makes `slot`, the lowest bit of the slice, and its width as a `drop` (64 less the
+    /// width). Returns `slot` itself with all its bits if no slice makes it. An instruction that can take bits of its operand
+    /// reads the operand directly, so that the slice may become unused.
     pub(super) fn sliced(&self, slot: Slot) -> (Slot, u8, u8) {
         match self.made_by.get(&slot) {
             Some(Instruction::Slice { a, low, drop, .. }) => (*a, *low, *drop),
@@ -182,7 +185,8 @@ impl<'a> Compiler<'a> {
         }
     }
 
-    /// Returns the bits that `slot` tests for any 1: their slot, the lowest bit and the width, as a `drop`.
+    /// Returns the bits that `slot` tests for any 1: their slot, the lowest bit, and the width as a `drop`. Returns `None` if the
+    /// instruction of `slot` is no [`Instruction::Any`].
     pub(super) fn any(&self, slot: Slot) -> Option<(Slot, u8, u8)> {
         match self.made_by.get(&slot) {
             Some(Instruction::Any { a, low, drop, .. }) => Some((*a, *low, *drop)),
@@ -190,8 +194,8 @@ impl<'a> Compiler<'a> {
         }
     }
 
-    /// Returns the placement that makes `slot`: base, slot, lowest bit, width as a `drop`, and shift. A slice is a
-    /// placement on `zero`.
+    /// Returns the placement that makes `slot`. The result has the base, the slot of the added bits, the lowest of these bits,
+    /// their width as a `drop`, and the shift. A slice is a placement on the slot `zero`. Returns `None` for other instructions.
     pub(super) fn placed(&self, slot: Slot, zero: Slot) -> Option<(Slot, Slot, u8, u8, u8)> {
         match *self.made_by.get(&slot)? {
             Instruction::Place { base, a, low, drop, shift, .. } => {

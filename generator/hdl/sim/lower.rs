@@ -6,7 +6,7 @@ use crate::sim::program::{Instruction, Slot, drop_of};
 use glint_base::fixed::{MAX_WIDTH, mask};
 
 impl Compiler<'_> {
-    /// Returns the slot with the result of a cell, whose operands have been compiled.
+    /// Returns the slot with the result of the cell `op`, which drives the net `id`. The operands must already have slots.
     pub(super) fn op(&mut self, op: &Op, id: NetId) -> Slot {
         let design = self.design;
         let width = design.width(id);
@@ -18,7 +18,7 @@ impl Compiler<'_> {
             Op::Extend(of) => {
                 let narrow = design.width(*of);
                 let (a, from) = (slot(*of), drop_of(narrow));
-                // A pattern is masked to its width, so zeros are above it already.
+                // The bits above the width of a value are 0 in its slot, so that a zero extension takes no instruction.
                 if narrow == width || !signed(*of) {
                     a
                 } else {
@@ -92,35 +92,35 @@ impl Compiler<'_> {
         }
     }
 
-    /// Returns `width` bits of `of` from `low` up.
+    /// Returns the slot with `width` bits of the net `of`, from bit `low` up.
     pub(super) fn slice(&mut self, of: NetId, low: u32, width: u32) -> Slot {
         let whole = self.design.width(of);
         if width == whole {
             return self.of_net[of.index()];
         }
         let (a, inner_low, inner_drop) = self.sliced(self.of_net[of.index()]);
-        // Where the operand is a slice with zeros above it, the new slice may reach into these.
+        // If the operand is itself a slice, the new slice may reach into the zeros above it.
         let left = (64 - inner_drop).saturating_sub(low as u8);
         if left == 0 {
             return self.constant(0);
         }
         let (low, drop) = (inner_low + low as u8, drop_of(width).max(64 - left));
-        // Above the bits of the operand there are only the zeros that extend it.
+        // The slot has only zeros above the bits of its value.
         if u32::from(low) >= self.held(a) {
             return self.constant(0);
         }
         self.emit(&[a], |to| Instruction::Slice { to, a, low, drop })
     }
 
-    /// Returns the width of the value in a slot: the width of the narrowest of its nets. The other nets extend that
-    /// one.
+    /// Returns the width of the value in a slot: the width of the narrowest net that has this slot. All other nets with this slot
+    /// extend this net by zeros.
     fn held(&self, slot: Slot) -> u32 {
         let nets = self.of_net.iter().zip(&self.design.nets);
         let widths = nets.filter(|(own, _)| **own == slot).map(|(_, net)| net.format.width());
         widths.min().unwrap_or(MAX_WIDTH)
     }
 
-    /// Returns the operands side by side; together they are no wider than a net.
+    /// Returns the slot with the bits of all parts joined, the first part in the top bits. Together they have at most 64 bits.
     fn concat(&mut self, parts: &[NetId]) -> Slot {
         let mut known = 0;
         let mut others = Vec::new();
@@ -145,7 +145,7 @@ impl Compiler<'_> {
         all
     }
 
-    /// Returns the slot with the sum of two slots and a carry.
+    /// Returns the slot with the sum of two slots and a carry, with the width that `drop` gives.
     fn add_carry(&mut self, [a, b, carry]: [Slot; 3], drop: u8) -> Slot {
         self.emit(&[a, b, carry], |to| Instruction::AddCarry { to, a, b, carry, drop })
     }
@@ -162,8 +162,8 @@ impl Compiler<'_> {
         })
     }
 
-    /// Returns a mux of two inputs, merged with the logic that only prepares its operands. Chains of such muxes tell
-    /// in which range a value is.
+    /// Returns the slot with `a` if `select` is 0, and with `b` otherwise. If `select` tests bits for any 1, or `b` is placed
+    /// from the same slot, one instruction does this too. Chains of such muxes find the range of a value.
     fn choose(&mut self, select: Slot, a: Slot, b: Slot) -> Slot {
         let Some((of, low, drop)) = self.any(select) else {
             return self.emit(&[select, a, b], |to| Instruction::Choose { to, select, a, b });

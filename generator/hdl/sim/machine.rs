@@ -13,8 +13,8 @@ use crate::sim::word::LaneWord;
 
 /// The state of `LANES` independent instances of a design, which one pass over the [`CompiledDesign`] advances together.
 ///
-/// On x86-64 the pass is compiled three times: for any processor, for AVX2 and for AVX-512. The machine chooses at run time; all
-/// compute the same values.
+/// On x86-64 the pass is compiled three times: for any processor, for AVX2 and for AVX-512. The machine chooses one of them at
+/// run time; all three compute the same values.
 #[derive(Clone, Debug)]
 pub struct Machine<const LANES: usize = 1> {
     program: Arc<CompiledDesign>,
@@ -38,21 +38,21 @@ impl<const LANES: usize> Machine<LANES> {
         machine
     }
 
-    /// Inverts bits of a ROM word, which models a fault. A second call with the same arguments restores the word. Words are
-    /// numbered through all ROMs, in the order of the design.
+    /// Inverts the bits of a ROM word that are 1 in `bits`, which models a fault. A second call with the same arguments restores
+    /// the word. Words are numbered through all ROMs, in the order of the design: word 0 is the first word of the first ROM.
     ///
     /// # Panics
-    /// Panics if there is no such word.
+    /// Panics if `word` is not less than the number of words of all ROMs.
     pub fn invert(&mut self, word: usize, bits: u64) {
         Arc::make_mut(&mut self.program).words[word] ^= bits;
         self.changed = Sources::MAX;
     }
 
-    /// Performs a rising edge if `edge` is set, then applies `inputs` if there are any, and then evaluates all nets. Returns
-    /// whether any source of changes has a new value.
+    /// Performs a rising edge if `edge` is true, then applies `inputs` if there are any, and then evaluates all nets. Returns
+    /// whether the value of any source (input, register or ROM output) has changed, or a ROM word has been inverted.
     ///
-    /// At the edge, registers and synchronous ROMs take the values of their operands. `inputs` must have the bit pattern of
-    /// each input port, in order of declaration; bits beyond the width of a port are ignored.
+    /// At the edge, registers and synchronous ROMs load the values of their operands. `inputs` must have the bit pattern of each
+    /// input port, in order of declaration; bits beyond the width of a port are ignored.
     pub fn update(&mut self, edge: bool, inputs: Option<&[[u64; LANES]]>) -> bool {
         #[cfg(target_arch = "x86_64")]
         match VectorLevel::here() {
@@ -140,8 +140,8 @@ impl<const LANES: usize> Machine<LANES> {
         }
     }
 
-    /// Returns for each lane a pattern that is 0 exactly if every net carries its `expected` value. Only the bits in
-    /// `known` are compared, or all bits if it is `None`.
+    /// Returns for each lane a bit pattern that is 0 exactly if every net has its expected value. `expected` has the value of
+    /// each net in each lane. Only the bits that are 1 in `known` are compared, or all bits if `known` is `None`.
     ///
     /// # Panics
     /// Panics if the compiler has optimised a net away, which it may do only if the net has no name.
@@ -214,8 +214,8 @@ impl<const LANES: usize> Machine<LANES> {
     /// Returns the bit pattern of a net in one lane.
     ///
     /// # Panics
-    /// Panics if there is no such lane, or if the compiler has optimised the net away, which it may do only if the net has no
-    /// name.
+    /// Panics if `lane` is not less than `LANES`. Panics if the compiler has optimised the net away, which it may do only if the
+    /// net has no name.
     pub fn lane(&self, net: NetId, lane: usize) -> u64 {
         match self.program.place(net) {
             ValueSlot::Narrow(slot) => self.narrow[slot as usize][lane].into(),
@@ -224,13 +224,13 @@ impl<const LANES: usize> Machine<LANES> {
     }
 }
 
-/// The vector instructions of the processor.
+/// The vector instructions that the processor has.
 #[cfg(target_arch = "x86_64")]
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum VectorLevel {
     Base,
     Avx2,
-    /// With AVX2.
+    /// AVX-512, and AVX2 too.
     Avx512,
 }
 
@@ -256,7 +256,8 @@ fn power_up<W: LaneWord, const LANES: usize>(bank: &Bank) -> Slots<W, LANES> {
     Slots::new(bank.initial.iter().map(|&bits| [W::low(bits); LANES]))
 }
 
-/// Sets the inputs. Returns the `news` and the sources that have changed.
+/// Stores the inputs in their slots. Returns `news`, the set of sources that have already changed, together with the input ports
+/// whose value has changed in any lane.
 #[inline(always)]
 fn take_inputs<W: LaneWord, const LANES: usize>(
     bank: &Bank,
@@ -272,7 +273,8 @@ fn take_inputs<W: LaneWord, const LANES: usize>(
     news
 }
 
-/// Performs the rising edge. Returns the `news` and the sources that have changed.
+/// Performs the rising edge in one bank. Returns `news`, the set of sources that have already changed, together with the sources
+/// whose value has changed in any lane.
 #[inline(always)]
 fn clock<W: LaneWord, const LANES: usize>(
     bank: &Bank,
@@ -296,7 +298,7 @@ fn clock<W: LaneWord, const LANES: usize>(
             }
             _ => None,
         };
-        // Most registers of a pipeline: in place.
+        // Most registers of a pipeline have an enable and no reset. They are loaded in place.
         if let Some([q, data, enable]) = disjoint {
             news |= load(q, data, enable, edge.source, news);
             continue;
@@ -313,7 +315,8 @@ fn clock<W: LaneWord, const LANES: usize>(
     news
 }
 
-/// Loads a register in the lanes that are enabled. Returns `source` when that changes any, unless it is among the `news` already.
+/// Loads a register in the lanes whose `enable` is 1. Returns `source` if its value changes in any lane, and otherwise 0. Returns
+/// 0 if `source` is already in `news`.
 #[inline(always)]
 fn load<W: LaneWord, const LANES: usize>(
     q: &mut [W; LANES],
@@ -331,7 +334,8 @@ fn load<W: LaneWord, const LANES: usize>(
     changed
 }
 
-/// Returns the value of a slot after the edge: a new one in the lanes that are enabled.
+/// Returns the value of `slot` after the edge: `new` in the lanes whose enable is 1, and the old value in all others. Without an
+/// enable, it is `new` in all lanes.
 #[inline(always)]
 fn enabled<W: LaneWord, const LANES: usize>(
     slots: &[[W; LANES]],
@@ -348,7 +352,8 @@ fn enabled<W: LaneWord, const LANES: usize>(
     new
 }
 
-/// Stores a value. Returns `source` when that changes any lane, unless it is among the `news` already.
+/// Stores a value. Returns `source` if the value changes in any lane, and otherwise 0. Returns 0 if `source` is already in
+/// `news`.
 #[inline(always)]
 fn store<W: LaneWord, const LANES: usize>(
     slot: &mut [W; LANES],
@@ -361,7 +366,7 @@ fn store<W: LaneWord, const LANES: usize>(
     changed
 }
 
-/// Returns `source` when any lane has a difference, unless it is among the `news` already.
+/// Returns `source` if `difference` is not 0 in any lane, and otherwise 0. Returns 0 if `source` is already in `news`.
 #[inline(always)]
 fn changed<W: LaneWord, const LANES: usize>(
     source: Sources,
@@ -378,7 +383,8 @@ fn changed<W: LaneWord, const LANES: usize>(
     if differences == W::ZERO { 0 } else { source }
 }
 
-/// Executes one instruction. Returns the source of the field that has changed, if the instruction takes a field.
+/// Executes one instruction in all lanes. Returns the source of a field of the control word if the instruction is
+/// [`Instruction::Field`] and the field has changed; otherwise 0.
 #[inline(always)]
 pub(super) fn execute<W: LaneWord, const LANES: usize>(
     instruction: Instruction,
@@ -431,7 +437,7 @@ pub(super) fn execute<W: LaneWord, const LANES: usize>(
             unary(slots, to, a, |a| W::from(a >> low & mask(drop) != W::ZERO));
         }
         I::LessUnsigned { to, a, b } => binary(slots, to, a, b, |a, b| W::from(a < b)),
-        // With inverted sign bits, signed numbers have the order of unsigned ones.
+        // With inverted sign bits, signed numbers have the same order as unsigned ones.
         I::LessSigned { to, a, b, drop } => {
             binary(slots, to, a, b, |a, b| W::from(a ^ sign::<W>(drop) < b ^ sign::<W>(drop)))
         }
@@ -458,25 +464,26 @@ pub(super) fn execute<W: LaneWord, const LANES: usize>(
     0
 }
 
-/// Returns the sign bit of a pattern whose width is given as `drop`.
+/// Returns a word in which only the sign bit of a value is 1. `drop` is 64 less the width of the value.
 #[inline(always)]
 fn sign<W: LaneWord>(drop: u8) -> W {
     W::low(1 << 63 >> drop)
 }
 
-/// Returns a two's complement pattern whose width is given as `drop`, at the full width.
+/// Returns a two's complement number of the width given by `drop`, extended by its sign to the whole word.
 #[inline(always)]
 fn sign_extended<W: LaneWord>(bits: W, drop: u8) -> W {
     (bits ^ sign(drop)).wrapping_sub(sign(drop))
 }
 
-/// Returns a word of a ROM; 0 beyond its contents.
+/// Returns the word of a ROM at `address`, or 0 behind the last word.
 #[inline(always)]
 fn read(words: &[u64], span: Span, address: u64) -> u64 {
     if address < u64::from(span.len) { words[span.start as usize + address as usize] } else { 0 }
 }
 
-/// Selects one of the choices in each lane. If `select` is beyond the choices, it selects the last one.
+/// Stores the chosen slot's value in each lane of `to`. The number in `select` chooses among `choices`; a number beyond the last
+/// choice selects the last one.
 #[inline(always)]
 fn mux<W: LaneWord, const LANES: usize>(
     slots: &mut [[W; LANES]],
@@ -504,10 +511,12 @@ fn mux<W: LaneWord, const LANES: usize>(
     }
 }
 
-/// The fewest lanes for which it pays to compare them all with each number of a mux.
+/// The smallest number of lanes for which a mux compares the select in all lanes with each input number. With fewer lanes, a
+/// look-up in each lane is faster.
 const VECTOR: usize = 8;
 
-/// The most inputs of a mux whose lanes are compared; with more, each lane is looked up.
+/// The largest number of inputs of a mux that compares the select in all lanes with each input number. A mux with more inputs
+/// looks up each lane's input.
 const COMPARED: usize = 16;
 
 #[inline(always)]

@@ -1,13 +1,9 @@
 //! The built-in simulator: runs many independent instances of a design clock by clock, and writes waveforms.
 //!
 //! The compiler turns a [`Design`] into a [`CompiledDesign`], a list of instructions in evaluation order. A [`Machine`] executes
-//! it for several instances at once, called lanes. A [`Circuit`] wraps the machine as one block of the simulation kernel
-//! rust_hdl, and a [`Simulator`] adds the clock.
-//!
-//! rust_hdl is the kernel. It owns the clock, a `Signal`. Each half of a clock is one call of its `simulate()`, which updates the
-//! block, finds the edge, and updates again until nothing changes. Its `check_all` checks the ports, and its probes see every
-//! named net and write the waveforms. Glint computes the nets within an update: the registers at an edge, and then one pass over
-//! the instructions. rust_hdl could also simulate one block for each cell, but a hundred times more slowly.
+//! the instructions for several instances at once, called lanes. A [`Circuit`] wraps the machine as one block of the simulation
+//! kernel rust_hdl, which writes waveforms, and a [`Simulator`] adds the clock. (One rust_hdl block for each cell would be a
+//! hundred times slower.)
 
 mod banks;
 mod circuit;
@@ -40,7 +36,8 @@ pub use vcd::VcdWriter;
 /// Half a clock in waveforms, in picoseconds.
 const HALF_CLOCK: u64 = 5_000;
 
-/// A bound on rust_hdl's updates for one change: the change, and the update that finds none.
+/// The largest number of updates of rust_hdl for one change. Two are enough: the change itself, and an update that changes
+/// nothing.
 const UPDATES: usize = 4;
 
 /// `LANES` independent instances of a design, clocked by rust_hdl.
@@ -70,7 +67,8 @@ impl<const LANES: usize> Simulator<LANES> {
     /// Makes a simulator at power-up: all inputs, registers and outputs of synchronous ROMs are 0.
     ///
     /// # Errors
-    /// Fails if [`Circuit::new`] fails.
+    /// Fails if the design has mistakes in its structure, or 2^32 ROM words or more. Fails if rust_hdl's `check_all` finds a
+    /// fault.
     pub fn new(design: &Design) -> Result<Self> {
         Ok(Self {
             circuit: Circuit::new(design)?,
@@ -91,16 +89,17 @@ impl<const LANES: usize> Simulator<LANES> {
         &self.inputs
     }
 
-    /// Sets an input port in every lane for the next clock; the simulator ignores bits beyond its width.
+    /// Sets an input port in every lane for the next clock. `input` is the position of the port among the inputs. The simulator
+    /// ignores bits beyond the width of the port.
     ///
     /// # Panics
-    /// Panics if there is no port of this position.
+    /// Panics if no input port has this position.
     pub fn set_lanes(&mut self, input: usize, lanes: [u64; LANES]) {
         self.circuit.inputs_mut()[input] = lanes;
     }
 
-    /// Returns the values of all input ports in order of position, one for each lane. A caller that sets many inputs uses this
-    /// instead of [`Simulator::set_lanes`].
+    /// Returns the values of all input ports for the caller to change, in order of position, one value for each lane. A caller
+    /// that sets many inputs uses this method instead of [`Simulator::set_lanes`].
     pub fn inputs_mut(&mut self) -> &mut [[u64; LANES]] {
         self.circuit.inputs_mut()
     }
@@ -116,14 +115,14 @@ impl<const LANES: usize> Simulator<LANES> {
     /// Returns the bit pattern of a net in one lane, after the latest clock.
     ///
     /// # Panics
-    /// Panics if there is no such lane, or if the compiler has optimised the net away, which it may do only if the net has no
-    /// name.
+    /// Panics if `lane` is not less than `LANES`. Panics if the compiler has optimised the net away, which it may do only if the
+    /// net has no name.
     pub fn lane(&self, net: NetId, lane: usize) -> u64 {
         self.circuit.machine.lane(net, lane)
     }
 
-    /// Returns for each lane a pattern that is 0 exactly if every net carries its `expected` value. Only the bits in
-    /// `known` are compared, or all bits if it is `None`.
+    /// Returns for each lane a bit pattern that is 0 exactly if every net has its expected value. `expected` has the value of
+    /// each net in each lane. Only the bits that are 1 in `known` are compared, or all bits if `known` is `None`.
     ///
     /// # Panics
     /// Panics if the compiler has optimised a net away, which it may do only if the net has no name.
@@ -136,24 +135,24 @@ impl<const LANES: usize> Simulator<LANES> {
         self.circuit.machine.differences(nets, expected, known)
     }
 
-    /// Runs one clock: the falling edge, with which inputs change, and the rising edge.
+    /// Runs one clock: the falling edge, with which inputs change, and then the rising edge, at which registers load.
     ///
     /// # Errors
-    /// Fails if the waveform cannot be written. Fails if the circuit does not settle, which would be a bug.
+    /// Fails if the waveform cannot be written. Fails if the circuit still changes after all updates, which would be a bug.
     #[inline]
     pub fn clock(&mut self) -> Result<()> {
         self.half(false)?;
         self.half(true)
     }
 
-    /// Runs one clock in which the input ports, in order of position, carry the bits `inputs`, which are not copied.
-    /// From the next clock on, the inputs have their earlier values again.
+    /// Runs one clock in which the input ports, in order of position, have the bit patterns `inputs`, which are not copied. From
+    /// the next clock on, the inputs have their earlier values again.
     ///
     /// # Errors
-    /// Fails as [`Simulator::clock`] does.
+    /// Fails if the waveform cannot be written.
     ///
     /// # Panics
-    /// Panics if `inputs` has more or fewer entries than there are ports. It must have one for each.
+    /// Panics unless `inputs` has exactly one entry for each input port.
     #[inline]
     pub fn clock_with(&mut self, inputs: &mut Vec<[u64; LANES]>) -> Result<()> {
         assert_eq!(inputs.len(), self.inputs.len(), "one for each input port");
@@ -163,11 +162,11 @@ impl<const LANES: usize> Simulator<LANES> {
         clocked
     }
 
-    /// Brings all nets up to date with inputs that were set since the last clock, without an edge.
-    /// The next clock does not depend on whether this was called.
+    /// Evaluates all nets for inputs that were set since the last clock, without a rising edge. The next clock does not depend on
+    /// whether this method was called.
     ///
     /// # Errors
-    /// Fails as [`Simulator::clock`] does.
+    /// Fails if the waveform cannot be written.
     pub fn settle(&mut self) -> Result<()> {
         self.half(false)
     }
@@ -185,7 +184,7 @@ impl<const LANES: usize> Simulator<LANES> {
         }
     }
 
-    /// Writes the waveform of lane 0 from now on: VCD, a clock of 10 ns, starting at time 0.
+    /// Writes the waveform of lane 0 from this call on, as VCD. A clock takes 10 ns, and the waveform starts at time 0.
     ///
     /// # Errors
     /// Fails if the file cannot be written.
@@ -196,7 +195,7 @@ impl<const LANES: usize> Simulator<LANES> {
         Ok(())
     }
 
-    /// Ends the waveform, if there is one, and flushes the file.
+    /// Ends the waveform and flushes the file. Does nothing if no waveform is being written.
     ///
     /// # Errors
     /// Fails if the file cannot be written.
@@ -209,10 +208,11 @@ impl<const LANES: usize> Simulator<LANES> {
 }
 
 impl Simulator {
-    /// Sets an input port for the next clock; the simulator ignores bits beyond its width.
+    /// Sets an input port for the next clock. `input` is the position of the port among the inputs. The simulator ignores bits
+    /// beyond the width of the port.
     ///
     /// # Panics
-    /// Panics if there is no port of this position.
+    /// Panics if no input port has this position.
     #[inline]
     pub fn set(&mut self, input: usize, bits: u64) {
         self.set_lanes(input, [bits]);

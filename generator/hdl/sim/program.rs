@@ -1,75 +1,70 @@
-//! Defines the compiled form of a design for the simulator: slots, instructions, and what happens at an edge.
+//! Defines the compiled form of a design for the simulator: slots, instructions, and the operations of a clock edge.
 //!
-//! All values are in *slots*, bit patterns masked to their width. A clock has two phases. *Settling* runs the steps
-//! in order; each computes one slot from earlier ones. The *edge* writes the data outputs of synchronous ROMs and
-//! then the registers. Nets that are mere wiring (other names, zero extensions, whole slices) share a slot, constants
-//! are folded, and equal instructions are merged, so there are fewer instructions than cells. An unnamed net has no
-//! slot at all if all its readers can cut it out of its operand themselves.
-//!
-//! There are two banks of slots. The *narrow* bank has slots of 32 bits: nearly all values fit, and a vector of the
-//! processor holds twice as many lanes. The *wide* bank has slots of 64 bits for all other values. An [`Instruction`]
-//! works within one bank; the other [`SettlingStep`]s lead from one bank to the other.
-//!
-//! A value that changes outside settling is a *source*: an input port, or a value that the edge writes. The fields of
-//! the control word are sources too, because most of them stay the same from one word to the next. Instructions that
-//! depend on the same sources form a segment. Settling skips segments whose sources have not changed.
+//! All values are in *slots*, bit patterns with zeros above their width. A clock has two phases. *Settling* runs the steps in
+//! order; each step computes one slot from earlier ones. The *edge* writes the outputs of synchronous ROMs and then the
+//! registers.
 
 use crate::netlist::NetId;
 use glint_base::fixed::MAX_WIDTH;
 
-/// The number of a slot within its bank.
+/// The number of a slot within its bank. Nets that are mere wiring (other names, zero extensions, whole slices) share a slot. An
+/// unnamed slice has no slot if all its readers take the bits from its operand themselves.
 pub(super) type Slot = u32;
 
-/// A set of sources, one bit each; when there are more than 64, several share a bit.
+/// A set of sources, with one bit for each source. A *source* is a value that changes outside settling: an input port, or a value
+/// that the edge writes. Each field of the control word is a source too, because most fields stay the same from one control word
+/// to the next. If there are more than 64 sources, several share a bit.
 pub(super) type Sources = u64;
 
-/// A computation within one bank: `to` from `a`, `b`, …, which have smaller numbers.
+/// A computation within one bank: the slot `to` from the slots `a`, `b` and so on, which have smaller numbers.
 ///
 /// Widths are given as `drop`, 64 less the width: `u64::MAX >> drop` is the mask, and shifting up by `drop` brings the sign bit
 /// to the top. For example, a width of 21 has the `drop` 43.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(super) enum Instruction {
-    /// `a`, as it was before the coming edge.
+    /// The value of `a` from before the coming edge, which may overwrite `a`.
     Copy { to: Slot, a: Slot },
-    /// The bits of `a` from `low` up; when they are news, `source` has changed.
+    /// The bits of `a` from `low` up. If they differ from the previous value, `source` has changed.
     Field { to: Slot, a: Slot, low: u8, drop: u8, source: u8 },
-    /// The bits of `a` from `low` up.
+    /// The bits of `a` from `low` up, as many as `drop` says.
     Slice { to: Slot, a: Slot, low: u8, drop: u8 },
-    /// The bits of `a` from `low` up, shifted up, together with the bits of `base`.
+    /// The bits of `a` from `low` up, shifted to the left by `shift`, together with the bits of `base`.
     Place { to: Slot, base: Slot, a: Slot, low: u8, drop: u8, shift: u8 },
-    /// `a`, whose width is given by `from`, with copies of its sign bit above it.
+    /// The value of `a`, whose width is given by `from`, with copies of its sign bit up to the width given by `drop`.
     SignExtend { to: Slot, a: Slot, from: u8, drop: u8 },
     /// Bitwise and.
     And { to: Slot, a: Slot, b: Slot },
     /// Bitwise or.
     Or { to: Slot, a: Slot, b: Slot },
-    /// Bitwise exclusive or; with a mask, not.
+    /// Bitwise exclusive or. With a mask of ones as `b`, it inverts `a`.
     Xor { to: Slot, a: Slot, b: Slot },
-    /// Sum.
+    /// Sum modulo 2^width, with the width given by `drop`.
     Add { to: Slot, a: Slot, b: Slot, drop: u8 },
-    /// Sum of bits of `a` and bits of `b`: for example, a value and the amount by which it is rounded up.
+    /// Sum of bits of `a` and bits of `b`, each from its `low` up with the width that its `drop` gives, modulo 2^width of the
+    /// result. For example, it adds to a value the bit by which rounding increases it.
     AddSlices { to: Slot, a: Slot, b: Slot, low_a: u8, drop_a: u8, low_b: u8, drop_b: u8, drop: u8 },
-    /// Sum and carry.
+    /// Sum of `a`, `b` and the bit `carry`, modulo 2^width.
     AddCarry { to: Slot, a: Slot, b: Slot, carry: Slot, drop: u8 },
-    /// Difference.
+    /// Difference `a − b` modulo 2^width.
     Sub { to: Slot, a: Slot, b: Slot, drop: u8 },
-    /// Product of unsigned factors; it always fits.
+    /// Product of unsigned factors, which always fits the slot.
     MulUnsigned { to: Slot, a: Slot, b: Slot },
     /// Product of signed factors, whose widths are given by `drop_a` and `drop_b`.
     MulSigned { to: Slot, a: Slot, b: Slot, drop_a: u8, drop_b: u8, drop: u8 },
-    /// 1 when `a == b`; with a mask, when all bits are 1.
+    /// 1 if `a == b`, otherwise 0. With a mask of ones as `b`, it tests whether all bits of `a` are 1.
     Equal { to: Slot, a: Slot, b: Slot },
-    /// 1 when the bits of `a` from `low` up are not all 0.
+    /// 1 if any bit of `a` from `low` up is 1, otherwise 0.
     Any { to: Slot, a: Slot, low: u8, drop: u8 },
-    /// 1 when `a < b`, unsigned.
+    /// 1 if `a < b` as unsigned numbers, otherwise 0.
     LessUnsigned { to: Slot, a: Slot, b: Slot },
-    /// 1 when `a < b`, signed.
+    /// 1 if `a < b` as signed numbers, otherwise 0.
     LessSigned { to: Slot, a: Slot, b: Slot, drop: u8 },
-    /// `a` when `select` is 0, else `b`.
+    /// The value of `a` if `select` is 0, otherwise `b`.
     Choose { to: Slot, select: Slot, a: Slot, b: Slot },
-    /// `a` when the bits of `of` from `low` up are all 0, else `b`.
+    /// The value of `a` if the bits of `of` from `low` up are all 0, otherwise `b`.
     ChooseAny { to: Slot, of: Slot, low: u8, drop: u8, a: Slot, b: Slot },
-    /// `a` when the bits of `of` from `low` up are all 0, else other bits of it, placed as by `Place`.
+    /// The value of `a` if the bits of `of` from `low` up are all 0. Otherwise other bits of `of`, placed on `base` as by
+    /// `Place`.
     ChoosePlace {
         to: Slot,
         of: Slot,
@@ -81,15 +76,15 @@ pub(super) enum Instruction {
         place_drop: u8,
         shift: u8,
     },
-    /// The slot that entry `first + select`, at most `last`, of the table of choices names.
+    /// The value of the slot in entry `first + select` of the table of choices, or in entry `last` if that is smaller.
     Mux { to: Slot, select: Slot, first: u32, last: u32 },
-    /// Word `address` of a ROM.
+    /// The word `address` of a ROM, or 0 behind the last word.
     Read { to: Slot, address: Slot, words: Span },
 }
 
 impl Instruction {
-    /// Returns the slots of the instruction, the result first. The inputs of a mux in the table of choices are not
-    /// included.
+    /// Returns the slots of the instruction, the result first. The inputs of a mux are not among them, because they are in the
+    /// table of choices.
     pub(super) fn slots_mut(&mut self) -> Vec<&mut Slot> {
         match self {
             Self::Copy { to, a }
@@ -119,16 +114,16 @@ impl Instruction {
     }
 }
 
-/// One step of settling.
+/// One step of settling: an instruction within a bank, or the conversion of a value from one bank to the other.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum SettlingStep {
-    /// Among the narrow slots.
+    /// An instruction whose slots are all narrow.
     Narrow(Instruction),
-    /// Among the wide slots.
+    /// An instruction whose slots are all wide.
     Wide(Instruction),
-    /// A narrow slot as a wide one.
+    /// Copies a narrow slot to a wide slot.
     Widen { to: Slot, a: Slot },
-    /// The bits of a wide slot from `low` up, as a narrow one.
+    /// Copies the bits of a wide slot from `low` up to a narrow slot, as many as `drop` says.
     Cut { to: Slot, a: Slot, low: u8, drop: u8 },
     /// The wide product of narrow unsigned factors.
     Product { to: Slot, a: Slot, b: Slot },
@@ -136,38 +131,38 @@ pub(super) enum SettlingStep {
     SignedProduct { to: Slot, a: Slot, b: Slot, drop_a: u8, drop_b: u8, drop: u8 },
 }
 
-/// The place of a value.
+/// The slot of a value, in one of the two banks.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum ValueSlot {
     Narrow(Slot),
     Wide(Slot),
 }
 
-/// The contents of a ROM in [`CompiledDesign::words`].
+/// The place of a ROM's contents in [`CompiledDesign::words`]: the first index and the number of words.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(super) struct Span {
     pub start: u32,
     pub len: u32,
 }
 
-/// Consecutive steps that depend on the same sources.
+/// A number of consecutive steps that depend on the same sources. Settling skips the group if none of its sources has changed.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct StepGroup {
     pub sources: Sources,
     pub len: u32,
 }
 
-/// An input port.
+/// An input port: its position, its slot, its source, and the mask of its width.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct InputPort {
-    /// The position of the source among the input ports.
+    /// The position of the port among the input ports.
     pub at: u32,
     pub slot: Slot,
     pub source: Sources,
     pub mask: u64,
 }
 
-/// A synchronous ROM: at the edge, `to` takes word `address` when `enable` is 1.
+/// A synchronous ROM: at the edge, `to` gets the word at `address` if `enable` is 1.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct ReadEdge {
     pub to: Slot,
@@ -178,7 +173,8 @@ pub(super) struct ReadEdge {
     pub words: Span,
 }
 
-/// A register: at the edge, `q` takes the value of `reset` when its slot, `rst_n`, is 0, else `data` when `enable` is 1.
+/// A register. At the edge, `q` gets the reset value if `rst_n`, the slot in `reset`, is 0, and otherwise `data` if `enable` is
+/// 1.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct RegisterEdge {
     pub q: Slot,
@@ -186,36 +182,37 @@ pub(super) struct RegisterEdge {
     pub data: Slot,
     /// The slot of the load enable; `None` if the register loads at every edge.
     pub enable: Option<Slot>,
-    /// The slot of the reset and the value that the register takes on a reset; `None` if the register has no reset.
+    /// The slot of `rst_n`, and the value that the register loads if `rst_n` is 0. `None` if the register has no reset.
     pub reset: Option<(Slot, u64)>,
 }
 
-/// One of the two banks: its slots that change outside settling, and its initial contents.
+/// One of the two banks: the slots that change outside settling, and the contents at power-up. The narrow bank has slots of 32
+/// bits, so that a vector of the processor holds twice as many lanes; the wide bank has slots of 64 bits.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Bank {
     pub inputs: Vec<InputPort>,
-    /// The reads of synchronous ROMs, which an edge performs before it loads `registers`. An earlier read or load never overwrites
-    /// an operand of a later one.
+    /// The reads of synchronous ROMs, which an edge performs before it loads `registers`. No read or load overwrites a slot that
+    /// a later one reads.
     pub reads: Vec<ReadEdge>,
     pub registers: Vec<RegisterEdge>,
     /// The contents of the slots at power-up, before settling.
     pub initial: Vec<u64>,
 }
 
-/// A compiled [`Design`](crate::netlist::Design). Machines share it; it holds no state.
+/// A compiled [`Design`](crate::netlist::Design), without state. Several machines may share it.
 #[derive(Clone, Debug)]
 pub struct CompiledDesign {
     /// The steps, in an order in which each follows the steps that compute its operands.
     pub(super) steps: Vec<SettlingStep>,
-    /// They cover the steps.
+    /// The groups of consecutive steps with the same sources. Together they contain all steps, in order.
     pub(super) segments: Vec<StepGroup>,
     pub(super) narrow: Bank,
     pub(super) wide: Bank,
-    /// The inputs of all muxes that have more than two, in the bank of the mux.
+    /// The table of choices: the inputs of all muxes with more than two inputs, as slots in the bank of the mux.
     pub(super) choices: Vec<Slot>,
     /// The contents of all ROMs.
     pub(super) words: Vec<u64>,
-    /// The place of each net; none for unnamed nets that have none.
+    /// For each net, the slot of its value; `None` for an unnamed net that the compiler has optimised away.
     pub(super) places: Vec<Option<ValueSlot>>,
 }
 
@@ -225,17 +222,17 @@ impl CompiledDesign {
         self.narrow.inputs.len() + self.wide.inputs.len()
     }
 
-    /// Returns the place of a net.
+    /// Returns the slot of a net.
     ///
     /// # Panics
-    /// Panics if the net is unnamed and has none.
+    /// Panics if the compiler has optimised the net away, which it may do only if the net has no name.
     pub(super) fn place(&self, net: NetId) -> ValueSlot {
         let place = self.places[net.index()];
         place.unwrap_or_else(|| panic!("{net:?} is unnamed and not simulated"))
     }
 }
 
-/// Returns how much narrower than 64 bits a width is.
+/// Returns 64 less `width`, the form in which instructions state a width. For example, 21 gives 43.
 pub(super) fn drop_of(width: u32) -> u8 {
     (MAX_WIDTH - width) as u8
 }

@@ -2,14 +2,15 @@
 
 use std::ops::{Deref, DerefMut};
 
-/// The bytes of a line of the processor's cache, as long as its longest vector. One that lies across two lines is slow.
+/// The number of bytes in a line of the processor's cache, which is also the length of its longest vector. A vector that lies
+/// across two lines is slow.
 const LINE: usize = 64;
 
-/// The words of each slot of a bank, one a lane. The first word is aligned to a cache line.
+/// The values of all slots of a bank. A slot has `LANES` values, one for each lane. The first value is aligned to a cache line.
 #[derive(Debug)]
 pub(super) struct Slots<W, const LANES: usize> {
     words: Vec<W>,
-    /// The number of words in front of the first slot, for alignment.
+    /// The number of unused values in front of the first slot, which align it.
     before: usize,
 }
 
@@ -24,7 +25,7 @@ impl<W: Copy + Default, const LANES: usize> Slots<W, LANES> {
     }
 }
 
-/// Laid anew: the copy begins elsewhere.
+/// The copy is aligned anew, because its memory begins at another address.
 impl<W: Copy + Default, const LANES: usize> Clone for Slots<W, LANES> {
     fn clone(&self) -> Self {
         Self::new(self.iter().copied())

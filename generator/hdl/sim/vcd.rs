@@ -1,5 +1,5 @@
-//! Writes the waveform of a circuit to a VCD file during the simulation. rust_hdl formats it, and this module streams it to the
-//! file.
+//! Writes the waveform of a circuit to a VCD file during the simulation. rust_hdl formats the waveform, and this module writes it
+//! to the file step by step.
 
 use std::io::{self, Write};
 use std::mem;
@@ -13,8 +13,8 @@ use rust_hdl::core::vcd_probe::{VCDProbe, write_vcd_change, write_vcd_dump, writ
 
 /// Writes the waveform of a circuit step by step. Times are in picoseconds.
 ///
-/// rust_hdl panics if a write fails, so it writes to a buffer in memory, which cannot fail. After each step the buffer goes to
-/// the file.
+/// rust_hdl panics if a write fails, so it writes to a buffer in memory, which cannot fail. After each step the writer copies the
+/// buffer to the file.
 pub struct VcdWriter<W: Write> {
     /// The probe of rust_hdl; `None` only while rust_hdl writes.
     probe: Option<VCDProbe<Page>>,
@@ -23,7 +23,7 @@ pub struct VcdWriter<W: Write> {
 }
 
 impl<W: Write> VcdWriter<W> {
-    /// Writes the header, in which the outermost scope is called `name`, and all values at `time`.
+    /// Writes the header, in which the outermost scope is called `name`, and all values at `time`, in picoseconds.
     ///
     /// # Errors
     /// Fails if the file cannot be written.
@@ -32,14 +32,14 @@ impl<W: Write> VcdWriter<W> {
         let mut probe = write_vcd_header(page.clone(), &Named { name, circuit });
         probe.timestamp(time)?;
         let mut writer = Self { probe: Some(write_vcd_dump(probe, circuit)), page, file };
-        // rust_hdl declares text as a wire without bits, which viewers read as no value or refuse.
+        // rust_hdl declares a text as a wire of 0 bits. Viewers refuse such a wire, or show no value.
         let header = String::from_utf8_lossy(&writer.page.take()).replacen(WIRE, STRING, 1);
         writer.page.write_all(header.as_bytes())?;
         writer.write_out()?;
         Ok(writer)
     }
 
-    /// Writes the values that have changed since the last step.
+    /// Writes the values that have changed since the last step, at `time` in picoseconds.
     ///
     /// # Errors
     /// Fails if the file cannot be written.
@@ -51,7 +51,7 @@ impl<W: Write> VcdWriter<W> {
         self.write_out()
     }
 
-    /// Ends the waveform at `time`, flushes the file and returns it.
+    /// Ends the waveform at `time`, in picoseconds, flushes the file and returns it.
     ///
     /// # Errors
     /// Fails if the file cannot be written.
@@ -64,7 +64,7 @@ impl<W: Write> VcdWriter<W> {
         Ok(self.file)
     }
 
-    /// Brings the page to the file.
+    /// Writes the buffered text to the file, and empties the buffer.
     fn write_out(&mut self) -> Result<()> {
         self.file.write_all(&self.page.take()).context(CANNOT_WRITE)
     }
@@ -75,7 +75,7 @@ const STRING: &str = "$var string 1 ";
 
 const CANNOT_WRITE: &str = "cannot write the waveform";
 
-/// Text that is yet to be written; its copies share it.
+/// A buffer with text that is not yet in the file. Its copies share the text.
 #[derive(Clone, Default)]
 struct Page(Arc<Mutex<Vec<u8>>>);
 
@@ -97,7 +97,7 @@ impl Write for Page {
     }
 }
 
-/// A circuit under a name of its own; rust_hdl calls whatever it traces `uut`.
+/// A circuit with a name for its scope. Without it, rust_hdl would call the scope `uut`.
 struct Named<'a> {
     name: &'a str,
     circuit: &'a dyn Block,

@@ -1,20 +1,20 @@
-//! Writes files that tell the waveform viewers GTKWave and Surfer how to show a waveform: each net in its module or stage, and
-//! numbers as values.
+//! Writes files for the waveform viewers GTKWave and Surfer. They show each net in its module or stage, and GTKWave shows numbers
+//! with their binary points.
 
 use std::fmt::Write;
 
 use super::circuit::scopes;
 use crate::netlist::{Design, Net};
 
-/// Flags of a trace in GTKWave (`TR_…_B` in its `analyzer.h`): right-justified binary, unsigned and signed decimal, a
-/// binary point, and a line of text alone.
+/// Flags of a trace in GTKWave (`TR_…_B` in its `analyzer.h`). `BINARY` is right-justified binary, `UNSIGNED` and `SIGNED` are
+/// decimal, `POINT` adds a binary point, and `TEXT` is a line of text without a value.
 const BINARY: u32 = 1 << 3 | 1 << 5;
 const UNSIGNED: u32 = 1 << 2 | 1 << 5;
 const SIGNED: u32 = 1 << 10 | 1 << 5;
 const POINT: u32 = 1 << 30;
 const TEXT: u32 = 1 << 9;
 
-/// Returns the scopes of a waveform with their nets, the ports first.
+/// Returns the scopes of a waveform by their full names, each with its nets. The first scope has the ports.
 fn shown(design: &Design) -> Vec<(String, Vec<&Net>)> {
     let ports = design.ports.iter().map(|port| design.net(port.net)).collect();
     let mut shown = vec![(design.name.clone(), ports)];
@@ -28,7 +28,7 @@ fn shown(design: &Design) -> Vec<(String, Vec<&Net>)> {
 /// Returns the save file with which GTKWave shows a waveform of the design: `gtkwave FILE.vcd FILE.gtkw`. For example, it lists a
 /// net of the format `u1.20` with 20 fraction bits, as `[fpshift_count] 20`.
 pub fn gtkwave(design: &Design) -> String {
-    // Twenty pixels a clock or so.
+    // With this zoom, a clock is about twenty pixels wide.
     let mut text = format!("*-17.000000 0\n@{BINARY:x}\n{}.clk\n", design.name);
     for (scope, nets) in shown(design) {
         let _ = writeln!(text, "@{TEXT:x}\n-{scope}");
@@ -59,7 +59,8 @@ pub fn gtkwave(design: &Design) -> String {
     text
 }
 
-/// Returns the commands with which Surfer shows a waveform of the design: `surfer --command-file FILE.sucl FILE.vcd`.
+/// Returns the command file with which Surfer shows a waveform of the design: `surfer --command-file FILE.sucl FILE.vcd`. It
+/// lists the ports, and then the nets of each module or stage.
 pub fn surfer(design: &Design) -> String {
     let mut text = format!("variable_add {}.clk\n", design.name);
     for (scope, nets) in shown(design) {

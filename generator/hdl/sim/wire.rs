@@ -1,8 +1,8 @@
 //! Shows the nets of a circuit to rust_hdl's probes, as atoms (rust_hdl's term for a signal) whose widths are known only at run
 //! time.
 //!
-//! A probe that visits the circuit gets an atom for each net. An atom stores only an id, which is the same at every visit. A
-//! simulation without a waveform makes no atoms.
+//! A probe that visits the circuit gets an atom for each net. The atoms are made anew at every visit; the id of a net's atom
+//! stays the same. A simulation without a waveform makes no atoms.
 
 use rust_hdl::core::ast::VerilogLiteral;
 use rust_hdl::core::atom::{Atom, AtomKind};
@@ -10,7 +10,7 @@ use rust_hdl::core::constraint::PinConstraint;
 use rust_hdl::core::synth::VCDValue;
 use rust_hdl::core::type_descriptor::{TypeDescriptor, TypeKind};
 
-/// The direction of a wire at the circuit.
+/// The direction of a net at the border of the circuit: an input port, an output port, or a net inside.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Direction {
     Input,
@@ -18,16 +18,17 @@ pub(super) enum Direction {
     Local,
 }
 
-/// The view of a probe.
+/// The description of an atom for a probe.
 #[derive(Debug)]
 pub(super) enum ProbeView<'a> {
     /// A net, with its width, sign and direction.
     Net { width: u32, signed: bool, direction: Direction },
-    /// The name of the microinstruction that is being executed, or `idle`. The bits are the address, an index of `names`.
+    /// The name of the executed microinstruction, or `idle` if `run` is false. The bits of the atom are the address, an index of
+    /// `names`.
     Microinstruction { names: &'a [String], run: bool },
 }
 
-/// An atom.
+/// An atom: the value of one net in lane 0, for rust_hdl's probes.
 #[derive(Debug)]
 pub(super) struct Wire<'a> {
     /// The id of the net, from rust_hdl's counter, so that it differs from the ids of rust_hdl's own signals.
@@ -38,7 +39,8 @@ pub(super) struct Wire<'a> {
     pub seen: ProbeView<'a>,
 }
 
-/// Returns a string as VCD can hold it: a space would end it. For example, `12 <- sin` becomes `12_<-_sin`.
+/// Returns `text` with `_` in place of spaces and other characters that a VCD string cannot contain. For example, `12 <- sin`
+/// becomes `12_<-_sin`.
 fn vcd_text(text: &str) -> String {
     text.chars().map(|c| if c.is_ascii_graphic() { c } else { '_' }).collect()
 }
@@ -106,7 +108,7 @@ impl Atom for Wire<'_> {
         self.id
     }
 
-    /// Returns the value alone: rust_hdl emits no Verilog from a netlist.
+    /// Returns the value alone. rust_hdl never emits Verilog from this circuit.
     fn verilog(&self) -> VerilogLiteral {
         self.bits.into()
     }

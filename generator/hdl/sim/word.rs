@@ -2,7 +2,7 @@
 
 use std::ops::{BitAnd, BitOr, BitXor, Shl, Shr};
 
-/// The word of a slot in a lane.
+/// The value of a slot in one lane, an unsigned integer of 32 or 64 bits.
 pub(super) trait LaneWord:
     Copy
     + Default
@@ -16,7 +16,7 @@ pub(super) trait LaneWord:
     + Shr<u8, Output = Self>
 {
     const ZERO: Self;
-    /// Returns the low bits.
+    /// Returns the low bits of `bits`, as many as the type has.
     fn low(bits: u64) -> Self;
     fn wrapping_add(self, other: Self) -> Self;
     fn wrapping_sub(self, other: Self) -> Self;

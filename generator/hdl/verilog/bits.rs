@@ -1,13 +1,13 @@
-//! Reduces wiring to a normal form: every word becomes a list of bit ranges of nets and constants.
+//! Reduces wiring to a normal form: every word (the bits of a net) becomes a list of bit ranges of nets and constants.
 //!
 //! Slices, extensions, concatenations, renamed nets and constants are wiring, which needs no hardware. [`Bits`] represents any
-//! mixture of them as pieces of nets that the Verilog declares, constants, and copies of a sign bit. For example, the emitter
-//! finds `a[5:2]` behind three nets of wiring. It also finds out which bits of a net nobody reads.
+//! mixture of them as pieces of declared nets, constants, and copies of a sign bit. For example, the emitter finds `a[5:2]`
+//! behind three nets of wiring, and the bits of a net that no logic reads.
 
 use crate::netlist::NetId;
 use glint_base::fixed::mask;
 
-/// A run of adjacent bits in a word of the Verilog that have the same origin: bits of a net, constant bits, or copies of one bit.
+/// Adjacent bits of a word (the bits of a net) with the same origin: bits of a net, constant bits, or copies of one bit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum BitRun {
     /// `width` adjacent bits of a net, from bit `low` up.
@@ -46,7 +46,7 @@ impl BitRun {
         }
     }
 
-    /// Returns `width` bits from `low` up.
+    /// Returns `width` bits of this run, from bit `low` up.
     fn slice(self, low: u32, width: u32) -> Self {
         match self {
             Self::Net { net, low: from, .. } => Self::Net { net, low: from + low, width },
@@ -58,7 +58,8 @@ impl BitRun {
         }
     }
 
-    /// Joins both pieces into one, `self` above `below`, if they are neighbours of one origin.
+    /// Joins two runs into one, `self` above `below`. Returns `None` unless they are adjacent bits of one net, or constants of at
+    /// most 64 bits together.
     fn join(self, below: Self) -> Option<Self> {
         match (self, below) {
             (Self::Net { net, low, width }, Self::Net { net: other, low: from, width: count })
@@ -97,7 +98,7 @@ impl Bits {
         &self.0
     }
 
-    /// Returns the run of bits if the word has exactly one, otherwise `None`.
+    /// Returns the run of bits if the word has exactly one run, otherwise `None`.
     pub fn single(&self) -> Option<BitRun> {
         match self.0[..] {
             [piece] => Some(piece),
@@ -110,7 +111,7 @@ impl Bits {
         self.0.iter().map(|piece| piece.width()).sum()
     }
 
-    /// Returns `width` bits of the word, from bit `low` up.
+    /// Returns `width` bits of the word, from bit `low` up. For example, the bits from 1 up of `{a[5:2], 1'b0}` are `a[5:2]`.
     pub fn slice(&self, low: u32, width: u32) -> Self {
         let mut taken = Self::default();
         let mut top = self.width();
@@ -133,7 +134,8 @@ impl Bits {
         self
     }
 
-    /// Returns the word extended to `width` bits: by copies of its top bit if it is signed, otherwise by zeros.
+    /// Returns the word extended to `width` bits: by copies of its top bit if `signed`, otherwise by zeros. A word that has
+    /// `width` bits or more stays as it is.
     pub fn extend(&self, width: u32, signed: bool) -> Self {
         let count = width.saturating_sub(self.width());
         if count == 0 {

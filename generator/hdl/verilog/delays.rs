@@ -1,4 +1,4 @@
-//! Writes the delay lines of a pipeline as Verilog. A delay line carries a value that nothing reads for several stages; a memory
+//! Writes the delay lines of a pipeline as Verilog. A delay line carries a value that no logic reads for several stages; a memory
 //! in a separate module replaces its registers.
 
 use std::collections::BTreeMap;
@@ -13,11 +13,12 @@ use crate::netlist::{DelayLine, NetId};
 const TITLE: &str =
     "Delay lines: what nothing reads for several stages goes through small memories";
 
-/// How many words go round, and when they do.
+/// The number of words of a delay line's memory, and the net that enables its steps. It is `None` if the line steps on every
+/// clock.
 type Pace = (usize, Option<NetId>);
 
-/// Returns the Verilog section that instantiates the delay lines, with one instance for all lines of the same length and enable. It
-/// is empty if the pipeline has no delay lines.
+/// Returns the Verilog section that instantiates the delay lines, with one instance for all lines of the same length and enable.
+/// The list is empty if the pipeline has no delay lines.
 pub fn section(builder: &mut Builder<'_>, naming: &Naming) -> Vec<String> {
     let plan = builder.plan;
     let mut paces: BTreeMap<Pace, Vec<&DelayLine>> = BTreeMap::new();

@@ -1,9 +1,8 @@
-//! Writes the cells of a netlist as Verilog expressions. For example, a sum becomes `a + b`.
+//! Writes the cells of a netlist as Verilog expressions, such as `a + b` for a sum.
 //!
-//! The operands of every cell have the same width as the result, so that no context can extend or cut a carry. Two
-//! cells are exceptions. A product is written only as the whole right-hand side of a net of its full width. The carry
-//! into an adder is extended to the adder's width. Only products and comparisons depend on signedness, and they state
-//! it.
+//! The operands of every cell have the same width as the result, so that no context can extend or truncate a carry. As an
+//! exception, a product is only written as the whole right-hand side of a net of its full width. The carry into an adder is
+//! extended to the adder's width. Operands of products and comparisons are written with `$signed` or `$unsigned` if necessary.
 
 use super::bits::{BitRun, Bits};
 use super::plan::{NetForm, Plan, Reader};
@@ -17,13 +16,13 @@ use glint_base::fixed::mask;
 pub struct Constant {
     /// The name of the localparam in the Verilog.
     pub name: String,
-    /// The name in the description, without a number at its end.
+    /// The name in the description. A number that the description language has added at its end is removed.
     base: String,
     /// The value of the constant as a bit pattern.
     pub bits: u64,
     /// The number of bits of the constant.
     pub width: u32,
-    /// The comment behind the localparam: the constant's value as text, or empty if the bit pattern itself is the value.
+    /// The comment behind the localparam: the constant's value as text. It is empty if the bit pattern itself is the value.
     pub note: String,
 }
 
@@ -47,7 +46,8 @@ impl<'a> Expressions<'a> {
         self.names.fresh(wish)
     }
 
-    /// Returns the Verilog expression that drives a net, such as `a + b`: the right-hand side of its assignment.
+    /// Returns the right-hand side of the assignment that drives a net, such as `a + b`. For a register, a ROM or an input, it is
+    /// the name of the net.
     pub fn driver(&mut self, id: NetId) -> String {
         match &self.plan.design.net(id).driver {
             Driver::Op(op) => self.cell(id, op),
@@ -60,7 +60,8 @@ impl<'a> Expressions<'a> {
         }
     }
 
-    /// Returns the Verilog text that reads a net, for use as a complete right-hand side, without parentheses around it.
+    /// Returns the Verilog text that reads a net, for use as a complete right-hand side. The text has no parentheses around it,
+    /// such as `a + b`.
     pub fn whole(&mut self, id: NetId) -> String {
         match self.inline(id) {
             Some(cell) => self.driver(cell),
@@ -68,8 +69,8 @@ impl<'a> Expressions<'a> {
         }
     }
 
-    /// Returns the Verilog text that reads a net within a larger expression: a name, a selection, a concatenation, or a cell in
-    /// parentheses.
+    /// Returns the Verilog text that reads a net within a larger expression. It is a name, a selection, a concatenation, or a
+    /// cell in parentheses, such as `(a + b)`.
     pub fn operand(&mut self, id: NetId) -> String {
         if let Some(constant) = self.constant(id) {
             return constant;
@@ -83,14 +84,15 @@ impl<'a> Expressions<'a> {
         }
     }
 
-    /// Returns the operand of a unary operator, which may not begin with another one.
+    /// Returns the text of an operand of a unary operator. An inverted operand is put into parentheses.
     fn primary(&mut self, id: NetId) -> String {
         let text = self.operand(id);
         if text.starts_with('~') { format!("({text})") } else { text }
     }
 
-    /// Returns the localparam for a net that is a constant, possibly extended or relabelled, unless a literal
-    /// says as much: 0, 1 ulp, all ones.
+    /// Returns the name of the localparam for a net that is a constant, possibly extended or relabelled, and collects the
+    /// constant. Returns `None` for any other net, and for unnamed constants that are clear as literals: 0, 1, and all ones from
+    /// 8 bits on.
     fn constant(&mut self, id: NetId) -> Option<String> {
         let design = self.plan.design;
         let Some(BitRun::Constant { value, width }) = self.plan.bits[id.index()].single() else {
@@ -108,7 +110,8 @@ impl<'a> Expressions<'a> {
             return None;
         }
         let (name, origin) = (&from.name, from.format);
-        // The DSL numbers constants of one name apart; here only different bits are.
+        // The description language adds numbers to constants of the same name. Only constants with different bits need different
+        // names here.
         let base = if from.named { name } else { unnumbered(name) };
         let same = |constant: &&Constant| {
             constant.base == base && (constant.bits, constant.width) == (value, width)
@@ -137,7 +140,8 @@ impl<'a> Expressions<'a> {
         Some(name)
     }
 
-    /// Returns the Verilog text of a ROM's address, with exactly as many bits as the ROM's number of words needs.
+    /// Returns the Verilog text of a ROM's address, with exactly as many bits as the ROM's number of words needs. For example,
+    /// the address of 584 words has 10 bits.
     pub fn address(&mut self, rom: &NetlistRom) -> String {
         let width = super::plan::address_width(rom.words.len());
         let bits = &self.plan.bits[rom.address.index()];
@@ -146,7 +150,7 @@ impl<'a> Expressions<'a> {
         self.bits(&exact)
     }
 
-    /// Returns the cell whose result a net is, if the cell is written in place of the net.
+    /// Returns the net whose cell is written in place of the net `id`. Returns `None` if `id` is not exactly such a net.
     fn inline(&self, id: NetId) -> Option<NetId> {
         match self.plan.bits[id.index()].single() {
             Some(BitRun::Net { net, .. }) if self.plan.forms[net.index()] == NetForm::Inline => {
@@ -200,7 +204,7 @@ impl<'a> Expressions<'a> {
             Op::Equal(a, b) => self.binary(*a, "==", *b),
             Op::Less(a, b) => match self.plan.constant_comparison(*a, *b) {
                 Some(known) => literal(known, 1),
-                // A constant reads best on the right.
+                // A comparison has its constant on the right.
                 None if matches!(
                     self.plan.bits[a.index()].single(),
                     Some(BitRun::Constant { .. })
@@ -235,7 +239,7 @@ impl<'a> Expressions<'a> {
         if width == 1 { carry } else { format!("{{{}, {carry}}}", literal(0, width - 1)) }
     }
 
-    /// Returns an operand that has the signedness of its format in the Verilog.
+    /// Returns the text of an operand, with `$signed` or `$unsigned` if the text would not have the sign of the net's format.
     fn with_sign(&mut self, id: NetId) -> String {
         let text = self.operand(id);
         let wanted = self.plan.design.net(id).format.signed;
@@ -253,7 +257,7 @@ impl<'a> Expressions<'a> {
     }
 }
 
-/// Returns a name such as `one_2` without its number.
+/// Returns a name without an underscore and a number at its end. For example, `one_2` gives `one`, and `base2` stays as it is.
 fn unnumbered(name: &str) -> &str {
     let base = name.trim_end_matches(|sign: char| sign.is_ascii_digit());
     match base.strip_suffix('_') {
@@ -262,15 +266,15 @@ fn unnumbered(name: &str) -> &str {
     }
 }
 
-/// Returns whether a text needs no parentheses as an operand: a name, a selection, a concatenation or the
-/// inverse of one.
+/// Returns whether a text needs no parentheses as an operand: it is a name, a selection or a concatenation, possibly inverted.
 fn is_primary(text: &str) -> bool {
     let inner = text.strip_prefix('~').unwrap_or(text);
     !inner.starts_with(['~', '|', '&', '-'])
         && (!inner.contains(' ') || (inner.starts_with('{') && closes_at_end(inner)))
 }
 
-/// Returns whether the first brace closes with the last character.
+/// Returns whether the brace at the beginning of `text` closes with its last character. For example, this is false for
+/// `{a} + {b}`.
 fn closes_at_end(text: &str) -> bool {
     let mut depth = 0usize;
     for (at, sign) in text.char_indices() {

@@ -9,14 +9,14 @@ use glint_base::fixed::Format;
 /// The facts in the header comment of a Verilog file that the design itself does not state.
 #[derive(Clone, Copy)]
 pub struct Origin<'a> {
-    /// The command that generates the file again, or an empty text.
+    /// The command that generates the file again. If it is empty, the header does not mention a command.
     pub regenerate: &'a str,
-    /// The numbers of clocks between the events of the handshake.
+    /// The numbers of clocks between the events of the handshake, for the line on latency.
     pub timing: &'a HandshakeTiming,
 }
 
-/// Returns the header comment for the top module's Verilog file, as lines: the formula, and everything that a user of the module
-/// must know.
+/// Returns the lines of the header comment for the top module's Verilog file: title, formula, source, latency, formats, ports and
+/// notes.
 pub fn top(design: &Design, origin: &Origin) -> Vec<String> {
     let about = &design.about;
     let mut lines = comment(0, &format!("{}: {}", design.name, about.title));
@@ -30,7 +30,7 @@ pub fn top(design: &Design, origin: &Origin) -> Vec<String> {
     }
     lines.push("//".to_owned());
     lines.extend(comment(0, &formats(design)));
-    // The ports of a pipeline have their comments below.
+    // The module of a pipeline has a comment at each port instead.
     if design.pipeline.is_none() {
         lines.extend(ports(design));
     }
@@ -41,7 +41,8 @@ pub fn top(design: &Design, origin: &Origin) -> Vec<String> {
     lines
 }
 
-/// Returns the header comment for the Verilog file of the control unit or of the datapath, as lines.
+/// Returns the lines of the header comment for the Verilog file of the control unit or the datapath. The control unit's comment
+/// lists the microprogram.
 pub fn partition(
     design: &Design,
     partition: Partition,
@@ -69,7 +70,7 @@ fn paragraph(text: &str) -> Vec<String> {
     lines
 }
 
-/// Returns the comment lines with the command that generates the Verilog file again.
+/// Returns the comment lines at the end of a header: that Glint generated the file, and with which command.
 pub fn regenerated(origin: &Origin) -> Vec<String> {
     let again = match origin.regenerate {
         "" => String::new(),
@@ -97,7 +98,7 @@ fn latency(timing: &HandshakeTiming) -> Vec<String> {
     paragraph(&format!("Latency: {}.", facts.join(", ")))
 }
 
-/// Returns the paragraph on a pipeline's latency and stages for its user.
+/// Returns the paragraph on a pipeline's interval, latency, clock frequency and stalls.
 fn stages(pipeline: &Pipeline) -> String {
     let (clocks, clock) = (pipeline.stages.len(), pipeline.clock_mhz);
     let stall = if pipeline.stall {
@@ -117,7 +118,7 @@ fn stages(pipeline: &Pipeline) -> String {
     )
 }
 
-/// Returns the paragraph on formats.
+/// Returns the paragraph that explains the formats `uI.F` and `sI.F`.
 fn formats(design: &Design) -> String {
     let mut text = "Formats: uI.F is unsigned, sI.F two's complement, with I integer bits (a sign bit apart) and F \
                     fraction bits; the value of a signal is its integer times 2^-F."
@@ -128,7 +129,7 @@ fn formats(design: &Design) -> String {
     text
 }
 
-/// Returns the ports with format and role, in columns.
+/// Returns comment lines for the ports except strobes, with name, format and role in columns.
 fn ports(design: &Design) -> Vec<String> {
     let name = |net: NetId| design.net(net).name.as_str();
     let width = design.ports.iter().map(|port| name(port.net).len()).max().unwrap_or(0);
@@ -165,7 +166,7 @@ fn ports(design: &Design) -> Vec<String> {
     lines
 }
 
-/// Returns the microprogram, a line for each microinstruction.
+/// Returns comment lines for the microprogram, with address, name and jump of each microinstruction.
 fn program(design: &Design) -> Vec<String> {
     let mut lines = vec!["//".to_owned(), "// Microprogram:".to_owned()];
     for (address, it) in design.control.microprogram.iter().enumerate() {

@@ -28,10 +28,11 @@ use interface::Interface;
 use naming::Naming;
 use plan::Plan;
 
-/// Returns the files for a design as pairs of name and text: the Verilog modules (`.v`), and the contents of ROMs for `$readmem`.
+/// Returns the files for a design as pairs of file name and text. They are the Verilog modules (`.v`), and the contents of ROMs
+/// (`.mem`) for `$readmemh` and `$readmemb`.
 ///
 /// # Errors
-/// Fails with the mistakes that [`Design::verify_structure`] finds, or if [`memories`] fails.
+/// Fails if [`Design::verify_structure`] finds mistakes, with these mistakes, or if a word of a ROM does not fit the ROM.
 pub fn files(design: &Design) -> Result<Vec<(String, String)>> {
     let (plan, naming) = (Plan::new(design)?, Naming::new(design));
     let origin = Origin { regenerate: "", timing: &HandshakeTiming::default() };
@@ -51,8 +52,8 @@ pub struct ModuleFile {
     pub text: String,
 }
 
-/// Returns the Verilog files of a design, the top module first. A pipeline has one file, with the module of its delay lines in it.
-/// Any other design has three files: the top module, the control unit and the datapath.
+/// Returns the Verilog files of a design, the top module first. A pipeline has one file, with the module of its delay lines in
+/// it. Any other design has three files: the top module, the control unit and the datapath.
 pub fn modules(plan: &Plan, naming: &Naming, origin: &Origin) -> Vec<ModuleFile> {
     if let Some(pipeline) = &plan.design.pipeline {
         let mut modules = vec![plan.design.name.clone()];
@@ -76,10 +77,11 @@ pub fn modules(plan: &Plan, naming: &Naming, origin: &Origin) -> Vec<ModuleFile>
     files
 }
 
-/// Returns the memory files for the ROMs of a design as pairs of file name and text. `$readmemh` or `$readmemb` loads them.
+/// Returns the memory files for the ROMs of a design as pairs of file name and text. The list is empty if the style of `naming`
+/// puts the words into the Verilog. The second read port of a memory has no file of its own.
 ///
 /// # Errors
-/// Fails if the words of the control ROM are not exactly as wide as all fields, or if a word is wider than its ROM.
+/// Fails if a word is wider than its ROM, or if the words of the control ROM are not as wide as all fields together.
 pub fn memories(design: &Design, naming: &Naming) -> Result<Vec<(String, String)>> {
     let mut memories = Vec::new();
     for (id, file) in (0..).map(RomId).zip(&naming.files) {

@@ -23,9 +23,9 @@ pub struct Builder<'a> {
     interface: &'a Interface,
     partition: Partition,
     pub(super) expressions: Expressions<'a>,
-    /// The choices of select fields that label a case, as pairs of field and value.
+    /// The choices of select fields that are labels of case statements, as pairs of field number and value.
     labels: BTreeSet<(usize, usize)>,
-    /// The comment of the previous assignment.
+    /// The comment of the previous assignment, so that it is not repeated.
     last_note: String,
 }
 
@@ -50,7 +50,7 @@ impl<'a> Builder<'a> {
 
     /// Returns the complete Verilog text of the module, with its header comment.
     pub fn module(mut self, origin: &Origin) -> String {
-        // Statements first: they tell which constants and choices are to be declared.
+        // The statements come first, because they determine which constants and choices are declared.
         let items = self.items(&|_| true);
         let groups = self.groups(&|_| true);
         let initial = if self.naming.style.initial { self.initial() } else { Vec::new() };
@@ -58,7 +58,7 @@ impl<'a> Builder<'a> {
         let state = Row::declarations(&self.state(&|_| true));
         body.extend(writer::section("Registers", state));
         body.extend(writer::block("    initial begin", initial, "    end"));
-        // Items of one line have no empty lines between them.
+        // Consecutive items of one line have no empty line between them.
         let mut after_line = false;
         for item in items {
             let is_line = item.len() == 1;
@@ -94,7 +94,7 @@ impl<'a> Builder<'a> {
         Row::ports(&rows)
     }
 
-    /// Returns `reg` if a procedural block assigns the net, else `wire`.
+    /// Returns `reg` if a procedural block assigns the net, and otherwise `wire`.
     fn kind(&self, net: NetId) -> &'static str {
         match &self.plan.design.net(net).driver {
             Driver::Register(register) if self.plan.delayed(*register).is_some() => "wire",
@@ -105,7 +105,8 @@ impl<'a> Builder<'a> {
         }
     }
 
-    /// Returns the registers here that are written as such.
+    /// Returns the outputs of the module's registers that the Verilog declares. Registers inside multipliers, and registers of
+    /// delay lines except the last one, are not declared.
     fn registers(&self) -> impl Iterator<Item = NetId> {
         let design = self.plan.design;
         let written = (0..).map(RegId).zip(&design.registers).filter(|(id, register)| {
@@ -116,8 +117,8 @@ impl<'a> Builder<'a> {
         written.map(|(_, register)| register.q)
     }
 
-    /// Returns the Verilog declarations of registers and of synchronous ROMs' output words. It declares the nets for which `wanted`
-    /// returns true and that are no output ports.
+    /// Returns the Verilog declarations of registers and of synchronous ROMs' output words. It declares the nets for which
+    /// `wanted` returns true and that are no output ports.
     pub(super) fn state(&self, wanted: &dyn Fn(NetId) -> bool) -> Vec<Row> {
         let mut nets: Vec<NetId> = self.registers().collect();
         for rom in &self.plan.design.roms {
@@ -134,8 +135,8 @@ impl<'a> Builder<'a> {
         rows
     }
 
-    /// Writes the statements that make registers 0 before the first clock. Words of synchronous ROMs are known after
-    /// that clock, and on some targets block memories have no initial values.
+    /// Returns the statements of an initial block that set registers to 0. They leave out the words of synchronous ROMs, which
+    /// are known after the first clock; on some targets block memories have no initial values.
     fn initial(&self) -> Vec<String> {
         let design = self.plan.design;
         let mut lines = Vec::new();
@@ -160,8 +161,8 @@ impl<'a> Builder<'a> {
         lines
     }
 
-    /// Returns the Verilog lines for each declared cell and each memory of the module that drives a net for which `wanted` returns
-    /// true.
+    /// Returns a list with the Verilog lines of each declared cell, each memory and each registered multiplier of the module. It
+    /// leaves out those that drive a net for which `wanted` returns false.
     pub(super) fn items(&mut self, wanted: &dyn Fn(NetId) -> bool) -> Vec<Vec<String>> {
         let design = self.plan.design;
         let mut items = Vec::new();
@@ -209,15 +210,15 @@ impl<'a> Builder<'a> {
                 return behind;
             }
         }
-        // In a pipeline, a net that repeats a value gets no line for its format, nor for the comment that was written
-        // before.
+        // In a pipeline, a net that repeats the previous comment, or has only a format, gets no comment line.
         if repeats && self.plan.design.pipeline.is_some() {
             note.clear();
         }
         [comment(4, &note), lines].concat()
     }
 
-    /// Returns the left side of a continuous assignment: with the declaration, unless the net is a port.
+    /// Returns the left side of a continuous assignment: a declaration such as `wire [7:0] sum`, or `assign sum` for an output
+    /// port.
     fn target(&self, id: NetId) -> String {
         let net = self.plan.design.net(id);
         if self.interface.outputs.contains(&id) {
@@ -230,7 +231,7 @@ impl<'a> Builder<'a> {
         words.join(" ")
     }
 
-    /// Returns a mux of more than two inputs.
+    /// Returns the case statement for a mux of more than two inputs, with the declaration of its net.
     fn case(&mut self, id: NetId, select: NetId, inputs: &[NetId]) -> Vec<String> {
         let design = self.plan.design;
         let name = &design.net(id).name;
@@ -253,7 +254,8 @@ impl<'a> Builder<'a> {
         lines
     }
 
-    /// Returns the labels of a case. They are names if the select is a field of the control word, else numbers.
+    /// Returns the labels of a case statement for the select values from 0 up to `count` − 1. They are localparams if the
+    /// select is a field of the control word, and otherwise numbers.
     fn case_labels(&mut self, select: NetId, count: usize) -> Vec<String> {
         let design = self.plan.design;
         let width = design.width(select);
@@ -274,7 +276,8 @@ impl<'a> Builder<'a> {
         labels
     }
 
-    /// Returns a memory and its read port. It leaves out the memory if another read port has already declared it.
+    /// Returns the lines of a ROM: its memory and its read port. The memory is left out if the ROM is the second read port of
+    /// another ROM's memory.
     fn rom(&mut self, id: RomId) -> Vec<String> {
         let rom = self.plan.design.rom(id);
         let case = self.naming.style.case;
@@ -302,7 +305,8 @@ impl<'a> Builder<'a> {
         lines
     }
 
-    /// Returns the declaration of a memory with its words, or of the function that replaces it.
+    /// Returns the declaration of a memory with its words, or the function with a case statement that replaces it if `style.case`
+    /// is true.
     fn memory(&mut self, id: RomId) -> Vec<String> {
         let design = self.plan.design;
         let rom = design.rom(id);
@@ -340,7 +344,7 @@ impl<'a> Builder<'a> {
         vec![declaration, format!("    initial $readmem{radix}({parameter}, {memory});")]
     }
 
-    /// Returns the instance that computes a product and holds it.
+    /// Returns the instance of a multiplier with an output register, with the declaration of its output.
     fn multiplier(&mut self, register: &NetlistRegister, multiplier: Multiplier) -> Vec<String> {
         let design = self.plan.design;
         let Multiplier { product, factors } = multiplier;
@@ -371,10 +375,10 @@ impl<'a> Builder<'a> {
         lines
     }
 
-    /// Returns the bodies of the module's `always` blocks, for the registers for whose output net `wanted` returns true. Registers
-    /// with the same enable and the same reset behaviour share a block.
+    /// Returns the lines of each `always` block of the module, for the registers for whose output net `wanted` returns true.
+    /// Registers with the same enable and the same reset behaviour share a block.
     pub(super) fn groups(&mut self, wanted: &dyn Fn(NetId) -> bool) -> Vec<Vec<String>> {
-        /// The enable, and whether reset sets the registers.
+        /// The enable of the registers, and whether the reset sets them.
         type ResetGroup = (Option<NetId>, bool);
         let design = self.plan.design;
         let mut groups: Vec<(ResetGroup, Vec<RegId>)> = Vec::new();
@@ -393,7 +397,8 @@ impl<'a> Builder<'a> {
         blocks
     }
 
-    /// Returns the wanted registers here to which statements assign.
+    /// Returns the registers of the module that always blocks assign, and for whose output net `wanted` returns true. Registers
+    /// inside multipliers and delay lines are not among them.
     fn written(&self, wanted: &dyn Fn(NetId) -> bool) -> Vec<RegId> {
         let design = self.plan.design;
         let mut written = Vec::new();
@@ -409,7 +414,7 @@ impl<'a> Builder<'a> {
         written
     }
 
-    /// Returns the statements by which registers load.
+    /// Returns the assignments by which the registers `members` load their data, such as `y <= sum;`.
     fn takes(&mut self, members: &[RegId], indent: usize) -> Vec<String> {
         let mut takes = Vec::new();
         for &member in members {
@@ -421,8 +426,8 @@ impl<'a> Builder<'a> {
         takes
     }
 
-    /// Returns the `always` blocks for the registers of a pipeline for whose output net `wanted` returns true: one block for all
-    /// registers with the same enable.
+    /// Returns the `always` blocks for the registers of a pipeline for whose output net `wanted` returns true. Registers with the
+    /// same enable share one block.
     pub(super) fn stage(&mut self, wanted: &dyn Fn(NetId) -> bool) -> Vec<String> {
         let mut groups: BTreeMap<Option<NetId>, Vec<RegId>> = BTreeMap::new();
         for id in self.written(wanted) {
@@ -482,7 +487,7 @@ impl<'a> Builder<'a> {
         lines
     }
 
-    /// Returns the Verilog lines of the net that reads all bits which nothing else in the module reads, so that linters do not
+    /// Returns the Verilog lines of a net that reads all bits which no other logic in the module reads, so that linters do not
     /// complain. Returns no lines if there are no such bits.
     pub(super) fn unused(&self) -> Vec<String> {
         let ranges = unread(self.plan, self.partition, self.interface);
@@ -500,8 +505,8 @@ impl<'a> Builder<'a> {
     }
 }
 
-/// Returns a statement for each word of a ROM. It begins with the text that `place` returns for the number of the
-/// word and the number's width in bits.
+/// Returns an assignment for each word of a ROM, such as `rom[3] = 8'h1f;`. `place` returns its left side, from the number of the
+/// word and the width of this number in bits.
 fn words(
     design: &Design,
     id: RomId,
@@ -524,8 +529,8 @@ fn words(
     lines
 }
 
-/// Returns the declarations of the Verilog parameters that hold the names of the ROMs' memory files, with commas. It is empty if
-/// the Verilog itself contains the words.
+/// Returns the declarations of the Verilog parameters with the names of the ROMs' memory files, separated by commas. The list is
+/// empty if the Verilog itself contains the words.
 pub fn parameters(naming: &Naming, roms: &[RomId]) -> Vec<String> {
     let mut texts = Vec::new();
     for rom in roms {
@@ -534,7 +539,7 @@ pub fn parameters(naming: &Naming, roms: &[RomId]) -> Vec<String> {
         }
         let (name, file) = (&naming.parameters[rom.index()], &naming.files[rom.index()]);
         let text = format!("parameter {name} = \"{file}\"");
-        // Beside its margin and a comma.
+        // The line also has a margin and a comma.
         let is_too_long = text.len() + 5 > COLUMNS;
         texts.push(if is_too_long { text.replacen(" = ", " =\n            ", 1) } else { text });
     }

@@ -1,4 +1,4 @@
-//! Chooses the names and comments that the Verilog has in addition to the description's: names of instances, memories, files and
+//! Chooses the names and comments that the Verilog has in addition to the names of nets: for instances, memories, files and
 //! parameters.
 
 use super::text::{Names, constant_name};
@@ -6,7 +6,8 @@ use crate::netlist::{
     Control, Design, Driver, FieldKind, Net, NetId, NetlistRom, Op, Partition, RomId,
 };
 
-/// The names that the Verilog of a design has in addition to the names of nets: modules, instances, memories, files and parameters.
+/// The names that the Verilog of a design has in addition to the names of nets: modules, instances, memories, files and
+/// parameters.
 pub struct Naming {
     /// The name of the control unit's instance in the top module.
     pub control_instance: String,
@@ -22,14 +23,14 @@ pub struct Naming {
     pub style: Style,
     /// The ROMs that are the second read port of another ROM's memory.
     pub second: Vec<RomId>,
-    /// For each field of the control word, the names of the localparams for the values that it can have. For example,
-    /// `OPERAND_SELECT_COSINES` is 0.
+    /// For each field of the control word, the names of the localparams for its values, from 0 on. The list is empty for a field
+    /// that is no select. For example, `OPERAND_SELECT_COSINES` is 0.
     pub choices: Vec<Vec<String>>,
     /// The name of the net that reads all unread bits. Linters accept an unread net if its name contains `unused`.
     pub unused: String,
-    /// The name of the shift register that says which stages of a pipeline hold points.
+    /// The name of the shift register that has a bit for each stage of a pipeline, which is 1 if the stage has a point.
     pub valid: String,
-    /// The identifiers that the design uses already. A module may add identifiers of its own.
+    /// The identifiers that the Verilog of the design already uses: names of nets, and the names in this structure.
     pub names: Names,
     design: String,
 }
@@ -37,18 +38,19 @@ pub struct Naming {
 /// The style in which the Verilog writes memories and registers.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Style {
-    /// Whether the Verilog itself contains the words of ROMs, so that there are no memory files.
+    /// Whether the Verilog itself contains the words of ROMs. If it is false, memory files contain them.
     pub inline: bool,
     /// Whether the Verilog writes the words of a ROM as a case statement in a function.
     pub case: bool,
-    /// The Verilog attribute before the memories of synchronous ROMs, if any.
+    /// The Verilog attribute before the memories of synchronous ROMs, without `(*` and `*)`. `None` omits it.
     pub rom_style: Option<&'static str>,
-    /// Whether the Verilog gives registers the initial value 0.
+    /// Whether an initial block sets registers to 0.
     pub initial: bool,
 }
 
 impl Naming {
     /// Chooses names for everything that the Verilog of a design has in addition to its nets. None of them is the name of a net.
+    /// The style is the default one.
     pub fn new(design: &Design) -> Self {
         let mut names = Names::new(design.nets.iter().map(|net| net.name.as_str()));
         names.fresh("clk");
@@ -86,7 +88,7 @@ impl Naming {
         }
     }
 
-    /// Returns the same names with another style of memories and registers.
+    /// Returns the same names with the style `style` of memories and registers.
     pub fn styled(self, style: Style) -> Self {
         Self { style, ..self }
     }
@@ -140,10 +142,11 @@ pub fn is_control_rom(design: &Design, rom: RomId) -> bool {
 }
 
 /// Returns the Verilog comment behind the declaration of a net: its block number, format and description, as far as it has them.
-/// For example, `mux 8, s1.20: first operand`.
+/// For example, `mux 8, s1.20: first operand`. The text is empty for a net that has none of them; the format of an unsigned
+/// integer is omitted.
 pub fn remark(design: &Design, id: NetId) -> String {
     let net = design.net(id);
-    // The width already says all of an unsigned integer.
+    // The declared width already states the format of an unsigned integer.
     let format = if net.format.signed || net.format.frac != 0 {
         net.format.to_string()
     } else {
@@ -172,8 +175,8 @@ pub fn remark(design: &Design, id: NetId) -> String {
     }
 }
 
-/// Returns the name of a ROM for comments: `ROM 18`, or `ROM sine` if the block diagram of the device's source has no number for
-/// it.
+/// Returns the name of a ROM for comments: `ROM 18` if the block diagram of the device's source numbers it, otherwise `ROM sine`
+/// with its name.
 pub fn rom_label(rom: &NetlistRom) -> String {
     match rom.block {
         Some(number) => format!("ROM {number}"),
@@ -190,7 +193,8 @@ fn field_label(control: &Control, field: usize) -> String {
     }
 }
 
-/// Returns the term of the source's figure for the block behind a net.
+/// Returns the word for the kind of block that drives a net, such as `adder`, as the block diagram of the device's source uses
+/// it.
 fn kind(design: &Design, net: &Net) -> &'static str {
     match &net.driver {
         Driver::Register(_) => "register",

@@ -11,17 +11,19 @@ use super::text::{ascii, comment, literal, range};
 use super::writer;
 use crate::netlist::{Design, Driver, NetId, Partition, Pipeline, Role, Unit};
 
-/// The module of delay lines, under the name `delay`.
+/// The Verilog text of the module of delay lines, in which the module has the name `delay`.
 const DELAY: &str = include_str!("delay.v");
 
-/// Returns the text of the Verilog file for a pipeline: its module, and the module of its delay lines.
+/// Returns the text of the Verilog file for a pipeline: its module, and the module of its delay lines if the Verilog has delay
+/// lines.
 pub fn module(plan: &Plan, naming: &Naming, pipeline: &Pipeline, origin: &Origin) -> String {
     let design = plan.design;
     let interface = Interface::new(plan, Partition::Datapath);
     let mut builder = Builder::new(plan, naming, &interface, Partition::Datapath);
     let is_word = |net: NetId| matches!(design.net(net).driver, Driver::Rom(_));
     let mut stages = handshake(plan, naming, pipeline);
-    // Stages read the register behind a multiplier before the logic in front of it is written.
+    // The register behind a shared multiplier is declared before the stages, because stages read it before its section is
+    // written.
     let behind = |net: NetId| pipeline.units.iter().any(|unit| unit.nets.last() == Some(&net));
     stages.extend(Row::declarations(&builder.state(&behind)));
     for (number, stage) in pipeline.stages.iter().enumerate() {
@@ -31,7 +33,7 @@ pub fn module(plan: &Plan, naming: &Naming, pipeline: &Pipeline, origin: &Origin
         let registers = Row::together(builder.state(&|net| here(net) && !is_word(net)));
         lines.extend(Row::declarations(&registers));
         lines.extend(builder.stage(&here));
-        // In some stages shared multipliers alone work, or values are on their way in memories.
+        // A stage may have no section, for example if only shared multipliers work in it, or if all its values are in memories.
         if !lines.is_empty() {
             stages.push(String::new());
             stages.extend(title(number, &stage.microinstructions));
@@ -61,8 +63,8 @@ pub fn module(plan: &Plan, naming: &Naming, pipeline: &Pipeline, origin: &Origin
     writer::module(header, &design.name, &parameters, builder.ports(), body, &delay)
 }
 
-/// Returns whether a net is written in the section of a stage. A net that changes at the clock belongs to the stage
-/// that computes it. The handshake and shared multipliers have sections of their own.
+/// Returns whether the section of stage number `stage` contains a net. A register or a synchronous ROM belongs to the stage that
+/// computes its value. Nets of the handshake and of shared multipliers are in no stage's section.
 fn is_written_in(design: &Design, pipeline: &Pipeline, net: NetId, stage: usize) -> bool {
     if pipeline.handshake.contains(&net) || pipeline.is_shared(net) {
         return false;
@@ -75,8 +77,8 @@ fn is_written_in(design: &Design, pipeline: &Pipeline, net: NetId, stage: usize)
     pipeline.clock_of(net) - usize::from(is_clocked) == stage
 }
 
-/// Writes `multiplier_1: in slots 0, 1, 2, 3 it takes the factors of base, -, red_product, green_product`: a slot before it
-/// computes them.
+/// Returns the comment on a shared multiplier, such as `multiplier_1: in slots 0, 1 it takes the factors of base, -`. Its operand
+/// registers load the factors of a product in the slot before the product.
 fn reservations(unit: &Unit) -> Vec<String> {
     let slots = unit.serves.len();
     let (mut numbers, mut products) = (Vec::new(), Vec::new());
@@ -89,7 +91,7 @@ fn reservations(unit: &Unit) -> Vec<String> {
     comment(4, &ascii(&text))
 }
 
-/// Returns the name of the port with a role; empty without such a port.
+/// Returns the name of the port with a role, or an empty text if the design has no such port.
 fn port_name(design: &Design, role: Role) -> &str {
     match design.port(|it| it == role) {
         Some(port) => &design.net(port.net).name,
@@ -97,7 +99,7 @@ fn port_name(design: &Design, role: Role) -> &str {
     }
 }
 
-/// Returns the valid bits of the stages and their enables: a shift register in place of the bits of the netlist.
+/// Returns the Verilog lines of the handshake. A shift register takes the place of the netlist's single valid bits.
 fn handshake(plan: &Plan, naming: &Naming, pipeline: &Pipeline) -> Vec<String> {
     let design = plan.design;
     let in_valid = port_name(design, Role::InValid);
@@ -107,7 +109,7 @@ fn handshake(plan: &Plan, naming: &Naming, pipeline: &Pipeline) -> Vec<String> {
     let reset = port_name(design, Role::Reset);
     let (valid, last) = (&naming.valid, pipeline.stages.len());
     let slot = pipeline.slot.map(|slot| (&design.net(slot).name, design.width(slot)));
-    // The condition of a slot; `None` if there is one slot.
+    // The condition that the counter is in slot `number`; `None` if there is no counter.
     let in_slot = |number: usize| {
         slot.map(|(name, bits)| format!("({name} == {})", literal(number as u64, bits)))
     };
@@ -193,12 +195,13 @@ fn handshake(plan: &Plan, naming: &Naming, pipeline: &Pipeline) -> Vec<String> {
     )
 }
 
-/// Returns the net that says when all points move on; `None` if they always do.
+/// Returns the net that is 1 if all points move to the next stage, or `None` if points always move.
 fn enable(design: &Design, pipeline: &Pipeline) -> Option<NetId> {
     design.registers.iter().find(|it| pipeline.valid.contains(&it.q))?.enable
 }
 
-/// Writes `Stage 3, of the microinstructions accumulator <- base^2`.
+/// Returns the comment above a stage, such as `Stage 3, of the microinstructions accumulator <- base^2`. A stage without
+/// microinstructions only passes values on.
 fn title(number: usize, microinstructions: &[String]) -> Vec<String> {
     let what = match microinstructions {
         [] => ": values on their way".to_owned(),

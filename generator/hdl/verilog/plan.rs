@@ -1,6 +1,6 @@
 //! Decides how each net appears in the Verilog: declared under its name, written into the expression that uses it, or as wiring.
 //!
-//! Wiring without a name from the description's author (slices, extensions, concatenations, constants) is written as [`Bits`]
+//! Wiring (slices, extensions, concatenations, constants) that the description's author did not name is written as [`Bits`]
 //! wherever it is used. Any other cell without such a name is written into the only expression that uses it, as long as that
 //! expression stays short. All other nets are declared.
 
@@ -21,16 +21,16 @@ pub enum NetForm {
     Wiring,
     /// The net is declared as a `wire`, `reg` or port.
     Declared,
-    /// The net's expression is written within the one expression that uses it.
+    /// The net's expression is written within the one expression that uses the net.
     Inline,
-    /// The net is not written at all, because it is a product inside a multiplier with an output register.
+    /// The net is not written at all, because it is the product inside a multiplier with an output register.
     Inside,
 }
 
-/// Something in the Verilog that reads nets, such as a register, which reads its data and its enable.
+/// A part of the Verilog that reads nets: the right-hand side of a net, a register, or a ROM.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Reader {
-    /// A cell or a field of the control word that drives this net. Its right-hand side reads the nets.
+    /// The cell or the field of the control word that drives this net; its right-hand side reads other nets.
     Cell(NetId),
     /// A register, which reads its data and its enable.
     Register(RegId),
@@ -38,29 +38,29 @@ pub enum Reader {
     Rom(RomId),
 }
 
-/// The decisions on how the nets of a design appear in the Verilog: declared under a name, within the expression that uses them, or
-/// as wiring.
+/// The decisions on how each net of a design appears in the Verilog: declared under a name, within another expression, or as
+/// wiring.
 pub struct Plan<'a> {
     /// The design that is written as Verilog.
     pub design: &'a Design,
     /// For each net of the design, how it appears in the Verilog.
     pub forms: Vec<NetForm>,
     /// For each net of the design, the bits that the Verilog writes where the net is used. For example, `a[5:2]` for a slice of
-    /// `a`.
+    /// `a` without a name.
     pub bits: Vec<Bits>,
-    /// For each net of the design, the origin of its bits. Bits are traced through declared wiring too, back to cells, registers,
-    /// ROMs and inputs.
+    /// For each net of the design, the origin of its bits: cells, registers, ROMs, inputs and constants. Bits are traced through
+    /// declared wiring too.
     pub roots: Vec<Bits>,
     /// The nets of the design whose cells the Verilog writes, operands before their readers.
     pub live: Vec<NetId>,
-    /// For each net of the design and each Verilog module, control unit or datapath, a mask of the bits of the net that the module
-    /// reads.
+    /// For each net and each Verilog module (control unit or datapath), a mask of the bits of the net that the module reads.
     pub reads: BTreeMap<(Partition, NetId), u64>,
-    /// The net of the reset input, if any register has a reset.
+    /// The net of the reset input; `None` if no register has a reset.
     pub reset: Option<NetId>,
     /// The delay lines of a pipeline that the Verilog writes as memories.
     pub delays: Vec<DelayLine>,
-    /// The nets that repeat a value of an earlier stage; only the first declaration of the value gets the comment.
+    /// The nets that repeat the value of an earlier net, with the same name without the stage. Only the first declaration of a
+    /// value gets the comment.
     repeats: HashSet<NetId>,
 }
 
@@ -69,7 +69,7 @@ impl<'a> Plan<'a> {
     /// omits it.
     ///
     /// # Errors
-    /// Fails with the mistakes that [`Design::verify_structure`] finds.
+    /// Fails if [`Design::verify_structure`] finds mistakes; the error lists them.
     pub fn new(design: &'a Design) -> Result<Self> {
         let mistakes = design.verify_structure();
         ensure!(mistakes.is_empty(), Diagnostics(mistakes));
@@ -98,8 +98,8 @@ impl<'a> Plan<'a> {
         Ok(plan)
     }
 
-    /// Returns the Verilog module, control unit or datapath, that declares a net. Fields of the control word belong to the control
-    /// unit, whatever they control.
+    /// Returns the Verilog module, control unit or datapath, that declares a net. Fields of the control word belong to the
+    /// control unit, whatever they control.
     pub fn partition(&self, net: NetId) -> Partition {
         match self.design.net(net).driver {
             Driver::Field(_) => Partition::Control,
@@ -117,8 +117,8 @@ impl<'a> Plan<'a> {
         self.design.net(net).driver == Driver::Input
     }
 
-    /// Returns `None` if a register belongs to no delay line; otherwise whether it is the last register of its line, from which
-    /// the value is read.
+    /// Returns `None` if a register belongs to no delay line that the Verilog writes as a memory. Otherwise returns whether it is
+    /// the last register of its line, from which the value is read.
     pub fn delayed(&self, register: RegId) -> Option<bool> {
         let mut values = self.delays.iter().flat_map(|line| &line.values);
         let value = values.find(|it| it.registers.contains(&register))?;
@@ -158,8 +158,8 @@ impl<'a> Plan<'a> {
         }
     }
 
-    /// Returns the bits of the net `operand` that a reader uses in the Verilog. These are all bits, unless the reader is a slice, a
-    /// field of the control word or the address of a ROM.
+    /// Returns the bits of the net `operand` that a reader uses in the Verilog. These are all bits, unless the reader is a slice,
+    /// a field of the control word or the address of a ROM.
     pub fn operand_bits(&self, reader: Reader, operand: NetId) -> Bits {
         let bits = &self.bits[operand.index()];
         match reader {
@@ -179,8 +179,8 @@ impl<'a> Plan<'a> {
         }
     }
 
-    /// Returns the value of the comparison `a < b` if constants or the range of the format decide it, such as `a < 0` for an
-    /// unsigned `a`. Linters reject such comparisons.
+    /// Returns the value of the comparison `a < b` (1 or 0) if constants or the range of the format decide it. For example,
+    /// `a < 0` is 0 for an unsigned `a`. Linters reject such comparisons. Returns `None` for any other comparison.
     pub fn constant_comparison(&self, a: NetId, b: NetId) -> Option<u64> {
         let format = self.design.net(a).format;
         let constants = [a, b].map(|id| match self.roots[id.index()].single() {
@@ -212,7 +212,8 @@ impl<'a> Plan<'a> {
         readers
     }
 
-    /// Returns a net as wiring, if it is nothing else, with `known` in place of each operand.
+    /// Returns the bits that form a net if it is wiring: bits of its operands, or of a constant. `known` has the bits of each
+    /// net. Returns `None` if the net needs logic.
     fn wired(&self, id: NetId, known: &[Bits]) -> Option<Bits> {
         let width = self.design.width(id);
         let of = |operand: &NetId| &known[operand.index()];
@@ -234,7 +235,7 @@ impl<'a> Plan<'a> {
         }
     }
 
-    /// Returns the bits of other nets and constants that form a net, if it needs no logic, otherwise `None`.
+    /// Returns the bits of other nets and constants that form a net. Returns `None` if the net is no wiring.
     pub fn wiring(&self, id: NetId) -> Option<Bits> {
         self.wired(id, &self.bits)
     }
@@ -242,7 +243,7 @@ impl<'a> Plan<'a> {
     fn resolve_wiring(&mut self, order: &[NetId]) {
         for &id in order {
             let whole = Bits::net(id, self.design.width(id));
-            // A named constant is a localparam where it is used whole, and known bits elsewhere.
+            // A named constant becomes a localparam if it is used as a whole; where its bits are used, they are literals.
             let net = self.design.net(id);
             let constant = matches!(net.driver, Driver::Constant(_)) && !self.is_port(id);
             let transparent = constant || !(net.named || self.is_port(id));
@@ -262,10 +263,11 @@ impl<'a> Plan<'a> {
         }
     }
 
-    /// Finds the cells that are written. It leaves out cells that nobody named and nothing needs.
+    /// Finds the cells that the Verilog writes. It leaves out cells without a name from the description that no written cell,
+    /// register or ROM reads.
     fn find_live(&mut self, order: &[NetId]) {
         let mut live = vec![false; self.design.nets.len()];
-        // Registers and ROMs: no cell is known to be written yet.
+        // The search starts from registers and ROMs, since no cell is known to be written yet.
         let mut pending = self.readers();
         for (id, net) in self.design.iter() {
             if self.forms[id.index()] == NetForm::Declared && (net.named || self.is_port(id)) {
@@ -293,7 +295,7 @@ impl<'a> Plan<'a> {
         self.live = order.iter().copied().filter(|net| live[net.index()]).collect();
     }
 
-    /// Finds the cells that read better inside the one expression that uses them.
+    /// Finds the cells that are written inside the one expression that uses them, because this expression stays short.
     fn place_expressions(&mut self) {
         let mut uses: BTreeMap<NetId, Vec<(Reader, bool)>> = BTreeMap::new();
         for reader in self.readers() {
@@ -309,7 +311,7 @@ impl<'a> Plan<'a> {
                 }
             }
         }
-        // The size of an expression: the declared nets and constants that it mentions.
+        // The size of an expression: the number of declared nets and constants in it.
         let mut size = vec![1usize; self.design.nets.len()];
         for &id in &self.live {
             let net = self.design.net(id);
@@ -340,8 +342,8 @@ impl<'a> Plan<'a> {
         }
     }
 
-    /// Returns whether a net of a pipeline is short wiring that needs no name: it has no comment, or the register behind it has
-    /// that.
+    /// Returns whether a net of a pipeline is wiring of at most three pieces that is not declared. It must have no comment,
+    /// unless the register behind it carries the same value and shows the comment.
     fn is_plain(&self, id: NetId, bits: &Bits) -> bool {
         const MOST_PIECES: usize = 3;
         if self.design.pipeline.is_none() || self.is_port(id) || bits.pieces().len() > MOST_PIECES {
@@ -358,7 +360,8 @@ impl<'a> Plan<'a> {
         false
     }
 
-    /// Returns whether a register holds the value that a net of a pipeline has in the stage before, under the same name.
+    /// Returns whether a register only carries the value of the net `id` to the next stage: both have the same name without the
+    /// stage.
     fn is_carried(&self, id: NetId, register: RegId) -> bool {
         let Some(pipeline) = &self.design.pipeline else { return false };
         let q = self.design.register(register).q;
@@ -367,7 +370,8 @@ impl<'a> Plan<'a> {
             && self.design.multiplier(register).is_none()
     }
 
-    /// Finds the nets whose value another net of an earlier place has.
+    /// Finds the nets that repeat the value of an earlier net, such as the registers that carry a value from stage to stage.
+    /// Both nets have the same name without the stage.
     fn find_repeats(&mut self) {
         let Some(pipeline) = &self.design.pipeline else { return };
         let mut passed: HashSet<NetId> = HashSet::new();
@@ -397,8 +401,8 @@ impl<'a> Plan<'a> {
         self.repeats = repeats;
     }
 
-    /// Returns the comment that the Verilog shows at the declaration of a net, or an empty text if the net only repeats a value of
-    /// an earlier pipeline stage.
+    /// Returns the comment that the Verilog shows at the declaration of a net. It is empty if the net only repeats a value of an
+    /// earlier pipeline stage.
     pub fn remark(&self, id: NetId) -> String {
         if self.repeats.contains(&id) { String::new() } else { remark(self.design, id) }
     }
@@ -413,29 +417,30 @@ impl<'a> Plan<'a> {
         mentioned.max(1)
     }
 
-    /// Returns whether `op` may be written inside the expression of `reader`. Products never may, except as the whole
-    /// right-hand side: in a larger expression they would be cut to the width of their operands.
+    /// Returns whether `op`, whose expression would have the size `mentioned`, may be written inside the expression of `reader`.
+    /// A product may be only the whole right-hand side: in a larger expression Verilog would truncate it to the width of its
+    /// operands.
     fn reads_well(&self, op: &Op, reader: Reader, mentioned: usize) -> bool {
         const SMALL: usize = 3;
         let alone = match reader {
             Reader::Cell(net) => match &self.design.net(net).driver {
                 Driver::Op(Op::Relabel(_)) => true,
-                // Comparisons and products need declared operands, whose signedness is visible; the
-                // select of a case reads best as a name.
+                // Comparisons and products need declared operands, which show their signs. The select of a case statement is
+                // clearer as a name.
                 Driver::Op(Op::Mul(..) | Op::Less(..)) => return false,
-                // Bits can be selected from a net alone, not from an expression.
+                // Verilog can select bits of a net, not bits of an expression.
                 Driver::Op(Op::Extend(_) | Op::Slice { .. } | Op::Concat(_)) => return false,
                 Driver::Op(Op::Mux { inputs, .. }) if inputs.len() > 2 => return false,
                 Driver::Op(_) => false,
                 _ => return false,
             },
-            // The factors of a multiplier are wiring.
+            // The factors of a multiplier are connections of an instance.
             Reader::Register(register) if self.design.multiplier(register).is_some() => {
                 return false;
             }
             Reader::Register(register) => {
-                // Registers with one enable share an always block: the enable must have a name if
-                // several use it, and `uses` has seen that it has one reader only.
+                // Registers with the same enable share an always block, so that an enable with several readers needs a name. This
+                // one has only one reader.
                 self.design.register(register).data.is_some() && mentioned <= SMALL
             }
             Reader::Rom(_) => return false,
@@ -475,7 +480,8 @@ impl<'a> Plan<'a> {
     }
 }
 
-/// Returns the number of address bits for `depth` words. One word needs one bit, and 584 words need 10.
+/// Returns the number of address bits for `depth` words, at least 1. For example, one word has 1 address bit, and 584 words have
+/// 10.
 pub fn address_width(depth: usize) -> u32 {
     depth.max(2).next_power_of_two().trailing_zeros()
 }

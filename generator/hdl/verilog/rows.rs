@@ -13,14 +13,15 @@ pub fn separated(mut texts: Vec<String>) -> Vec<String> {
     texts
 }
 
-/// Returns the port connections of an instance of a design to nets with the same names, the clock first.
+/// Returns the port connections of an instance of a design to nets with the same names, the clock first, separated by commas. For
+/// example, `.clk(clk),`.
 pub fn connections(design: &Design) -> Vec<String> {
     let ports = design.ports.iter().map(|port| design.net(port.net).name.as_str());
     separated(std::iter::once("clk").chain(ports).map(|name| format!(".{name}({name})")).collect())
 }
 
-/// Returns a variable declaration for each input of a design and a wire declaration for each output. With `with_signs` they are
-/// signed where the ports are.
+/// Returns a declaration for each port of a design except the clock: a variable (`reg`) for each input, a `wire` for each output.
+/// If `with_signs` is true, a declaration is signed if its port is; otherwise none is signed.
 pub fn variables(design: &Design, with_signs: bool) -> Vec<String> {
     let mut rows = Vec::new();
     for port in &design.ports {
@@ -32,7 +33,8 @@ pub fn variables(design: &Design, with_signs: bool) -> Vec<String> {
     Row::declarations(&rows)
 }
 
-/// The Verilog declaration of one net or port. Its parts are aligned in columns with the declarations around it.
+/// The Verilog declaration of one net or port, or of several alike. Its parts are aligned in columns with the declarations around
+/// it.
 pub struct Row {
     head: String,
     range: String,
@@ -41,8 +43,8 @@ pub struct Row {
 }
 
 impl Row {
-    /// Makes the Verilog declaration of a net. `direction` is `input` or `output` for a port, otherwise empty; `kind` is `wire` or
-    /// `reg`.
+    /// Makes the Verilog declaration of a net, with the comment from the plan. `direction` is `input` or `output` for a port,
+    /// otherwise empty; `kind` is `wire` or `reg`.
     pub fn net(plan: &Plan, direction: &str, kind: &str, id: NetId) -> Self {
         let net = plan.design.net(id);
         let format = net.format;
@@ -80,7 +82,8 @@ impl Row {
         self
     }
 
-    /// Merges Verilog declarations without a comment that differ only in their names into one, such as `wire [7:0] a, b;`.
+    /// Merges Verilog declarations without a comment that differ only in their names into one, such as `wire [7:0] a, b;`. A
+    /// merged declaration keeps to one line. Declarations with a comment come first.
     pub fn together(rows: Vec<Self>) -> Vec<Self> {
         let (mut all, plain): (Vec<_>, Vec<_>) =
             rows.into_iter().partition(|row| !row.note.is_empty());
@@ -102,12 +105,12 @@ impl Row {
         all
     }
 
-    /// Returns the Verilog lines of a port list of these nets, aligned in columns, with commas between the ports.
+    /// Returns the Verilog lines of a port list from these declarations, aligned in columns, with commas between the ports.
     pub fn ports(rows: &[Self]) -> Vec<String> {
         Self::set(rows, |at| if at + 1 < rows.len() { "," } else { "" })
     }
 
-    /// Returns the Verilog lines that declare these nets, aligned in columns, with a semicolon behind each declaration.
+    /// Returns the Verilog lines of these declarations, aligned in columns, with a semicolon behind each declaration.
     pub fn declarations(rows: &[Self]) -> Vec<String> {
         Self::set(rows, |_| ";")
     }
@@ -115,7 +118,7 @@ impl Row {
     fn set(rows: &[Self], end: impl Fn(usize) -> &'static str) -> Vec<String> {
         let head = rows.iter().map(|row| row.head.len()).max().unwrap_or(0);
         let range = rows.iter().map(|row| row.range.len()).max().unwrap_or(0);
-        // Several names have no comment behind them.
+        // A row with several names has no comment behind it, so that its length does not count.
         let single = rows.iter().filter(|row| !row.name.contains(' '));
         let name = single.map(|row| row.name.len() + 1).max().unwrap_or(0);
         let mut lines = Vec::new();

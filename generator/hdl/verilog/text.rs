@@ -70,8 +70,8 @@ pub fn ascii(text: &str) -> String {
     plain
 }
 
-/// Returns `text` as an upper-case identifier; all other characters become underscores, one for each run. For example, `cos γ`
-/// becomes `COS_GAMMA`.
+/// Returns `text` as an upper-case identifier; each run of other characters becomes one underscore. For example, `cos γ` becomes
+/// `COS_GAMMA`.
 pub fn constant_name(text: &str) -> String {
     let mut name = String::new();
     for sign in ascii(text).chars() {
@@ -84,8 +84,8 @@ pub fn constant_name(text: &str) -> String {
     name.trim_end_matches('_').to_owned()
 }
 
-/// Returns a Verilog literal with its width, decimal if that is short and otherwise hexadecimal. For example, 9 in 4 bits is
-/// `4'd9`, and 1048576 in 21 bits is `21'h100000`.
+/// Returns a Verilog literal with its width: binary for one bit, decimal below 1024, and otherwise hexadecimal. For example, 9 in
+/// 4 bits is `4'd9`, and 1048576 in 21 bits is `21'h100000`.
 pub fn literal(value: u64, width: u32) -> String {
     match (width, value) {
         (1, _) => format!("1'b{value}"),
@@ -94,7 +94,8 @@ pub fn literal(value: u64, width: u32) -> String {
     }
 }
 
-/// Returns the only one of the Verilog texts, or the concatenation of several. For example, `a` and `b` give `{a, b}`.
+/// Returns the only one of the Verilog texts, or the concatenation of several, the first in the top bits. For example, `a` and
+/// `b` give `{a, b}`.
 pub fn together(words: Vec<String>) -> String {
     match &words[..] {
         [only] => only.clone(),
@@ -102,7 +103,7 @@ pub fn together(words: Vec<String>) -> String {
     }
 }
 
-/// Returns the range of a Verilog declaration of `width` bits, such as `[7:0]`, or nothing for one bit.
+/// Returns the range of a Verilog declaration of `width` bits, such as `[7:0]`, or an empty text for one bit.
 pub fn range(width: u32) -> String {
     match width {
         1 => String::new(),
@@ -110,14 +111,15 @@ pub fn range(width: u32) -> String {
     }
 }
 
-/// Returns the lines of a Verilog statement with `indent` spaces before it. It is broken at spaces if it exceeds [`COLUMNS`].
+/// Returns the lines of a Verilog statement with `indent` spaces before it. A statement longer than [`COLUMNS`] is broken at
+/// spaces, and further lines are indented by 8 more.
 pub fn statement(indent: usize, text: &str) -> Vec<String> {
     broken(&" ".repeat(indent), &" ".repeat(indent + 8), text)
 }
 
 /// Returns `text` as the lines of a Verilog comment with `indent` spaces before it, or no lines for an empty text.
 pub fn comment(indent: usize, text: &str) -> Vec<String> {
-    // Tools take a comment that begins with their name for an order.
+    // Some tools read a comment that begins with their name as a command.
     let text = ascii(text).replace("verilator", "Verilator").replace("synopsys", "Synopsys");
     if text.trim().is_empty() {
         return Vec::new();
@@ -126,7 +128,8 @@ pub fn comment(indent: usize, text: &str) -> Vec<String> {
     broken(&margin, &margin, &text)
 }
 
-/// Returns the lines of a Verilog declaration with the comment `note` behind it, or above it if the line would be too long.
+/// Returns the lines of a Verilog declaration with `indent` spaces before it and the comment `note` behind it. The comment is
+/// above the declaration if the line would exceed [`COLUMNS`].
 pub fn annotated(code: &str, indent: usize, note: &str) -> Vec<String> {
     let code = format!("{}{code}", " ".repeat(indent));
     let note = ascii(note);
@@ -142,7 +145,8 @@ pub fn annotated(code: &str, indent: usize, note: &str) -> Vec<String> {
     lines
 }
 
-/// Breaks `text` into lines of at most [`COLUMNS`], at spaces alone.
+/// Breaks `text` at spaces into lines of at most [`COLUMNS`] columns. The first line begins with `first`, all others with
+/// `further`. A single longer word is not broken.
 fn broken(first: &str, further: &str, text: &str) -> Vec<String> {
     let mut lines = Vec::new();
     let mut line = first.to_owned();
@@ -162,24 +166,24 @@ fn broken(first: &str, further: &str, text: &str) -> Vec<String> {
     lines
 }
 
-/// The identifiers that one Verilog module uses already.
+/// The identifiers that one Verilog module already uses.
 #[derive(Clone, Debug, Default)]
 pub struct Names(HashSet<String>);
 
 impl Names {
-    /// Makes the set of a module's identifiers, with the names that are already taken.
+    /// Makes the set of a module's identifiers from the names `taken`, which are already in use.
     pub fn new<'a>(taken: impl IntoIterator<Item = &'a str>) -> Self {
         Self(taken.into_iter().map(str::to_owned).collect())
     }
 
-    /// Makes the set of a module's identifiers, with the names of a design's ports and its clock.
+    /// Makes the set of a module's identifiers from the names of a design's ports and its clock `clk`.
     pub fn of_ports(design: &Design) -> Self {
         let ports = design.ports.iter().map(|port| design.net(port.net).name.as_str());
         Self::new(ports.chain(["clk"]))
     }
 
-    /// Returns a name that the module does not use yet, and adds it to the set: `wish`, or `wish_2`, `wish_3` and so on if it is
-    /// taken. For example, if `control` is taken, the next names are `control_2` and `control_3`.
+    /// Returns a name that the module does not use yet, and adds it to the set. The name is `wish`, or `wish_2`, `wish_3` and so
+    /// on if `wish` is taken. For example, if `control` is taken, the next names are `control_2` and `control_3`.
     pub fn fresh(&mut self, wish: &str) -> String {
         let mut name = wish.to_owned();
         let mut number = 1;

@@ -5,7 +5,8 @@ use super::text::ascii;
 use crate::netlist::{Design, RomId};
 use glint_base::fixed::mask;
 
-/// Returns the comment for the word at `address` of a ROM, for the Verilog or the memory file, or `None` if the word has none.
+/// Returns the comment for the word at `address` of a ROM, for the Verilog or the memory file. A word of the control ROM without
+/// a comment gets the name of the microinstruction. Returns `None` if the word has no comment.
 pub fn word_note(design: &Design, id: RomId, address: usize) -> Option<String> {
     if let Some(comment) = design.rom(id).comments.get(address) {
         return Some(ascii(comment));
@@ -17,7 +18,8 @@ pub fn word_note(design: &Design, id: RomId, address: usize) -> Option<String> {
     Some(ascii(&executed.name))
 }
 
-/// Returns a word of the control ROM in binary, with `_` between its fields. For example, word 3 of `rough` is `01_1_0_0_1_0_0_1`.
+/// Returns a word of the control ROM in binary, with `_` between its fields, the first field in front. For example, word 3 of
+/// `rough` is `01_1_0_0_1_0_0_1`.
 pub fn in_fields(design: &Design, word: u64) -> String {
     let positions = design.field_positions();
     let digits = design.control.fields.iter().zip(positions).map(|(field, low)| {

@@ -1,7 +1,7 @@
 //! Writes the frames of Verilog modules, instances and blocks around lines of text.
 
-/// Returns the text of a Verilog file with the module `name`. The text `other`, such as a second module, follows the module, and
-/// may be empty.
+/// Returns the text of a Verilog file with the module `name`: the comment `header`, the module, and the text `other`. `other`,
+/// such as a second module, may be empty.
 pub fn module(
     header: Vec<String>,
     name: &str,
@@ -16,7 +16,8 @@ pub fn module(
     format!("{}\nendmodule\n{other}\n`default_nettype wire\n", lines.join("\n"))
 }
 
-/// Returns the Verilog lines of an instance `name` of a module. The texts of its ports and parameters must have their commas.
+/// Returns the Verilog lines of an instance `name` of a module. Each text in `parameters` and `connections` must include its
+/// comma.
 pub fn instance(
     module: &str,
     parameters: &[String],
@@ -27,7 +28,8 @@ pub fn instance(
     head(4, module, parameters, name, indented)
 }
 
-/// Returns a name with lists of parameters, if there are any, and of ports, which are indented already.
+/// Returns the first lines of a module or an instance: `before`, the parameters in parentheses if there are any, `name`, and the
+/// list of ports. The texts in `ports` must be indented already.
 fn head(
     indent: usize,
     before: &str,
@@ -50,13 +52,13 @@ fn head(
     lines
 }
 
-/// Returns Verilog lines under a comment with the title, with an empty line above. Returns nothing if there are no lines.
+/// Returns Verilog lines under a comment with the title, with an empty line above. Returns no lines if `lines` is empty.
 pub fn section(title: &str, lines: Vec<String>) -> Vec<String> {
     let title = format!("    // {title}");
     if lines.is_empty() { lines } else { [vec![String::new(), title], lines].concat() }
 }
 
-/// Returns Verilog lines between the lines `begin` and `end`, with an empty line above. Returns nothing if there are no lines.
+/// Returns Verilog lines between the lines `begin` and `end`, with an empty line above. Returns no lines if `lines` is empty.
 pub fn block(begin: &str, lines: Vec<String>, end: &str) -> Vec<String> {
     match lines.is_empty() {
         true => lines,

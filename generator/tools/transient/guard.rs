@@ -1,21 +1,21 @@
 //! Kills the child processes of Glint if Glint itself is killed.
 //!
-//! The guard is a shell that runs beside Glint and outlives it. Glint tells the guard the process numbers of its children. When
-//! the pipe between them closes, Glint has ended, and the guard kills the children that are left.
+//! The guard is a shell that runs in parallel to Glint and outlives it. Glint writes the process numbers of its children to the
+//! guard. When the pipe between them closes, Glint has ended, and the guard kills the children that are left.
 
 use std::collections::BTreeSet;
 use std::io::Write;
 use std::os::unix::process::CommandExt;
 use std::process::{ChildStdin, Command, Stdio};
 
-/// Reads lists of children, a line each, until the pipe closes, which it does at the latest when this process ends.
-/// Then it kills the children on the last line, with their own groups and with their descendants in other groups. After
-/// an orderly end, the last line is empty. For example, the line `4711 4712` names two children.
+/// Reads lists of children, one list a line, until the pipe closes, at the latest when Glint ends. Then it kills the children on
+/// the last line, with their process groups and with their descendants in other groups. For example, the line `4711 4712` names
+/// two children. After an orderly end, the last line is empty.
 ///
-/// A pipe closes shortly before the process is gone. With the end of the process, the groups of its children become
-/// orphans. If a group has a stopped process then, the system sends SIGHUP and SIGCONT to the whole group. A child
-/// that was stopped too early would be gone before its own children are listed. So the shell waits until it has
-/// another parent itself. The `sleep` behind that forks, which the system does after it has dealt with all children.
+/// The pipe closes shortly before Glint's process is gone. When the process ends, the groups of its children become orphans. If
+/// such a group then contains a stopped process, the system sends SIGHUP and SIGCONT to the whole group. A child that the guard
+/// stopped too early would therefore end before its own children are listed. So the shell waits until it has another parent
+/// itself. The `sleep` after that forks, which the system does only after it has dealt with all children.
 pub(super) const SCRIPT: &str = r#"
 tree() {
     for task in /proc/"$1"/task/*/children; do
@@ -41,7 +41,7 @@ kill -KILL $all
 for child in $children; do kill -KILL "-$child"; done
 "#;
 
-/// The pipe to the shell that guards the children. It is empty before the first child, and on a system without a shell.
+/// The pipe to the shell that guards the children. It is `None` before the first child, and on a system without a shell.
 pub struct Guard(Option<ChildStdin>);
 
 impl Guard {
@@ -50,7 +50,8 @@ impl Guard {
         Self(None)
     }
 
-    /// Tells the guard the children that it must kill if Glint ends without a clean-up.
+    /// Writes the list of children to the guard, which must kill them if Glint ends without a clean-up. The first call starts the
+    /// guard.
     pub fn tell(&mut self, children: &BTreeSet<u32>) {
         let pipe = self.0.take().or_else(|| shell(SCRIPT).spawn().ok()?.stdin);
         let line: Vec<String> = children.iter().map(u32::to_string).collect();
@@ -58,7 +59,7 @@ impl Guard {
     }
 }
 
-/// Returns the shell that a script of a guard runs in.
+/// Returns the command for a shell that runs `script` in a process group of its own, with a pipe as its standard input.
 pub(super) fn shell(script: &str) -> Command {
     let mut command = Command::new("/bin/sh");
     // The shell has a group of its own: a signal to the group of this process does not reach it.

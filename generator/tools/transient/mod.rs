@@ -2,8 +2,8 @@
 //!
 //! If the process is interrupted, [`clear`] kills all children and deletes all directories on the list. A lock on the list
 //! prevents that a new child or directory appears meanwhile. If the process is killed and cannot call [`clear`], a guard process
-//! kills its children. The next run of Glint then deletes its temporary directories; it recognises them because nobody holds
-//! their lock files.
+//! kills its children. The next run of Glint then deletes its temporary directories, which it recognises by lock files that no
+//! process has locked.
 
 mod child;
 #[cfg(unix)]
@@ -24,9 +24,9 @@ use std::time::{Duration, Instant};
 pub use child::{Child, adopt_orphans};
 pub use scratch::{Directory, files_below, relative_name};
 
-/// How long [`clear`] waits for killed processes, and for a directory that something still writes to.
+/// The longest time that [`clear`] waits for killed processes, and the longest time for directories in which files still appear.
 const CLEARING_LIMIT: Duration = Duration::from_secs(5);
-/// Between two looks.
+/// The time between two checks of a condition for which this module waits.
 const PAUSE: Duration = Duration::from_millis(10);
 
 static LIST: Mutex<List> = Mutex::new(List {
@@ -38,11 +38,11 @@ static LIST: Mutex<List> = Mutex::new(List {
 static UNDIVIDED: Mutex<()> = Mutex::new(());
 
 struct List {
-    /// Process numbers of children that are not collected yet.
+    /// The process numbers of the children whose exit status has not been read.
     children: BTreeSet<u32>,
     #[cfg(unix)]
     guard: guard::Guard,
-    /// Temporary directories.
+    /// The paths of the temporary directories.
     paths: BTreeSet<PathBuf>,
 }
 
@@ -64,21 +64,21 @@ fn list() -> MutexGuard<'static, List> {
     LIST.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Runs `work` without interruption: a signal that arrives meanwhile waits for its end. A caller must use it for renames that
-/// belong together.
+/// Runs `work` without interruption by [`clear`]: a signal that arrives meanwhile takes effect when `work` has ended. A caller
+/// must use this for renames that belong together.
 pub fn undivided<T>(work: impl FnOnce() -> T) -> T {
     let _guard = UNDIVIDED.lock().unwrap_or_else(PoisonError::into_inner);
     work()
 }
 
-/// The locks of this module. While they are held, no child process can start, and no temporary directory can be made.
+/// The locks of this module. As long as this value exists, no child process can start, and no temporary directory can be made.
 pub struct Cleared {
     _undivided: MutexGuard<'static, ()>,
     _list: MutexGuard<'static, List>,
 }
 
-/// Kills all children with everything that they have started, and deletes all temporary directories. Other threads stop
-/// at their next child or temporary path until the result is dropped, which is meant for the end of the process. For
+/// Kills all children with all processes that they have started, and deletes all temporary directories. Other threads stop at
+/// their next child or temporary directory until the result is dropped. This function is meant for the end of the process. For
 /// example, Ctrl-C during a bench kills `vvp` and deletes the bench's directory.
 pub fn clear() -> Cleared {
     let undivided = UNDIVIDED.lock().unwrap_or_else(PoisonError::into_inner);
@@ -97,7 +97,7 @@ pub fn clear() -> Cleared {
     Cleared { _undivided: undivided, _list: list }
 }
 
-/// Returns whether there is nothing at `path` afterwards.
+/// Deletes the file or directory at `path`. Returns whether nothing exists at `path` afterwards.
 fn delete(path: &Path) -> bool {
     let done = match fs::symlink_metadata(path) {
         Ok(found) if found.is_dir() => fs::remove_dir_all(path),

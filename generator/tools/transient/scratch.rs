@@ -1,6 +1,6 @@
-//! Makes temporary directories.
+//! Makes temporary directories, and deletes the directories of earlier, killed processes.
 //!
-//! Each directory has a file that names the process that made it. The process locks this file while it uses the directory.
+//! Each directory has a lock file with the directory's own name. The process locks this file while it uses the directory.
 
 use std::fs;
 use std::io::{self, Write};
@@ -11,11 +11,11 @@ use tempfile::TempDir;
 
 use super::list;
 
-/// The prefixes of the names of directories for tools, and of directories beside the files that they are made for.
+/// The prefixes of the names of temporary directories: for tools, and for files that are later moved into the directory around.
 const FOR_TOOLS: &str = "glint-";
 const BESIDE: &str = ".glint-";
 
-/// The file that says whose the directory is.
+/// The name of the lock file in each directory.
 const LOCK: &str = "glint.lock";
 
 static SWEEP: Once = Once::new();
@@ -28,14 +28,14 @@ pub struct Directory {
 }
 
 impl Directory {
-    /// Returns a directory for the use of a tool, where the system keeps temporary files. The first call deletes the
-    /// directories that killed processes have left there. The path cannot contain a blank.
+    /// Makes a directory for the use of a tool, where the system keeps temporary files. The first call deletes the directories
+    /// that killed processes have left there.
     ///
     /// # Errors
-    /// Fails if the directory cannot be made.
+    /// Fails if the directory cannot be made, or if the path of the system's temporary directory contains a blank.
     pub fn new() -> io::Result<Self> {
         let place = std::env::temp_dir();
-        // The tools that work there, make and abc among them, take a path apart at blanks.
+        // Some tools that work in the directory, such as make and abc, split a path at blanks.
         if place.to_string_lossy().contains(char::is_whitespace) {
             let message = format!(
                 "the path of the directory for temporary files, `{}`, has a blank, which make and abc do not take: set TMPDIR to \
@@ -48,13 +48,13 @@ impl Directory {
         Self::made(&place, FOR_TOOLS)
     }
 
-    /// Returns a directory in `parent`, for files that are moved into their places beside it. It first deletes the
-    /// directories that killed processes have left there.
+    /// Makes a directory in `parent`, for files that are moved from it into `parent` later. It first deletes the directories that
+    /// killed processes have left there.
     ///
     /// # Errors
     /// Fails if the directory cannot be made.
     pub fn beside(parent: &Path) -> io::Result<Self> {
-        // The path stays right when the process changes its directory.
+        // The absolute path stays valid if the process changes its current directory.
         let parent = std::path::absolute(parent)?;
         sweep(&parent, BESIDE);
         Self::made(&parent, BESIDE)
@@ -70,7 +70,8 @@ impl Directory {
         };
         let mut directory = Self { made: Some(made), lock: None };
         let mut lock = fs::File::create(directory.path().join(LOCK))?;
-        // The file is locked while it is empty: an empty file belongs to nobody. A system without locks goes without.
+        // The file is locked while it is empty, because [`sweep`] ignores an empty lock file. On a system without locks, it stays
+        // unlocked.
         let _ = lock.try_lock();
         lock.write_all(title(directory.path()).as_bytes())?;
         directory.lock = Some(lock);
@@ -100,8 +101,8 @@ impl Drop for Directory {
     }
 }
 
-/// Deletes the directories that killed processes have left in `parent`. Such a directory has a file that says so,
-/// under the directory's own name, and nobody has locked the file.
+/// Deletes the directories that killed processes have left in `parent`. The name of such a directory begins with `prefix`. Its
+/// lock file contains the directory's own name, and no process has locked it. Errors are ignored.
 fn sweep(parent: &Path, prefix: &str) {
     for entry in fs::read_dir(parent).into_iter().flatten().flatten() {
         let (path, lock) = (entry.path(), entry.path().join(LOCK));
@@ -117,13 +118,13 @@ fn sweep(parent: &Path, prefix: &str) {
     }
 }
 
-/// Returns the text of the lock file in a directory. For example, it begins with `Glint works in glint-a1B2c3.`
+/// Returns the text of the lock file in `directory`. For example, it begins with `Glint works in glint-a1B2c3.`
 fn title(directory: &Path) -> String {
     let name = directory.file_name().unwrap_or_default().to_string_lossy();
     format!("Glint works in {name}. The next run deletes what a killed one has left.\n")
 }
 
-/// Lists every file and link below a directory, sorted, without directories. Links are not followed.
+/// Returns every file and symbolic link below a directory, sorted by path, without directories. Links are not followed.
 ///
 /// # Errors
 /// Fails if a directory cannot be read.
@@ -140,16 +141,16 @@ pub fn files_below(directory: &Path) -> io::Result<Vec<PathBuf>> {
     Ok(found)
 }
 
-/// Returns the path below `root`, with `/`. For example, below `out` the path `out/rtl_out/rsqrt/rsqrt.v` is
-/// `rtl_out/rsqrt/rsqrt.v` on every system.
+/// Returns the part of `path` below `root`, with `/` between its parts on every system. For example, below `out` the path
+/// `out/rtl_out/rsqrt/rsqrt.v` is `rtl_out/rsqrt/rsqrt.v`. A path that is not below `root` stays whole.
 pub fn relative_name(root: &Path, path: &Path) -> String {
     let relative = path.strip_prefix(root).unwrap_or(path);
     let parts: Vec<_> = relative.iter().map(|part| part.to_string_lossy()).collect();
     parts.join("/")
 }
 
-/// Returns an error of a temporary path without its name, which says nothing to anybody. For example, `Permission
-/// denied (os error 13) at path "/t/glint-a1B2c3"` becomes `Permission denied (os error 13)`.
+/// Returns an error about a temporary path without this path, whose random name tells a user nothing. For example,
+/// `Permission denied (os error 13) at path "/t/glint-a1B2c3"` becomes `Permission denied (os error 13)`.
 fn without_path(error: io::Error) -> io::Error {
     let text = error.to_string();
     io::Error::new(error.kind(), text.split(" at path ").next().unwrap_or_default())

@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 
 use super::*;
 
-/// Waits for the number that a script writes.
+/// Waits until a script has written a number and a newline to the file `path`, and returns the number.
 fn number_in(path: &Path) -> u32 {
     let deadline = Instant::now() + Duration::from_secs(60);
     loop {
@@ -20,13 +20,13 @@ fn number_in(path: &Path) -> u32 {
     }
 }
 
-/// Returns whether a process is there and no zombie.
+/// Returns whether a process exists and is no zombie.
 fn is_alive(number: u32) -> bool {
     let stat = fs::read_to_string(format!("/proc/{number}/stat")).unwrap_or_default();
     stat.rsplit_once(')').is_some_and(|(_, rest)| !rest.trim_start().starts_with('Z'))
 }
 
-/// Waits for the end of a process, which must come within some seconds.
+/// Checks that a process ends within ten seconds.
 #[track_caller]
 fn assert_ends(number: u32, message: &str) {
     let deadline = Instant::now() + Duration::from_secs(10);
@@ -49,8 +49,9 @@ fn a_killed_child_takes_a_session_of_its_child_along() {
     assert_ends(inner, "the solver of a killed tool runs on");
 }
 
-/// A process that ends in the time that a slow guard takes for a step: the end must not send a tool SIGHUP before
-/// its children are listed. The process is this test once more.
+/// A guard that is slow must still kill a tool's descendants in another session. The process that it guards ends while the guard
+/// works, and this end must not send SIGHUP to the tool before the tool's children are listed. The guarded process is this test,
+/// started a second time.
 #[test]
 #[cfg(target_os = "linux")]
 fn a_slow_guard_ends_a_session_of_a_child_too() {
@@ -59,7 +60,7 @@ fn a_slow_guard_ends_a_session_of_a_child_too() {
         let dir = Directory::new().unwrap();
         let mut parent = Command::new(std::env::current_exe().unwrap());
         parent.args(["--exact", "transient::tests::a_slow_guard_ends_a_session_of_a_child_too"]);
-        // A tool that runs on must not keep this test waiting for the end of its output.
+        // A tool that is not killed must not delay this test by an open output.
         parent.env(PLACE, dir.path()).stdout(Stdio::null()).stderr(Stdio::null());
         assert!(parent.status().unwrap().success());
         let inner = number_in(&dir.path().join("inner"));
@@ -89,7 +90,8 @@ fn what_is_dropped_is_gone_and_off_the_list() {
     assert!(!path.exists() && !list().paths.contains(&path));
 }
 
-/// Directories in use stay, and so do directories of somebody else.
+/// The clean-up deletes directories of killed processes alone. It keeps directories in use, and directories that other programs
+/// have made.
 #[test]
 fn what_killed_processes_have_left_goes() {
     let place = tempfile::tempdir().unwrap();

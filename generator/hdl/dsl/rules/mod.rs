@@ -1,5 +1,6 @@
 //! Checks rules of the description language that a netlist alone does not express: on operands, shared products and the
-//! microprogram. For example, a register may take a shared product only while its operands are selected.
+//! microprogram. For example, a register may load a product of a shared multiplier only while the microinstruction selects the
+//! operands of this product.
 
 mod operands;
 mod products;
@@ -14,8 +15,9 @@ use glint_base::diagnostic::Diagnostic;
 pub(super) use operands::read_by;
 pub(super) use unused::warnings;
 
-/// Returns a diagnostic for every rule that `design` breaks. `views` are the products that mean something only under
-/// a selection. `picked` are the select lines for which some microinstruction makes a choice.
+/// Returns a diagnostic for every rule that `design` breaks. `views` has the nets that carry a product of a shared multiplier,
+/// each with the selection under which it is this product. `picked` has the select fields to which some microinstruction gives a
+/// value.
 pub(super) fn check(
     design: &Design,
     views: &HashMap<NetId, SelectedProduct>,

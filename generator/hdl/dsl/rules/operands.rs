@@ -7,7 +7,7 @@ use glint_base::codes;
 use glint_base::cone::reached;
 use glint_base::diagnostic::Diagnostic;
 
-/// Finds operands from which no way leads to an output.
+/// Finds operands on which no output depends.
 pub(super) fn check(design: &Design) -> Vec<Diagnostic> {
     let used = used(design);
     let mut found = Vec::new();
@@ -21,12 +21,12 @@ pub(super) fn check(design: &Design) -> Vec<Diagnostic> {
     found
 }
 
-/// Returns all nets on which outputs depend, in any number of clocks.
+/// Returns all nets on which outputs depend, directly or through any number of registers and memories.
 pub(super) fn used(design: &Design) -> HashSet<NetId> {
     reached(design.outputs().map(|port| port.net), |id| read_by(design, id))
 }
 
-/// Returns the nets on which a net depends, within a clock or through a register or a memory.
+/// Returns the nets on which a net depends directly: within one clock, or as the inputs of the register or ROM that drives it.
 pub(in crate::dsl) fn read_by(design: &Design, id: NetId) -> Vec<NetId> {
     match design.net(id).driver {
         Driver::Register(register) => {

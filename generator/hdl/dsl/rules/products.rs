@@ -8,8 +8,8 @@ use crate::netlist::{Design, Driver, FieldKind, NetId, passed_on};
 use glint_base::codes;
 use glint_base::diagnostic::Diagnostic;
 
-/// Finds registers of `design` that are loaded with a product under a selection that means another one; `views` are the products
-/// that a selection gives their meaning.
+/// Finds registers of `design` that load a product of a shared multiplier while the selection is for another product. `views` has
+/// the nets that carry a product, each with the selection under which it is this product.
 pub(super) fn check(design: &Design, views: &HashMap<NetId, SelectedProduct>) -> Vec<Diagnostic> {
     let mut checker = Checker { design, views, found: Vec::new() };
     for at in 0..design.control.microprogram.len() {
@@ -25,8 +25,9 @@ struct Checker<'a> {
 }
 
 impl Checker<'_> {
-    /// Checks that every register that microinstruction `at` loads takes a product that the selection of the microinstruction
-    /// gives; behind pipeline registers, that the selections of the microinstructions before it give.
+    /// Checks every register that microinstruction `at` loads. If its data depends on a shared product, the microinstruction must
+    /// select the operands of this product. If registers lie behind the selection, the microinstructions that many clocks earlier
+    /// must select them.
     fn selections(&mut self, at: usize) {
         let design = self.design;
         let microprogram = &design.control.microprogram;
@@ -71,8 +72,8 @@ impl Checker<'_> {
         }
     }
 
-    /// Returns the diagnostic that microinstruction `at` loads `register` with the product `view`, but that the
-    /// selection of microinstruction `under` is for another product.
+    /// Returns the diagnostic for a wrong selection: microinstruction `at` loads `register` with the product `view`, but
+    /// microinstruction `under` selects the operands of another product.
     fn wrong_product(
         &self,
         at: usize,

@@ -1,5 +1,5 @@
-//! Checks the microprogram of a description: it raises `valid` only after the result is loaded, selects an input of every mux
-//! that matters, and ends every loop.
+//! Checks the microprogram of a description. It must raise `valid` only after the result is loaded, and select an input of every
+//! mux, and every loop must be able to end.
 
 use std::collections::HashSet;
 
@@ -11,8 +11,8 @@ use glint_base::codes;
 use glint_base::cone::reached;
 use glint_base::diagnostic::Diagnostic;
 
-/// Finds microinstructions that raise `valid` too early, or none that does, select lines without a choice, and loops that nothing
-/// in them ends.
+/// Returns the mistakes of the microprogram: microinstructions that raise `valid` too early, or none that raises it, select lines
+/// without a choice, and loops that cannot end. `picked` has the select fields to which some microinstruction gives a value.
 pub(super) fn check(design: &Design, picked: &HashSet<FieldId>) -> Vec<Diagnostic> {
     let mut found = early(design);
     found.extend(silent(design));
@@ -21,7 +21,7 @@ pub(super) fn check(design: &Design, picked: &HashSet<FieldId>) -> Vec<Diagnosti
     found
 }
 
-/// Finds a microprogram that never says when its results are there.
+/// Returns a mistake if the design has a result, but no microinstruction raises `valid`.
 fn silent(design: &Design) -> Option<Diagnostic> {
     let control = &design.control;
     let result = design.port(|role| role == Role::Result)?;
@@ -37,7 +37,7 @@ fn silent(design: &Design) -> Option<Diagnostic> {
     })
 }
 
-/// Finds select lines for which no microinstruction makes a choice.
+/// Finds select lines for which no microinstruction makes a choice, because they are not in `picked`.
 fn unpicked(design: &Design, picked: &HashSet<FieldId>) -> Vec<Diagnostic> {
     let mut found = Vec::new();
     for (at, field) in design.control.fields.iter().enumerate() {
@@ -57,8 +57,8 @@ fn unpicked(design: &Design, picked: &HashSet<FieldId>) -> Vec<Diagnostic> {
     found
 }
 
-/// Finds microinstructions that raise `valid` and load a register that a result shows, if control can come to them
-/// without having loaded the register before. The output does not show the result yet in that clock.
+/// Finds microinstructions that raise `valid` while they load a register that a result shows. A path through the microprogram
+/// must lead to them without an earlier load of this register. In this clock the output does not yet show the result.
 fn early(design: &Design) -> Vec<Diagnostic> {
     let control = &design.control;
     let mut found = Vec::new();
@@ -95,7 +95,7 @@ fn early(design: &Design) -> Vec<Diagnostic> {
     found
 }
 
-/// Returns the register that drives a net.
+/// Returns the register that drives a net, or `None` if another kind of driver drives it.
 fn register(design: &Design, id: NetId) -> Option<RegId> {
     match design.net(id).driver {
         Driver::Register(register) => Some(register),
@@ -103,8 +103,8 @@ fn register(design: &Design, id: NetId) -> Option<RegId> {
     }
 }
 
-/// Returns whether microinstruction `at` loads a register, as far as the microinstruction alone says so. One without
-/// an enable loads always.
+/// Returns 1 if microinstruction `at` loads a register, 0 if it does not, and `None` if signals besides the control word decide.
+/// A register without an enable gives 1.
 fn loads(design: &Design, at: usize, register: RegId) -> Option<u64> {
     match design.register(register).enable {
         Some(enable) => setting_of(design, &design.control.microprogram[at], enable),
@@ -112,22 +112,21 @@ fn loads(design: &Design, at: usize, register: RegId) -> Option<u64> {
     }
 }
 
-/// Returns whether control comes from the first microinstruction to microinstruction `at` through microinstructions
-/// that do not load the register.
+/// Returns whether a path leads from microinstruction 0 to microinstruction `at` through microinstructions that do not load the
+/// register.
 fn comes_without_load(design: &Design, at: usize, register: RegId) -> bool {
     let goes = |from: usize| loads(design, from, register) == Some(0);
     at == 0 || goes(0) && controlled(&design.control, 0, goes).contains(&at)
 }
 
-/// Returns the microinstructions that control can reach from `from`, including `from` itself. Control goes on only
-/// from microinstructions for which `goes` is true.
+/// Returns the microinstructions that control can reach from microinstruction `from`, including `from` itself. The search
+/// continues only behind microinstructions for which `goes` returns true.
 fn controlled(control: &Control, from: usize, goes: impl Fn(usize) -> bool) -> HashSet<usize> {
     reached([from], |now| if goes(now) { control.successors(now) } else { Vec::new() })
 }
 
-/// Returns the net `net` and all nets on which it depends within the clock of microinstruction `at`. If the
-/// microinstruction controls a mux, only the chosen input counts. Fields have the values that the microinstruction
-/// gives them.
+/// Returns `net` and all nets on which it depends within the clock of microinstruction `at`. If the microinstruction determines
+/// the select of a mux, only the chosen input counts. The search stops at fields, whose values the microinstruction gives.
 fn cone(design: &Design, at: usize, net: NetId) -> HashSet<NetId> {
     reached([net], |id| match design.net(id).driver {
         Driver::Field(_) => Vec::new(),
@@ -135,8 +134,8 @@ fn cone(design: &Design, at: usize, net: NetId) -> HashSet<NetId> {
     })
 }
 
-/// Finds loops that never end: no microinstruction of the loop changes anything that the condition depends on, and
-/// the loop has no other way out.
+/// Finds loops that cannot end: no microinstruction of the loop changes a register on which the condition depends, and no other
+/// microinstruction leaves the loop.
 fn endless(design: &Design) -> Vec<Diagnostic> {
     let control = &design.control;
     let mut found = Vec::new();
@@ -145,7 +144,7 @@ fn endless(design: &Design) -> Vec<Diagnostic> {
         if to > at {
             continue;
         }
-        // The microinstructions from which control comes back to this one.
+        // The body: the microinstructions from which control comes back to `at`.
         let within = controlled(control, to, |now| now != at);
         let mut body: Vec<usize> = Vec::new();
         for &from in &within {
@@ -188,12 +187,13 @@ fn endless(design: &Design) -> Vec<Diagnostic> {
     found
 }
 
-/// Returns whether a net that ends a cone may change while the microinstructions of a loop are executed.
+/// Returns whether the value of the net `id` may change while the microinstructions `body` of a loop are executed. Cells count as
+/// unchanged; the caller looks at their operands.
 fn changes(design: &Design, body: &[usize], id: NetId) -> bool {
     match design.net(id).driver {
         Driver::Input => true,
         Driver::Rom(rom) => design.rom(rom).synchronous,
-        // Operands are written while the device is not busy.
+        // Operands are not written while the device is busy.
         Driver::Register(id) => match design.register(id).kind {
             RegisterKind::Operand => false,
             RegisterKind::Buffer | RegisterKind::Sequencer | RegisterKind::Internal => true,

@@ -1,5 +1,5 @@
-//! Warns of things in a correct description that the device does not need: unused logic, muxes that always select the same input,
-//! and choices that no microinstruction makes.
+//! Finds parts of a correct description that the device does not need. They are logic on which no output depends, muxes that
+//! always pass the same input, and choices that no microinstruction makes.
 
 use std::collections::HashSet;
 
@@ -9,8 +9,8 @@ use glint_base::codes;
 use glint_base::cone::reached;
 use glint_base::diagnostic::Diagnostic;
 
-/// Finds logic that no output depends on, muxes that always pass on the same input, and choices that no
-/// microinstruction makes. The select lines in `partly_used` may have such choices.
+/// Returns a warning for each of these: logic on which no output depends, a mux that always passes the same input, and select
+/// lines with choices that no microinstruction makes. The select lines in `partly_used` may have such choices.
 pub(in crate::dsl) fn warnings(design: &Design, partly_used: &HashSet<FieldId>) -> Vec<Diagnostic> {
     let mut found = dead(design);
     found.extend(constant(design));
@@ -18,7 +18,8 @@ pub(in crate::dsl) fn warnings(design: &Design, partly_used: &HashSet<FieldId>) 
     found
 }
 
-/// Finds registers, memories and named cells that no output depends on. It leaves out cells that only such logic reads.
+/// Finds registers, memories and named cells on which no output depends. A cell or memory is left out if other unused logic reads
+/// it, so that one mistake gives one warning.
 fn dead(design: &Design) -> Vec<Diagnostic> {
     let used = used(design);
     let mut dead: Vec<(NetId, &Net)> = Vec::new();
@@ -41,7 +42,7 @@ fn dead(design: &Design) -> Vec<Diagnostic> {
     found
 }
 
-/// Finds muxes that are selected by a constant, or whose inputs are all the same.
+/// Finds named muxes whose select is constant, or whose inputs are all the same.
 fn constant(design: &Design) -> Vec<Diagnostic> {
     let mut found = Vec::new();
     for (_, net) in design.iter().filter(|(_, net)| net.named) {
@@ -60,7 +61,7 @@ fn constant(design: &Design) -> Vec<Diagnostic> {
     found
 }
 
-/// Finds choices of select lines that no microinstruction makes.
+/// Finds select lines with choices that no microinstruction makes, except the select lines in `partly_used`.
 fn unmade(design: &Design, partly_used: &HashSet<FieldId>) -> Vec<Diagnostic> {
     let control = &design.control;
     let mut found = Vec::new();

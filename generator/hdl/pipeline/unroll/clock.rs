@@ -20,7 +20,8 @@ pub(super) struct State {
 pub(super) struct Clock<'e, 'a> {
     executor: &'e mut Executor<'a>,
     state: &'e State,
-    /// The number of the executed microinstruction; `None` if the registers of the sequencer decide.
+    /// The address of the executed microinstruction; `None` if it is unknown, and the registers of the sequencer have nodes
+    /// instead of constants.
     address: Option<usize>,
     /// Whether this clock accepts `start`.
     first: bool,
@@ -37,7 +38,7 @@ impl<'e, 'a> Clock<'e, 'a> {
         Self { executor, state, address, first, values: HashMap::new() }
     }
 
-    /// Returns the value of a net in this clock, as a node of the computation's graph.
+    /// Returns the node with the value of a net in this clock. Adds the nodes that the graph does not have.
     pub(super) fn value(&mut self, id: NetId) -> NodeId {
         if let Some(&value) = self.values.get(&id) {
             return value;
@@ -66,7 +67,7 @@ impl<'e, 'a> Clock<'e, 'a> {
             Driver::Rom(rom) if design.rom(*rom).synchronous => self.state.roms[rom.index()],
             Driver::Rom(rom) => self.read(*rom),
             Driver::Op(op) => {
-                // A mux under a field needs one of its inputs alone.
+                // A mux whose select is a constant, such as a field, passes one input.
                 let mut chosen = None;
                 if let netlist::Op::Mux { select, inputs } = op {
                     let select = self.value(*select);
@@ -85,7 +86,9 @@ impl<'e, 'a> Clock<'e, 'a> {
         value
     }
 
-    /// Returns the contents of address counter and run flag while a microinstruction is executed.
+    /// Returns the value of a register of the sequencer while the microinstruction at `self.address` is executed. The address
+    /// counter has this address, and the run flag is 0 only in the clock that accepts `start`. Returns `None` for any other
+    /// register, and if the address is unknown.
     fn of_sequencer(&self, register: RegId) -> Option<u64> {
         let (control, address) = (&self.executor.design.control, self.address?);
         match register {
@@ -128,7 +131,7 @@ impl<'e, 'a> Clock<'e, 'a> {
         let address = self.value(design.rom(rom).address);
         let net = design.net(design.rom(rom).data);
         let words = &design.rom(rom).words;
-        // Parts that are alike have tables that are alike: one will do.
+        // Several ROMs may have the same words. All of them become reads of the first such ROM, so that equal reads are merged.
         let first = design
             .roms
             .iter()
@@ -142,7 +145,7 @@ impl<'e, 'a> Clock<'e, 'a> {
         let design = self.executor.design;
         let mut after = self.state.clone();
         for (number, register) in design.registers.iter().enumerate() {
-            // Where control goes from a known microinstruction is not asked of the registers.
+            // If the microinstruction is known, the caller decides which one follows. The sequencer's registers play no part.
             if register.kind == RegisterKind::Sequencer && self.address.is_some() {
                 continue;
             }

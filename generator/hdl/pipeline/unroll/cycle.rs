@@ -1,5 +1,5 @@
-//! Executes one arbitrary clock of a computation symbolically, with unknown register contents. A computation with any number of
-//! results repeats such a clock.
+//! Executes one arbitrary clock of a running design symbolically, with unknown register contents. The result describes designs
+//! whose computations have any number of results, because every clock of such a computation is an instance of this clock.
 
 use super::clock::Clock;
 use super::{Executor, Iterations, Unrolled};
@@ -12,9 +12,9 @@ use glint_base::fixed::Format;
 #[derive(Debug)]
 pub struct Cycle {
     /// The graph with the values of an arbitrary clock, and of the clock that accepts `start`. Its results are all outputs of the
-    /// design.
+    /// design in the arbitrary clock.
     pub unrolled: Unrolled,
-    /// For each register and synchronous ROM of the design, its output value before and after the clock.
+    /// For each register and then each synchronous ROM of the design, its output value before and after the clock.
     pub held: Vec<StateValues>,
 }
 
@@ -23,8 +23,8 @@ pub struct Cycle {
 pub struct StateValues {
     /// The net that the register or ROM drives.
     pub net: NetId,
-    /// The register's value after the clock that accepts `start` and all operands. For a ROM it is the word before any clock, which
-    /// no result shows.
+    /// For a register, its value after a reset and then one clock that accepts `start` and all operands. For a ROM, the unknown
+    /// word at power-up, which no result shows.
     pub first: NodeId,
     /// The output value before an arbitrary clock.
     pub before: NodeId,
@@ -32,8 +32,8 @@ pub struct StateValues {
     pub after: NodeId,
 }
 
-/// Executes one clock of a design symbolically. Any microinstruction may be executed in it, because the register contents are
-/// unknown.
+/// Executes one clock of a busy design symbolically. Any microinstruction may be executed in it, because the contents of all
+/// registers except the run flag are unknown. The design must have no undriven net.
 pub fn any_cycle(design: &Design) -> Cycle {
     let mut executor = Executor::new(design, Iterations::OneByOne);
     let mut running = executor.power_up();

@@ -1,17 +1,10 @@
-//! Unrolls a computation of several results, such as the points of a scan line. The module finds how each point follows from the
-//! operands and the point before.
+//! Unrolls a computation with several results, such as the points of a scan line, into the first point and the step from a point
+//! to the next.
 //!
-//! The registers that carry state from one point to the next are called the *walk*. For example, the walk of `quad-cosine` is the
-//! register with the current angle. The module proves by induction that all points are computed alike:
-//!
-//! - The results are the same function of the operands and the walk for each point, whatever microinstructions are executed between
-//!   points.
-//! - The first point loads functions of the operands alone into the walk. Every other point loads one function of the walk and the
-//!   operands. Nothing else writes the walk between points.
-//!
-//! A microinstruction that writes a point sets `valid` a fixed number D of clocks later. The search therefore follows every path
-//! through the microprogram for D clocks, from any microinstruction. It assumes nothing about the registers before the path, except
-//! that the operand registers hold operands.
+//! The registers that carry state from one point to the next are called the *walk*, for example the register with the current
+//! angle. The module proves by induction that every point is the same function of the operands and the walk. It also proves that
+//! the first point loads functions of the operands into the walk, and every other point one function of the walk and the
+//! operands. A design for which the proof fails is refused.
 
 use super::{Clock, Executor, Iterations, State, Unrolled};
 use crate::netlist::{Design, NetId, RegisterKind, Role, Sequence};
@@ -20,27 +13,27 @@ use glint_base::codes;
 use glint_base::cone::reached;
 use glint_base::diagnostic::{Diagnostic, Diagnostics};
 
-/// The number of clocks that may lie between a point and its results.
+/// The largest number of clocks between the microinstruction that writes a point and the clock with the point's results.
 const MOST_DELAY: usize = 12;
 
-/// A computation with several results, such as the points of a scan line, as a graph that computes the first point, and the
-/// registers from which each later point is computed.
+/// A computation with several results, such as the points of a scan line. It consists of a graph that computes the first point,
+/// and of the registers from which each later point is computed.
 #[derive(Debug)]
 pub struct UnrolledLine {
-    /// The graph that computes the first point. Later points differ only in the registers of the walk, which carry state from point
-    /// to point.
+    /// The graph that computes the first point. Later points differ only in the registers of the walk, which carry state from
+    /// point to point.
     pub unrolled: Unrolled,
     /// The registers of the walk, which carry state from point to point.
     pub walk: Vec<WalkRegister>,
 }
 
-/// The values of one register of the walk, as nodes of the graph. The walk consists of the registers that carry state from point to
-/// point.
+/// The values of one register of the walk, as nodes of the graph. The walk consists of the registers that carry state from point
+/// to point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct WalkRegister {
     /// The value that the first point loads into the register.
     pub first: NodeId,
-    /// The value that the register holds before a later point is loaded.
+    /// The value of the register before a later point is loaded, an unknown value of the graph.
     pub before: NodeId,
     /// The value that a later point loads into the register, as a function of the `before` values of all registers of the walk.
     pub next: NodeId,
@@ -50,7 +43,9 @@ pub struct WalkRegister {
 /// function by which each later point follows from the point before.
 ///
 /// # Errors
-/// Fails if the points are not computed alike, as the head of this module describes.
+/// Fails if the design has no output `valid`, or if `valid` follows no microinstruction within 12 clocks. Fails if the
+/// microprogram has no first point that is computed once and before all others. Fails if two points differ in the function that
+/// loads the walk or in the results, or if another microinstruction changes the walk.
 pub fn unroll_line(design: &Design) -> Result<UnrolledLine, Diagnostics> {
     let executor = Executor::new(design, Iterations::OneByOne);
     LineUnroller { executor }.line().map_err(|diagnostic| Diagnostics(vec![diagnostic]))
@@ -96,7 +91,7 @@ impl LineUnroller<'_> {
                 return Err(self.cannot(at, "moves the walk between points"));
             }
         }
-        // The others are made of the walk and of operands alone.
+        // The next values of the walk may depend on the walk and on operands alone.
         for &value in &next {
             if self.unknowns(value).iter().any(|id| !before.contains(id)) {
                 return Err(self.cannot(*other, "walks on by what is not of the walk"));
@@ -117,7 +112,10 @@ impl LineUnroller<'_> {
         Ok(UnrolledLine { unrolled: self.executor.unrolled, walk: registers })
     }
 
-    /// Finds after how many clocks `valid` follows from the microinstruction alone, and the microinstructions that set it.
+    /// Finds the smallest number of clocks after which the microinstruction at the beginning of any path determines `valid`,
+    /// whatever registers other than operands contain. Returns this number, and the addresses of the microinstructions that set
+    /// `valid`. Fails if no number up to [`MOST_DELAY`] has this property, or if a microinstruction sets `valid` on some paths
+    /// only.
     fn delay(&mut self, any: &State) -> Result<(usize, Vec<usize>), Diagnostic> {
         let design = self.executor.design;
         let Some(valid) = design.port(|role| role == Role::Valid).map(|port| port.net) else {
@@ -137,7 +135,7 @@ impl LineUnroller<'_> {
                 }
             }
             if let Some(writes) = writes.filter(|writes| !writes.is_empty()) {
-                // Every way from there sets it.
+                // Every path from such a microinstruction must set `valid`.
                 for path in paths(design, &writes, delay) {
                     let value = self.at_end(any, &path, |clock| clock.value(valid));
                     if self.executor.unrolled.graph.constant_of(value) != Some(1) {
@@ -150,7 +148,8 @@ impl LineUnroller<'_> {
         Err(self.cannot(0, "begins a computation whose `valid` follows no microinstruction"))
     }
 
-    /// Returns the results, `clocks` after any of these microinstructions is about to be executed.
+    /// Returns each result port with the node of its value, `clocks` clocks after the start of a path at one of the
+    /// microinstructions `from`. Fails if two paths have different values, or if no path is that long.
     fn shown(
         &mut self,
         state: &State,
@@ -173,7 +172,8 @@ impl LineUnroller<'_> {
         all.ok_or_else(|| self.cannot(0, "ends before its results are shown"))
     }
 
-    /// Returns the registers on which the results depend.
+    /// Returns the numbers of the registers on whose earlier contents the results `shown` depend: the walk. Fails if a result
+    /// depends on an earlier output of a memory.
     fn walk_of(&self, any: &State, shown: &[(NetId, NodeId)]) -> Result<Vec<usize>, Diagnostic> {
         let mut walk = Vec::new();
         for id in shown.iter().flat_map(|&(_, node)| self.unknowns(node)) {
@@ -187,10 +187,11 @@ impl LineUnroller<'_> {
         Ok(walk)
     }
 
-    /// Checks that the first point comes before all others, and once.
+    /// Checks that the microinstruction `first` comes before all other microinstructions in `writes`, and that it is executed
+    /// once.
     fn in_order(&self, first: usize, writes: &[usize]) -> Result<(), Diagnostic> {
         let design = self.executor.design;
-        // The search does not go on behind microinstructions that write points.
+        // The search stops at microinstructions that write points.
         let until_a_write = reached([0], |at| match writes.contains(&at) {
             true => Vec::new(),
             false => successors(design, at),
@@ -204,11 +205,13 @@ impl LineUnroller<'_> {
         Ok(())
     }
 
+    /// Returns the state after the microinstruction at `address`, executed in `state`.
     fn edge(&mut self, state: &State, address: usize) -> State {
         Clock::new(&mut self.executor, state, Some(address), false).edge()
     }
 
-    /// Calls `ask` in the clock of the last microinstruction of `path`, after the clocks of all others.
+    /// Executes all microinstructions of `path` but the last, from `state` on. Returns the answer of `ask` in the clock of the
+    /// last one.
     fn at_end<T>(
         &mut self,
         state: &State,
@@ -223,7 +226,8 @@ impl LineUnroller<'_> {
         ask(&mut Clock::new(&mut self.executor, &now, Some(*last), false))
     }
 
-    /// Returns the values on which one depends and that nothing has determined.
+    /// Returns the unknown values on which node `id` depends: contents of registers and memory outputs that no executed
+    /// microinstruction has loaded.
     fn unknowns(&self, id: NodeId) -> Vec<NodeId> {
         let graph = &self.executor.unrolled.graph;
         let mut unknowns = graph.cone([id]);
@@ -240,7 +244,8 @@ impl LineUnroller<'_> {
     }
 }
 
-/// Returns the microinstructions that follow one within a computation.
+/// Returns the microinstructions that can follow the microinstruction `at` within a computation. The list is empty at the end of
+/// the computation.
 fn successors(design: &Design, at: usize) -> Vec<usize> {
     match design.control.microprogram[at].sequence {
         Sequence::End => Vec::new(),
@@ -248,7 +253,8 @@ fn successors(design: &Design, at: usize) -> Vec<usize> {
     }
 }
 
-/// Returns every path of `clocks` steps that begins at one of the microinstructions `from`.
+/// Returns every path through the microprogram that begins at one of the microinstructions `from` and has `clocks` steps, which
+/// is one microinstruction more than `clocks`.
 fn paths(design: &Design, from: &[usize], clocks: usize) -> Vec<Vec<usize>> {
     let mut paths: Vec<Vec<usize>> = from.iter().map(|&at| vec![at]).collect();
     for _ in 0..clocks {
@@ -264,7 +270,7 @@ fn paths(design: &Design, from: &[usize], clocks: usize) -> Vec<Vec<usize>> {
     paths
 }
 
-/// Returns the values of the registers of the walk in a state.
+/// Returns the values in `state` of the registers whose numbers are in `walk`.
 fn walk_registers(state: &State, walk: &[usize]) -> Vec<NodeId> {
     walk.iter().map(|&number| state.registers[number]).collect()
 }

@@ -73,7 +73,7 @@ impl Build {
         data
     }
 
-    /// Returns a new field of the control word, below the fields that are already there.
+    /// Adds a field of the control word, below the fields that already exist, and returns its net.
     pub fn field(&mut self, name: &str, width: u32) -> NetId {
         let id = FieldId(self.design.control.fields.len() as u32);
         let format = Format::unsigned(width as i32, 0);
@@ -116,7 +116,8 @@ impl Random {
         low + self.below((high - low + 1) as usize) as u32
     }
 
-    /// Returns a random bit pattern of `width` bits. It is often a corner of the range, such as 0 or all ones.
+    /// Returns a random bit pattern of `width` bits. In more than half of the cases it is a corner of the range, such as 0 or all
+    /// ones.
     pub fn pattern(&mut self, width: u32) -> u64 {
         let top = 1 << (width - 1);
         let pattern = match self.below(8) {

@@ -31,7 +31,7 @@ impl Write for Shared {
     }
 }
 
-/// Takes this number of bytes, then fails.
+/// A file that takes this number of bytes, and then fails.
 struct Full(usize);
 
 impl Write for Full {
@@ -49,7 +49,7 @@ impl Write for Full {
     }
 }
 
-/// Returns a counter that runs from the release of reset through two words, and a wide product.
+/// Returns a design with a counter that runs through two microinstructions after the reset, and with a wide product.
 fn design() -> Design {
     let mut b = Build::new();
     let bit = Format::BIT;
@@ -80,7 +80,7 @@ fn design() -> Design {
     b.design
 }
 
-/// Returns the variables of a scope, with their widths and codes, by `scope.name`.
+/// Returns the variables of a scope and of all scopes inside it. The key is `scope.name`, the value the width and the code.
 fn variables(scope: &str, items: &[ScopeItem]) -> BTreeMap<String, (u32, IdCode)> {
     let mut all = BTreeMap::new();
     for item in items {
