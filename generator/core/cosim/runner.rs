@@ -1,5 +1,5 @@
-//! Runs several streams in the lanes of one simulator, and compares every signal that the golden model predicts with the simulated
-//! one at every clock. A stream is a sequence of random inputs from power-up on.
+//! Runs several streams in the lanes of one simulator. It compares every signal that the golden model predicts with the
+//! simulated signal at every clock. A stream is a sequence of inputs from power-up on.
 
 use std::io::Write;
 use std::mem;
