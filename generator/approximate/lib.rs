@@ -152,8 +152,8 @@ pub struct Piecewise {
     pub words: Vec<Vec<i64>>,
     /// The bit widths of Horner's steps, by the coefficient that a step adds: entry k belongs to coefficient k.
     pub steps: Vec<HornerStep>,
-    /// The formats of the partial sums of Horner's rule. Entry k is the format of the sum that contains the coefficients from k on;
-    /// entry 0 is the format of the whole polynomial.
+    /// The formats of the partial sums of Horner's rule. Entry k is the format of the sum that contains the coefficients from k
+    /// on; entry 0 is the format of the whole polynomial.
     pub sums: Vec<Format>,
     /// The format of the result. It is the format of the polynomial if there is no range reduction.
     pub result: Format,
@@ -172,7 +172,8 @@ struct Numbering {
 }
 
 impl TargetFunction {
-    /// Returns an interval that contains the exact value of the function at a raw operand, in units of the last bit of the result.
+    /// Returns an interval that contains the exact value of the function at a raw operand, in units of the last bit of the
+    /// result.
     ///
     /// A formula is first evaluated in `f64`. It is evaluated again with more bits if `f64` leaves a comparison undecided,
     /// overflows, or is not exact enough for the allowed error.
@@ -244,15 +245,15 @@ impl TargetFunction {
         }
     }
 
-    /// Returns the ways to number the operands of the domain, the way to try first at the beginning. The last segment may have to be
-    /// shorter than an overhang, so that there is a way without one, too.
+    /// Returns the ways to number the operands of the domain, the way to try first at the beginning. The last segment may have
+    /// to be shorter than an overhang, so that there is a way without one, too.
     fn numberings(&self, layout: Option<Layout>) -> Vec<Numbering> {
         let with_overhang = self.numbering_with_overhang(layout);
         with_overhang.into_iter().chain([self.numbering_without_overhang()]).collect()
     }
 
-    /// Returns the numbers of the operands if the last segment contains the operands beyond a power of two. Returns `None` if they are
-    /// too many. With `layout` halving there is no overhang: its last segment is short.
+    /// Returns the numbers of the operands if the last segment contains the operands beyond a power of two. Returns `None` if
+    /// they are too many. With `layout` halving there is no overhang: its last segment is short.
     fn numbering_with_overhang(&self, layout: Option<Layout>) -> Option<Numbering> {
         let span = (self.domain.1 - self.domain.0) as u64;
         let bits = u64::BITS - span.leading_zeros();
@@ -305,8 +306,8 @@ impl Piecewise {
         self.reduction.as_ref().map_or((raw, Restore::default()), |it| it.reduce(raw))
     }
 
-    /// Returns the number of a raw operand. Numbers run from 0 over the polynomial's domain, and [`Segments`] finds the segment of
-    /// a number.
+    /// Returns the number of a raw operand. Numbers run from 0 over the polynomial's domain, and [`Segments`] finds the segment
+    /// of a number.
     pub fn number(&self, raw: i64) -> u64 {
         (self.reduced(raw).0 - self.origin) as u64 & ((1 << self.segments.number_bits()) - 1)
     }
@@ -349,8 +350,8 @@ impl Piecewise {
         self.restored(raw, self.sums_of(raw)[0])
     }
 
-    /// Returns the polynomial behind a range reduction, as a function of the reduction's number. Without a range reduction it is the
-    /// same polynomial. The bound of the error is infinite, because it is proved for the whole alone.
+    /// Returns the polynomial behind a range reduction, as a function of the reduction's number. Without a range reduction it
+    /// is the same polynomial. The bound of the error is infinite, because it is proved for the whole alone.
     pub fn behind_reduction(&self) -> Self {
         let Some(reduction) = &self.reduction else { return self.clone() };
         Self {
@@ -364,8 +365,8 @@ impl Piecewise {
         }
     }
 
-    /// Returns the raw result for a raw operand, given the raw value of the polynomial. With a range reduction, the function undoes
-    /// the reduction.
+    /// Returns the raw result for a raw operand, given the raw value of the polynomial. With a range reduction, the function
+    /// undoes the reduction.
     pub fn restored(&self, raw: i64, polynomial: i64) -> i64 {
         self.reduced(raw).1.result(polynomial)
     }

@@ -89,8 +89,8 @@ fn read_point(point: &str, fraction: u32, domain: (i64, i64)) -> Result<(i64, En
     }
 }
 
-/// Refuses points, in the order of their operands, if two have the same operand, if they miss an end of the domain, or if they have a
-/// gap.
+/// Refuses points, in the order of their operands, if two have the same operand, if they miss an end of the domain, or if they
+/// have a gap.
 fn check_points(
     points: &[(i64, Enclosure)],
     fraction: u32,
@@ -169,8 +169,8 @@ fn inner_slope((h, s): Chord, (k, t): Chord) -> f64 {
     if s * t > 0.0 { 2.0 * least.copysign(s) } else { 0.0 }
 }
 
-/// Returns the slope of Steffen's curve at an end. The curve follows the parabola through the last three points, as far as that keeps
-/// to the direction of the last chord. `beside` is the chord next to the last.
+/// Returns the slope of Steffen's curve at an end. The curve follows the parabola through the last three points, as far as that
+/// keeps to the direction of the last chord. `beside` is the chord next to the last.
 fn end_slope((h, s): Chord, beside: Option<Chord>) -> f64 {
     let parabola = beside.map_or(s, |(k, t)| s + (s - t) * h / (h + k));
     if parabola * s <= 0.0 { 0.0 } else { parabola.abs().min(2.0 * s.abs()).copysign(s) }

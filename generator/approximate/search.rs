@@ -19,8 +19,8 @@ pub struct Wish {
     pub layout: Option<Layout>,
     /// The identity that the range reduction uses, for example f(−x) = f(x).
     pub identity: Identity,
-    /// The number of words by which a shorter table is counted. A look-up table of four inputs holds 16 words of a bit, and is used
-    /// whole if there are fewer.
+    /// The number of words by which a shorter table is counted. A look-up table of four inputs holds 16 words of a bit, and is
+    /// used whole if there are fewer.
     pub least_words: usize,
 }
 

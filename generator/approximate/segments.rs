@@ -26,9 +26,9 @@ impl Layout {
 /// A domain of the numbers from 0 to 2^bits − 1, cut into segments. Segments may become shorter toward 0, by octaves. The last
 /// segment may also contain a few numbers from 2^bits on: the overhang.
 ///
-/// An octave is the block of numbers with the same highest bit, such as 128 to 255. The numbers below the last octave form one more
-/// block, and all blocks have the same number of segments. For example, `bits = 8`, `octaves = 0` and `prefix = 4` give 16 segments
-/// of 16 numbers.
+/// An octave is the block of numbers with the same highest bit, such as 128 to 255. The numbers below the last octave form one
+/// more block, and all blocks have the same number of segments. For example, `bits = 8`, `octaves = 0` and `prefix = 4` give 16
+/// segments of 16 numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Segments {
     /// The number of bits of an operand's number.

@@ -92,8 +92,8 @@ impl Widths {
         self
     }
 
-    /// Returns the widths with one bit more of variable number `at`, but none wider than in `most`. Returns `None` if that changes
-    /// nothing.
+    /// Returns the widths with one bit more of variable number `at`, but none wider than in `most`. Returns `None` if that
+    /// changes nothing.
     fn widened(&self, at: usize, most: &Self) -> Option<Self> {
         let wider = self.with(at, 1)?.no_wider(most);
         (wider != *self).then_some(wider)
@@ -464,8 +464,8 @@ pub(super) fn cells(words: usize, width: u32) -> f64 {
     words as f64 * f64::from(width) / BITS_A_CELL
 }
 
-/// Returns the limits of each partial sum over all operands of the domain. If the domain is wide, it computes intervals within each
-/// segment, and otherwise the sums of every operand.
+/// Returns the limits of each partial sum over all operands of the domain. If the domain is wide, it computes intervals within
+/// each segment, and otherwise the sums of every operand.
 fn limits_of_sums(found: &Piecewise, is_wide: bool) -> [Interval; MOST_SUMS] {
     let no_limits = [(i128::MAX, i128::MIN); MOST_SUMS];
     if is_wide {

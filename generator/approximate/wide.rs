@@ -1,9 +1,9 @@
 //! Proves a bound on the error of a piecewise polynomial by intervals, for domains with too many operands to compute each.
 //!
-//! The proof treats the offset of an operand in its segment as a real number t. A word of the table is then a polynomial P(t). The
-//! hardware drops bits, so its result is less than P(t); the proof bounds this difference for a whole segment. Within an interval,
-//! the distance between the function and P is at most the distance in the middle plus the largest derivative times half of the
-//! length. If this bound is too large, the interval is halved, down to single operands.
+//! The proof treats the offset of an operand in its segment as a real number t. A word of the table is then a polynomial P(t).
+//! The hardware drops bits, so its result is less than P(t); the proof bounds this difference for a whole segment. Within an
+//! interval, the distance between the function and P is at most the distance in the middle plus the largest derivative times
+//! half of the length. If this bound is too large, the interval is halved, down to single operands.
 
 use std::sync::atomic::{AtomicU64, Ordering};
 

@@ -43,8 +43,8 @@ impl<'d> ColourProducts<'d> {
         Self { colours: Colours::new(d, keys.bits as i32, blocks), in_turn: keys.in_turn() }
     }
 
-    /// Adds the colour outputs, which are the colours times `f`. Returns the microinstructions that compute the products; they must
-    /// come before the microinstruction that raises `valid`. Returns none if each colour has its own multiplier.
+    /// Adds the colour outputs, which are the colours times `f`. Returns the microinstructions that compute the products; they
+    /// must come before the microinstruction that raises `valid`. Returns none if each colour has its own multiplier.
     #[track_caller]
     pub fn outputs(&self, f: Signal<'d>, rounding: Rounding) -> Vec<Step> {
         if self.in_turn {

@@ -1,8 +1,8 @@
 //! The hardware description of the device `function`, which computes y = g(x) for one operand x.
 //!
 //! A configuration states g as a formula, such as `sqrt(x)`, or as samples of a curve. A table gives the coefficients of a
-//! polynomial for the segment of x, and Horner's rule evaluates the polynomial with one multiplier. The hardware is built from a plan
-//! with this one function, as the hardware of `expression` is.
+//! polynomial for the segment of x, and Horner's rule evaluates the polynomial with one multiplier. The hardware is built from
+//! a plan with this one function, as the hardware of `expression` is.
 
 use glint_approximate::Piecewise;
 use glint_base::text;

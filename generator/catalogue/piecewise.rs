@@ -67,8 +67,8 @@ impl<'d> StepMultiplier<'d> {
         }
     }
 
-    /// Returns the setting with which a microinstruction selects a pair of factors for the multiplier; `None` if the multiplier has
-    /// only one product.
+    /// Returns the setting with which a microinstruction selects a pair of factors for the multiplier; `None` if the multiplier
+    /// has only one product.
     pub fn pick(&self, [first, _]: [Signal<'d>; 2]) -> Option<StepSetting> {
         let (factors, _) = self.shared.as_ref()?;
         Some(factors.pick(first))
@@ -136,9 +136,9 @@ pub struct PolynomialDatapath<'d, 'p> {
 
 impl<'d, 'p> PolynomialDatapath<'d, 'p> {
     /// Makes the table, and the registers of the partial sums. `registers` are the names of these registers, starting with the
-    /// register of the whole polynomial; the names of other nets begin with `prefix`. `number` is the position of the operand in
-    /// its domain, an integer of [`glint_approximate::Segments::number_bits`] bits. It must be stable while the sums are loaded, and one
-    /// clock earlier if the table is read at the rising edge.
+    /// register of the whole polynomial; the names of other nets begin with `prefix`. `number` is the position of the operand
+    /// in its domain, an integer of [`glint_approximate::Segments::number_bits`] bits. It must be stable while the sums are
+    /// loaded, and one clock earlier if the table is read at the rising edge.
     pub fn new(
         d: &'d Designer,
         prefix: &str,

@@ -1,8 +1,8 @@
 //! Builds the hardware of a plan: logic between registers for each operation, and a microprogram.
 //!
-//! The devices `function` and `expression` use it. A plan is a list of fixed-point operations ([`glint_plan`]). All products of a
-//! plan share one multiplier, each in a microinstruction of its own. A pipeline unrolls the microprogram, so that each product gets a
-//! multiplier of its own.
+//! The devices `function` and `expression` use it. A plan is a list of fixed-point operations ([`glint_plan`]). All products of
+//! a plan share one multiplier, each in a microinstruction of its own. A pipeline unrolls the microprogram, so that each
+//! product gets a multiplier of its own.
 
 use glint_approximate::{Outside, Piecewise};
 use glint_base::fixed::{Format, Overflow, Rounding};
@@ -342,7 +342,8 @@ impl<'d, 'p> PlanDatapath<'d, 'p> {
         }
     }
 
-    /// Returns the value of the node `held`, computed from the value `product`. The nodes between the two only scale and shorten it.
+    /// Returns the value of the node `held`, computed from the value `product`. The nodes between the two only scale and
+    /// shorten it.
     fn following(&self, product: Signal<'d>, from: NodeId, held: NodeId) -> Signal<'d> {
         let node = self.plan.node(held);
         if held == from {
@@ -427,8 +428,8 @@ fn left_by<'d>(
     row.read_as(format)
 }
 
-/// Returns whether two numbers have no bits of the same weight, so that their sum needs no adder: all bits of the first are above the
-/// bits of the second, which has no sign.
+/// Returns whether two numbers have no bits of the same weight, so that their sum needs no adder: all bits of the first are
+/// above the bits of the second, which has no sign.
 fn is_above(first: Signal<'_>, second: Signal<'_>) -> bool {
     !second.format().signed && second.format().int == -first.format().frac
 }

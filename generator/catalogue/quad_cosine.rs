@@ -5,13 +5,13 @@
 //! source is a patent that claims this device; Glint calls it seed 000. The numbers of blocks and outputs are the numbers in the
 //! patent's figure.
 //!
-//! Block 14 is the control unit. The patent builds it from triggers (flip-flops). Glint makes it a microprogram with the same order
-//! of events.
+//! Block 14 is the control unit. The patent builds it from triggers (flip-flops). Glint makes it a microprogram with the same
+//! order of events.
 //!
 //! Output 37 (`write_angle`) writes the angle of a point into register 8. The output `valid` is a copy of output 37, delayed
-//! until the result of the point is ready. With the default key `line.stages` = 2 the delay is two clocks: one for register 8, and
-//! one for ROM 12, which is synchronous like ROM 9. With `line.stages` = 7 five more registers lie between register 8 and the
-//! output, and the delay is seven clocks.
+//! until the result of the point is ready. With the default key `line.stages` = 2 the delay is two clocks: one for register 8,
+//! and one for ROM 12, which is synchronous like ROM 9. With `line.stages` = 7 five more registers lie between register 8 and
+//! the output, and the delay is seven clocks.
 
 use glint_base::fixed::Format;
 use glint_config::Config;

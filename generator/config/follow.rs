@@ -1,8 +1,8 @@
 //! Adjusts the defaults of keys that the user left out.
 //!
 //! If the user's values and a default are invalid together, the default moves to the nearest valid value. For example,
-//! `exponent.bits = 8` lowers the default of `domain.exponent_max` from 1000 to 255. Widths and counts are adjusted; choices, flags
-//! and the keys that every device shares never are.
+//! `exponent.bits = 8` lowers the default of `domain.exponent_max` from 1000 to 255. Widths and counts are adjusted; choices,
+//! flags and the keys that every device shares never are.
 
 use std::collections::BTreeSet;
 
@@ -33,8 +33,8 @@ pub fn follow(schema: &Schema, config: &Config, given: &BTreeSet<&str>) -> Confi
     config
 }
 
-/// Returns the nearest value of a key that leaves the fewest complaints, if those are fewer than `limit`: their number, the key and
-/// the configuration.
+/// Returns the nearest value of a key that leaves the fewest complaints, if those are fewer than `limit`: their number, the key
+/// and the configuration.
 fn best<'k>(
     schema: &Schema,
     config: &Config,

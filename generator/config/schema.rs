@@ -42,8 +42,8 @@ pub struct Key {
     pub doc: &'static str,
     /// The condition under which the key applies. If it does not hold, a file may set the key only to its default.
     pub condition: Option<Condition>,
-    /// Whether the key was added after configurations of the device existed. Such a key is not written while it has its default, so
-    /// that digests of older configurations stay valid.
+    /// Whether the key was added after configurations of the device existed. Such a key is not written while it has its
+    /// default, so that digests of older configurations stay valid.
     pub joined_later: bool,
     /// The range from which random configurations draw an integer, if larger values would make a configuration too slow to test.
     pub drawn: Option<(i64, i64)>,
@@ -61,8 +61,8 @@ pub struct Condition {
 }
 
 impl Condition {
-    /// Returns whether the condition holds if the other key has the value `value`. For example, `architecture = "pipelined"` holds
-    /// for the value `pipelined`.
+    /// Returns whether the condition holds if the other key has the value `value`. For example, `architecture = "pipelined"`
+    /// holds for the value `pipelined`.
     pub fn holds(&self, value: &Value) -> bool {
         (value.bare() == self.value) == self.is_equal
     }
@@ -217,8 +217,8 @@ impl Key {
         self
     }
 
-    /// Marks a key that was added to a device after configurations of that device existed. Digests of these configurations then do
-    /// not change.
+    /// Marks a key that was added to a device after configurations of that device existed. Digests of these configurations then
+    /// do not change.
     pub fn joined_later(self) -> Self {
         Self { joined_later: true, ..self }
     }

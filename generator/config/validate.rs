@@ -384,8 +384,8 @@ impl Config {
         draft.finish(schema, problems)
     }
 
-    /// Gives the keys that have no effect their defaults. For example, `output.registered` is a key of sequential cores, so that a
-    /// configuration that has become a pipeline must not keep it.
+    /// Gives the keys that have no effect their defaults. For example, `output.registered` is a key of sequential cores, so
+    /// that a configuration that has become a pipeline must not keep it.
     pub fn reset_keys_without_effect(&mut self, schema: &Schema) {
         for key in schema.all_keys() {
             if !self.applies(schema, key.name) {

@@ -15,9 +15,9 @@ const REMARK_WIDTH: usize = 80;
 
 /// Returns the short file that `glint new` prints: one line for each key of the device, with a remark.
 ///
-/// The keys in `given` have values. All others are comments that show their values, so that a default still adjusts to the keys that
-/// a user sets (see [`super::parse()`]). Keys that do not apply are left out, and so are the keys that every device shares unless they
-/// are given. `glint new DEVICE --all` prints [`commented`].
+/// The keys in `given` have values. All others are comments that show their values, so that a default still adjusts to the keys
+/// that a user sets (see [`super::parse()`]). Keys that do not apply are left out, and so are the keys that every device shares
+/// unless they are given. `glint new DEVICE --all` prints [`commented`].
 pub fn brief(schema: &Schema, config: &Config, given: &[String]) -> String {
     let mut text = String::new();
     for (key, value) in common(config) {
@@ -97,8 +97,8 @@ fn remarked(line: &str, remark: &str) -> String {
 
 /// Returns the file that `glint new --all` prints: every key with its value, its meaning, and the values that it accepts.
 ///
-/// The keys in `given` have values. All others are comments that show their values. Without the `# ` before them the lines of the keys
-/// read back as the same configuration.
+/// The keys in `given` have values. All others are comments that show their values. Without the `# ` before them the lines of
+/// the keys read back as the same configuration.
 pub fn commented(schema: &Schema, config: &Config, given: &[String]) -> String {
     let mut text = comment(&format!(
         "Glint configuration of the device \"{}\". All keys are shown. A key in a comment has its default, which adjusts to the keys \

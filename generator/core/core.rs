@@ -189,8 +189,8 @@ impl Core {
         Lockstep::new(design, model, self.contract.as_ref(), seed)
     }
 
-    /// Returns the exhaustive check of this core. It checks the error bound and, if the operands have few bits, compares model and
-    /// hardware clock by clock for every combination of operands.
+    /// Returns the exhaustive check of this core. It checks the error bound and, if the operands have few bits, compares model
+    /// and hardware clock by clock for every combination of operands.
     ///
     /// # Errors
     /// Fails if golden model, design and contract do not have the same signals, operands and outputs.
@@ -284,8 +284,8 @@ impl Core {
     /// the contents of the ROMs.
     ///
     /// # Errors
-    /// Fails if the contract is neither a formula of one operand nor a list of formulas with conditions, or if there are more than
-    /// 2^32 combinations of operands.
+    /// Fails if the contract is neither a formula of one operand nor a list of formulas with conditions, or if there are more
+    /// than 2^32 combinations of operands.
     pub fn recomputation(&self) -> Result<OutputFiles> {
         let asked = Surroundings { software: true, recomputation: true, ..Surroundings::default() };
         let inputs = EmitInputs {

@@ -62,7 +62,8 @@ impl Linear {
 pub struct ContractFacts {
     /// The operands, each with the smallest and the largest raw value for which the contract holds.
     pub domain: Vec<(String, (i64, i64))>,
-    /// The result outputs. Each has the name of the colour operand that a highlight multiplies by f, or `None` for another device.
+    /// The result outputs. Each has the name of the colour operand that a highlight multiplies by f, or `None` for another
+    /// device.
     pub outputs: Vec<(String, Option<String>)>,
     /// The operand that gives the number of results beyond the first; `None` if a computation has one result.
     pub length: Option<String>,

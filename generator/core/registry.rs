@@ -26,8 +26,8 @@ const OPERANDS_BUFFERED: &str = "operands.buffered";
 
 /// A device that Glint can generate, simulate and check.
 ///
-/// Callers must call the functions only with configurations that the schema accepts. The file `examples/fresnel` is an example of a
-/// complete device outside Glint.
+/// Callers must call the functions only with configurations that the schema accepts. The file `examples/fresnel` is an example
+/// of a complete device outside Glint.
 #[derive(Clone, Copy)]
 pub struct Device {
     /// The name of the device, which the key `device` of a configuration gives. It must equal [`Schema::device`].
@@ -144,8 +144,8 @@ impl Device {
     /// Checks that the contract can describe the results of the device.
     ///
     /// # Errors
-    /// Fails if the contract contradicts itself, as [`Contract::check`] finds. Fails also if results depend on values that an
-    /// earlier computation left, or if no output shows them.
+    /// Fails if [`Contract::check`] fails, for example because the golden model never shows a result. Fails also if results
+    /// depend on values that an earlier computation left, or if no output shows them.
     pub fn check_contract(
         &self,
         config: &Config,

@@ -199,8 +199,8 @@ impl Precise {
 
     /// Returns the interval of the error function of a number that is not below 0.
     ///
-    /// The series is erf(x) = 2x / √π · exp(−x²) · (1 + 2x²/3 + (2x²)²/(3·5) + …), whose terms are all positive. It ends where the
-    /// rest is below the last term: each further term is less than half of the one before.
+    /// The series is erf(x) = 2x / √π · exp(−x²) · (1 + 2x²/3 + (2x²)²/(3·5) + …), whose terms are all positive. It ends where
+    /// the rest is below the last term: each further term is less than half of the one before.
     fn error_function(&self, x: &BigFloat) -> Result<PreciseValue, String> {
         let one = self.integer(1);
         let x = PreciseValue::between(x.clone(), x.clone());

@@ -13,8 +13,8 @@ struct ValueAndSlope {
 
 impl Expression {
     /// Returns intervals that contain the value and the derivative of the formula, for `operand` anywhere within `limits`. At a
-    /// corner the derivative lies between the derivatives of both sides. For example, x · x for x from 1 to 2 has values from 1 to
-    /// 4 and derivatives from 2 to 4.
+    /// corner the derivative lies between the derivatives of both sides. For example, x · x for x from 1 to 2 has values from 1
+    /// to 4 and derivatives from 2 to 4.
     ///
     /// # Errors
     /// Fails if a part of the formula has no value, may jump, or is infinitely steep.

@@ -223,7 +223,8 @@ fn exact_values_are_known_to_be_exact() {
     assert!(doubt.message.contains("1024 bits do not tell"), "{doubt}");
 }
 
-/// Random decimals, with and without a power of ten, against integer arithmetic: digits · 10^(exponent − places) ≥ k / 2^fraction.
+/// Random decimals, with and without a power of ten, against integer arithmetic: digits · 10^(exponent − places) ≥ k /
+/// 2^fraction.
 #[test]
 fn random_decimals_are_read_exactly() {
     let mut state = 1u64;

@@ -5,8 +5,8 @@ use glint_base::fixed::{Format, Rounding, exp2};
 use glint_config::{Key, Problems};
 
 glint_config::keys! {
-    /// The keys of the operand `cos_gamma`, the cosine of the angle γ between the surface normal and the half vector. For example,
-    /// `cosine.fraction` states its fraction bits.
+    /// The keys of the operand `cos_gamma`, the cosine of the angle γ between the surface normal and the half vector. For
+    /// example, `cosine.fraction` states its fraction bits.
     pub struct Cosine {
         fraction: u32 = Key::integer("cosine.fraction", 20, 6..=24,
             "Fraction bits of the cosine operands; 1.0 is representable."),
@@ -254,10 +254,10 @@ pub fn check_rom_size(
     }
 }
 
-/// Checks the segments of a table over 1 − cos. The operand has `bits` bits. The table has ranges, each a quarter as long as the
-/// range before, so range j has `bits` − 2·j operand bits. `segments` gives the number of leading bits that select a segment in
-/// each range; it may not exceed the operand bits of the range. Returns the largest number of bits that remain in a segment, up to
-/// the first range that has too few. For example, 20 bits and segments of 6 and 5 bits give 14.
+/// Checks the segments of a table over 1 − cos. The operand has `bits` bits. The table has ranges, each a quarter as long as
+/// the range before, so range j has `bits` − 2·j operand bits. `segments` gives the number of leading bits that select a
+/// segment in each range; it may not exceed the operand bits of the range. Returns the largest number of bits that remain in a
+/// segment, up to the first range that has too few. For example, 20 bits and segments of 6 and 5 bits give 14.
 pub fn check_segments(segments: &[u32], key: &str, bits: u32, problems: &mut Problems) -> u32 {
     let mut most = 0;
     for (range, &prefix) in (0u32..).zip(segments) {

@@ -390,7 +390,8 @@ impl ErrorAnalysis<'_> {
     /// Returns limits of the hardware's value that follow from the hardware's values of its inputs alone.
     fn actual(&self, node: &PlanNode, values: &[NodeError]) -> Enclosure {
         let input = |id: NodeId| values[id.0].actual;
-        // If the operands are known, so is each rounding error, and may be 0 by chance. A share counts the largest that it can be.
+        // If the operands are known, so is each rounding error, and may be 0 by chance. A share counts the largest that it can
+        // be.
         let shortened = |before: NodeId, after: Enclosure| {
             if self.only.is_none() {
                 return after;

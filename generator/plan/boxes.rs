@@ -47,7 +47,8 @@ impl Ord for BoxError {
 }
 
 impl BoxError {
-    /// Returns the error in words, with the part of the plan that has no limit. For example, `cannot be proved below 1.250 units`.
+    /// Returns the error in words, with the part of the plan that has no limit. For example, `cannot be proved below 1.250
+    /// units`.
     pub(super) fn words(&self, plan: &ExpressionPlan) -> String {
         match &self.undecided {
             None => format!("cannot be proved below {:.3} units", self.units),

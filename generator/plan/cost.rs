@@ -1,8 +1,8 @@
 //! Estimates the area of a plan, so that the planner can choose among several plans for the same formulas.
 //!
-//! The unit is the look-up table of four inputs. An adder, a choice and a comparison take one for each bit. A table of polynomials
-//! takes one for 16 words of a bit, and the sums of Horner's rule. Products take multipliers, and look-up tables only for the bits
-//! that a multiplier of 18 by 18 bits does not have.
+//! The unit is the look-up table of four inputs. An adder, a choice and a comparison take one for each bit. A table of
+//! polynomials takes one for 16 words of a bit, and the sums of Horner's rule. Products take multipliers, and look-up tables
+//! only for the bits that a multiplier of 18 by 18 bits does not have.
 
 use super::node::{NodeId, Operation, PlanNode, normalising_shifts};
 use super::plan::ExpressionPlan;
@@ -108,8 +108,8 @@ fn cells_of_product(a: &PlanNode, b: &PlanNode) -> f64 {
     CELLS_OF_BIT_PAIR * (excess(a, b) + excess(b, a))
 }
 
-/// Returns an estimate of the look-up tables that a function takes in a pipeline, with the operations of its range reduction. They are
-/// infinite if one of these operations has too many bits.
+/// Returns an estimate of the look-up tables that a function takes in a pipeline, with the operations of its range reduction.
+/// They are infinite if one of these operations has too many bits.
 pub(super) fn cells_of_function(function: &TargetFunction, found: &Arc<Piecewise>) -> f64 {
     if found.reduction.is_some() {
         let plan = ExpressionPlan::of_function(function, found);

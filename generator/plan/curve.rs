@@ -1,9 +1,9 @@
 //! Adds the nodes that compute a function of one number: a table of polynomials, with the range reduction before and behind it.
 //!
-//! A range reduction maps the operand to a number of a shorter domain, for which the table is made, and restores the result from the
-//! polynomial's value. For example, an odd function needs polynomials for x ≥ 0 only: the nodes before the table compute |x|, and
-//! the nodes behind it negate the value if x is negative. [`Reduction`] defines the mapping and the restoring in integers, and the
-//! proof of the polynomials relies on that definition.
+//! A range reduction maps the operand to a number of a shorter domain, for which the table is made, and restores the result
+//! from the polynomial's value. For example, an odd function needs polynomials for x ≥ 0 only: the nodes before the table
+//! compute |x|, and the nodes behind it negate the value if x is negative. [`Reduction`] defines the mapping and the restoring
+//! in integers, and the proof of the polynomials relies on that definition.
 
 use std::sync::Arc;
 
@@ -57,8 +57,8 @@ impl ExpressionPlan {
         Ok(plan)
     }
 
-    /// Returns the plan with the nodes of its range reductions, and the new number of each node. While the planner looks for a plan,
-    /// a function with a range reduction is a single node, because its error is proved for the whole.
+    /// Returns the plan with the nodes of its range reductions, and the new number of each node. While the planner looks for a
+    /// plan, a function with a range reduction is a single node, because its error is proved for the whole.
     ///
     /// # Errors
     /// Fails if a node has too many bits.
@@ -86,7 +86,8 @@ impl ExpressionPlan {
         Ok((plan, renumbered))
     }
 
-    /// Adds a function of a node whose polynomials are known. The format of the node must be the operand format of the polynomials.
+    /// Adds a function of a node whose polynomials are known. The format of the node must be the operand format of the
+    /// polynomials.
     pub(super) fn curve(
         &mut self,
         name: &str,

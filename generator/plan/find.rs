@@ -23,8 +23,8 @@ pub(super) const DIVISIONS: usize = 4000;
 /// Every combination of operands is computed if there are at most 2 to this power.
 const MOST_COMBINATIONS: u32 = 20;
 
-/// The styles that the planner tries. If a table may have a little less than a whole unit of error, a single table needs no further bit
-/// beside the rounding of the result by half a unit.
+/// The styles that the planner tries. If a table may have a little less than a whole unit of error, a single table needs no
+/// further bit beside the rounding of the result by half a unit.
 const STYLES: [PlanStyle; 6] = [
     PlanStyle { table_error: 1.0, centres_fractions: false, keeps_functions: false },
     PlanStyle { table_error: 0.96, centres_fractions: false, keeps_functions: false },
@@ -71,9 +71,9 @@ pub struct ProvedPlan {
     pub whole_functions: ExpressionPlan,
     /// The proven error bound of each result, in units of the result's last place.
     pub bounds: Vec<f64>,
-    /// The share that each node has in the error of each result, in units of the result's last place, by result and node. It is what
-    /// the rounding of this node alone adds to the error, in the box of operands with the largest error; 0 for a node that is
-    /// exact.
+    /// The share that each node has in the error of each result, in units of the result's last place, by result and node. It is
+    /// what the rounding of this node alone adds to the error, in the box of operands with the largest error; 0 for a node that
+    /// is exact.
     pub shares: Vec<Vec<f64>>,
     /// The method by which the bounds were proved.
     pub proof: ProofKind,
@@ -131,8 +131,8 @@ fn searched(statement: &ExpressionStatement) -> Result<ProvedPlan, PlanRefusal> 
     Ok(ProvedPlan { statement, plan, whole_functions: whole, bounds, shares, proof })
 }
 
-/// Returns the node of the plan that has the rounding error of node number `at` before it got range reductions. It is the table of a
-/// function with a range reduction, and otherwise the node itself.
+/// Returns the node of the plan that has the rounding error of node number `at` before it got range reductions. It is the table
+/// of a function with a range reduction, and otherwise the node itself.
 fn rounding_node(plan: &ExpressionPlan, renumbered: &[NodeId], at: usize) -> NodeId {
     let first = if at == 0 { 0 } else { renumbered[at - 1].0 + 1 };
     let is_table = |node: &usize| matches!(plan.nodes[*node].operation, Operation::Polynomial(..));

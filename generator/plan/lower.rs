@@ -58,8 +58,8 @@ pub(super) struct PlanStyle {
     /// Whether the fraction of a normalised word is shortened to the middle of the values with the same upper bits; otherwise its
     /// low bits are dropped.
     pub(super) centres_fractions: bool,
-    /// Whether a function of an operand is a single table, before and behind which a range reduction can be. Otherwise the function is
-    /// rewritten, for example a root by the octaves of its operand.
+    /// Whether a function of an operand is a single table, before and behind which a range reduction can be. Otherwise the
+    /// function is rewritten, for example a root by the octaves of its operand.
     pub(super) keeps_functions: bool,
 }
 

@@ -73,8 +73,8 @@ pub enum Operation {
     /// The value, converted to the format of the result: low bits are rounded off, and high bits are dropped. The proof shows
     /// that the dropped high bits are copies of the sign.
     Narrow(NodeId, Rounding),
-    /// The value, with its low bits replaced by a single 1: the middle of all values with the same upper bits. High bits are dropped,
-    /// as by [`Operation::Narrow`]. For example, 0.1011 and 0.1001 become 0.101 if two bits are kept.
+    /// The value, with its low bits replaced by a single 1: the middle of all values with the same upper bits. High bits are
+    /// dropped, as by [`Operation::Narrow`]. For example, 0.1011 and 0.1001 become 0.101 if two bits are kept.
     Middle(NodeId),
     /// One bit of an integer, by its number; bit 0 is the lowest.
     Bit(NodeId, u32),
@@ -204,8 +204,8 @@ pub fn normalising_shifts(width: u32, by_pairs: bool) -> Vec<u32> {
     shifts
 }
 
-/// Returns a raw value with its lowest `places` + 1 bits replaced by a 1, and `places` fraction bits fewer. For example, 0b10110 with
-/// 2 places gives 0b101.
+/// Returns a raw value with its lowest `places` + 1 bits replaced by a 1, and `places` fraction bits fewer. For example,
+/// 0b10110 with 2 places gives 0b101.
 pub(super) fn middle(raw: i128, places: i32) -> i128 {
     raw >> places | 1
 }

@@ -70,8 +70,8 @@ impl ExpressionPlan {
         widths
     }
 
-    /// Returns the prefix of the names of all nets of a node's table: the name of the node and an underscore, so that each table has
-    /// nets of its own. A plan of a single function of `x` needs no prefix.
+    /// Returns the prefix of the names of all nets of a node's table: the name of the node and an underscore, so that each
+    /// table has nets of its own. A plan of a single function of `x` needs no prefix.
     pub fn table_prefix(&self, id: NodeId) -> String {
         let mut operands = Vec::new();
         for node in &self.nodes {
@@ -83,8 +83,8 @@ impl ExpressionPlan {
         if is_single { String::new() } else { format!("{}_", self.node(id).name) }
     }
 
-    /// Returns the names of the registers of a node's polynomial. The first register holds the polynomial, and the others hold the
-    /// partial sums of Horner's rule. For example, a node `curve` has `curve`, `curve_sum1` and `curve_sum2`.
+    /// Returns the names of the registers of a node's polynomial. The first register holds the polynomial, and the others hold
+    /// the partial sums of Horner's rule. For example, a node `curve` has `curve`, `curve_sum1` and `curve_sum2`.
     pub fn sum_names(&self, id: NodeId) -> [String; 3] {
         let prefix = self.table_prefix(id);
         [self.node(id).name.clone(), format!("{prefix}sum1"), format!("{prefix}sum2")]
@@ -391,8 +391,8 @@ impl ExpressionPlan {
         self.narrow(name, a, Format::holding(range.0, range.1, frac), rounding)
     }
 
-    /// Adds a with its low bits replaced by a single 1, in a format that has at least one fraction bit less than a. The caller must
-    /// prove that no value leaves the format.
+    /// Adds a with its low bits replaced by a single 1, in a format that has at least one fraction bit less than a. The caller
+    /// must prove that no value leaves the format.
     pub(super) fn middle(
         &mut self,
         name: &str,
@@ -406,8 +406,8 @@ impl ExpressionPlan {
         self.insert(name, Operation::Middle(a), format, range)
     }
 
-    /// Adds a for a function that reads it alone: if a has more than `frac` fraction bits, all beyond them are replaced by a single 1. A
-    /// table absorbs this bit, so that it costs no logic, and the error is as small as with rounding.
+    /// Adds a for a function that reads it alone: if a has more than `frac` fraction bits, all beyond them are replaced by a
+    /// single 1. A table absorbs this bit, so that it costs no logic, and the error is as small as with rounding.
     pub(super) fn shorten_for_table(
         &mut self,
         name: &str,

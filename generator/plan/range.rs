@@ -144,8 +144,8 @@ pub(super) fn range_of(
     Ok(Enclosure::between(-low, high))
 }
 
-/// Returns a number that no promised value of a result comes nearer to 0 than. For example, it is 0.5 or a little less for `1 / x`
-/// with x from 1 to 2.
+/// Returns a number that no promised value of a result comes nearer to 0 than. For example, it is 0.5 or a little less for `1 /
+/// x` with x from 1 to 2.
 ///
 /// # Errors
 /// Fails if the values have no finite limits, or if nothing is promised.

@@ -113,8 +113,8 @@ impl ExpressionStatement {
 }
 
 impl StatedOperand {
-    /// Returns the value with which results are computed for an operand. It is the nearer end of the domain if the operand is outside
-    /// a domain that clamps. For example, 0.9 becomes 0.5 if the domain ends at 0.5.
+    /// Returns the value with which results are computed for an operand. It is the nearer end of the domain if the operand is
+    /// outside a domain that clamps. For example, 0.9 becomes 0.5 if the domain ends at 0.5.
     pub fn computed(&self, value: f64) -> f64 {
         match self.outside {
             Outside::Clamp => {
@@ -147,8 +147,8 @@ impl StatedResult {
         }
     }
 
-    /// Returns limits of the value that the result approximates. The formula is evaluated in f64 for `operands`, and again with more
-    /// bits, for the operands that `exactly` returns, if f64 does not give it within a millionth of a unit.
+    /// Returns limits of the value that the result approximates. The formula is evaluated in f64 for `operands`, and again with
+    /// more bits, for the operands that `exactly` returns, if f64 does not give it within a millionth of a unit.
     ///
     /// # Errors
     /// Fails at the part of the formula that has no value.

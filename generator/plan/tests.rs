@@ -446,7 +446,8 @@ const REDUCED: [ReducedFunction; 16] = [
     ("exp(-x^2)", (-512, 511), 8, 12, Identity::Even),
 ];
 
-/// The proof of a range reduction relies on its definition in `glint_approximate`; the hardware and the golden model rely on the plan.
+/// The proof of a range reduction relies on its definition in `glint_approximate`; the hardware and the golden model rely on
+/// the plan.
 #[test]
 fn plans_of_reduced_functions_compute_the_proved_results() {
     for (formula, domain, frac, fraction, identity) in REDUCED {
@@ -469,7 +470,8 @@ fn plans_of_reduced_functions_compute_the_proved_results() {
     }
 }
 
-/// A function that is odd about a point needs polynomials for one side of it only. The hardware mirrors the operand and the result.
+/// A function that is odd about a point needs polynomials for one side of it only. The hardware mirrors the operand and the
+/// result.
 #[test]
 fn an_odd_function_has_a_table_for_one_side() {
     let x = Format::signed(3, 12);

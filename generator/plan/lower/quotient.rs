@@ -1,9 +1,9 @@
 //! Rewrites a quotient a / b as a product with a reciprocal from a table, so that no divider is needed. The operations are added
 //! to the plan: the list of integer operations from which the hardware, the golden model and the proof are made.
 //!
-//! A divisor with few bits whose largest size is less than four times its smallest has a table of 1/b itself. Any other divisor is
-//! normalised: b = m · 2^−k with m from 1/2 to below 1. A table gives 1/m, and the dividend is shifted by the same k bits, so that
-//! a / b = (a · 2^k) · (1/m).
+//! A divisor with few bits whose largest size is less than four times its smallest has a table of 1/b itself. Any other divisor
+//! is normalised: b = m · 2^−k with m from 1/2 to below 1. A table gives 1/m, and the dividend is shifted by the same k bits,
+//! so that a / b = (a · 2^k) · (1/m).
 
 use glint_base::fixed::{Format, Rounding, exp2};
 use glint_formula::{Enclosure, Expression};
@@ -84,8 +84,8 @@ impl Lowering<'_> {
             let above = exp2(octave.exponent + frac) as i128;
             Format::holding(if is_signed { 1 - above } else { 0 }, above - 1, frac)
         } else {
-            // The dividend is at most the largest quotient times the divisor. A divisor that was rounded can have been larger: the
-            // proof then shows that a bit more is enough.
+            // The dividend is at most the largest quotient times the divisor. A divisor that was rounded can have been larger:
+            // the proof then shows that a bit more is enough.
             let most = largest * exp2(octave.exponent) * if is_exact { 1.0 } else { 2.0 };
             holding(Enclosure::between(if is_signed { -most } else { 0.0 }, most), frac)
         };
