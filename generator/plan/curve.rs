@@ -1,9 +1,10 @@
-//! Adds the nodes that compute a function of one number: a table of polynomials, with the range reduction before and behind it.
+//! Adds the nodes that compute a function of one number: a table of polynomials, with the range reduction before it and after
+//! it.
 //!
-//! A range reduction maps the operand to a number of a shorter domain, for which the table is made, and restores the result
-//! from the polynomial's value. For example, an odd function needs polynomials for x ≥ 0 only: the nodes before the table
-//! compute |x|, and the nodes behind it negate the value if x is negative. [`Reduction`] defines the mapping and the restoring
-//! in integers, and the proof of the polynomials relies on that definition.
+//! A range reduction maps the operand to a number in a shorter domain, for which the table is made, and restores the result
+//! from the polynomial's value. For example, an odd function needs polynomials for x ≥ 0 only. The nodes before the table
+//! compute |x|, and the nodes after it negate the value if x is negative. [`Reduction`] defines both steps in integers, and the
+//! proof of the polynomials relies on this definition.
 
 use std::sync::Arc;
 
@@ -14,18 +15,18 @@ use super::node::{Approximation, NodeId, Operation};
 use super::plan::ExpressionPlan;
 use super::refusal::PlanRefusal;
 
-/// The number of an operand in the shorter domain, and the nodes from which the result is restored. The steps are done in the
+/// The operand in the shorter domain, and the nodes from which the result is restored. The steps of the restoring have the
 /// order of the fields.
 struct ReducedOperand {
-    /// The number, as an integer.
+    /// The operand in the shorter domain, as an integer.
     number: NodeId,
-    /// A value that is added to the polynomial.
+    /// A value that is added to the polynomial's value.
     addend: Option<NodeId>,
     /// The number of bits by which the sum is shifted to the right.
     places: Option<NodeId>,
     /// A bit that is 0 if the result must be 0.
     is_nonzero: Option<NodeId>,
-    /// A bit and a raw value: if the bit is 1, the result is the raw value minus the result so far.
+    /// A bit and a raw value. If the bit is 1, the result is the raw value minus the result of the earlier steps.
     negative: Option<(NodeId, i64)>,
 }
 
@@ -36,7 +37,7 @@ impl ReducedOperand {
 }
 
 impl ExpressionPlan {
-    /// Returns the plan of a single function of the operand `x`. The only result is the value of the function.
+    /// Returns the plan of a single function of the operand `x`. Its only result is the value of the function.
     ///
     /// # Errors
     /// Fails if a node has too many bits.
@@ -57,8 +58,8 @@ impl ExpressionPlan {
         Ok(plan)
     }
 
-    /// Returns the plan with the nodes of its range reductions, and the new number of each node. While the planner looks for a
-    /// plan, a function with a range reduction is a single node, because its error is proved for the whole.
+    /// Returns the plan with the nodes of its range reductions, and the new index of each node. During the search for a plan, a
+    /// function with a range reduction is a single node, because its error is proved for the whole function.
     ///
     /// # Errors
     /// Fails if a node has too many bits.
@@ -86,8 +87,7 @@ impl ExpressionPlan {
         Ok((plan, renumbered))
     }
 
-    /// Adds a function of a node whose polynomials are known. The format of the node must be the operand format of the
-    /// polynomials.
+    /// Adds a function of the node `x` with known polynomials. The format of `x` must be the operand format of the polynomials.
     pub(super) fn curve(
         &mut self,
         name: &str,
@@ -123,7 +123,7 @@ impl ExpressionPlan {
         Ok(last)
     }
 
-    /// Adds the nodes before the table.
+    /// Adds the nodes before the table, which map the operand to the shorter domain.
     fn reduced(
         &mut self,
         x: NodeId,
@@ -163,7 +163,8 @@ impl ExpressionPlan {
         Ok(ReducedOperand { negative, ..ReducedOperand::new(number) })
     }
 
-    /// Adds the nodes of [`Rule::Quadrants`]: the distance from the nearer zero of the sine, in quarter turns of 2^`bits` steps.
+    /// Adds the nodes of [`Rule::Quadrants`]: the distance from the nearer zero of the sine, where a quarter turn has 2^`bits`
+    /// steps.
     fn angle_in_quadrant(
         &mut self,
         x: NodeId,
@@ -184,7 +185,7 @@ impl ExpressionPlan {
         Ok(ReducedOperand { negative: Some((is_negative, 0)), ..ReducedOperand::new(number) })
     }
 
-    /// Returns a number that is not negative and at most 2^`bits`, or 2^`bits` − 1 in place of 2^`bits`.
+    /// Returns the node of a number with `bits` bits. The number must be from 0 to 2^`bits`; 2^`bits` becomes 2^`bits` − 1.
     fn limited_to_bits(
         &mut self,
         name: &str,
@@ -202,9 +203,9 @@ impl ExpressionPlan {
         self.narrow(name, limited, format, Rounding::Truncate)
     }
 
-    /// Adds the nodes of [`Rule::Octaves`]: the bits behind the leading 1 of x. If `has_pairs`, a bit above them tells the two
-    /// octaves of a pair apart. `restores` has the shift and the addend for each number of leading zeros; the addends have `frac`
-    /// fraction bits.
+    /// Adds the nodes of [`Rule::Octaves`]: the bits below the leading 1 of x. If `has_pairs`, one more bit above them
+    /// distinguishes the two octaves of a pair. `restores` has the shift and the addend for each number of leading zeros. The
+    /// addends have `frac` fraction bits. If `starts_at_0`, the operand may be 0.
     fn word_in_octave(
         &mut self,
         x: NodeId,
@@ -244,7 +245,8 @@ impl ExpressionPlan {
         Ok(reduced)
     }
 
-    /// Adds x times the factor of an exponent, without its low bits. `scale` has the factor and the number of these bits.
+    /// Adds x times the factor of an exponent, without low bits of the product. `scale` has the factor and the number of these
+    /// low bits. Returns x itself without a factor.
     fn exponent_of_two(
         &mut self,
         x: NodeId,
@@ -257,8 +259,8 @@ impl ExpressionPlan {
         self.shorten("exponent", product, 0, Rounding::Truncate)
     }
 
-    /// Adds the nodes of [`Rule::Exponent`]: the fraction of an exponent, and the places by which its integer is away from
-    /// `whole`. `exponent` counts in units of 2^−`bits`.
+    /// Adds the nodes of [`Rule::Exponent`]: the fraction of an exponent, and the distance of its integer part from `whole`,
+    /// which is the number of bits of the shift. `exponent` is in units of 2^−`bits`.
     fn fraction_of_exponent(
         &mut self,
         exponent: NodeId,
@@ -283,7 +285,8 @@ impl ExpressionPlan {
         Ok(reduced)
     }
 
-    /// Adds the nodes behind the table: the result with the fraction bits of `format`, rounded to the nearest.
+    /// Adds the nodes after the table, which restore the result. The result has the fraction bits of `format`, rounded to the
+    /// nearest.
     fn restored(
         &mut self,
         polynomial: NodeId,
@@ -295,7 +298,7 @@ impl ExpressionPlan {
             value = self.add("with_octave", value, addend)?;
         }
         if let Some(places) = reduced.places {
-            // The first of the bits that are shifted out decides the rounding.
+            // The first bit that is shifted out decides the rounding, so it is kept.
             let own = self.node(value).format;
             let finer = Format { frac: own.frac + 1, ..own };
             let longer = self.narrow("longer", value, finer, Rounding::Truncate)?;

@@ -1,4 +1,4 @@
-//! Defines the plan of an expression, and appends its nodes with the formats that their results need.
+//! Defines the plan of an expression. Its methods append nodes, and compute the formats of their results.
 
 use glint_base::fixed::{Format, MAX_WIDTH, Rounding};
 use glint_base::interval::{self, Interval};
@@ -7,7 +7,7 @@ use glint_formula::Enclosure;
 use super::node::{Approximation, NodeId, Operation, PlanNode, middle};
 use super::refusal::PlanRefusal;
 
-/// The limits of a value before the rewriting limits it.
+/// The limits of a node's value before the rewriting of the formula has stated any.
 const ANYTHING: Enclosure = Enclosure::between(f64::NEG_INFINITY, f64::INFINITY);
 
 /// The plan of an expression: a list of fixed-point operations that computes all results.
@@ -17,18 +17,18 @@ pub struct ExpressionPlan {
     pub nodes: Vec<PlanNode>,
     /// The node of each result, in the order of the statement.
     pub results: Vec<NodeId>,
-    /// The node of each result before its high bits are dropped: the node whose error is proved. It is the node of the result
-    /// itself unless that wraps.
+    /// For each result the node whose error is proved. It is the node in `results`, except for a result that wraps: then it is
+    /// the node before the high bits are dropped.
     pub proved: Vec<NodeId>,
 }
 
 impl ExpressionPlan {
-    /// Returns a node.
+    /// Returns the node with this index.
     pub fn node(&self, id: NodeId) -> &PlanNode {
         &self.nodes[id.0]
     }
 
-    /// Returns for each node whether the result number `result` depends on it.
+    /// Returns for each node whether the proved value of result number `result` depends on it.
     pub fn needed_for(&self, result: usize) -> Vec<bool> {
         let mut needed = vec![false; self.nodes.len()];
         needed[self.proved[result].0] = true;
@@ -42,8 +42,8 @@ impl ExpressionPlan {
         needed
     }
 
-    /// Returns the widths of the two inputs of one multiplier that can compute all products of the plan, with the products in
-    /// polynomials. Both inputs have a sign if any factor has one.
+    /// Returns the widths of the two inputs of one multiplier that can compute all products of the plan, including the products
+    /// in polynomials. If any factor has a sign, both widths have room for one.
     pub(super) fn multiplier_widths(&self) -> [u32; 2] {
         let mut factors: Vec<[Format; 2]> = Vec::new();
         for node in &self.nodes {
@@ -70,8 +70,8 @@ impl ExpressionPlan {
         widths
     }
 
-    /// Returns the prefix of the names of all nets of a node's table: the name of the node and an underscore, so that each
-    /// table has nets of its own. A plan of a single function of `x` needs no prefix.
+    /// Returns the prefix of the names of all nets that belong to a node's table: the name of the node and an underscore, so
+    /// that each table has nets of its own. The prefix is empty in a plan with the single operand `x` and a single table.
     pub fn table_prefix(&self, id: NodeId) -> String {
         let mut operands = Vec::new();
         for node in &self.nodes {
@@ -83,14 +83,15 @@ impl ExpressionPlan {
         if is_single { String::new() } else { format!("{}_", self.node(id).name) }
     }
 
-    /// Returns the names of the registers of a node's polynomial. The first register holds the polynomial, and the others hold
-    /// the partial sums of Horner's rule. For example, a node `curve` has `curve`, `curve_sum1` and `curve_sum2`.
+    /// Returns the names of the registers for a node's polynomial. The first register is for the polynomial itself, and the
+    /// others are for the partial sums of Horner's rule. For example, a node `curve` has `curve`, `curve_sum1` and
+    /// `curve_sum2`.
     pub fn sum_names(&self, id: NodeId) -> [String; 3] {
         let prefix = self.table_prefix(id);
         [self.node(id).name.clone(), format!("{prefix}sum1"), format!("{prefix}sum2")]
     }
 
-    /// Returns for each node the number of operations that read it.
+    /// Returns for each node how often operations read it. A square counts its input twice.
     pub fn readers(&self) -> Vec<usize> {
         let mut readers = vec![0; self.nodes.len()];
         for node in &self.nodes {
@@ -102,8 +103,9 @@ impl ExpressionPlan {
     }
 }
 
-/// Adds nodes to a plan. Each method returns the node of its result, whose format holds every value that the ranges of
-/// the inputs allow.
+/// Methods that add nodes to a plan. Each returns the node of its result, whose format can represent every value that the
+/// ranges of the inputs allow. If the plan already has the same exact operation, they return its node instead. They fail if the
+/// result needs more bits than a net can have.
 impl ExpressionPlan {
     fn insert(
         &mut self,
@@ -132,14 +134,15 @@ impl ExpressionPlan {
         Ok(NodeId(self.nodes.len() - 1))
     }
 
-    /// Adds a copy of a node of another plan, with an operation that reads nodes of this plan.
+    /// Adds a copy of a node of another plan, with the operation replaced by `operation`, which must read nodes of this plan.
     pub(super) fn push_copy(&mut self, node: &PlanNode, operation: Operation) -> NodeId {
         let name = self.unused_name(&node.name);
         self.nodes.push(PlanNode { name, operation, ..node.clone() });
         NodeId(self.nodes.len() - 1)
     }
 
-    /// Returns the node that already does an operation, if it is exact.
+    /// Returns the node that already computes `operation` in this format. Returns `None` without one, or if the operation may
+    /// round.
     fn same_node(&self, operation: &Operation, format: Format) -> Option<NodeId> {
         let wanted = operation.identity()?;
         let is_same = |node: &PlanNode| {
@@ -150,7 +153,7 @@ impl ExpressionPlan {
         self.nodes.iter().position(is_same).map(NodeId)
     }
 
-    /// Returns the name, or with a number behind it if a node already has it. For example, a second `product` is
+    /// Returns `name`, or `name` followed by a number if a node already has this name. For example, a second `product` is
     /// `product2`.
     fn unused_name(&self, name: &str) -> String {
         let is_used = |name: &str| self.nodes.iter().any(|node| node.name == name);
@@ -163,14 +166,14 @@ impl ExpressionPlan {
         unused
     }
 
-    /// Gives a node a name, with a number behind it if another node already has the name.
+    /// Gives a node the name `name`, followed by a number if another node already has this name.
     pub(super) fn rename(&mut self, id: NodeId, name: &str) {
         if self.node(id).name != name {
             self.nodes[id.0].name = self.unused_name(name);
         }
     }
 
-    /// Adds an exact result whose raw values lie in a range.
+    /// Adds an exact operation whose raw results lie in `range`, with `frac` fraction bits.
     fn exact(
         &mut self,
         name: &str,
@@ -192,7 +195,7 @@ impl ExpressionPlan {
         self.insert(name, Operation::Operand(number), format, range)
     }
 
-    /// Adds a constant that is exact.
+    /// Adds the exact constant with the raw value `raw` and `frac` fraction bits.
     pub(super) fn constant(
         &mut self,
         name: &str,
@@ -203,7 +206,7 @@ impl ExpressionPlan {
         self.rounded_constant(name, raw, frac, value)
     }
 
-    /// Adds a constant for a real number within limits.
+    /// Adds the raw constant `raw` for a real number that lies in the interval `value`.
     pub(super) fn rounded_constant(
         &mut self,
         name: &str,
@@ -223,7 +226,8 @@ impl ExpressionPlan {
         self.exact(name, Operation::Constant { raw, value }, (raw, raw), frac)
     }
 
-    /// Returns the ranges of two nodes in units of the finer one, and its fraction bits.
+    /// Returns the raw ranges of two nodes, both with as many fraction bits as the finer node has, and this number of fraction
+    /// bits.
     fn aligned(&self, a: NodeId, b: NodeId) -> (Interval, Interval, i32) {
         let (a, b) = (self.node(a), self.node(b));
         let frac = a.format.frac.max(b.format.frac);
@@ -329,7 +333,7 @@ impl ExpressionPlan {
         self.exact(name, Operation::Choose { condition, cases }, range, frac)
     }
 
-    /// Adds a · 2^`exponent`, which only reads the bits of a with another point.
+    /// Adds a · 2^`exponent`, which has the same bits as a with another binary point.
     pub(super) fn scale(
         &mut self,
         name: &str,
@@ -346,14 +350,14 @@ impl ExpressionPlan {
         self.insert(name, Operation::Scale(a), format, range)
     }
 
-    /// Adds a node with the value of another. A result that is an operand itself needs one, because its register has a name of
-    /// its own.
+    /// Adds a node with the value of another node. A result that is an operand itself needs such a node, because its register
+    /// has its own name.
     pub(super) fn copy(&mut self, name: &str, a: NodeId) -> Result<NodeId, PlanRefusal> {
         let PlanNode { format, range, .. } = *self.node(a);
         self.insert(name, Operation::Scale(a), format, range)
     }
 
-    /// Adds a in a format. The caller must prove that no value leaves the format.
+    /// Adds a converted to `format`. The caller must prove that no value exceeds the format.
     pub(super) fn narrow(
         &mut self,
         name: &str,
@@ -374,7 +378,8 @@ impl ExpressionPlan {
         self.insert(name, Operation::Narrow(a, rounding), format, range)
     }
 
-    /// Adds a with fewer fraction bits, and with as many integer bits as its values need.
+    /// Adds a with `frac` fraction bits, and with as many integer bits as its values need. Returns a itself if it has no more
+    /// fraction bits.
     pub(super) fn shorten(
         &mut self,
         name: &str,
@@ -391,8 +396,8 @@ impl ExpressionPlan {
         self.narrow(name, a, Format::holding(range.0, range.1, frac), rounding)
     }
 
-    /// Adds a with its low bits replaced by a single 1, in a format that has at least one fraction bit less than a. The caller
-    /// must prove that no value leaves the format.
+    /// Adds a with its low bits replaced by a single 1, in a format that must have fewer fraction bits than a. The caller must
+    /// prove that no value exceeds the format.
     pub(super) fn middle(
         &mut self,
         name: &str,
@@ -406,8 +411,8 @@ impl ExpressionPlan {
         self.insert(name, Operation::Middle(a), format, range)
     }
 
-    /// Adds a for a function that reads it alone: if a has more than `frac` fraction bits, all beyond them are replaced by a
-    /// single 1. A table absorbs this bit, so that it costs no logic, and the error is as small as with rounding.
+    /// Adds a as the operand of a table. If a has more than `frac` + 1 fraction bits, all bits beyond `frac` are replaced by a
+    /// single 1. The table absorbs this bit, so that it costs no logic, and the error is as small as with rounding.
     pub(super) fn shorten_for_table(
         &mut self,
         name: &str,
@@ -423,7 +428,7 @@ impl ExpressionPlan {
         self.middle(name, a, Format::holding(range.0, range.1, frac + 1))
     }
 
-    /// Adds a bit of an integer.
+    /// Adds bit `number` of the integer a.
     pub(super) fn bit(
         &mut self,
         name: &str,
@@ -454,7 +459,7 @@ impl ExpressionPlan {
         Ok([integer, fraction])
     }
 
-    /// Adds the word that [`Operation::Normalise`] gives, and its places.
+    /// Adds the normalised word of [`Operation::Normalise`], and the number of bits, or pairs of bits, of its shift.
     pub(super) fn normalise(
         &mut self,
         name: &str,
@@ -472,7 +477,7 @@ impl ExpressionPlan {
         Ok([normalised, places])
     }
 
-    /// Adds a · 2^places in a format. The caller must prove that no value leaves the format.
+    /// Adds a · 2^places in `format`. The caller must prove that no value exceeds the format.
     pub(super) fn shift_left(
         &mut self,
         name: &str,
@@ -494,7 +499,7 @@ impl ExpressionPlan {
         self.insert(name, Operation::ShiftRight(a, places), format, range)
     }
 
-    /// Adds a constant for each value of an address, with `frac` fraction bits.
+    /// Adds a table of constants with `frac` fraction bits, one for each value of the address.
     pub(super) fn lookup(
         &mut self,
         name: &str,
@@ -507,7 +512,8 @@ impl ExpressionPlan {
         self.exact(name, Operation::Lookup { address, words }, (low, high), frac)
     }
 
-    /// Adds a function of one number. `values` are limits of its raw values, within the allowed error.
+    /// Adds a function of the number a, computed by polynomials. `values` are limits of the function's raw values, widened by
+    /// the allowed error.
     pub(super) fn polynomial(
         &mut self,
         name: &str,
