@@ -55,7 +55,7 @@ pub(super) struct Guards {
 /// Choices that the planner makes for a whole plan. It tries several, and takes the smallest plan.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct PlanStyle {
-    /// The error that a table of polynomials may have, in units of its result.
+    /// The error that a table of polynomials may have, in units of the last bit of its result.
     pub(super) table_error: f64,
     /// Whether a shortened fraction of a normalised word is the middle of all values with the same upper bits. Otherwise the
     /// low bits are dropped.
@@ -226,8 +226,8 @@ impl<'s> Lowering<'s> {
         range_of(self.statement, part).map_err(|error| error.refusal(self.statement, part))
     }
 
-    /// Takes the next choice of fraction bits, beside `frac`, and gives its number to the node that `make` adds. The choice is
-    /// taken even where `make` finds that nothing need be rounded: the numbers of the later choices stay the same.
+    /// Chooses a number of fraction bits: `frac` plus the guard bits of the next rounding operation. `make` adds the node with
+    /// this number. The operation is counted even if `make` rounds nothing, so that later operations keep their numbers.
     fn rounding(
         &mut self,
         frac: i32,

@@ -61,8 +61,9 @@ impl Lowering<'_> {
         is_not_negative && self.statement.results.iter().all(promises_it)
     }
 
-    /// Returns dividend / divisor, for a divisor that is known as a fraction within one octave. `largest` is the largest size of
-    /// the quotient. `is_never_larger` says that the hardware's dividend is never larger than its divisor.
+    /// Returns the node of a dividend divided by a divisor, which is given as a normalised word in `octave`. `largest` must be
+    /// the largest absolute value of the quotient. `is_never_larger` must say whether the hardware's dividend is never larger
+    /// than its divisor.
     pub(super) fn ratio_in_octave(
         &mut self,
         dividend: NodeId,
