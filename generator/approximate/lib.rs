@@ -306,8 +306,8 @@ impl Piecewise {
         self.reduction.as_ref().map_or((raw, Restore::default()), |it| it.reduce(raw))
     }
 
-    /// Returns the number of a raw operand. Numbers run from 0 over the polynomial's domain, and [`Segments`] finds the segment
-    /// of a number.
+    /// Returns the number of a raw operand. Numbers run from 0 over the polynomial's domain, and [`Segments`] finds the
+    /// segment of a number.
     pub fn number(&self, raw: i64) -> u64 {
         (self.reduced(raw).0 - self.origin) as u64 & ((1 << self.segments.number_bits()) - 1)
     }

@@ -163,8 +163,8 @@ impl Reduction {
         }
     }
 
-    /// Returns the number of bits by which the hardware shifts the value of the polynomial, which follows from the integer part
-    /// of the operand's exponent. It is 0 for a rule without an exponent.
+    /// Returns the number of bits by which the hardware shifts the value of the polynomial, which follows from the integer
+    /// part of the operand's exponent. It is 0 for a rule without an exponent.
     pub fn places(&self, raw: i64) -> u32 {
         match self.rule {
             Rule::Exponent { scale, whole, .. } => {

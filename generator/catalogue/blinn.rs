@@ -3,8 +3,8 @@
 //! c = cos γ, where γ is the angle between the surface normal and the half vector; f is the reflectance, the factor by which
 //! the device multiplies colours. Seeds 000 to 002, which are source documents of other devices, start from this formula of
 //! Blinn, but give no circuit for it. This circuit computes cⁿ = 2^(−n·decay) with the decay −log₂ c: a logarithm, a product
-//! and an exponential. An octave is a factor of two: the decay is the number of octaves that c lies below 1/2, plus the decay
-//! of the remaining mantissa.
+//! and an exponential. An octave is a factor of two: the decay is the number of octaves that c lies below 1/2, plus the
+//! decay of the remaining mantissa.
 
 use glint_base::fixed::Format;
 use glint_config::Config;

@@ -26,8 +26,8 @@ const OPERANDS_BUFFERED: &str = "operands.buffered";
 
 /// A device that Glint can generate, simulate and check.
 ///
-/// Callers must call the functions only with configurations that the schema accepts. The file `examples/fresnel` is an example
-/// of a complete device outside Glint.
+/// Callers must call the functions only with configurations that the schema accepts. The file `examples/fresnel` is an
+/// example of a complete device outside Glint.
 #[derive(Clone, Copy)]
 pub struct Device {
     /// The name of the device, which the key `device` of a configuration gives. It must equal [`Schema::device`].

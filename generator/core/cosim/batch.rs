@@ -88,8 +88,8 @@ impl Points {
 /// An engine that computes the results of many points (sets of operands). There are three engines: the golden model, the
 /// built-in simulator and the emitted Verilog.
 pub trait Engine {
-    /// Returns the raw outputs of all computations, one after another. Each result has one value for each output, in the order
-    /// of the [`Contract`]. A computation with several results has them in the order of their index.
+    /// Returns the raw outputs of all computations, one after another. Each result has one value for each output, in the
+    /// order of the [`Contract`]. A computation with several results has them in the order of their index.
     ///
     /// # Errors
     /// Fails if a device does not finish a computation, if it gives more or fewer results than `points` expects, or if an

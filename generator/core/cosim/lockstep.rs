@@ -149,8 +149,8 @@ impl<'a> Lockstep<'a> {
     }
 
     /// Runs the streams of a run of `points` results in simulators of their own, and lets the caller observe each simulator.
-    /// `begin` makes an observer from the seed of a stream. After each clock, `note` gets the observer, the number of results
-    /// of the stream so far, and the simulator. Returns the observers in the order of the streams.
+    /// `begin` makes an observer from the seed of a stream. After each clock, `note` gets the observer, the number of
+    /// results of the stream so far, and the simulator. Returns the observers in the order of the streams.
     ///
     /// # Errors
     /// Fails as [`Lockstep::run`] does. A difference between model and hardware is not reported.

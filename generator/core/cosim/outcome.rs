@@ -118,8 +118,8 @@ pub struct Mismatch {
     pub golden: u64,
     /// The simulated hardware's value, a bit pattern.
     pub simulated: u64,
-    /// For a core, the microinstruction that was executed at the edge: ``microinstruction `count` ``. For a pipeline, the stage
-    /// of the signal: `stage 3`.
+    /// For a core, the microinstruction that was executed at the edge: ``microinstruction `count` ``. For a pipeline, the
+    /// stage of the signal: `stage 3`.
     pub during: String,
 }
 

@@ -50,8 +50,8 @@ pub struct Difference {
     pub clock: u64,
     /// The operands of the combination: each name with its bit pattern.
     pub operands: Vec<(String, u64)>,
-    /// The signal that differs, with its value in the model and in the hardware. The clock in it is counted from the power-up
-    /// of the simulated instance.
+    /// The signal that differs, with its value in the model and in the hardware. The clock in it is counted from the
+    /// power-up of the simulated instance.
     pub mismatch: Mismatch,
 }
 

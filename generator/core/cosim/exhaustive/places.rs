@@ -148,8 +148,8 @@ impl<'a> Places<'a> {
         self.error_at(&self.place(number))
     }
 
-    /// Returns the errors for some combinations, about 4096, that are spread evenly over all. Callers use them as a fingerprint
-    /// of the golden model.
+    /// Returns the errors for some combinations, about 4096, that are spread evenly over all. Callers use them as a
+    /// fingerprint of the golden model.
     pub fn glimpse(&self) -> Vec<f64> {
         let step = (self.count() / SAMPLE).max(1);
         (0..self.count()).step_by(step as usize).map(|place| self.error(place)).collect()

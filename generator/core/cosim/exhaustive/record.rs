@@ -1,7 +1,7 @@
 //! Reads the records of exhaustive checks, which `glint cosim --exhaustive --json` writes.
 //!
-//! An exhaustive check computes the error of a device for every combination of operand values that its contract lists. The digest
-//! of the contract in a record tells to which configuration the record belongs.
+//! An exhaustive check computes the error of a device for every combination of operand values that its contract lists. The
+//! digest of the contract in a record tells to which configuration the record belongs.
 //!
 //! Glint does not simply trust a record. The record names the operands with the largest error of the check. Glint computes the
 //! error at these operands again, and compares it with the recorded error ([`Record::proves`]).
