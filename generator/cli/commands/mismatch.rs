@@ -88,8 +88,8 @@ impl Reproducer {
     }
 }
 
-/// Returns a difference as JSON for scripts. Bit patterns are written as text, because they may have 64 bits, and many JSON readers
-/// lose digits of such numbers. For example, the key `golden` has the text `0x1f`.
+/// Returns a difference as JSON for scripts. Bit patterns are written as text, because they may have 64 bits, and many JSON
+/// readers lose digits of such numbers. For example, the key `golden` has the text `0x1f`.
 pub fn as_json(mismatch: &Mismatch) -> Value {
     json!({
         "seed": mismatch.seed,

@@ -180,8 +180,8 @@ fn none_of(name: &str, what: &str, names: &[&str]) -> String {
     format!("{near} The {what} are: {}", names.join(", "))
 }
 
-/// Finds the tool Yosys. Returns `None` if it is missing, and adds a note with the text `without`, which must say what the
-/// command does without Yosys.
+/// Finds the tool Yosys. Returns `None` if it is missing, and adds a note with the text `without`, which must describe the
+/// command without Yosys.
 fn yosys(without: &str, notes: &mut Vec<String>) -> Option<Tool> {
     Tool::find("yosys").map_err(|missing| notes.push(format!("{missing}: {without}"))).ok()
 }

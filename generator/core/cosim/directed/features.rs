@@ -50,7 +50,7 @@ impl Watch {
         for (id, net) in design.iter() {
             match &net.driver {
                 Driver::Constant(_) | Driver::Undriven | Driver::Op(Op::Relabel(_)) => continue,
-                // For a mask of ones, the recorded bits are those that are 0.
+                // For a mask of ones, the recorded bits are the bits that are 0.
                 _ => watched.extend([0, mask(design.width(id))].map(|it| Watched::Ones(id, it))),
             }
             let Driver::Op(op) = &net.driver else { continue };

@@ -111,8 +111,8 @@ impl<'a> Clocks<'a> {
         }
     }
 
-    /// Returns a phrase about what the check does not cover. It says why the combinations are not run, or which inputs only
-    /// random tests cover.
+    /// Returns a phrase about the cases that the check does not cover. It says why the combinations are not run, or which
+    /// inputs only random tests cover.
     pub fn omits(&self) -> String {
         match self.count() {
             0 => format!(

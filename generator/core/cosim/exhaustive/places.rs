@@ -143,7 +143,7 @@ impl<'a> Places<'a> {
     }
 
     /// Returns the error for combination `number`: the absolute error of `f`, the error of an output in units, or the rounding
-    /// error of a product, depending on what is measured. It is infinite if the formula has no value there.
+    /// error of a product, depending on the kind of these places. It is infinite if the formula has no value there.
     pub fn error(&self, number: u64) -> f64 {
         self.error_at(&self.place(number))
     }
