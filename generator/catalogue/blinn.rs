@@ -24,7 +24,7 @@ pub fn describe(d: &Designer, config: &Config) {
     let bits = keys.operands.cosine.fraction;
     let fraction = cos_gamma.bits(0, Format::unsigned(0, bits as i32));
     let normalised = shift::normalise(d, "octave", fraction);
-    // The normaliser is slow, so a pipeline register follows it.
+    // The normaliser has a long delay, so a pipeline register follows it.
     let octave = d.pipeline("octave", normalised.zeros).doc("leading zeros of cos gamma");
     let mantissa = normalised.word.bits(0, Format::unsigned(bits as i32 - 1, 0));
     let u = d.not("distance_next", mantissa);

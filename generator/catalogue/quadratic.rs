@@ -17,7 +17,7 @@ use glint_rtl::netlist::About;
 
 use super::common::{self, ColourProducts};
 
-/// The seed's numbers of the colour channels.
+/// The numbers of the colour channels' blocks in the source.
 const CHANNELS: [ChannelBlocks; 3] = [channel(1), channel(2), channel(3)];
 
 const fn channel(output: u16) -> ChannelBlocks {
@@ -48,7 +48,7 @@ pub fn describe(d: &Designer, config: &Config) {
     let intensity = d.register("intensity", keys.f.format()).doc("the reflectance f");
 
     let adder1 = adder1(d, cos_gamma);
-    // The interval of the sum is wider than its values, which lie in -0.25 ... 0: nothing is lost.
+    // The interval of the sum is wider than its values, which are from −0.25 to 0, so no bit is lost.
     let (rounding, overflow) = (keys.difference_rounding, Overflow::Wrap);
     difference.takes(d.narrow("adder1_rounded", adder1, difference.format(), rounding, overflow));
     let coefficient = coefficient_rom(d, &keys, exponent).out();
@@ -66,7 +66,7 @@ pub fn describe(d: &Designer, config: &Config) {
     d.microprogram(steps.into_iter().chain(outputs));
 }
 
-/// Makes adder 1: multiplier 5's c² plus the inverted c plus its carry-in.
+/// Builds adder 1: c² from multiplier 5, plus the inverted c, plus the carry-in.
 fn adder1<'d>(d: &'d Designer, cos_gamma: Signal<'d>) -> Signal<'d> {
     let square = d.mul("multiplier5", cos_gamma, cos_gamma).block(5).doc("c^2");
     let wide = cos_gamma.with_fraction(square.format().frac).as_signed();
@@ -89,7 +89,7 @@ fn coefficient_rom<'d>(d: &'d Designer, keys: &Keys, exponent: Signal<'d>) -> Ro
         .comments(comments)
 }
 
-/// Returns a(n) before it is rounded.
+/// Returns the coefficient a(n) before it is rounded.
 fn value(scheme: Scheme, n: u32) -> f64 {
     match scheme {
         Scheme::Minimax => coefficient::minimax(n),
