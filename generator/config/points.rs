@@ -47,8 +47,8 @@ pub(super) fn read(path: &Path) -> Result<String, (String, String)> {
     Ok(points.join(" "))
 }
 
-/// Returns whether a line has two cells, at least one of which is a number with a decimal comma, as spreadsheets write numbers
-/// in many languages: `0,5;1,25`.
+/// Returns whether a line has two cells, and at least one is a number with a decimal comma, as spreadsheets write numbers in
+/// many languages: `0,5;1,25`.
 fn has_decimal_commas(line: &str) -> bool {
     let cells = line.split(|c: char| c == ';' || c.is_whitespace()).filter(|cell| !cell.is_empty());
     let is_decimal = |cell: &str| {

@@ -174,7 +174,7 @@ impl Key {
         Self::new(name, KeyKind::Text(pattern), Value::Text(default.to_owned()), doc)
     }
 
-    /// Makes a key for a list of integers, each of which must be in `range`. The length of the list must be in `len`.
+    /// Makes a key for a list of integers. Each integer must be in `range`, and the length of the list must be in `len`.
     pub fn integers(
         name: &'static str,
         default: &[i64],

@@ -71,8 +71,8 @@ const PI: &str = "π";
 /// The largest depth to which parts may be nested. It limits the recursion of the parser.
 const DEEPEST: usize = 200;
 
-/// The number of parts that a formula may have once its functions are written out. For example, `silu(x)` has 6 parts more than
-/// x, and names x twice, so that each `silu` around another doubles the parts.
+/// The largest number of parts of a formula after its functions are replaced by their formulas. For example, `silu(x)` has 6
+/// parts more than x and contains x twice, so each `silu` around another doubles the number of parts.
 const MOST_PARTS: usize = 4096;
 
 /// Parses a formula. It may have sums, products, powers (`^` or `**`), parentheses, numbers, `pi`, `e`, names of operands,

@@ -535,7 +535,7 @@ pub(super) mod tests {
         }
     }
 
-    /// Compares with a search by single halvings, each of which evaluates the formula in the middle.
+    /// Compares with a search by single halvings. A halving evaluates the formula in the middle.
     #[test]
     fn a_crossing_is_where_single_halvings_lead() {
         let pulse = Pulse::pair(true);
