@@ -37,7 +37,6 @@ const MOST_SUMS: usize = 4;
 
 /// The largest number of intervals in which [`TargetFunction::pole`] looks for a pole.
 const POLES: u32 = 1 << 16;
-
 /// The distance from an operand that the search for a pole leaves out, as a fraction of the distance between two operands. The
 /// formula may jump at an operand, as `if(x <= 0, …)` does.
 const BESIDE: f64 = 1.0 / 1024.0;
