@@ -404,6 +404,7 @@ impl Piecewise {
     /// Proves a bound on the error at every operand of the domain, and returns it in units of the last bit of the result. No
     /// result differs from the exact value by more than the bound.
     ///
+    /// # Errors
     /// Fails if a sum does not fit its format, if an error is not below the error that `function` allows, or if the function
     /// has no value at an operand. For a domain with more than 2^[`MOST_BITS`] operands, also fails if the proof needs too many
     /// intervals.
@@ -447,6 +448,7 @@ type SearchResult = Result<Arc<Piecewise>, Refusal>;
 /// Returns the cheapest approximation of `function` that the search finds and proves; `wish` states the user's choices. If the
 /// same search was made earlier in this process, returns the earlier result.
 ///
+/// # Errors
 /// Fails if no approximation can be found and proved. The error says why, and names a key to change.
 pub fn find(function: &TargetFunction, wish: Wish) -> SearchResult {
     static FOUND: LazyLock<Mutex<HashMap<String, SearchResult>>> = LazyLock::new(Mutex::default);

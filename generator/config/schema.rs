@@ -40,7 +40,8 @@ pub struct Key {
     pub default: Value,
     /// The meaning of the key, in one or two sentences.
     pub doc: &'static str,
-    /// The condition under which the key applies. If it does not hold, a file may set the key only to its default.
+    /// The condition under which the key applies, or `None` if the key always applies. If the condition does not hold, a file
+    /// may set the key only to its default.
     pub condition: Option<Condition>,
     /// Whether the key was added when configurations of the device already existed. Such a key is not written while it has its
     /// default, so that digests of older configurations stay valid.
@@ -100,7 +101,8 @@ pub enum KeyKind {
         /// The fields that an entry can have. The defaults of these keys are only examples: a field that is not given has no
         /// value.
         fields: Vec<Key>,
-        /// The field whose value may replace a whole entry. For example, `s = "x^2"` means `s = { formula = "x^2" }`.
+        /// The field whose value may replace a whole entry, or `None` if an entry must be a table. For example, `s = "x^2"`
+        /// means `s = { formula = "x^2" }`.
         shorthand: Option<&'static str>,
         /// The smallest number of entries.
         least: usize,

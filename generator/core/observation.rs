@@ -70,7 +70,8 @@ pub struct ContractFacts {
     /// Python expressions of the correct values: the values of `f` for a highlight, or one value for each output of another
     /// device. Empty if the contract states no bound, because results could not be compared with anything.
     pub f: Vec<String>,
-    /// For each output the comparison under which the error is promised, as [`Contract::conditions`] states them.
+    /// For each output, the comparison under which the error is promised, or `None` for an output whose error is promised for
+    /// the whole domain. The list is `None` if the device does not state its promises as comparisons.
     pub conditions: Option<Vec<Option<Comparison>>>,
     /// Whether an output may differ from the formula by a multiple of its range, as [`Contract::wraps`] says.
     pub wraps: bool,

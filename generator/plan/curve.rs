@@ -20,13 +20,14 @@ use super::refusal::PlanRefusal;
 struct ReducedOperand {
     /// The operand in the shorter domain, as an integer.
     number: NodeId,
-    /// A value that is added to the polynomial's value.
+    /// A value that is added to the polynomial's value, or `None` if the step is left out.
     addend: Option<NodeId>,
-    /// The number of bits by which the sum is shifted to the right.
+    /// The number of bits by which the sum is shifted to the right, or `None` if the step is left out.
     places: Option<NodeId>,
-    /// A bit that is 0 if the result must be 0.
+    /// A bit that is 0 if the result must be 0, or `None` if the result needs no such bit.
     is_nonzero: Option<NodeId>,
-    /// A bit and a raw value. If the bit is 1, the result is the raw value minus the result of the earlier steps.
+    /// A bit and a raw value, or `None` if the step is left out. If the bit is 1, the result is the raw value minus the
+    /// result of the earlier steps.
     negative: Option<(NodeId, i64)>,
 }
 

@@ -82,8 +82,10 @@ pub struct SweepValues {
 }
 
 impl SweepValues {
-    /// Returns the sweep of a configuration's contract, in which the user's values replace the values of some operands. Fails
-    /// with wrong usage as [`axis::sweep`] does.
+    /// Returns the sweep of a configuration's contract, in which the user's values replace the values of some operands.
+    ///
+    /// # Errors
+    /// Fails with wrong usage as [`axis::sweep`] does.
     pub fn of(&self, one: &Loaded) -> Result<Sweep> {
         let sweep = axis::sweep(one.core.contract.as_ref(), &self.others);
         sweep.map_err(|error| {
@@ -240,7 +242,10 @@ pub(super) fn terms(bound: &Bound) -> Vec<Value> {
 }
 
 /// Returns the outcome of a co-simulation as JSON for scripts. If model and hardware differ, it also writes a waveform into the
-/// working directory. Fails if this cannot be done.
+/// working directory. `failed` has the messages about requirements that the outcome does not meet.
+///
+/// # Errors
+/// Fails if the waveform cannot be recorded or written.
 pub fn as_json(one: &Loaded, outcome: &Outcome, bound: &Bound, failed: &[String]) -> Result<Value> {
     let mismatch = outcome.mismatch.as_ref().map(|mismatch| {
         let reproducer = Reproducer::of_run(one, mismatch)?;

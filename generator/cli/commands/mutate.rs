@@ -228,7 +228,7 @@ fn only(output: OutputOptions, one: &Loaded, id: &str) -> Result<bool> {
 struct PlantedFault<'a> {
     one: &'a Loaded,
     found: &'a FaultResult,
-    /// The file with the waveform of a fault that is caught, and its first and last clock.
+    /// The file with the waveform of a fault that is caught, and its first and last clock. `None` if no waveform was written.
     waveform: Option<(PathBuf, u64, u64)>,
 }
 

@@ -26,8 +26,8 @@ const RESET_CLOCKS: u64 = 1024;
 pub(super) struct Offers {
     ports: Arc<Ports>,
     random: Random,
-    /// The point that is offered and not yet taken: the bit patterns of its operands in the order of the ports, and its side
-    /// value.
+    /// The point that is offered and not yet taken, or `None`. The point has the bit patterns of its operands in the order of
+    /// the ports, and its side value.
     offered: Option<(Vec<u64>, u64)>,
     /// The points of a list that must still be offered, as raw operands in the order of the contract. While there is a list, no
     /// point is drawn or withdrawn, and no reset begins. `None` if points are drawn at random.

@@ -66,7 +66,7 @@ pub struct PointSource<'a> {
     operands: Vec<Operand>,
     /// The number of control operands, which determine `f`. They come first.
     control: usize,
-    /// The index of the operand that gives the number of results of a computation.
+    /// The index of the operand that gives the number of results of a computation, or `None` if a computation has one result.
     length: Option<usize>,
     /// For each control operand, its value at the largest `f`, or `None` if the operand need not move. It is used if the
     /// contract does not state the peak. All are `None` if the device is no highlight.

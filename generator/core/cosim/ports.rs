@@ -22,7 +22,7 @@ pub(super) struct Ports {
     /// The operands of the contract, in the order of the design.
     pub(super) operands: Vec<OperandPort>,
     pub(super) valid: NetId,
-    /// The outputs `busy` and `done`, which a core with a microprogram has.
+    /// The output `busy`. The outputs `busy` and `done` are `None` if the core is a pipeline.
     pub(super) busy: Option<NetId>,
     pub(super) done: Option<NetId>,
     /// Whether the core takes a `start` in the clock in which `done` is high.

@@ -69,8 +69,10 @@ pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) ->
     list.conclude(holds)
 }
 
-/// Returns the progress that a file stores. Returns `None` if the file does not exist. Fails if the file cannot be read or has
-/// other contents.
+/// Returns the progress of an exhaustive check that a file stores, or `None` if the file does not exist.
+///
+/// # Errors
+/// Fails if the file cannot be read, or if it has other contents.
 pub fn read(path: &Path) -> Result<Option<ShardState>> {
     let Some(text) = input::text(path)? else { return Ok(None) };
     let state = kept::from_text(&text).with_context(|| {

@@ -25,8 +25,10 @@ pub fn given(operands: &[Operand], settings: &[String]) -> Result<Vec<Option<i64
     Ok(raw)
 }
 
-/// Returns the index of the operand `name` in `operands`. Fails if no operand has this name; the message then has the most
-/// similar name.
+/// Returns the index of the operand `name` in `operands`.
+///
+/// # Errors
+/// Fails if no operand has this name. The message then has the most similar name.
 pub fn position(operands: &[Operand], name: &str) -> Result<usize, String> {
     operands.iter().position(|operand| operand.name == name).ok_or_else(|| {
         let names: Vec<&str> = operands.iter().map(|operand| operand.name.as_str()).collect();
@@ -70,9 +72,12 @@ pub fn missing(contract: &dyn Contract, given: &[Option<i64>]) -> Vec<String> {
     missing.collect()
 }
 
-/// Parses the raw value of an operand. For example, `0.5` and `#128` both give 128 for an operand with 8 fraction bits. Fails
-/// if the text is no number, if the number exceeds the format, or if it is a fraction and the format has only integers. The
-/// message names the operand.
+/// Parses the value of an operand, and returns it as a raw value. For example, `0.5` and `#128` both give 128 for an operand
+/// with 8 fraction bits.
+///
+/// # Errors
+/// Fails if the text is not a number, if the number exceeds the format, or if it is a fraction and the format has only
+/// integers. The message names the operand.
 pub fn named_value(operand: &Operand, text: &str) -> Result<i64, String> {
     value(operand, text).map_err(|why| format!("operand `{}`: {why}", operand.name))
 }
