@@ -47,7 +47,7 @@ pub(super) fn allocated(
 }
 
 /// Returns guard bits with which every result keeps its allowed error, if errors are computed with `divisions` divisions of the
-/// domain. `none` has the style, without bits.
+/// domain. `none` has the style of the plan and no guard bits. Fails as [`allocated`] does.
 fn allocated_with(
     statement: &ExpressionStatement,
     none: &Guards,
@@ -72,8 +72,9 @@ fn allocated_with(
     Ok(Allocation { guards, plan, divisions })
 }
 
-/// Returns guard bits with which every result keeps its allowed error. Starting from few bits, it adds one at a time to the
-/// operation with the largest share of the error.
+/// Returns guard bits with which every result keeps its allowed error, and the plan with them. The function begins with few
+/// bits, and adds one at a time to the operation with the largest share of the error. Fails if a formula has no plan, or if no
+/// number of bits is enough.
 fn grown(
     statement: &ExpressionStatement,
     none: &Guards,
@@ -106,8 +107,9 @@ fn equally_many(
     None
 }
 
-/// Returns the plan with the fewest guard bits, the same number for all operations. With fewer bits there may be no plan, for
-/// example because a divisor is rounded to 0.
+/// Returns the plan with the fewest guard bits, the same number for all operations, and these bits. With fewer bits there may
+/// be no plan, for example because a divisor is rounded to 0. Fails if no number of bits up to [`MOST_FIRST_GUARD`] gives a
+/// plan.
 fn first_plan(
     statement: &ExpressionStatement,
     none: &Guards,
@@ -129,7 +131,8 @@ fn first_plan(
     Err(refusal)
 }
 
-/// Returns the plan with these guard bits. Operations beyond the list get `first` guard bits, and the list is extended by them.
+/// Returns the plan with the guard bits `guards`. Operations beyond the end of the list get `first` guard bits, and the
+/// function adds these bits to the list. Fails if a formula has no plan with these bits.
 fn with_guards(
     statement: &ExpressionStatement,
     guards: &mut Guards,

@@ -36,7 +36,7 @@ const ANYTHING: Enclosure = Enclosure::between(f64::NEG_INFINITY, f64::INFINITY)
 pub(super) struct Undecided {
     /// The node whose error has no limit.
     pub(super) node: NodeId,
-    /// The reason.
+    /// The reason, as a phrase about the node. For example, `its value has no limit`.
     pub(super) what: &'static str,
 }
 
@@ -263,7 +263,8 @@ impl ErrorAnalysis<'_> {
         }
     }
 
-    /// Returns the limits of a node, from the limits of the nodes that it reads.
+    /// Returns the limits of the value and of the error of a node, computed from the limits of the nodes that the operation
+    /// reads. Fails if the box must be divided first.
     fn value(
         &self,
         id: NodeId,
@@ -572,8 +573,8 @@ fn known_places(node: NodeId, places: NodeError) -> Result<i32, Undecided> {
     }
 }
 
-/// Returns the limits of a function of one number. Its error is the error of its polynomials, plus the effect of its operand's
-/// error. Fails if the operand may leave the domain, or if the function has no value for it.
+/// Returns the limits of the value and of the error of a function of one number. The error is the error of the polynomials plus
+/// the effect of the operand's error. Fails if the operand may leave the domain, or if the function has no value for it.
 fn approximated(
     id: NodeId,
     approximation: &Approximation,

@@ -88,7 +88,8 @@ impl ExpressionPlan {
         Ok((plan, renumbered))
     }
 
-    /// Adds a function of the node `x` with known polynomials. The format of `x` must be the operand format of the polynomials.
+    /// Adds a function of the node `x` with known polynomials, and returns the node of its result. The format of `x` must be
+    /// the operand format of the polynomials. Fails if a node has more than 64 bits.
     pub(super) fn curve(
         &mut self,
         name: &str,
@@ -124,7 +125,8 @@ impl ExpressionPlan {
         Ok(last)
     }
 
-    /// Adds the nodes before the table, which map the operand to the shorter domain.
+    /// Adds the nodes that map the operand `x` to the shorter domain of the table, and returns them. Fails if a node has more
+    /// than 64 bits.
     fn reduced(
         &mut self,
         x: NodeId,
@@ -149,7 +151,8 @@ impl ExpressionPlan {
         }
     }
 
-    /// Adds the nodes of [`Rule::Size`]: |x|, but at most the largest number of `bits` bits.
+    /// Adds the nodes of [`Rule::Size`], and returns them: |x|, limited to `bits` bits. `centre` is the raw value from which
+    /// the result of a negative operand is subtracted, or `None` for an even function.
     fn size(
         &mut self,
         x: NodeId,
@@ -164,8 +167,8 @@ impl ExpressionPlan {
         Ok(ReducedOperand { negative, ..ReducedOperand::new(number) })
     }
 
-    /// Adds the nodes of [`Rule::Quadrants`]: the distance from the nearer zero of the sine, where a quarter turn has 2^`bits`
-    /// steps.
+    /// Adds the nodes of [`Rule::Quadrants`], and returns them: the distance from the nearest zero of the sine. A quarter turn
+    /// has 2^`bits` steps. `ahead` is the number of quarter turns that are added to the angle.
     fn angle_in_quadrant(
         &mut self,
         x: NodeId,
@@ -186,7 +189,8 @@ impl ExpressionPlan {
         Ok(ReducedOperand { negative: Some((is_negative, 0)), ..ReducedOperand::new(number) })
     }
 
-    /// Returns the node of a number with `bits` bits. The number must be from 0 to 2^`bits`; 2^`bits` becomes 2^`bits` − 1.
+    /// Returns the node of the integer `number`, limited to `bits` bits. The integer must be from 0 to 2^`bits`; the value
+    /// 2^`bits` becomes 2^`bits` − 1.
     fn limited_to_bits(
         &mut self,
         name: &str,
@@ -204,9 +208,9 @@ impl ExpressionPlan {
         self.narrow(name, limited, format, Rounding::Truncate)
     }
 
-    /// Adds the nodes of [`Rule::Octaves`]: the bits below the leading 1 of x. If `has_pairs`, one more bit above them
-    /// distinguishes the two octaves of a pair. `restores` has the shift and the addend for each number of leading zeros. The
-    /// addends have `frac` fraction bits. If `starts_at_0`, the operand may be 0.
+    /// Adds the nodes of [`Rule::Octaves`], and returns them: the bits below the leading 1 of `x`. If `has_pairs`, one more bit
+    /// above them distinguishes the two octaves of a pair. `restores` has the shift and the addend for each number of leading
+    /// zeros. The addends have `frac` fraction bits. If `starts_at_0`, the operand may be 0.
     fn word_in_octave(
         &mut self,
         x: NodeId,
@@ -246,8 +250,8 @@ impl ExpressionPlan {
         Ok(reduced)
     }
 
-    /// Adds x times the factor of an exponent, without low bits of the product. `scale` has the factor and the number of these
-    /// low bits. Returns x itself without a factor.
+    /// Adds the product of `x` and the factor of an exponent, and returns its node. `scale` has the factor and the number of
+    /// low bits that the product drops. Returns `x` itself if `scale` is `None`.
     fn exponent_of_two(
         &mut self,
         x: NodeId,
@@ -260,8 +264,9 @@ impl ExpressionPlan {
         self.shorten("exponent", product, 0, Rounding::Truncate)
     }
 
-    /// Adds the nodes of [`Rule::Exponent`]: the fraction of an exponent, and the distance of its integer part from `whole`,
-    /// which is the number of bits of the shift. `exponent` is in units of 2^−`bits`.
+    /// Adds the nodes of [`Rule::Exponent`], and returns them: the fraction of an exponent, and the number of bits of the
+    /// shift. This number is the distance of the exponent's integer part from `whole`, and at most `most_places`. `exponent` is
+    /// in units of 2^−`bits`.
     fn fraction_of_exponent(
         &mut self,
         exponent: NodeId,
@@ -286,8 +291,8 @@ impl ExpressionPlan {
         Ok(reduced)
     }
 
-    /// Adds the nodes after the table, which restore the result. The result has the fraction bits of `format`, rounded to the
-    /// nearest.
+    /// Adds the nodes that restore the result from the table's value `polynomial`, and returns the node of the result. The
+    /// result is rounded to the nearest value with the fraction bits of `format`.
     fn restored(
         &mut self,
         polynomial: NodeId,

@@ -33,8 +33,9 @@ pub(super) fn largest_errors(
         .try_reduce(none, larger)
 }
 
-/// Returns the largest error of each result over all combinations in which the first operand has the raw value `first`. `rest`
-/// has the domains of the other operands.
+/// Returns the largest error of each result over all combinations in which the first operand has the raw value `first`, in
+/// units of the result's last bit. `rest` has the domains of the other operands. Fails if a formula has no value for a
+/// combination.
 fn errors_at(
     statement: &ExpressionStatement,
     plan: &ExpressionPlan,
@@ -63,7 +64,8 @@ fn errors_at(
     }
 }
 
-/// Raises entries of `largest` to the errors for the raw operands `raw`, if these are larger.
+/// Raises the entries of `largest` to the errors for the raw operands `raw`, if these errors are larger. Fails if a formula has
+/// no value for these operands.
 fn add_errors(
     statement: &ExpressionStatement,
     plan: &ExpressionPlan,

@@ -192,7 +192,8 @@ fn candidate_with(
     Ok(PlanCandidate { plan, divisions })
 }
 
-/// Returns the plan with polynomials for all of its functions.
+/// Returns the plan with polynomials for all of its functions. Fails if a function has no polynomials, or if the plan cannot be
+/// rebuilt with the polynomials.
 ///
 /// Polynomials may have results of another width than estimated. A function that reads them then has another operand. The plan
 /// is therefore rebuilt until each function has polynomials that were found for exactly this function.

@@ -155,7 +155,8 @@ pub(super) fn lowered(
 }
 
 impl<'s> Lowering<'s> {
-    /// Returns the node of a result, rounded to the result's fraction bits.
+    /// Returns the node of the result with the index `number`, rounded to the result's fraction bits. Fails if a part has too
+    /// many bits, no finite values, or no rule.
     fn result(&mut self, number: usize) -> Result<NodeId, PlanRefusal> {
         let result = &self.statement.results[number];
         let node = self.part(&result.formula)?;
@@ -180,8 +181,8 @@ impl<'s> Lowering<'s> {
         }
     }
 
-    /// Returns the node of a result in its stated width, or the node itself if no width is stated. Fails if the values exceed a
-    /// width that refuses them.
+    /// Returns the node of the result with the index `number` in its stated width, or `node` itself if no width is stated.
+    /// Fails if the values of `node` exceed the width and the statement refuses such values.
     fn in_stated_width(&mut self, number: usize, node: NodeId) -> Result<NodeId, PlanRefusal> {
         let StatedResult { name, width, .. } = &self.statement.results[number];
         let Some(StatedWidth { format, overflow }) = width else { return Ok(node) };
@@ -200,8 +201,8 @@ impl<'s> Lowering<'s> {
         self.plan.narrow(&format!("{name}_in_width"), node, *format, Rounding::Truncate)
     }
 
-    /// Returns the node of a result that saturates, limited to its stated format. For any other result, returns the node
-    /// itself.
+    /// Returns the node of the result with the index `number`, limited to its stated format if the result saturates. For any
+    /// other result, returns `node` itself.
     fn saturated(&mut self, number: usize, node: NodeId) -> Result<NodeId, PlanRefusal> {
         let StatedResult { name, width, .. } = &self.statement.results[number];
         let Some(StatedWidth { format, overflow: StatedOverflow::Saturate(_) }) = width else {
@@ -221,13 +222,15 @@ impl<'s> Lowering<'s> {
         Ok(limited)
     }
 
-    /// Returns limits of the values of a part, for the operands for which a result with this part is promised.
+    /// Returns an interval that contains the values of a part, for all operands for which a result with this part is promised.
+    /// Fails if the values have no finite limits.
     fn range(&self, part: &Expression) -> Result<Enclosure, PlanRefusal> {
         range_of(self.statement, part).map_err(|error| error.refusal(self.statement, part))
     }
 
-    /// Chooses a number of fraction bits: `frac` plus the guard bits of the next rounding operation. `make` adds the node with
-    /// this number. The operation is counted even if `make` rounds nothing, so that later operations keep their numbers.
+    /// Chooses a number of fraction bits, and returns the node that `make` adds with this number. The number is `frac` plus the
+    /// guard bits of the next rounding operation. The operation is counted even if `make` rounds nothing, so that later
+    /// operations keep their numbers.
     fn rounding(
         &mut self,
         frac: i32,
@@ -244,7 +247,8 @@ impl<'s> Lowering<'s> {
         Ok(node)
     }
 
-    /// Returns the node of a part of a formula, and adds the node if the part has none.
+    /// Returns the node of a part of a formula. Adds the node and all nodes that it reads if the part has no node. Fails if a
+    /// part has too many bits, no finite values, or no rule. The refusal has the location of the part.
     fn part(&mut self, part: &Expression) -> Result<NodeId, PlanRefusal> {
         if let Some((_, node)) = self.known.iter().find(|(known, _)| known == part) {
             return Ok(*node);
@@ -282,9 +286,9 @@ impl<'s> Lowering<'s> {
         self.function("curve", node, &function, range)
     }
 
-    /// Returns the node of a function for which there is a rewriting: a scaled direction, a power, a sine or a cosine, a
-    /// logarithm, or an exponential function. `function` is the part with `x` in the place of `core`. Returns `None` for any
-    /// other function.
+    /// Returns the node of a function for which a rewriting exists: a scaled direction, a power, a sine or a cosine, a
+    /// logarithm, or an exponential function. `function` is the part `part` in which `x` replaces `core`. Returns `None` for
+    /// any other function. Fails if a part has too many bits, no finite values, or no rule.
     fn rewritten(
         &mut self,
         part: &Expression,
@@ -308,7 +312,8 @@ impl<'s> Lowering<'s> {
         self.exponential(core, function)
     }
 
-    /// Returns the node of a constant. The constant is exact if it has few bits, and otherwise rounded.
+    /// Returns the node of a constant. A constant with few bits is exact, and any other constant is rounded. Fails if the
+    /// constant is not a finite number.
     fn number(&mut self, part: &Expression) -> Result<NodeId, PlanRefusal> {
         if let Some((raw, frac)) = dyadic(part) {
             return self.plan.constant("constant", raw, frac);
@@ -324,7 +329,8 @@ impl<'s> Lowering<'s> {
         })
     }
 
-    /// Returns the node of an operation whose inputs are parts of the formula.
+    /// Returns the node of an operation whose inputs are parts of the formula. Fails if a part has too many bits, no finite
+    /// values, or no rule.
     fn operation(&mut self, part: &Expression) -> Result<NodeId, PlanRefusal> {
         match &part.kind {
             Kind::Operand(name) => Err(PlanRefusal::new(
@@ -398,7 +404,8 @@ impl<'s> Lowering<'s> {
         }
     }
 
-    /// Returns the node of a factor, shortened if it has more bits than a multiplier takes.
+    /// Returns the node of a factor of a product, shortened if it has more bits than a multiplier takes. Fails if a part has
+    /// too many bits, no finite values, or no rule.
     fn factor(&mut self, part: &Expression) -> Result<NodeId, PlanRefusal> {
         let node = self.part(part)?;
         let format = self.plan.node(node).format;
@@ -436,8 +443,9 @@ impl<'s> Lowering<'s> {
         }
     }
 
-    /// Returns the node of a function of `node`, computed by polynomials. `range` must contain the values of the node for all
-    /// operands for which a result is promised.
+    /// Returns the node of a function of `node`, computed by polynomials. `range` must contain the values of `node` for all
+    /// operands for which a result is promised. Fails if `node` has only one value, or if the function is not finite for some
+    /// value.
     fn function(
         &mut self,
         name: &str,
@@ -471,8 +479,8 @@ impl<'s> Lowering<'s> {
         self.rounding(finest + 2, |own, frac| own.approximation(name, node, function, domain, frac))
     }
 
-    /// Adds a function of one node with `frac` fraction bits, for the raw operands in `domain`. Fails if the function is not
-    /// finite on the domain.
+    /// Adds a function of `node` with `frac` fraction bits, for the raw values of `node` in `domain`, and returns the new node.
+    /// Fails if the function is not finite on the domain.
     fn approximation(
         &mut self,
         name: &str,

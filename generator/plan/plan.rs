@@ -173,7 +173,8 @@ impl ExpressionPlan {
         }
     }
 
-    /// Adds an exact operation whose raw results lie in `range`, with `frac` fraction bits.
+    /// Adds an exact operation whose raw results lie in `range`, with `frac` fraction bits, and returns its node. Fails if the
+    /// node has more than 64 bits.
     fn exact(
         &mut self,
         name: &str,
@@ -195,7 +196,8 @@ impl ExpressionPlan {
         self.insert(name, Operation::Operand(number), format, range)
     }
 
-    /// Adds the exact constant with the raw value `raw` and `frac` fraction bits.
+    /// Adds the exact constant with the raw value `raw` and `frac` fraction bits, and returns its node. For example, 3 and 1
+    /// give the constant 1.5. Fails if the node has more than 64 bits.
     pub(super) fn constant(
         &mut self,
         name: &str,
@@ -206,7 +208,8 @@ impl ExpressionPlan {
         self.rounded_constant(name, raw, frac, value)
     }
 
-    /// Adds the raw constant `raw` for a real number that lies in the interval `value`.
+    /// Adds the raw constant `raw` with `frac` fraction bits for a real number that lies in the interval `value`, and returns
+    /// its node. Fails if the node has more than 64 bits.
     pub(super) fn rounded_constant(
         &mut self,
         name: &str,
@@ -226,8 +229,8 @@ impl ExpressionPlan {
         self.exact(name, Operation::Constant { raw, value }, (raw, raw), frac)
     }
 
-    /// Returns the raw ranges of two nodes, both with as many fraction bits as the finer node has, and this number of fraction
-    /// bits.
+    /// Returns the raw ranges of two nodes, converted to the same number of fraction bits, and this number. It is the larger
+    /// one of the two nodes. For example, the raw range 0 to 3 with one fraction bit becomes 0 to 6 if the other node has two.
     fn aligned(&self, a: NodeId, b: NodeId) -> (Interval, Interval, i32) {
         let (a, b) = (self.node(a), self.node(b));
         let frac = a.format.frac.max(b.format.frac);
@@ -333,7 +336,8 @@ impl ExpressionPlan {
         self.exact(name, Operation::Choose { condition, cases }, range, frac)
     }
 
-    /// Adds a · 2^`exponent`, which has the same bits as a with another binary point.
+    /// Adds a · 2^`exponent`, and returns its node. It has the same bits as `a`, with another binary point. Returns `a` itself
+    /// if `exponent` is 0.
     pub(super) fn scale(
         &mut self,
         name: &str,
@@ -350,14 +354,16 @@ impl ExpressionPlan {
         self.insert(name, Operation::Scale(a), format, range)
     }
 
-    /// Adds a node with the value of another node. A result that is an operand itself needs such a node, because its register
-    /// has its own name.
+    /// Adds a node with the value of the node `a`, and returns the new node. A result that is an operand itself needs a copy,
+    /// because its register has its own name.
     pub(super) fn copy(&mut self, name: &str, a: NodeId) -> Result<NodeId, PlanRefusal> {
         let PlanNode { format, range, .. } = *self.node(a);
         self.insert(name, Operation::Scale(a), format, range)
     }
 
-    /// Adds a converted to `format`. The caller must prove that no value exceeds the format.
+    /// Adds the node `a` converted to `format` with the given rounding, and returns the new node. Returns `a` itself if it
+    /// already has this format. The caller must prove that no value exceeds the format. Fails if the node has more than 64
+    /// bits.
     pub(super) fn narrow(
         &mut self,
         name: &str,
@@ -378,8 +384,8 @@ impl ExpressionPlan {
         self.insert(name, Operation::Narrow(a, rounding), format, range)
     }
 
-    /// Adds a with `frac` fraction bits, and with as many integer bits as its values need. Returns a itself if it has no more
-    /// fraction bits.
+    /// Adds the node `a` rounded to `frac` fraction bits, with as many integer bits as its values need, and returns the new
+    /// node. Returns `a` itself if it does not have more fraction bits. Fails if the node has more than 64 bits.
     pub(super) fn shorten(
         &mut self,
         name: &str,
@@ -396,8 +402,9 @@ impl ExpressionPlan {
         self.narrow(name, a, Format::holding(range.0, range.1, frac), rounding)
     }
 
-    /// Adds a with its low bits replaced by a single 1, in a format that must have fewer fraction bits than a. The caller must
-    /// prove that no value exceeds the format.
+    /// Adds the node `a` with its low bits replaced by a single 1, and returns the new node. `format` must have fewer fraction
+    /// bits than `a`, and its last bit is this 1. For example, 0.1011 with a format of two fraction bits becomes 0.11. The
+    /// caller must prove that no value exceeds the format.
     pub(super) fn middle(
         &mut self,
         name: &str,
@@ -411,8 +418,9 @@ impl ExpressionPlan {
         self.insert(name, Operation::Middle(a), format, range)
     }
 
-    /// Adds a as the operand of a table. If a has more than `frac` + 1 fraction bits, all bits beyond `frac` are replaced by a
-    /// single 1. The table absorbs this bit, so that it costs no logic, and the error is as small as with rounding.
+    /// Adds the node `a` as the operand of a table, and returns the new node. If `a` has more than `frac` fraction bits, all
+    /// bits beyond `frac` are replaced by a single 1; otherwise returns `a` itself. The table absorbs this bit, so that it
+    /// costs no logic, and the error is as small as with rounding.
     pub(super) fn shorten_for_table(
         &mut self,
         name: &str,
@@ -428,7 +436,7 @@ impl ExpressionPlan {
         self.middle(name, a, Format::holding(range.0, range.1, frac + 1))
     }
 
-    /// Adds bit `number` of the integer a.
+    /// Adds the bit `number` of the integer `a`, and returns its node. Bit 0 is the lowest.
     pub(super) fn bit(
         &mut self,
         name: &str,
@@ -438,14 +446,16 @@ impl ExpressionPlan {
         self.insert(name, Operation::Bit(a, number), Format::BIT, (0, 1))
     }
 
-    /// Adds the greatest integer that is not above a, which must have fraction bits.
+    /// Adds the greatest integer that is not above `a`, and returns its node. `a` must have fraction bits. For example, −1.5
+    /// gives −2.
     pub(super) fn integer_part(&mut self, name: &str, a: NodeId) -> Result<NodeId, PlanRefusal> {
         let node = self.node(a);
         let (frac, range) = (node.format.frac, node.range);
         self.exact(name, Operation::IntegerPart(a), (range.0 >> frac, range.1 >> frac), 0)
     }
 
-    /// Adds the integer part and the fraction part of a, which must have fraction bits.
+    /// Adds the integer part and the fraction part of `a`, and returns the two nodes in this order. `a` must have fraction
+    /// bits. For example, −1.25 gives −2 and 0.75.
     pub(super) fn split(&mut self, name: &str, a: NodeId) -> Result<[NodeId; 2], PlanRefusal> {
         let integer = self.integer_part(&format!("{name}_integer"), a)?;
         let frac = self.node(a).format.frac;
@@ -459,7 +469,8 @@ impl ExpressionPlan {
         Ok([integer, fraction])
     }
 
-    /// Adds the normalised word of [`Operation::Normalise`], and the number of bits, or pairs of bits, of its shift.
+    /// Adds the normalised word of [`Operation::Normalise`] and the number of bits, or of pairs of bits, by which the word is
+    /// shifted. Returns the two nodes in this order. Fails if the node has more than 64 bits.
     pub(super) fn normalise(
         &mut self,
         name: &str,
@@ -477,7 +488,8 @@ impl ExpressionPlan {
         Ok([normalised, places])
     }
 
-    /// Adds a · 2^places in `format`. The caller must prove that no value exceeds the format.
+    /// Adds a · 2^`places` in `format`, and returns its node. The caller must prove that no value exceeds the format. Fails if
+    /// the node has more than 64 bits.
     pub(super) fn shift_left(
         &mut self,
         name: &str,
@@ -499,7 +511,8 @@ impl ExpressionPlan {
         self.insert(name, Operation::ShiftRight(a, places), format, range)
     }
 
-    /// Adds a table of constants with `frac` fraction bits, one for each value of the address.
+    /// Adds a table of raw constants with `frac` fraction bits, and returns the node of the constant that `address` selects.
+    /// Address 0 selects the first constant. Fails if the node has more than 64 bits.
     pub(super) fn lookup(
         &mut self,
         name: &str,
@@ -512,8 +525,9 @@ impl ExpressionPlan {
         self.exact(name, Operation::Lookup { address, words }, (low, high), frac)
     }
 
-    /// Adds a function of the number a, computed by polynomials. `values` are limits of the function's raw values, widened by
-    /// the allowed error.
+    /// Adds a function of the node `a`, computed by polynomials, and returns its node. `values` are limits of the function's
+    /// raw values, widened by the allowed error; they give the format if no polynomials are known yet. Fails if the node has
+    /// more than 64 bits.
     pub(super) fn polynomial(
         &mut self,
         name: &str,

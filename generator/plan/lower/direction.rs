@@ -32,8 +32,9 @@ impl Scaling {
 }
 
 impl Lowering<'_> {
-    /// Returns the node of a direction times a constant. `core` must be the direction, and `function` the whole formula with x
-    /// in the place of `core`. The constant then becomes a part of the table. Returns `None` for any other formula.
+    /// Returns the node of a direction times a constant. `core` must be the direction, and `function` the whole formula in
+    /// which x replaces `core`. The constant then becomes a part of the table. Returns `None` for any other formula. Fails if a
+    /// part has too many bits, no finite values, or no rule.
     pub(super) fn scaled_direction(
         &mut self,
         core: &Expression,
@@ -57,7 +58,8 @@ impl Lowering<'_> {
         self.direction(y, x, &scaling).map(Some)
     }
 
-    /// Returns the node of the direction of the point (x, y), times the constant in `scaling`.
+    /// Returns the node of the direction of the point (x, y), an angle in radians times the constant in `scaling`. Fails if a
+    /// part has too many bits, no finite values, or no rule.
     pub(super) fn direction(
         &mut self,
         y: &Expression,
@@ -100,8 +102,9 @@ impl Lowering<'_> {
         Ok(whole)
     }
 
-    /// Returns an angle, mirrored if `coordinate` is negative. With `scaling`, the mirrored angle is half a turn minus the
-    /// angle. Without `scaling`, it is the negative angle.
+    /// Returns the node of an angle that is mirrored if `coordinate` is negative. With `scaling`, the mirrored angle is half a
+    /// turn minus the angle. Without `scaling`, it is the negative angle. Returns `angle` itself if `coordinate` is never
+    /// negative.
     fn mirrored_where_negative(
         &mut self,
         name: &str,

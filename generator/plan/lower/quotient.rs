@@ -14,7 +14,8 @@ use crate::refusal::PlanRefusal;
 use crate::statement::StatedResult;
 
 impl Lowering<'_> {
-    /// Returns the node of a / b. `part` must be this quotient as a formula.
+    /// Returns the node of the quotient a / b. `part` must be this quotient as a formula. Fails if a part has too many bits, no
+    /// finite values, or no rule. For example, a divisor that may be 0 gives no finite values.
     pub(super) fn quotient(
         &mut self,
         a: &Expression,

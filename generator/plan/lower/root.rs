@@ -62,9 +62,9 @@ pub(super) struct Octave {
 }
 
 impl Lowering<'_> {
-    /// Returns the node of a power. `part` must be the formula of the power, `core` its operand, and `function` the formula
-    /// with x in the place of `core`. Returns `None` if the operand may be negative, or if it has few bits and few octaves;
-    /// then a single table is better.
+    /// Returns the node of a power. `part` must be the formula of the power, `core` its operand, and `function` the formula in
+    /// which x replaces `core`. Returns `None` if the operand may be negative. Also returns `None` if a single table is better,
+    /// because the operand has few bits and few octaves. Fails if a part has too many bits, no finite values, or no rule.
     pub(super) fn power(
         &mut self,
         part: &Expression,
@@ -119,8 +119,9 @@ impl Lowering<'_> {
         self.plan.choose("power_or_zero", is_some, [zero, shifted]).map(Some)
     }
 
-    /// Normalises a node that is not below 0, except for its rounding error. `range` must contain its exact values. If
-    /// `by_pairs` is true, the word is shifted by an even number of bits.
+    /// Normalises a node whose values are not below 0, apart from rounding errors. The word is shifted to the left, so that a
+    /// fraction from 1/2 to below 1 remains; returns this fraction and the shift. If `by_pairs` is true, the shift has an even
+    /// number of bits, and the fraction is from 1/4. `range` must contain the exact values of the node.
     pub(super) fn octave(
         &mut self,
         node: NodeId,
@@ -176,7 +177,7 @@ impl Lowering<'_> {
         self.plan.maximum("not_negative", node, zero)
     }
 
-    /// Returns the node of `places` times a small constant.
+    /// Returns the node of `places` times the constant `factor`, or `places` itself if the factor is 1.
     fn multiple(&mut self, places: NodeId, factor: i32) -> Result<NodeId, PlanRefusal> {
         if factor == 1 {
             return Ok(places);

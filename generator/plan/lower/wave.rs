@@ -89,8 +89,8 @@ impl Lowering<'_> {
         self.wave_by_quadrants(kind, node, power).map(Some)
     }
 
-    /// Returns the node of a sine or a cosine, by a table of the sine in a quadrant. `node` times 2^`power` is the angle in
-    /// quarter turns.
+    /// Returns the node of a sine or a cosine (`kind`), computed by a table of the sine in a quadrant. `node` times 2^`power`
+    /// is the angle in quarter turns. Fails if a part has too many bits, no finite values, or no rule.
     fn wave_by_quadrants(
         &mut self,
         kind: Function,
@@ -113,7 +113,8 @@ impl Lowering<'_> {
         self.with_sign("wave", size, is_negative)
     }
 
-    /// Returns the node of a sine or a cosine, by tables of both in an octant.
+    /// Returns the node of a sine or a cosine (`kind`), computed by tables of the sine and the cosine in an octant. `core`
+    /// times 2^`power` is the angle in quarter turns. A sine and a cosine of the same angle share the tables.
     ///
     /// In the octants 0 to 3, the absolute value of the sine is the sine, the cosine, the cosine and the sine of the reduced
     /// angle. The absolute value of the cosine is the other value in each octant. The octants 4 to 7 repeat this pattern. The
@@ -146,7 +147,9 @@ impl Lowering<'_> {
         }
     }
 
-    /// Adds the tables of an octant, with the nodes that restore the results for the whole angle.
+    /// Adds the tables of the sine and the cosine in an octant, and the nodes that restore the results for the whole angle.
+    /// Returns these nodes. `core` times 2^`power` is the angle in quarter turns. Fails if a part has too many bits, no finite
+    /// values, or no rule.
     fn octant_waves(&mut self, core: &Expression, power: i32) -> Result<OctantWaves, PlanRefusal> {
         let node = self.part(core)?;
         let eighths = self.plan.scale("eighths", node, power + 1)?;
@@ -171,15 +174,16 @@ impl Lowering<'_> {
         })
     }
 
-    /// Returns the reduced angle within a quadrant or an octant, from 0 to 1: `way` if the number of the quadrant or octant is
-    /// even, and 1 − `way` if it is odd.
+    /// Returns the node of the reduced angle within a quadrant or an octant, a number from 0 to 1. It is `way` if the number of
+    /// the quadrant or octant is even, and 1 − `way` if the number is odd.
     fn folded(&mut self, name: &str, is_odd: NodeId, way: NodeId) -> Result<NodeId, PlanRefusal> {
         let one = self.plan.constant("whole", 1, 0)?;
         let back = self.plan.subtract("angle_back", one, way)?;
         self.plan.choose(&format!("angle_in_{name}"), is_odd, [way, back])
     }
 
-    /// Returns the node of a table of a sine or a cosine, for a reduced angle from 0 to 1, both included.
+    /// Returns the node of a table of a sine or a cosine, which `formula` states, for a reduced angle from 0 to 1, both
+    /// included.
     fn wave_of_angle(
         &mut self,
         name: &str,
@@ -193,7 +197,7 @@ impl Lowering<'_> {
         })
     }
 
-    /// Returns the node `size`, negated if the bit `is_negative` is 1.
+    /// Returns the node of `size`, negated if the bit `is_negative` is 1.
     fn with_sign(
         &mut self,
         name: &str,
