@@ -42,8 +42,8 @@ pub fn describe(d: &Designer, config: &Config) {
     d.microprogram(steps.into_iter().chain(outputs));
 }
 
-/// Builds the exact `n·(1 − cos γ) + cos γ`. If cos γ = 0, it is one unit in the last place more, so that it is never 0. The
-/// quotient is 0 then, whatever the divisor.
+/// Builds the exact divisor `n·(1 − cos γ) + cos γ`. If cos γ = 0, the divisor is larger by one unit in the last place, so that
+/// it is not 0 for n = 0. The quotient is then 0, whatever the divisor is.
 fn divisor<'d>(d: &'d Designer, cos_gamma: Signal<'d>, exponent: Signal<'d>) -> Signal<'d> {
     let (c, n) = (cos_gamma.format(), exponent.format());
     let one = d.constant("one", 1.0, Format::unsigned(1, c.frac));

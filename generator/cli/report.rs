@@ -57,7 +57,8 @@ pub struct ReportList {
 }
 
 impl ReportList {
-    /// Adds a report. As text, it is printed at once.
+    /// Adds a report. If the command prints text, prints the report at once; with `--json`, stores the report as JSON until the
+    /// list ends.
     ///
     /// # Errors
     /// Fails if the report's own method fails.

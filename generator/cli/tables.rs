@@ -160,7 +160,8 @@ fn drawn(
     table.to_string()
 }
 
-/// Returns each row as a paragraph: its first cell, and below it the other cells with their headings.
+/// Returns the table as text without columns, for a narrow terminal. Each row becomes its first cell, and below it a line for
+/// each other cell with the heading. Lines are broken at `room` characters, or not at all if it is `None`.
 fn stacked(columns: &[TerminalColumn<'_>], rows: &[Vec<String>], room: Option<usize>) -> String {
     let mut lines = Vec::new();
     for row in rows {

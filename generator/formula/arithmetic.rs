@@ -31,23 +31,25 @@ pub(super) trait Arithmetic {
 
     fn multiply(&self, a: &Self::Value, b: &Self::Value) -> Result<Self::Value, String>;
 
-    /// Divides. The caller must make sure that the interval `b` does not contain 0.
+    /// Returns the interval of a / b. The caller must make sure that the interval `b` does not contain 0.
     fn divide(&self, a: &Self::Value, b: &Self::Value) -> Result<Self::Value, String>;
 
-    /// Computes the product of `exponent` factors `a`. `exponent` must be at least 1.
+    /// Returns the interval of the product of `exponent` factors `a`. `exponent` must be at least 1.
     fn repeated_product(&self, a: &Self::Value, exponent: u32) -> Result<Self::Value, String>;
 
-    /// Computes a power. The caller must make sure that no number in the interval `a` is below 0.
+    /// Returns the interval of a to the power of b. The caller must make sure that no number in the interval `a` is below 0.
     fn power(&self, a: &Self::Value, b: &Self::Value) -> Result<Self::Value, String>;
 
-    /// Computes a function. The caller must make sure that the whole interval `a` is within its domain.
+    /// Returns the interval of the values of `function` for `a`. The caller must make sure that the whole interval `a` is
+    /// within the domain of the function.
     fn function(&self, function: Function, a: &Self::Value) -> Result<Self::Value, String>;
 
     fn minimum(&self, a: &Self::Value, b: &Self::Value) -> Self::Value;
 
     fn maximum(&self, a: &Self::Value, b: &Self::Value) -> Self::Value;
 
-    /// Compares the lower and the upper end of the interval with 0.
+    /// Returns how the lower and the upper end of the interval compare with 0. For example, `(Less, Greater)` means that the
+    /// interval contains 0.
     fn signs(&self, a: &Self::Value) -> (Ordering, Ordering);
 
     /// Returns the greatest integer that is not above the value. Returns `None` if it is not the same integer for the whole

@@ -226,7 +226,7 @@ impl std::ops::Mul for Enclosure {
 impl std::ops::Div for Enclosure {
     type Output = Self;
 
-    /// Divides. The interval of the divisor must not contain 0.
+    /// Returns the interval of the quotients. The interval of the divisor must not contain 0.
     fn div(self, other: Self) -> Self {
         self.corners(other, |a, b| {
             if b.is_infinite() {

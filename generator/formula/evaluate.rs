@@ -176,7 +176,8 @@ impl Comparison {
     }
 }
 
-/// Computes a function of one number. Fails if the number may be outside the function's domain.
+/// Returns the interval of the values of a function for a number in the interval `a`. Fails if the number may be outside the
+/// function's domain, for example a root of a negative number.
 pub(super) fn unary<A: Arithmetic>(
     arithmetic: &A,
     function: Function,
@@ -208,7 +209,8 @@ pub(super) fn unary<A: Arithmetic>(
     arithmetic.function(function, a)
 }
 
-/// Computes a function of two numbers. Fails if the numbers may be outside the function's domain.
+/// Returns the interval of the values of `operator` for numbers in the intervals `a` and `b`. Fails if the numbers may be
+/// outside the domain, for example a division by an interval that contains 0.
 pub(super) fn binary<A: Arithmetic>(
     arithmetic: &A,
     operator: Operator,

@@ -193,7 +193,8 @@ impl ErrorAnalysis<'_> {
         }
     }
 
-    /// Returns the first and the last integer part that a node can have; `None` if there are too many.
+    /// Returns the smallest and the largest integer part that the value of a node can have. Returns `None` if there are more
+    /// than 70 such integers.
     fn integers(&self, id: NodeId, values: &[NodeError]) -> Option<(i64, i64)> {
         let actual = values[id.0].actual;
         let (first, last) = (actual.low.floor() as i64, actual.high.floor() as i64);

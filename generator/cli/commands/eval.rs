@@ -225,7 +225,8 @@ fn results(contract: &dyn Contract, raw: &[i64]) -> Vec<ResultComparison> {
 }
 
 impl ResultComparison {
-    /// Compares a raw result with the values of the formula on both sides of a jump. Without a jump, both values are equal.
+    /// Makes the comparison of a raw result with the formula's value. `exact` has the values on the two sides of a jump of the
+    /// formula; without a jump, the two values are equal.
     fn new(name: &str, format: Format, raw: i64, exact: [f64; 2]) -> Self {
         let unit = format.to_f64(1);
         Self {

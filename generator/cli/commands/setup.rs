@@ -84,7 +84,8 @@ struct Input {
     vector: bool,
 }
 
-/// The names of the inputs for a line: first the vectors, then the numbers. `OF_POINT` has the same for a single point.
+/// The names of the inputs of a device that computes lines: first the vectors, then the numbers, separated by blanks.
+/// `OF_POINT` has the names for a device that computes single points.
 const OF_LINE: [&str; 2] = [
     "normal_1 half_1 light_1 view_1 normal_2 half_2 light_2 view_2",
     "theta_1 theta_2 gamma points exponent intensity",

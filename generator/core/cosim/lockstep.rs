@@ -29,19 +29,21 @@ pub(super) const LANES: usize = 32;
 /// The number of streams of a run of middle length, enough for two threads. A longer run has a multiple of this number.
 const STREAMS: u64 = 2 * LANES as u64;
 
-/// The fewest results of a stream of a core.
+/// The smallest number of results in a stream of a core with a microprogram.
 const FEWEST_POINTS: u64 = 64;
 
-/// A stream must have at least as many results as this number of the longest computations gives.
+/// The smallest length of a stream, in computations with the largest number of results. For example, a stream has at least 2000
+/// results if a line has up to 1000 points.
 const COMPUTATIONS: u64 = 2;
 
-/// The fewest results of a stream in a run that has more than [`STREAMS`] streams.
+/// The smallest number of results in a stream, in a run with more than [`STREAMS`] streams.
 const MANY_POINTS: u64 = 1024;
 
-/// A run that would have fewer streams than this has only one stream.
+/// The smallest number of streams of a divided run. A run with too few results for this number has only one stream.
 const FEWEST_STREAMS: u64 = 8;
 
-/// The results of a stream of a pipeline, and the fewest streams into which a run of a pipeline is divided.
+/// The largest number of results in a stream of a pipeline. The next constant is the smallest number of streams into which a
+/// run of a pipeline is divided.
 const PIPELINE_POINTS: u64 = 2048;
 const FEWEST_PIPELINES: u64 = 4;
 

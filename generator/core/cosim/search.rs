@@ -71,7 +71,7 @@ impl Reached {
     }
 }
 
-/// Returns the one with the larger error, or `a` if the errors are equal.
+/// Returns `a` or `b`: the one with the larger error, or `a` if the errors are equal.
 fn larger(a: Reached, b: Reached) -> Reached {
     if b.units > a.units { b } else { a }
 }
