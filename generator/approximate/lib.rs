@@ -126,8 +126,8 @@ pub struct HornerStep {
 impl HornerStep {
     /// Returns the product of the partial sum `sum` and the offset `offset` in the segment, without the low bits that this step
     /// drops. The caller adds the product to the next coefficient. `rest` is the number of bits of the whole offset. For
-    /// example, the sum 5 and the offset −3 give −15; if the step uses all bits of the offset and drops two bits of the
-    /// product, the result is −4 (rounded down).
+    /// example, the sum 5 and the offset −3 give −15. If the step drops two bits of this product, the result is −4 (rounded
+    /// down).
     #[inline]
     pub fn product(self, sum: i64, offset: i64, rest: u32) -> i64 {
         let product = i128::from(sum) * i128::from(offset >> (rest - self.offset));
@@ -264,8 +264,8 @@ impl TargetFunction {
 
     /// Returns the numbering in which the last segment also contains the operands beyond a power of two, the overhang. For
     /// example, the domain of raw operands 0 to 1024 gets numbers of 10 bits and an overhang of 1. Returns `None` if the
-    /// overhang has more than 1/32 of the operands, if the results outside the domain are specified, or for the layout
-    /// `Halving`, whose last segment is too short.
+    /// overhang has more than 1/32 of the operands, or if the results outside the domain are specified. The layout `Halving`
+    /// also gives `None`, because its last segment is too short.
     fn numbering_with_overhang(&self, layout: Option<Layout>) -> Option<Numbering> {
         let span = (self.domain.1 - self.domain.0) as u64;
         let bits = u64::BITS - span.leading_zeros();

@@ -72,8 +72,8 @@ pub enum Rule {
         /// Whether two neighbouring octaves share the same restoring steps, so that the number has a bit that tells the two
         /// apart.
         pairs: bool,
-        /// The steps that restore the result, by the number of leading zeros of the operand: the shift to the right in bits,
-        /// and the value that is added before the shift, in units of the polynomial's last bit.
+        /// The steps that restore the result, by the number of leading zeros of the operand. A step is a shift to the right in
+        /// bits, and the value that is added before the shift, in units of the polynomial's last bit.
         restores: Vec<(u32, i64)>,
     },
     /// The number is the fraction of the exponent of two; the integer part of the exponent becomes a shift of the polynomial's

@@ -273,8 +273,8 @@ struct CutSearch<'s> {
 }
 
 impl CutSearch<'_> {
-    /// Returns whether a division has few enough segments, whether its numbers have enough bits for the offsets in the
-    /// segments, and whether its last segment can contain the overhang.
+    /// Returns whether a division has few enough segments and enough bits for the offsets in the segments, and whether its last
+    /// segment can contain the overhang.
     fn is_possible(&self, cut: &Segments) -> bool {
         cut.words() <= self.most.min(1 << ADDRESS)
             && cut.octaves + cut.prefix + u32::from(self.degree > 0) <= self.seen.bits

@@ -1,11 +1,11 @@
 //! The hardware description of the device `threshold`, which computes f = (n/2·(c − 1) + 1)², or 0 if this square is below a
 //! level.
 //!
-//! c = cos γ, where γ is the angle between the surface normal and the half vector; n is the specular exponent; the level comes
-//! from a table, ROM(n); f is the reflectance, the factor by which the device multiplies colours. The source is the patent UA
-//! 30041, which the patent UA 60139 (Glint calls it seed 001) cites. UA 30041 connects its blocks without a control block; this
-//! description adds two registers, so that no clock contains more than one multiplier before the outputs. Each kind of block is
-//! numbered from 1, as in the text of seed 001: register 1, adder 1, multiplier 1.
+//! c = cos γ, where γ is the angle between the surface normal and the half vector, and n is the specular exponent. The level
+//! comes from a table, ROM(n), and f is the reflectance, the factor by which the device multiplies colours. The source is the
+//! patent UA 30041, which the patent UA 60139 (Glint calls it seed 001) cites. UA 30041 connects its blocks without a control
+//! block; this description adds two registers, so that no clock contains more than one multiplier before the outputs. Each kind
+//! of block is numbered from 1, as in the text of seed 001: register 1, adder 1, multiplier 1.
 
 use glint_base::fixed::{Format, Overflow, Rounding, exp2};
 use glint_config::Config;

@@ -7,9 +7,9 @@ use super::shared::shared_keys;
 use super::values::Config;
 
 impl Schema {
-    /// Returns a sentence for each mistake in the schema itself, for a device's own tests. Mistakes are names that repeat, that
-    /// are not plain TOML, or that name both a table and a value; defaults outside their range or refused by `check`; and
-    /// conditions on keys or values that do not exist.
+    /// Returns a sentence for each mistake in the schema itself, for a device's own tests. A name is a mistake if it repeats,
+    /// is not plain TOML, or names both a table and a value. A default is a mistake if it is outside its range or refused by
+    /// `check`. A condition is a mistake if its key or its value does not exist.
     ///
     /// A schema without mistakes gives an empty list. The schema of a device must have no mistakes, because the reader relies
     /// on it.

@@ -33,9 +33,9 @@ pub fn follow(schema: &Schema, config: &Config, given: &BTreeSet<&str>) -> Confi
     config
 }
 
-/// Returns the value of a key with which the fewest conditions fail, and the nearest to its default of several: the number of
-/// failing conditions, the key and the configuration with this value. Returns `None` if `limit` or more conditions fail with
-/// every value.
+/// Finds the value of the key `key` with which the fewest conditions fail. If several values are equal in this, it takes the
+/// value nearest to the default. Returns the number of failing conditions, the key, and the configuration with this value.
+/// Returns `None` if `limit` or more conditions fail with every value.
 fn best<'k>(
     schema: &Schema,
     config: &Config,

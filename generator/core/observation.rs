@@ -166,7 +166,7 @@ pub struct Vectors {
     /// The index of the first clock in which the bench compares results and status. It compares the handshake outputs from the
     /// first clock after a clock with reset.
     pub known_from: usize,
-    /// Of how many ROM words one has computations that detect faults in it: every word if this is 1, every second word if it is
-    /// 2, and so on. It is 0 if the bench has no computations for ROM words.
+    /// The distance between two ROM words with computations that detect faults, in words. For example, 1 means that every word
+    /// has such computations, and 2 that every second word has them. It is 0 if the bench has no computations for ROM words.
     pub word_stride: usize,
 }

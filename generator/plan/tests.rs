@@ -190,8 +190,8 @@ fn refusals_name_the_part_and_a_remedy() {
     }
 }
 
-/// Formulas with rounded parts have plans. The square of a rounded value is not below 0, the larger of two rounded values has a
-/// small error, a divisor can be negative, and directions of rounded coordinates need bits in several operations.
+/// Formulas with rounded parts have plans. The square of a rounded value is not below 0, and the larger of two rounded values
+/// has a small error. A divisor can be negative, and directions of rounded coordinates need bits in several operations.
 #[test]
 fn formulas_with_rounded_parts_are_proved() {
     for formula in [

@@ -147,8 +147,8 @@ fn misfit(one: &Loaded) -> Option<String> {
 pub struct Made {
     /// The files that `generate` writes or checks.
     pub files: OutputFiles,
-    /// Of how many words of the memories the bench checks one. For example, 4 means that it checks every fourth word, and 1
-    /// that it checks all.
+    /// The distance between two ROM words that the bench checks, in words. For example, 4 means that the bench checks every
+    /// fourth word, and 1 that it checks all words.
     word_stride: usize,
 }
 

@@ -275,8 +275,9 @@ pub fn typical(contract: &dyn Contract, given: &[Option<i64>]) -> Vec<i64> {
     values
 }
 
-/// Lowers the operands of a line on which `f` at the first point does not depend, such as a step, until `f` in the middle of
-/// the line is at least a quarter of `f` at the first point. It does nothing if the device computes no lines.
+/// Lowers the operands of a line that change `f` only after the first point, such as a step, until `f` in the middle of the
+/// line is large enough. It must be at least a quarter of `f` at the first point. The function does nothing if the device
+/// computes no lines.
 fn slow_down(
     contract: &dyn Contract,
     highlight: &Highlight,

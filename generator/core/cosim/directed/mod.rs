@@ -60,8 +60,8 @@ pub struct ComputationCache(Mutex<HashMap<String, Arc<Mutex<Option<Computations>
 pub struct Computations {
     /// The raw operands of each computation, in the order of `Contract::operands`.
     pub operands: Vec<Vec<i64>>,
-    /// Of how many ROM words one has a computation that detects its inverted bits: every word if this is 1, every second word
-    /// if it is 2, and so on.
+    /// The distance between two ROM words whose inverted bits a computation detects, in words. For example, 1 means that every
+    /// word has such a computation, and 2 that every second word has one.
     pub word_stride: usize,
 }
 
@@ -160,8 +160,9 @@ pub fn computations(design: &Design, contract: &dyn Contract) -> Result<Computat
     Ok(Computations { operands, word_stride: of_words.word_stride })
 }
 
-/// Returns the indices of lines that read many words of tables: the first line, which is the longest, and each line in which
-/// more than half of the clocks read a word that no chosen line reads.
+/// Returns the indices in `lines` of lines that read many words of tables. The first line, which is the longest, is always one
+/// of them. Another line is one of them if it reads new words, which no chosen line reads: their number must exceed half of the
+/// line's clocks.
 fn sweeps(lines: &[PoolComputation]) -> Vec<usize> {
     let mut read = HashSet::new();
     let mut chosen = Vec::new();

@@ -28,8 +28,8 @@ pub const LONGEST: u32 = 64;
 /// simulates in five seconds.
 const MOST_CLOCKS: u64 = 40_000;
 
-/// The numbers of rounds in which other computations are tried for a word, if no candidate detects a fault in it: first with
-/// operands within their domains, and then with operands from their whole formats.
+/// The number of rounds that try other computations for a word, if no candidate detects a fault in it. These rounds use
+/// operands within their domains; then `ROUNDS_BEYOND` rounds use operands from their whole formats.
 const ROUNDS: usize = 6;
 const ROUNDS_BEYOND: usize = 6;
 
@@ -44,7 +44,8 @@ pub struct Chosen {
     pub chosen: BTreeSet<usize>,
     /// The raw operands of further computations that the search has found.
     pub found: Vec<Vec<i64>>,
-    /// Of how many ROM words one has a computation: every word if this is 1, every second word if it is 2, and so on.
+    /// The distance between two ROM words with a computation that detects faults, in words. For example, 1 means that every
+    /// word has such a computation, and 2 that every second word has one.
     pub word_stride: usize,
 }
 

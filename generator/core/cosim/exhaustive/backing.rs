@@ -1,8 +1,8 @@
 //! Finds the evidence for the error bound that a contract states.
 //!
-//! The evidence is one of four: a proof in Rust beside the golden model of a device of the catalogue, the record of an exhaustive
-//! check by `glint cosim --exhaustive`, the record of a proof by `glint certify`, or nothing but the author's statement.
-//! Datasheets and reports print it next to the bound.
+//! The evidence is a proof in Rust beside the golden model of a device of the catalogue, or the record of an exhaustive check
+//! by `glint cosim --exhaustive`, or the record of a proof by `glint certify`. Without any of these, only the author states the
+//! bound. Datasheets and reports print the evidence next to the bound.
 
 use std::fmt;
 use std::path::Path;

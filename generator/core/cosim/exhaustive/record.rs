@@ -31,8 +31,8 @@ pub struct Record {
     pub f: RecordedPeak,
     /// The largest error of a colour multiplier, in output units.
     colour_units: f64,
-    /// The upper bound that the check gives for the error of an output, in output units: the error of `f` for the largest
-    /// colour, plus the largest rounding error of a product with a colour.
+    /// The upper bound that the check gives for the error of an output, in output units. It is the error of `f` for the largest
+    /// colour plus the largest rounding error of a product with a colour.
     pub together: f64,
     /// Whether the contract's bound held for all operands.
     pub holds: bool,

@@ -138,9 +138,9 @@ impl Pipe {
         Ok(())
     }
 
-    /// Returns the predicted value of the compared net number `at` after the latest clock. Returns `None` if the value is not
-    /// predicted: for a signal that belongs to a point, if no point is in its stage, or if the computation of the point does
-    /// not reach the checkpoint.
+    /// Returns the predicted value of the compared net number `at` after the latest clock, or `None` if the value is not
+    /// predicted. The value of a point's signal is not predicted if no point is in its stage, or if the computation of the
+    /// point does not reach the checkpoint.
     #[inline]
     pub(super) fn expected(&self, at: usize) -> Option<u64> {
         let (column, stage) = self.columns[at];
