@@ -3,8 +3,7 @@
 //! For example, a device can compute 1/√x for x from 1 to 4 with such a polynomial. The domain is divided into [`Segments`]; a
 //! table has the polynomial's coefficients for each segment, and the hardware evaluates the polynomial in integers by Horner's
 //! rule. [`find`] chooses the degree, the segments, the coefficients and the bit widths. [`Piecewise::prove`] then compares the
-//! result of every operand with the formula. If the domain has more than 2^[`MOST_BITS`] operands, the proof uses intervals of
-//! operands instead.
+//! result of every operand with the formula, or uses intervals if there are more than 2^[`MOST_BITS`] operands.
 
 mod minimax;
 mod reduction;

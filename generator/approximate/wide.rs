@@ -1,8 +1,8 @@
 //! Proves a bound on the error of a piecewise polynomial by intervals, for domains with more than 2^26 operands.
 //!
-//! The proof treats the offset of an operand in its segment as a real number t. A word of the table is then a polynomial P(t).
-//! The hardware drops bits, so its result differs from P(t); the proof bounds this difference for a whole segment. Within an
-//! interval, the distance between the function and P is at most the distance in the middle plus the largest derivative times
+//! The proof treats the offset of an operand in its segment as a real number t, so that a word of the table is a polynomial
+//! P(t). The hardware drops bits, so its result differs from P(t); the proof bounds this difference for a whole segment. Within
+//! an interval, the distance between the function and P is at most the distance in the middle plus the largest derivative times
 //! half of the length. If this bound is too large, the interval is halved, down to a few operands that are computed one by one.
 
 use std::sync::atomic::{AtomicU64, Ordering};

@@ -1,8 +1,8 @@
 //! Estimates the area of a plan, so that the planner can choose among several plans for the same formulas.
 //!
 //! The unit is the look-up table of four inputs. An adder, a choice and a comparison take one for each bit. A table of
-//! polynomials takes one for each 16 words of a bit, and more for the sums of Horner's rule. Products take multipliers. They
-//! take look-up tables only for the bits that exceed a multiplier of 18 by 18 bits.
+//! polynomials takes one for each 16 words of a bit, and more for the sums of Horner's rule. Products take multipliers, and
+//! look-up tables only for the bits that exceed a multiplier of 18 by 18 bits.
 
 use super::node::{NodeId, Operation, PlanNode, normalising_shifts};
 use super::plan::ExpressionPlan;

@@ -1,9 +1,9 @@
 //! Drives a device with every combination of the bit patterns of its operands, one computation after another.
 //!
-//! A combination is a number: the bits of all operands side by side. For example, two operands of 8 bits have 2^16
-//! combinations. The combinations are shuffled: computation number p has the combination p·k mod 2^bits, for an odd constant k.
-//! Consecutive computations thus have little in common, and a register that failed to load seldom contains the right value by
-//! chance. The combination has no bits of an operand that the caller fixed at a value.
+//! A combination is a number: the bits of all operands side by side, without operands that the caller fixed at a value. For
+//! example, two operands of 8 bits have 2^16 combinations. The combinations are shuffled: computation number p has the
+//! combination p·k mod 2^bits, for an odd constant k. Consecutive computations thus have little in common, and a register that
+//! failed to load seldom contains the right value by chance.
 
 use std::sync::Arc;
 

@@ -1,9 +1,9 @@
 //! Drives the inputs of a pipeline with random points (sets of operands) and a random valid/ready handshake, clock by clock.
 //!
-//! [`Offers`] raises `in_valid` with the operands of a point, and keeps both until the pipeline takes the point. It pauses at
+//! [`Offers`] raises `in_valid` with the operands of a point, keeps both until the pipeline takes the point, and pauses at
 //! random between points. Now and then it withdraws a point that the pipeline has not taken, lowers `out_ready` so that results
-//! must wait, or applies a reset, which drops every point in the pipeline. Every 24 clocks it draws new probabilities for
-//! `in_valid` and `out_ready`. For example, `out_ready` is high in every clock for a while, and later in one clock of five.
+//! must wait, or applies a reset. A reset drops every point in the pipeline. Every 24 clocks it draws new probabilities: for
+//! example, `out_ready` is high in every clock for a while, and later in one clock of five.
 
 use std::collections::VecDeque;
 use std::sync::Arc;

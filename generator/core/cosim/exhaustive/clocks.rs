@@ -1,9 +1,9 @@
 //! Compares every register and every output with the golden model at every clock, for every combination of operands.
 //!
-//! This is feasible only for devices whose operands have at most 26 bits in total. A device of full width is therefore checked
-//! through a narrow configuration. The combinations are numbered and divided into blocks. Each lane of a simulator runs some
-//! consecutive combinations from power-up on, and each computation begins with the register values of the previous one. The
-//! result does not depend on the order of the blocks.
+//! This is feasible only for devices whose operands have at most 26 bits in total; a device of full width is checked through a
+//! narrow configuration. The combinations are numbered and divided into blocks. Each lane of a simulator runs some consecutive
+//! combinations from power-up on, and each computation begins with the register values of the previous one. The result does not
+//! depend on the order of the blocks.
 
 use std::fmt;
 use std::io::Write;

@@ -3,8 +3,8 @@
 //! An exhaustive check computes the error of a device for every combination of operand values that its contract lists. The
 //! digest of the contract in a record tells to which configuration the record belongs.
 //!
-//! Glint does not simply trust a record. The record names the operands with the largest error of the check. Glint computes the
-//! error at these operands again, and compares it with the recorded error ([`Record::proves`]).
+//! Glint does not simply trust a record. It computes the error again at the operands with the largest error in the record, and
+//! compares it with the recorded error ([`Record::proves`]).
 
 use std::path::{Path, PathBuf};
 
