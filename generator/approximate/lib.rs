@@ -1,10 +1,9 @@
 //! Finds piecewise polynomials in fixed point that approximate a function of one operand, and proves a bound on their error.
 //!
-//! For example, a device can compute 1/√x for x from 1 to 4 with such a polynomial. The domain is cut into [`Segments`]; a table
-//! holds the coefficients of each segment, and the hardware evaluates the polynomial in integers by Horner's rule. [`find`]
-//! chooses the degree, the segments, the coefficients and the bit widths. [`Piecewise::prove`] then computes the result of every
-//! operand and compares it with the formula, allowing for the error with which the formula is evaluated. If the domain has too
-//! many operands for that, the proof uses intervals within segments instead.
+//! For example, a device can compute 1/√x for x from 1 to 4 with such a polynomial. The domain is divided into [`Segments`]; a
+//! table has the polynomial's coefficients for each segment, and the hardware evaluates the polynomial in integers by Horner's
+//! rule. [`find`] chooses the degree, the segments, the coefficients and the bit widths. [`Piecewise::prove`] then compares the
+//! result of every operand with the formula, or uses intervals if there are more than 2^[`MOST_BITS`] operands.
 
 mod minimax;
 mod reduction;
@@ -32,33 +31,36 @@ pub use samples::Samples;
 pub use search::Wish;
 pub use segments::{Layout, SegmentOffset, Segments};
 
-/// The coefficients of a polynomial of the largest degree.
+/// The number of coefficients of a polynomial of the largest degree, which is 3.
 const MOST_SUMS: usize = 4;
 
-/// The most intervals in which a pole is looked for, and the part of the way between operands that is left out beside each:
-/// the formula may change there, as `if(x <= 0, …)` does.
+/// The largest number of intervals in which [`TargetFunction::pole`] looks for a pole.
 const POLES: u32 = 1 << 16;
+/// The distance from an operand that the search for a pole leaves out, as a fraction of the distance between two operands. The
+/// formula may jump at an operand, as `if(x <= 0, …)` does.
 const BESIDE: f64 = 1.0 / 1024.0;
 
-/// The words of a bit that a look-up table of four inputs holds.
+/// The number of bits that a look-up table with four inputs can store: one bit for each of 16 table words.
 pub const FULL_CELL: usize = 16;
 
-/// A domain may have an overhang of its operands divided by 2 to this power at most.
+/// An overhang (the operands of a domain beyond a power of two) may have at most the number of the domain's operands divided by
+/// 2^5.
 const SMALL_PART: u32 = 5;
 
-/// The largest number of bits of a domain whose operands a proof computes one by one.
+/// A proof computes the operands of a domain one by one if there are at most 2^26. A larger domain is proved by intervals.
 pub const MOST_BITS: u32 = 26;
 
 glint_config::choices! {
-    /// The results that a device may give for an operand outside the function's domain.
+    /// The result that a device gives for an operand outside the function's domain.
     #[derive(Hash)]
     pub enum Outside {
-        /// The result of the nearer end.
+        /// The result of the nearer end of the domain. For example, on the domain 0 to 1 the operand 1.25 gives the result of
+        /// the largest operand.
         Clamp = "clamp",
-        /// The result of the operand as many whole domains away. For example, on the domain 0 to 1 the operand 1.25 gives the
-        /// result of 0.25.
+        /// The result of the operand moved by a whole number of domain lengths into the domain. For example, on the domain 0 to
+        /// 1 the operand 1.25 gives the result of 0.25.
         Wrap = "wrap",
-        /// Any result.
+        /// Any result: the results of operands outside the domain are not specified.
         Anything = "anything",
     }
 }
@@ -68,17 +70,17 @@ glint_config::choices! {
 pub enum Curve {
     /// A formula of the operand x.
     Formula(Expression),
-    /// The curve through samples, which are measured points.
+    /// A curve through samples, which are measured points.
     Samples(Samples),
 }
 
-/// A function on a domain, and the formats that its operand and result have.
+/// A function of one operand on a domain, with the formats of operand and result and the largest allowed error.
 #[derive(Clone, Debug)]
 pub struct TargetFunction {
-    /// The function to approximate: a formula, or a curve through samples.
+    /// The function: a formula, or a curve through samples.
     pub curve: Curve,
-    /// The smallest and the largest raw operand of the domain. For example, the domain from 1 to below 4 with 16 fraction bits is
-    /// (65536, 262143).
+    /// The smallest and the largest raw operand of the domain, both included. For example, the domain from 1 to below 4 with 16
+    /// fraction bits is (65536, 262143).
     pub domain: (i64, i64),
     /// The fixed-point format of the operand x.
     pub operand: Format,
@@ -86,44 +88,45 @@ pub struct TargetFunction {
     pub outside: Outside,
     /// The number of fraction bits of the result.
     pub fraction: u32,
-    /// The largest allowed error, in units of the last bit of the result.
+    /// The largest allowed error, in units of the last bit of the result. Every error must be below this number.
     pub error: f64,
 }
 
-/// The reason why no approximation was found, with the key that the user should change.
+/// The reason why a search found no approximation, and the configuration key that the user should change.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Refusal {
-    /// The configuration key that the user should change.
+    /// The configuration key that the user should change, for example `function.formula`.
     pub key: &'static str,
-    /// The range of bytes in the formula, if the reason concerns a part of it.
+    /// The range of bytes in the formula's text to which the reason applies, or `None` if it applies to no particular part.
     pub place: Option<Range<usize>>,
-    /// The reason why no approximation was found, for the user.
+    /// The reason why no approximation was found, as text for the user.
     pub message: String,
-    /// The remedy, for the user. For example, it names a larger error that can be reached.
+    /// The remedy, as text for the user. For example, it may name a larger error that can be reached.
     pub remedy: String,
 }
 
 impl Refusal {
-    /// Makes a refusal that concerns no particular part of the formula.
+    /// Makes a refusal with the given key, reason and remedy, which concerns no particular part of the formula.
     pub fn new(key: &'static str, message: String, remedy: impl Into<String>) -> Self {
         Self { key, place: None, message, remedy: remedy.into() }
     }
 }
 
-/// The bit widths of one step of Horner's rule. Let p be the partial sum and t the offset of the operand in its segment: a step
-/// computes p·t, drops low bits of the product, and adds the next coefficient.
+/// The bit widths of one step of Horner's rule. Let p be the partial sum so far and t the offset of the operand in its segment.
+/// A step computes p·t, drops low bits of the product, and adds the next coefficient.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct HornerStep {
-    /// The number of leading bits of the offset that the step multiplies.
+    /// The number of leading bits of the offset that the step multiplies. The step ignores the lower bits of the offset.
     pub offset: u32,
     /// The number of low bits of the product that the step drops.
     pub dropped: u32,
 }
 
 impl HornerStep {
-    /// Returns the product of a partial sum and the offset in the segment, without the low bits that this step drops. The step
-    /// adds it to the next coefficient. `rest` is the number of bits of the offset. For example, the sum 5 and the offset −3 give
-    /// −4 if no bit of the offset and two bits of the product are dropped.
+    /// Returns the product of the partial sum `sum` and the offset `offset` in the segment, without the low bits that this step
+    /// drops. The caller adds the product to the next coefficient. `rest` is the number of bits of the whole offset. For
+    /// example, the sum 5 and the offset −3 give −15. If the step drops two bits of this product, the result is −4 (rounded
+    /// down).
     #[inline]
     pub fn product(self, sum: i64, offset: i64, rest: u32) -> i64 {
         let product = i128::from(sum) * i128::from(offset >> (rest - self.offset));
@@ -131,54 +134,57 @@ impl HornerStep {
     }
 }
 
-/// A piecewise polynomial in integers: the table of coefficients, and all bit widths of its hardware.
+/// A piecewise polynomial in integers: the table of coefficients, and all bit widths of the hardware that evaluates it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Piecewise {
     /// The fixed-point format of the operand x of the device.
     pub operand: Format,
-    /// The smallest and the largest raw operand of the domain.
+    /// The smallest and the largest raw operand of the domain, both included.
     pub domain: (i64, i64),
     /// The result that the device gives for operands outside the domain.
     pub outside: Outside,
-    /// The range reduction that maps an operand to the polynomial's shorter domain, if there is one.
+    /// The range reduction that maps an operand to the polynomial's shorter domain, or `None` if the polynomial covers the
+    /// whole domain.
     pub reduction: Option<Reduction>,
-    /// The raw operand that has the number 0 in [`Segments`], which numbers the operands of the polynomial from 0.
+    /// The raw operand that has the number 0 in [`Segments`], which numbers the operands of the polynomial from 0 upwards.
     pub origin: i64,
-    /// The segments, which map the number of an operand to a word of the table.
+    /// The segments, which map the number of an operand to an entry (a word) of the table.
     pub segments: Segments,
-    /// The format of each coefficient, the constant first.
+    /// The format of each coefficient, in order of rising powers: entry 0 is the format of the constant.
     pub coefficients: Vec<Format>,
-    /// The words of the table, one for each segment. A word consists of the coefficients, the constant first.
+    /// The words (entries) of the table, one for each segment. A word is the list of raw coefficients, the constant first.
     pub words: Vec<Vec<i64>>,
-    /// The bit widths of Horner's steps, by the coefficient that a step adds: entry k belongs to coefficient k.
+    /// The bit widths of the steps of Horner's rule: entry k belongs to the step that adds coefficient k. There is one entry
+    /// less than there are coefficients.
     pub steps: Vec<HornerStep>,
-    /// The formats of the partial sums of Horner's rule. Entry k is the format of the sum that contains the coefficients from k on;
-    /// entry 0 is the format of the whole polynomial.
+    /// The formats of the partial sums of Horner's rule. Entry k is the format of the sum that includes coefficient k and all
+    /// higher ones. Entry 0 is the format of the polynomial's value.
     pub sums: Vec<Format>,
-    /// The format of the result. It is the format of the polynomial if there is no range reduction.
+    /// The format of the result. Without a range reduction, it is the format of the polynomial's value.
     pub result: Format,
-    /// The proved bound of the error, in units of the last bit of the result.
+    /// The proved bound of the error, in units of the last bit of the result, or infinity if no proof was made.
     pub bound: f64,
 }
 
-/// The numbers of a domain's operands: the operand `origin` has the number 0.
+/// A numbering of a domain's operands: the raw operand `origin` has the number 0, and the next operand has the number 1.
 #[derive(Clone, Copy, Debug)]
 struct Numbering {
     origin: i64,
-    /// The number of bits of a number, without the overhang.
+    /// The number of bits of an operand's number. The numbers of the overhang need one bit more.
     bits: u32,
-    /// The number of operands with numbers from 2^bits on.
+    /// The number of operands whose numbers are 2^`bits` or larger. These operands are the overhang.
     overhang: u64,
 }
 
 impl TargetFunction {
-    /// Returns an interval that contains the exact value of the function at a raw operand, in units of the last bit of the result.
+    /// Returns an interval that contains the exact value of the function at the raw operand `raw`. The interval is in units of
+    /// the last bit of the result.
     ///
-    /// A formula is first evaluated in `f64`. It is evaluated again with more bits if `f64` leaves a comparison undecided,
-    /// overflows, or is not exact enough for the allowed error.
+    /// A formula is first evaluated in `f64`. If the interval is then too wide for the allowed error, or if the evaluation
+    /// fails, the formula is evaluated again with more bits.
     ///
     /// # Errors
-    /// Fails at the part of the formula that has no value there.
+    /// Fails if the formula has no value at this operand, for example 1/x at 0. The error names the part of the formula.
     pub fn limits(&self, raw: i64) -> Result<Enclosure, Fault> {
         let unit = exp2(self.fraction as i32);
         let Enclosure { low, high } = match &self.curve {
@@ -194,18 +200,21 @@ impl TargetFunction {
         Ok(Enclosure::between(low * unit, high * unit))
     }
 
-    /// Returns the widest interval of a value, in units of the result, that is exact enough for the allowed error.
+    /// Returns the largest width of an interval of values that is exact enough for the allowed error, in units of the result's
+    /// last bit.
     fn tolerance(&self) -> f64 {
         ((self.error - 0.5) / 8.0).max(1.0 / 1024.0)
     }
 
-    /// Returns the value of a raw operand.
+    /// Returns the exact value of a raw operand. For example, the raw operand 3 with one fraction bit is 3/2.
     fn operand_value(&self, raw: i64) -> RBig {
         let scale = RBig::from(2).pow(-self.operand.frac as isize);
         RBig::from(raw) * scale
     }
 
-    /// Finds two neighbouring operands between which the formula has a pole, or comes so close to one that intervals cannot tell.
+    /// Returns two neighbouring operands, as real numbers, between which the formula has a pole or comes too near to one for
+    /// interval arithmetic to exclude it. Returns `None` if there are no such operands, if the function is a curve through
+    /// samples, or if 65536 intervals do not suffice for the search.
     pub fn pole(&self) -> Option<(f64, f64)> {
         let Curve::Formula(formula) = &self.curve else { return None };
         let mut open = vec![self.domain];
@@ -226,12 +235,12 @@ impl TargetFunction {
         None
     }
 
-    /// Returns whether the domain has too many operands for a proof that computes each.
+    /// Returns whether the domain has more than 2^[`MOST_BITS`] operands, too many for a proof that computes each.
     pub fn is_wide(&self) -> bool {
         self.domain.1.abs_diff(self.domain.0) >> MOST_BITS != 0
     }
 
-    /// Returns how the bound was proved, as the beginning of a sentence.
+    /// Returns text that says how the error bound was proved. The text is the beginning of a sentence, without a full stop.
     pub fn proof(&self) -> &'static str {
         match &self.curve {
             Curve::Samples(_) => {
@@ -244,15 +253,18 @@ impl TargetFunction {
         }
     }
 
-    /// Returns the ways to number the operands of the domain, the way to try first at the beginning. The last segment may have to be
-    /// shorter than an overhang, so that there is a way without one, too.
+    /// Returns the numberings of the domain's operands that a search should try, in this order. The numbering with an overhang
+    /// comes first, if there is one. The last numbering has no overhang, because the segments of a steep function may be too
+    /// short for an overhang.
     fn numberings(&self, layout: Option<Layout>) -> Vec<Numbering> {
         let with_overhang = self.numbering_with_overhang(layout);
         with_overhang.into_iter().chain([self.numbering_without_overhang()]).collect()
     }
 
-    /// Returns the numbers of the operands if the last segment contains the operands beyond a power of two. Returns `None` if they are
-    /// too many. With `layout` halving there is no overhang: its last segment is short.
+    /// Returns the numbering in which the last segment also contains the operands beyond a power of two, the overhang. For
+    /// example, the domain of raw operands 0 to 1024 gets numbers of 10 bits and an overhang of 1. Returns `None` if the
+    /// overhang has more than 1/32 of the operands, or if the results outside the domain are specified. The layout `Halving`
+    /// also gives `None`, because its last segment is too short.
     fn numbering_with_overhang(&self, layout: Option<Layout>) -> Option<Numbering> {
         let span = (self.domain.1 - self.domain.0) as u64;
         let bits = u64::BITS - span.leading_zeros();
@@ -274,7 +286,8 @@ impl TargetFunction {
         Numbering { origin: self.operand.min_raw() as i64, bits: whole, overhang: 0 }
     }
 
-    /// Returns a place where the formula has no value, as a refusal of the formula.
+    /// Returns the refusal of the formula that has the fault `fault` at the raw operand `raw`. The message names the operand as
+    /// a real number.
     fn refusal(&self, raw: i64, fault: &Fault) -> Refusal {
         let x = self.operand.to_f64(raw.into());
         Refusal {
@@ -288,50 +301,52 @@ impl TargetFunction {
 }
 
 impl Piecewise {
-    /// Returns the names of the registers that hold the partial sums of Horner's rule, starting with the register of the whole
-    /// polynomial.
+    /// Returns the names of the registers for the partial sums of Horner's rule, by the index of the sum. The first name
+    /// belongs to the whole polynomial: `polynomial` with a range reduction, and `result` without one.
     pub fn registers(&self) -> [&'static str; 3] {
         [if self.reduction.is_some() { "polynomial" } else { "result" }, "sum1", "sum2"]
     }
 
-    /// Returns the degree of the polynomials. For example, words of three coefficients have degree 2.
+    /// Returns the degree of the polynomials. For example, three coefficients give degree 2.
     pub fn degree(&self) -> usize {
         self.coefficients.len() - 1
     }
 
-    /// Returns the polynomial's operand for a raw operand of the domain, and the way to restore the result from the
-    /// polynomial.
+    /// Returns the raw operand of the polynomial for a raw operand of the domain, and the steps that restore the result from
+    /// the polynomial's value. Without a range reduction, the operand stays the same.
     fn reduced(&self, raw: i64) -> (i64, Restore) {
         self.reduction.as_ref().map_or((raw, Restore::default()), |it| it.reduce(raw))
     }
 
-    /// Returns the number of a raw operand. Numbers run from 0 over the polynomial's domain, and [`Segments`] finds the segment of
-    /// a number.
+    /// Returns the number of a raw operand after the range reduction, if there is one. Numbers run from 0 over the polynomial's
+    /// domain, and [`Segments`] finds the segment for a number.
     pub fn number(&self, raw: i64) -> u64 {
         (self.reduced(raw).0 - self.origin) as u64 & ((1 << self.segments.number_bits()) - 1)
     }
 
-    /// Returns the segment of a raw operand, and the offset of the operand in it. An operand beyond the domain gets the last
-    /// segment.
+    /// Returns the segment of a raw operand, and the offset of the operand in the segment. An operand beyond the last segment
+    /// gets the last segment.
     pub fn place(&self, raw: i64) -> SegmentOffset {
         let SegmentOffset { word, offset } = self.segments.place(self.number(raw));
         SegmentOffset { word: word.min(self.words.len() - 1), offset }
     }
 
-    /// Returns the partial sum of Horner's rule that contains the coefficients from k on, with all its upper bits. `place` is the
-    /// segment and the offset; `above` is the partial sum from coefficient k + 1 on.
+    /// Returns the partial sum of Horner's rule that includes coefficient `k` and all higher ones, not limited to its format.
+    /// `place` is the operand's segment and offset; `above` is the partial sum from coefficient `k` + 1 on. For the highest
+    /// coefficient, the sum is the coefficient itself.
     pub fn sum(&self, k: usize, place: SegmentOffset, above: i64) -> i64 {
         let coefficient = self.words[place.word][k];
         let Some(step) = self.steps.get(k) else { return coefficient };
         coefficient + step.product(above, place.offset, self.segments.rest())
     }
 
-    /// Returns the number of fraction bits that the result drops from the value of the polynomial.
+    /// Returns the number of low fraction bits of the constant coefficient's sum that the polynomial's value drops.
     pub fn guard(&self) -> u32 {
         (self.coefficients[0].frac - self.sums[0].frac) as u32
     }
 
-    /// Returns all sums of a raw operand, with nothing cut off at the top: the polynomial first.
+    /// Returns all partial sums for a raw operand, not limited to their formats. Entry k includes coefficient k and all higher
+    /// ones; entry 0 is the polynomial's value without its guard bits. Entries beyond the degree are 0.
     fn sums_of(&self, raw: i64) -> [i64; MOST_SUMS] {
         let place = self.place(raw);
         let mut sums = [0; MOST_SUMS];
@@ -349,8 +364,9 @@ impl Piecewise {
         self.restored(raw, self.sums_of(raw)[0])
     }
 
-    /// Returns the polynomial behind a range reduction, as a function of the reduction's number. Without a range reduction it is the
-    /// same polynomial. The bound of the error is infinite, because it is proved for the whole alone.
+    /// Returns the polynomial without the range reduction, as a function of the number that the reduction computes. Without a
+    /// range reduction, returns a copy. With one, the bound of the copy is infinite, because only the whole function has a
+    /// proof.
     pub fn behind_reduction(&self) -> Self {
         let Some(reduction) = &self.reduction else { return self.clone() };
         Self {
@@ -364,8 +380,8 @@ impl Piecewise {
         }
     }
 
-    /// Returns the raw result for a raw operand, given the raw value of the polynomial. With a range reduction, the function undoes
-    /// the reduction.
+    /// Returns the raw result for the raw operand `raw`, where `polynomial` is the raw value of the polynomial. The result is
+    /// that value if there is no range reduction.
     pub fn restored(&self, raw: i64, polynomial: i64) -> i64 {
         self.reduced(raw).1.result(polynomial)
     }
@@ -377,18 +393,20 @@ impl Piecewise {
         self.words.len() as u64 * u64::from(width)
     }
 
-    /// Returns the number of look-up tables of four inputs that the table takes. A short table takes as many as one of 16 words.
+    /// Returns the number of look-up tables with four inputs that store the table. A table with fewer than 16 words counts as
+    /// one with 16.
     pub fn rom_cells(&self) -> f64 {
         let width: u32 = self.coefficients.iter().map(|format| format.width()).sum();
         table::cells(self.words.len().max(FULL_CELL), width)
     }
 
-    /// Proves a bound on the error at every operand of the domain, and returns it in units of the last bit of the result. The
-    /// result is never further than the bound from the exact value.
+    /// Proves a bound on the error at every operand of the domain, and returns it in units of the last bit of the result. No
+    /// result differs from the exact value by more than the bound.
     ///
     /// # Errors
-    /// Fails if the sums of an operand leave their formats, if its result is further off than the function allows, or if the
-    /// function has no value there. Fails also if the proof takes too long.
+    /// Fails if a sum does not fit its format, if an error is not below the error that `function` allows, or if the function
+    /// has no value at an operand. For a domain with more than 2^[`MOST_BITS`] operands, also fails if the proof needs too many
+    /// intervals.
     pub fn prove(&self, function: &TargetFunction) -> Result<f64, Refusal> {
         let (first, last) = self.domain;
         if matches!(function.curve, Curve::Formula(_)) && function.is_wide() {
@@ -398,7 +416,11 @@ impl Piecewise {
         errors.try_reduce(|| 0.0, |a, b| Ok(a.max(b)))
     }
 
-    /// Returns the largest error of the result of a raw operand.
+    /// Returns the largest possible error of the result at a raw operand, in units of the result's last bit.
+    ///
+    /// # Errors
+    /// Fails if a sum does not fit its format, if the error is not below the allowed one, or if the function has no value
+    /// there.
     fn error_at(&self, function: &TargetFunction, raw: i64) -> Result<f64, Refusal> {
         let sums = self.sums_of(raw);
         let result = self.restored(raw, sums[0]);
@@ -410,7 +432,7 @@ impl Piecewise {
         let limits = function.limits(raw).map_err(|fault| function.refusal(raw, &fault))?;
         let result = result as f64;
         let difference = (result - limits.low).abs().max((result - limits.high).abs());
-        // A difference of 0 is exact; any other may have been rounded down.
+        // A difference of 0 is exact. Any other difference may have been rounded down.
         let error = if difference == 0.0 { 0.0 } else { difference.next_up() };
         if error >= function.error {
             let message = format!("at the operand {raw} the result is {error:.4} units off");
@@ -422,11 +444,11 @@ impl Piecewise {
 
 type SearchResult = Result<Arc<Piecewise>, Refusal>;
 
-/// Returns the cheapest approximation of a function that has a proven bound. If the same search was made before, it returns the
-/// earlier result.
+/// Returns the cheapest approximation of `function` that the search finds and proves; `wish` states the user's choices. If the
+/// same search was made earlier in this process, returns the earlier result.
 ///
 /// # Errors
-/// Fails if no approximation can be found and proved. The error says why.
+/// Fails if no approximation can be found and proved. The error says why, and names a key to change.
 pub fn find(function: &TargetFunction, wish: Wish) -> SearchResult {
     static FOUND: LazyLock<Mutex<HashMap<String, SearchResult>>> = LazyLock::new(Mutex::default);
     let key = format!("{function:?} {wish:?}");

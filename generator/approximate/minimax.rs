@@ -1,22 +1,24 @@
 //! Fits polynomials to points so that the largest distance is as small as possible, by exchanging reference points (the Remez
-//! algorithm). For example, the best line for x² from −1 to 1 is off by 1/2.
+//! algorithm). For example, the best constant for x² from −1 to 1 is 1/2, at a distance of at most 1/2.
 
-/// The number of coefficients that a polynomial may have.
+/// The largest number of coefficients of a polynomial: the degree is at most 3.
 const MOST: usize = 4;
 
-/// The most exchanges. The search ends earlier once the largest error equals the error at the reference points.
+/// The largest number of exchanges of a reference point. The search ends earlier if the largest error equals the error at the
+/// reference points.
 const EXCHANGES: usize = 30;
 
-/// Returns the polynomial of `degree` whose largest distance from `values` at the points `at` is smallest, and that distance. The
-/// coefficients start with the constant. The points must be in rising order. If there are no more points than coefficients, the
-/// degree is lowered.
+/// Returns the polynomial of degree `degree` with the smallest largest distance from `values` at the points `at`, and this
+/// distance. The coefficients start with the constant; unused ones are 0. The points must be in rising order, and the degree
+/// may be at most 3. If there are not more points than coefficients, the polynomial passes through all points, with a lower
+/// degree if necessary, and the distance is 0.
 pub fn minimax(at: &[f64], values: &[f64], degree: usize) -> ([f64; MOST], f64) {
     let count = degree.min(at.len().saturating_sub(1)) + 1;
     if at.len() <= count {
         let all: Vec<usize> = (0..at.len()).collect();
         return (level(at, values, &all, false).0, 0.0);
     }
-    // Extrema of the Chebyshev polynomial, by their places among the points.
+    // The reference starts with the extrema of the Chebyshev polynomial, each as an index of the nearest point.
     let mut reference: Vec<usize> = Vec::with_capacity(count + 1);
     for k in 0..=count {
         let part = (1.0 - libm::cos(std::f64::consts::PI * k as f64 / count as f64)) / 2.0;
@@ -46,12 +48,13 @@ pub fn minimax(at: &[f64], values: &[f64], degree: usize) -> ([f64; MOST], f64) 
     best
 }
 
-/// Returns the value of a polynomial at the point `at`; the coefficients start with the constant.
+/// Returns the value of a polynomial at `at`. The coefficients start with the constant.
 pub fn at_point(coefficients: &[f64], at: f64) -> f64 {
     coefficients.iter().rev().fold(0.0, |sum, coefficient| sum * at + coefficient)
 }
 
-/// Puts a point into the reference so that the signs of its errors still alternate.
+/// Puts the point with the index `worst` into the reference, in exchange for another point, so that the signs of the errors at
+/// the reference points still alternate. `error` gives the error at a point, by its index.
 fn exchange(reference: &mut Vec<usize>, worst: usize, error: &dyn Fn(usize) -> f64) {
     let like = |other: usize| error(other) * error(worst) > 0.0;
     let place = reference.partition_point(|&point| point < worst);
@@ -69,8 +72,8 @@ fn exchange(reference: &mut Vec<usize>, worst: usize, error: &dyn Fn(usize) -> f
     }
 }
 
-/// Returns the polynomial through the values at the points of the reference, or `levelled`: off by the same height at each, on
-/// one side and the other.
+/// Returns the polynomial for the reference points, given by their indices, and a height. With `levelled`, the polynomial
+/// misses each value by the same height, with alternating signs. Otherwise it passes through all values, and the height is 0.
 fn level(at: &[f64], values: &[f64], reference: &[usize], levelled: bool) -> ([f64; MOST], f64) {
     let count = reference.len();
     let columns = if levelled { count - 1 } else { count };
@@ -90,7 +93,8 @@ fn level(at: &[f64], values: &[f64], reference: &[usize], levelled: bool) -> ([f
     (coefficients, if levelled { solution[columns] } else { 0.0 })
 }
 
-/// Returns the solution of linear equations, each a row with its right side last.
+/// Returns the solution of a system of linear equations. A row has the coefficients of an equation, then its right side. A
+/// variable without a pivot gets 0.
 fn solve(mut rows: Vec<Vec<f64>>) -> Vec<f64> {
     let count = rows.len();
     for column in 0..count {
@@ -115,7 +119,8 @@ fn solve(mut rows: Vec<Vec<f64>>) -> Vec<f64> {
 mod tests {
     use super::*;
 
-    /// The polynomial next to x^n on −1 … 1 is x^n less the Chebyshev polynomial of degree n, scaled: it is 2^(1−n) off.
+    /// The best polynomial of degree n − 1 for x^n on −1 … 1 is x^n minus the scaled Chebyshev polynomial of degree n. Its
+    /// largest error is 2^(1−n).
     #[test]
     fn powers_are_missed_by_the_height_of_chebyshev_polynomials() {
         let at: Vec<f64> = (0..=4000).map(|k| f64::from(k) / 2000.0 - 1.0).collect();

@@ -1,9 +1,9 @@
-//! Range reduction: computes a function on a large domain from a polynomial on a short one.
+//! Maps the operands of a large domain to a short domain, on which a polynomial is fitted (range reduction).
 //!
-//! For example, f(x) = 1/√x on 1 ≤ x < 4 suffices for all x > 0, since f(4·x) = f(x)/2: the hardware shifts x into the short
-//! domain, and shifts the polynomial's value back. This module checks such an identity of the formula only at a few points. The
-//! bound of the error does not rely on it, because [`super::Piecewise::prove`] compares the result of every operand of the large
-//! domain with the formula.
+//! For example, a polynomial for f(x) = 1/√x on 1 ≤ x < 4 suffices for all x > 0, since f(4·x) = f(x)/2. The hardware shifts x
+//! into the short domain, and shifts the polynomial's value back. This module checks such an identity of the formula only at a
+//! few points. The bound of the error does not rely on the identity, because [`super::Piecewise::prove`] compares the result of
+//! every operand of the large domain with the formula.
 
 use super::{Curve, Outside, Refusal, TargetFunction};
 use glint_base::fixed::{Format, exp2};
@@ -11,96 +11,100 @@ use glint_formula::Function::Log2;
 use glint_formula::{Enclosure, Expression, Kind, RBig, parse};
 
 glint_config::choices! {
-    /// The identity that a range reduction uses to compute values on a large domain from values on a short one. For example,
-    /// `Even` computes f(−3) as f(3).
+    /// The identity by which a range reduction obtains the values of a function f on a large domain from values on a short one.
+    /// For example, `Even` computes f(−3) as f(3).
     #[derive(Default, Hash)]
     pub enum Identity {
-        /// None is used.
+        /// No identity: the polynomial covers the whole domain.
         #[default]
         None = "none",
-        /// f(−x) = 2 f(0) − f(x).
+        /// f(−x) = 2 f(0) − f(x), as for `tanh(x)` and `sigmoid(x)`.
         Odd = "odd",
-        /// f(−x) = f(x).
+        /// f(−x) = f(x), as for `exp(-x * x)`.
         Even = "even",
-        /// A sine of any phase: the domain is its period.
+        /// f is a sine or cosine whose period is the domain. The polynomial covers one quadrant.
         Quadrants = "quadrants",
-        /// f(4x) is f(x) times a power of two, or a constant more.
+        /// f(4x) is f(x) times a power of two, or f(x) plus a constant. For example, √(4x) = 2√x.
         Octaves = "octaves",
-        /// f is a power with the operand in its exponent.
+        /// f is an exponential function, such as 2^x: the integer part of the exponent becomes a shift.
         Exponent = "exponent",
     }
 }
 
 impl Identity {
-    /// Returns the name of the identity in configurations.
+    /// Returns the name of the identity in configurations, for example `even`.
     pub fn word(self) -> &'static str {
         Self::WORDS[self as usize]
     }
 }
 
-/// A range reduction: it maps an operand of the large domain to a number of `bits` bits, at which the polynomial is evaluated.
+/// A range reduction: it maps an operand of the large domain to a number with `bits` bits, at which the polynomial is
+/// evaluated.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Reduction {
     /// The rule that maps an operand to its number.
     pub rule: Rule,
     /// The width of the number in bits.
     pub bits: u32,
-    /// The number of fraction bits that the polynomial has more than the result.
+    /// The number of fraction bits that the polynomial has in addition to the fraction bits of the result.
     pub guard: u32,
-    /// The function that the polynomial approximates, as a formula of the number's value.
+    /// The function that the polynomial approximates, as a formula of the number's value, which has the name x.
     pub formula: Expression,
-    /// The format of the number's value.
+    /// The format in which the number is a real value, the operand of `formula`.
     pub operand: Format,
 }
 
-/// The rule by which a range reduction maps an operand x to a number.
+/// The rule by which a range reduction maps a raw operand x to a number.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Rule {
-    /// The number is |x|, or the largest number if |x| exceeds it. For an odd function the field holds the value from which the
-    /// result of a negative operand is subtracted.
+    /// The number is |x|, or the largest possible number if |x| exceeds it. The field is `None` for an even function. For an
+    /// odd function f it is 2·f(0), from which the result of a negative operand is subtracted.
     Size(Option<i64>),
-    /// The number is the distance from the nearest zero of the sine, after x is advanced by this number of quadrants.
+    /// The number is the distance from the nearest zero of a sine, after x is increased by the given number of quadrants. For
+    /// example, a cosine has 1 here.
     Quadrants(u32),
-    /// The number consists of the bits behind the leading 1 bit of x. If octaves come in pairs, one more bit tells the two
-    /// octaves apart. For example, the raw operand 5 of 8 bits has five leading zeros, and the bits 01 behind its leading bit
-    /// give the number 32.
+    /// The number consists of the bits behind the leading 1 bit of x. If octaves come in pairs, an additional leading bit tells
+    /// the two octaves apart. For example, without pairs, the raw operand 5 with 8 bits is 00000101. It has five leading zeros,
+    /// and the bits 01 behind its leading 1 give the number 0100000, or 32.
     Octaves {
         /// The number of bits of the operand.
         width: u32,
-        /// Whether octaves come in pairs, so that the number has a bit that tells the two apart.
+        /// Whether two neighbouring octaves share the same restoring steps, so that the number has a bit that tells the two
+        /// apart.
         pairs: bool,
-        /// How to restore the result, for each number of leading zeros of the operand: the shift to the right, and the addend
-        /// before the shift, in units of the polynomial.
+        /// The steps that restore the result, by the number of leading zeros of the operand. A step is a shift to the right in
+        /// bits, and the value that is added before the shift, in units of the polynomial's last bit.
         restores: Vec<(u32, i64)>,
     },
-    /// The number is the fraction of the exponent of two; the integer of the exponent becomes a shift.
+    /// The number is the fraction of the exponent of two; the integer part of the exponent becomes a shift of the polynomial's
+    /// value.
     Exponent {
-        /// The factor that converts the operand to an exponent of two, and the number of low bits that are dropped from the
-        /// product.
+        /// The factor that converts the raw operand to an exponent of two, and the number of low bits that the product drops.
+        /// `None` means that the raw operand itself is the exponent.
         scale: Option<(i64, u32)>,
-        /// The integer of the exponent at which the results are largest.
+        /// The integer part of the exponent at which the results are largest. There the shift is 0.
         whole: i64,
-        /// Whether `whole` is the smallest integer of the exponent, as for a falling function.
+        /// Whether `whole` is the smallest integer part of the exponent, as for a function whose values fall.
         falls: bool,
     },
 }
 
-/// The steps that compute the result for an operand from the value of the polynomial at its number. For example, an odd function
-/// negates the value.
+/// The steps that compute the result for an operand from the polynomial's value. For example, an odd function with f(0) = 0
+/// negates the value for a negative operand.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Restore {
-    /// The value that is added to the polynomial.
+    /// The raw value that is added to the polynomial's value.
     addend: i64,
-    /// The number of bits by which the sum is then shifted to the right, rounded to the nearest.
+    /// The number of bits by which the sum is then shifted to the right. The shifted sum is rounded to the nearest integer.
     shift: u32,
-    /// The value from which the shifted sum is then subtracted, if any.
+    /// The raw value from which the shifted sum is then subtracted, or `None` if the shifted sum is the result.
     centre: Option<i64>,
-    /// Whether the operand is 0 and the result is 0 too.
+    /// Whether the result is 0 whatever the polynomial's value is, because the operand is 0.
     zero: bool,
 }
 
 impl Restore {
-    /// Returns the result, given the value `polynomial` of the polynomial.
+    /// Returns the raw result for the raw value `polynomial` of the polynomial.
     pub fn result(self, polynomial: i64) -> i64 {
         if self.zero {
             return 0;
@@ -110,14 +114,15 @@ impl Restore {
         self.centre.map_or(result, |centre| centre - result)
     }
 
-    /// Returns the polynomials, lowest and highest, whose results are within limits.
+    /// Returns the smallest and the largest raw value of the polynomial whose result is in the range from `low` to `high`, both
+    /// included. If the result is always 0, the range is −2^60 to 2^60.
     pub(super) fn polynomials(self, (low, high): (i64, i64)) -> (i64, i64) {
         const MOST: i128 = 1 << 60;
         if self.zero {
             return (-MOST as i64, MOST as i64);
         }
         let (low, high) = self.centre.map_or((low, high), |centre| (centre - high, centre - low));
-        // The least whose result is the limit or more.
+        // Returns the smallest value whose result is `limit` or more.
         let least = |limit: i64| {
             let half = (((i128::from(limit) << 1) - 1) << self.shift).clamp(-MOST, MOST);
             ((half + 1) >> 1) - i128::from(self.addend)
@@ -127,8 +132,8 @@ impl Restore {
 }
 
 impl Reduction {
-    /// Returns the number to which a raw operand is mapped, and the steps that restore the operand's result from the polynomial.
-    /// For example, an even function maps the raw operands 3 and −3 to the same number 3.
+    /// Returns the number to which a raw operand is mapped, and the steps that restore the operand's result from the
+    /// polynomial's value. For example, an even function maps the raw operands 3 and −3 to the same number 3.
     pub fn reduce(&self, raw: i64) -> (i64, Restore) {
         let mask = (1i64 << self.bits) - 1;
         let mirrored = |low: i64| if low == 0 { mask } else { mask + 1 - low };
@@ -163,8 +168,9 @@ impl Reduction {
         }
     }
 
-    /// Returns the number of bits by which the hardware shifts the value of the polynomial, which follows from the integer part of
-    /// the operand's exponent. It is 0 for a rule without an exponent.
+    /// Returns the number of bits by which the hardware shifts the polynomial's value to the right for the raw operand `raw`,
+    /// without the guard bits. The shift follows from the integer part of the operand's exponent. It is 0 if the rule is not
+    /// `Exponent`.
     pub fn places(&self, raw: i64) -> u32 {
         match self.rule {
             Rule::Exponent { scale, whole, .. } => {
@@ -174,11 +180,13 @@ impl Reduction {
         }
     }
 
-    /// Returns the reduction of a function by an identity, and the function of its numbers. With `wider` the number of a size
-    /// holds the largest of them.
+    /// Returns the range reduction of `function` by `identity`, and the function that its polynomial approximates. `guard` is
+    /// the number of additional fraction bits of the polynomial. `wider` concerns `Odd` and `Even`: with it, the largest |x|
+    /// has a number of its own; without it, the largest |x| may share the next lower number.
     ///
     /// # Errors
-    /// Fails if the formula does not look as if the identity holds, or if the domain does not suit the identity.
+    /// Fails if the function is a curve through samples, if the identity is `None`, if the identity does not hold at a few test
+    /// points, or if the domain does not suit the identity. Also fails if a number would have no bits or more than [`MOST`].
     pub(super) fn of(
         identity: Identity,
         function: &TargetFunction,
@@ -222,28 +230,29 @@ impl Reduction {
     }
 }
 
-/// Returns the exponent of two of an operand, with as many fraction bits as a number has.
+/// Returns the exponent of two for the raw operand `raw`, as an integer with the same number of fraction bits as the number of
+/// the range reduction. `scale` is the field of [`Rule::Exponent`].
 fn exponent(scale: Option<(i64, u32)>, raw: i64) -> i64 {
     scale.map_or(raw, |(factor, cut)| ((i128::from(raw) * i128::from(factor)) >> cut) as i64)
 }
 
-/// The key of a reduction.
+/// The configuration key of range reductions.
 pub(super) const KEY: &str = "approximation.reduction";
 
-/// So many places leave nothing of a polynomial.
+/// A shift to the right by this number of bits leaves nothing of a polynomial's value. Larger shifts are limited to it.
 const NOTHING: u32 = 64;
 
-/// The number of bits that a reduced operand may have.
+/// The largest number of bits to which an operand may be reduced.
 const MOST: u32 = 24;
 
-/// How near to each other two values are that count as equal.
+/// The largest relative difference between two values that count as equal.
 const EQUAL: f64 = 1e-9;
 
 fn refused<T>(message: &str, remedy: &str) -> Result<T, Refusal> {
     Err(Refusal::new(KEY, message.to_owned(), remedy))
 }
 
-/// Refuses a formula for which the identity does not hold, for the reason `wanted`.
+/// Returns the refusal of a formula for which the identity does not hold. `wanted` is the reason, as text for the user.
 fn unlike<T>(wanted: &str) -> Result<T, Refusal> {
     refused(&format!("the formula has no such identity: {wanted}"), "\"none\", or another")
 }
@@ -252,12 +261,13 @@ fn near(a: f64, b: f64) -> bool {
     (a - b).abs() <= EQUAL * a.abs().max(b.abs()).max(1e-3)
 }
 
-/// Returns whether all values are near the first.
+/// Returns whether all values are near the first one. The list may not be empty.
 fn all_near(values: &[f64]) -> bool {
     values.iter().all(|&value| near(value, values[0]))
 }
 
-/// Returns whether values at the eighths of a period are a sine that is `phase` quadrants late.
+/// Returns whether the values at the eighths of a period follow a sine with a positive amplitude that is `phase` quadrants
+/// ahead. For example, a cosine is a sine that is one quadrant ahead.
 fn is_sine(values: &[f64; 8], phase: usize) -> bool {
     let at = |eighth: usize| values[(eighth + 8 - 2 * phase) % 8];
     let largest = at(2);
@@ -270,11 +280,11 @@ fn is_sine(values: &[f64; 8], phase: usize) -> bool {
         && near(at(7), -at(1))
 }
 
-/// A rule, the bits of a number, and the number's fraction bits with the operand that the number denotes, as a formula of the
-/// number's value.
+/// The rule, and the number of bits of its number. The pair has the number's fraction bits, and the operand as a formula of the
+/// number's value x. For example, `Size` has the formula `x`.
 type ReductionResult = Result<(Rule, u32, (i32, String)), Refusal>;
 
-/// A function that is to be reduced.
+/// A function on its large domain, which a range reduction is to shorten. `guard` is the number of additional fraction bits.
 struct Whole<'f> {
     function: &'f TargetFunction,
     formula: &'f Expression,
@@ -286,7 +296,7 @@ impl Whole<'_> {
         self.value_of(self.formula, x)
     }
 
-    /// Returns the binary logarithm of the formula's value, which may be beyond the range of `f64` itself.
+    /// Returns the binary logarithm of the formula's value at `x`. The value itself may be beyond the range of `f64`.
     fn logarithm_at(&self, x: f64) -> Result<f64, Refusal> {
         let kind = Kind::Unary(Log2, Box::new(self.formula.clone()));
         self.value_of(&Expression::new(kind, self.formula.span.clone()), x)
@@ -382,7 +392,7 @@ impl Whole<'_> {
                 "change function.from to the least operand above 0",
             );
         }
-        // The octave, or the pair of octaves, on which the polynomials are fitted: the one with the largest results.
+        // The octave, or the pair of octaves, for which the polynomial is fitted: the one with the largest results.
         let group_of = |octave: i32| if pairs { octave >> 1 } else { octave };
         let own = match factor {
             0.0 => format.frac.clamp(low, high),
@@ -421,7 +431,7 @@ impl Whole<'_> {
                 return unlike("its logarithm is no straight line");
             }
         }
-        // The operand in which results double or halve.
+        // The distance between two operands for which one result is twice the other.
         let unit = 1.0 / slope.abs();
         let power = (libm::log2(unit) + 0.5).floor();
         let largest = self.at(from)?.max(self.at(to)?);

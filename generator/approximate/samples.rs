@@ -1,30 +1,33 @@
-//! Reads samples, which are measured points that a configuration of the device `function` may give in place of a formula, and
-//! computes the curve through them.
+//! Reads samples, and computes the curve through them. Samples are measured points that a configuration of the device
+//! `function` may state instead of a formula.
 //!
-//! Between two samples the curve is Steffen's cubic (Astronomy and Astrophysics 239, 443, 1990). It has a continuous derivative,
-//! and it rises or falls wherever the samples do. The slopes at the samples are the f64 numbers that Steffen's formula gives.
+//! Between two samples the curve is Steffen's cubic (Astronomy and Astrophysics 239, 443, 1990). The curve has a continuous
+//! derivative, and it rises or falls wherever the samples do. Its slopes at the samples are the f64 numbers that Steffen's
+//! formula gives.
 
 use super::Refusal;
 use glint_base::fixed::exp2;
 use glint_formula::{Enclosure, Expression, parse};
 
-/// How many times the longer of the steps beside it a step between samples may be.
+/// The largest ratio of a step between two samples to the longer one of the two neighbouring steps. A longer step is a gap.
 const GAP: i64 = 4;
 
-/// The key that has them.
+/// The configuration key that states the samples.
 const KEY: &str = "function.samples";
 
-/// Samples in the order of their operands. Each has its raw operand, its value, and the slope of the curve per step of the raw
-/// operand.
+/// Samples in the order of rising operands. A sample has its raw operand, its value, and the slope of the curve per step of the
+/// raw operand.
 #[derive(Clone, Debug)]
 pub struct Samples(Vec<(i64, Enclosure, f64)>);
 
 impl Samples {
-    /// Reads samples from the text of a configuration, `x,y x,y`. `fraction` is the number of fraction bits of the operand, and
-    /// `domain` the smallest and the largest raw operand.
+    /// Reads samples from the text of a configuration. The text has the form `x,y x,y`, for example `0,0 2,0.5`. `fraction` is
+    /// the number of fraction bits of the operand, and `domain` has the smallest and the largest raw operand.
+    ///
     /// # Errors
-    /// Fails if a point is no pair of numbers or at no operand of the domain, if two points have the same operand, if the
-    /// domain has no point at an end, or if the points have a gap.
+    /// Fails if a sample is not a pair of numbers, or if its x is not an operand of the domain. Also fails if two samples have
+    /// the same operand, or if an end of the domain has no sample. More than three samples also fail if a step is over four
+    /// times as long as both neighbouring steps.
     pub fn read(text: &str, fraction: u32, domain: (i64, i64)) -> Result<Self, Refusal> {
         let mut points: Vec<(i64, Enclosure)> = Vec::new();
         for point in text.split(' ').filter(|point| !point.is_empty()) {
@@ -40,12 +43,12 @@ impl Samples {
         Ok(Self(samples))
     }
 
-    /// Returns the number of samples in the list.
+    /// Returns the number of samples.
     pub fn count(&self) -> usize {
         self.0.len()
     }
 
-    /// Returns an interval that contains the value of the curve at a raw operand.
+    /// Returns an interval that contains the value of the curve at the raw operand `raw`. The operand must be in the domain.
     pub fn limits(&self, raw: i64) -> Enclosure {
         let at = self.0.partition_point(|point| point.0 < raw).min(self.0.len() - 1);
         let (to, above, last) = self.0[at];
@@ -63,10 +66,10 @@ impl Samples {
     }
 }
 
-/// Reads a point `x,y`. Returns its raw operand and its value.
+/// Reads a sample from the text `x,y`. Returns its raw operand and an interval that contains its value.
 ///
 /// # Errors
-/// Fails if the point is no pair of numbers, or at no operand of the domain.
+/// Fails if the text is not a pair of numbers, or if x is not an operand of the domain.
 fn read_point(point: &str, fraction: u32, domain: (i64, i64)) -> Result<(i64, Enclosure), Refusal> {
     let numbers = point.split_once(',').and_then(|(x, y)| Some((parse(x).ok()?, number(y)?)));
     let Some((x, y)) = numbers.filter(|(x, _)| x.enclose(&[]).is_ok()) else {
@@ -89,8 +92,11 @@ fn read_point(point: &str, fraction: u32, domain: (i64, i64)) -> Result<(i64, En
     }
 }
 
-/// Refuses points, in the order of their operands, if two have the same operand, if they miss an end of the domain, or if they have a
-/// gap.
+/// Checks points in the order of rising operands.
+///
+/// # Errors
+/// Fails if two points have the same operand, if an end of the domain has no point, or if a step is longer than [`GAP`] times
+/// both neighbouring steps. A list of at most three points has no gap.
 fn check_points(
     points: &[(i64, Enclosure)],
     fraction: u32,
@@ -128,7 +134,9 @@ fn check_points(
     Ok(())
 }
 
-/// Returns the raw operand that a number is: exactly, or as the `f64` that its many digits were printed from.
+/// Returns the raw operand of a number with `fraction` fraction bits. For example, 1.5 with one fraction bit gives 3. A number
+/// with many decimal digits may also be the printed form of an `f64` that is an operand. Returns `None` if the number is not an
+/// operand.
 fn raw_operand(x: &Expression, fraction: u32) -> Option<i128> {
     match x.ceiling(fraction) {
         Ok((raw, true)) => Some(raw),
@@ -139,10 +147,10 @@ fn raw_operand(x: &Expression, fraction: u32) -> Option<i128> {
     }
 }
 
-/// A chord between two neighbouring points: its length along x, and its slope.
+/// A chord between two neighbouring points: its length in steps of the raw operand, and its slope.
 type Chord = (f64, f64);
 
-/// Returns the slopes of Steffen's curve at points.
+/// Returns the slopes of Steffen's curve at the points. The points must be in the order of rising operands.
 fn slopes(points: &[(i64, Enclosure)]) -> Vec<f64> {
     let mut chords: Vec<Chord> = Vec::new();
     for pair in points.windows(2) {
@@ -151,7 +159,7 @@ fn slopes(points: &[(i64, Enclosure)]) -> Vec<f64> {
         chords.push((length, slope));
     }
     let [first, .., last] = chords[..] else {
-        // One chord is its own slope at both ends.
+        // A single chord gives the slope at both ends.
         return chords.iter().flat_map(|&chord| [end_slope(chord, None); 2]).collect();
     };
     let mut slopes = vec![end_slope(first, Some(chords[1]))];
@@ -162,15 +170,16 @@ fn slopes(points: &[(i64, Enclosure)]) -> Vec<f64> {
     slopes
 }
 
-/// Returns the slope of Steffen's curve at a point between two chords.
+/// Returns the slope of Steffen's curve at the point between two chords. It is 0 if the chords do not both rise or both fall.
 fn inner_slope((h, s): Chord, (k, t): Chord) -> f64 {
     let parabola = (s * k + t * h) / (h + k);
     let least = s.abs().min(t.abs()).min(parabola.abs() / 2.0);
     if s * t > 0.0 { 2.0 * least.copysign(s) } else { 0.0 }
 }
 
-/// Returns the slope of Steffen's curve at an end. The curve follows the parabola through the last three points, as far as that keeps
-/// to the direction of the last chord. `beside` is the chord next to the last.
+/// Returns the slope of Steffen's curve at an end, whose chord is `(h, s)`. `beside` is the neighbouring chord, or `None` if
+/// there is only one chord; the slope then is the chord's. Otherwise it is the slope of the parabola through the three points
+/// at this end, limited to the range from 0 to twice the chord's slope.
 fn end_slope((h, s): Chord, beside: Option<Chord>) -> f64 {
     let parabola = beside.map_or(s, |(k, t)| s + (s - t) * h / (h + k));
     if parabola * s <= 0.0 { 0.0 } else { parabola.abs().min(2.0 * s.abs()).copysign(s) }

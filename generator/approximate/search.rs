@@ -1,5 +1,5 @@
-//! Searches for the cheapest piecewise polynomial that approximates a function. It tries degrees, segments and bit widths, and
-//! finds the coefficients for each.
+//! Searches for the cheapest piecewise polynomial that approximates a function. The search tries degrees, segments and bit
+//! widths, and finds the coefficients for each combination. Costs are in look-up tables with four inputs.
 
 use super::reduction::KEY;
 use super::seen::AllowedResults;
@@ -10,54 +10,57 @@ use super::{
 };
 use glint_base::fixed::MAX_WIDTH;
 
-/// The choices that the user has made for an approximation. The search is free in all other choices.
+/// The choices of the user for an approximation. The search makes all other choices.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Wish {
-    /// The degree of the polynomials, or `None` for the cheapest.
+    /// The degree of the polynomials, or `None` if the search should choose the cheapest.
     pub degree: Option<u32>,
-    /// The layout of the segments, or `None` for the cheapest.
+    /// The layout of the segments, or `None` if the search should choose the cheapest.
     pub layout: Option<Layout>,
-    /// The identity that the range reduction uses, for example f(−x) = f(x).
+    /// The identity that the range reduction uses, for example f(−x) = f(x), or `Identity::None`.
     pub identity: Identity,
-    /// The number of words by which a shorter table is counted. A look-up table of four inputs holds 16 words of a bit, and is used
-    /// whole if there are fewer.
+    /// The smallest number of words with which a table enters the cost. For example, a look-up table with four inputs stores 16
+    /// words of a bit, so a table of 5 words may cost as much as one of 16.
     pub least_words: usize,
 }
 
-/// The degree that a polynomial may have at most.
+/// The largest degree of a polynomial.
 const DEGREES: u32 = 3;
 
-/// The number of bits that the number of a word may have.
+/// The largest number of bits of a table address: a table has at most 2^16 words.
 const ADDRESS: u32 = 16;
 
-/// The most operands by which degree, segments and widths are chosen.
+/// The largest number of operands (approximately) by which the search chooses degree, segments and bit widths.
 const CHOOSING: usize = 1 << 16;
 
-/// The most operands by which widths are widened, before all have their say.
+/// The largest number of operands (approximately) by which the search widens the chosen bit widths, before it uses all its
+/// operands.
 const WIDENING: usize = 1 << 20;
 
-/// The number of bits that the number of an operand may have.
+/// The largest number of bits by which the operands of a domain may differ.
 const WIDEST: u32 = 46;
 
-/// How much stricter the search is if it does not look at every operand. Each number is a fraction of the allowed error minus
-/// the rounding of the result (half a unit). If a proof fails, the search tries the next number.
+/// The margins that the search subtracts from the allowed error if it does not evaluate every operand. A margin is a
+/// fraction of the allowed error minus half a unit, the rounding of the result. If a proof fails, the search tries the next
+/// margin.
 const STRICTER: [f64; 5] = [0.02, 0.1, 0.25, 0.5, 0.75];
 
-/// The cost of a step of Horner's rule beside the table, in look-up tables: a sum, and a multiplier's wiring.
+/// The cost of a step of Horner's rule without the table, in look-up tables: an adder, and the wiring of a multiplier.
 const STEP: f64 = 50.0;
 
-/// The cost of an octave: a row of the muxes that bring offsets into their place.
+/// The cost of an octave, in look-up tables: one more row of multiplexers in the shifter that aligns the offsets.
 const OCTAVE: f64 = 12.0;
 
-/// The errors to try if the allowed error is out of reach. The message names the smallest one that is reached.
+/// The errors to try if the allowed error cannot be reached, in units of the result's last bit. The message names the smallest
+/// one that can be reached.
 const NEAREST: [f64; 14] =
     [0.51, 0.55, 0.6, 0.7, 0.8, 0.9, 1.0, 1.5, 2.0, 4.0, 8.0, 16.0, 64.0, 256.0];
 
-/// Finds the cheapest approximation of `function` that `wish` allows, and proves its error bound.
+/// Finds the cheapest approximation of `function` under the choices `wish`, and proves its error bound.
 ///
 /// # Errors
-/// Fails if the domain has too many operands, or if no approximation that keeps the error is found and proved. The error
-/// names a key and a remedy.
+/// Fails if the operands of the domain differ by 2^46 or more, if there are more than 2^26 operands of samples, or if no
+/// approximation with the allowed error is found and proved. The error names a key and a remedy.
 pub(super) fn search(function: &TargetFunction, wish: Wish) -> Result<Piecewise, Refusal> {
     let span = function.domain.1.abs_diff(function.domain.0);
     if span >> WIDEST != 0 {
@@ -99,7 +102,10 @@ pub(super) fn search(function: &TargetFunction, wish: Wish) -> Result<Piecewise,
     ))
 }
 
-/// Gives the approximation of least cost, proved, if there is one.
+/// Returns the cheapest approximation with a proved bound, or `None` if the search finds none.
+///
+/// # Errors
+/// Fails if the function has no value at an operand, or if a found approximation cannot be proved.
 fn attempt(function: &TargetFunction, wish: Wish) -> Result<Option<Piecewise>, Refusal> {
     if wish.identity != Identity::None {
         return attempt_reduced(function, wish);
@@ -112,7 +118,11 @@ fn attempt(function: &TargetFunction, wish: Wish) -> Result<Option<Piecewise>, R
     Ok(None)
 }
 
-/// Gives the approximation of least cost, proved, with these numbers of the operands, if there is one.
+/// Returns the cheapest approximation with a proved bound, for this numbering of the operands, or `None` if the search finds
+/// none.
+///
+/// # Errors
+/// Fails if the function has no value at an operand, or if no found approximation can be proved.
 fn attempt_numbered(
     function: &TargetFunction,
     wish: Wish,
@@ -132,8 +142,8 @@ fn attempt_numbered(
     unproved.map_or(Ok(None), Err)
 }
 
-/// Returns the forms of a polynomial to try in turn if operands are reduced. A form is the number of fraction bits in addition
-/// to the fraction bits of the result, and whether the largest size has a number of its own.
+/// Returns the variants of the polynomial that the search tries in turn for a range reduction. A variant has the number of
+/// additional fraction bits of the polynomial, and whether the largest |x| of an odd or even function has a number of its own.
 fn variants(identity: Identity) -> &'static [(u32, bool)] {
     match identity {
         Identity::Odd | Identity::Even => &[(0, false), (0, true)],
@@ -144,7 +154,12 @@ fn variants(identity: Identity) -> &'static [(u32, bool)] {
     }
 }
 
-/// Gives the first approximation, proved, that one of the [`variants`] of reduced operands has, if there is one.
+/// Returns the cheapest approximation with a proved bound for the first of the [`variants`] that has one, or `None` if no
+/// variant has one.
+///
+/// # Errors
+/// Fails if the domain has more than 2^26 operands, if the identity does not hold, or if the found approximation cannot be
+/// proved.
 fn attempt_reduced(function: &TargetFunction, wish: Wish) -> Result<Option<Piecewise>, Refusal> {
     if function.is_wide() {
         let message = format!("the domain has more than 2^{MOST_BITS} operands to be computed");
@@ -162,12 +177,13 @@ fn attempt_reduced(function: &TargetFunction, wish: Wish) -> Result<Option<Piece
     Ok(None)
 }
 
-/// Gives the approximation of least cost that is right at every operand that is looked at.
+/// Returns the cheapest approximation that is right at every operand in `seen`, or `None` if the search finds none. The
+/// bound of the approximation is not yet proved.
 fn cheapest(seen: &AllowedResults, wish: Wish) -> Option<Piecewise> {
     let few = seen.thinned(CHOOSING);
     let mut found: Vec<(f64, Segments, Widths, Widths)> = Vec::new();
     let mut least = f64::INFINITY;
-    // Those first that are rarely far from the best, so that others are seldom searched to their end.
+    // Degrees that are often the cheapest come first, so that the search can end early for the others.
     for degree in [2, 3, 1, 0] {
         if wish.degree.is_some_and(|wanted| wanted != degree) {
             continue;
@@ -203,14 +219,16 @@ fn cheapest(seen: &AllowedResults, wish: Wish) -> Option<Piecewise> {
     })
 }
 
-/// Returns the most words that a table may have to cost no more than `least`: the constant alone has as many bits as the result.
+/// Returns the largest number of words of a table whose cost does not exceed `least`, at most 2^16. The estimate counts the
+/// constant coefficient alone, which has as many bits as the result.
 fn most_words(seen: &AllowedResults, degree: u32, least: f64) -> usize {
     let word = f64::from(seen.result.width()) / BITS_A_CELL;
     (((least - STEP * f64::from(degree)) / word).max(0.0) as usize).min(1 << ADDRESS)
 }
 
-/// Returns the ways to cut the domain, into no more than `most` segments, that are fine enough for polynomials of the degree,
-/// before anything is rounded.
+/// Returns the divisions of the domain into at most `most` segments that are fine enough for polynomials of degree `degree`, in
+/// order of rising numbers of segments. A division is fine enough if polynomials with unrounded coefficients keep the error.
+/// `layout` restricts the divisions to one layout.
 fn cuts(seen: &AllowedResults, degree: u32, layout: Option<Layout>, most: usize) -> Vec<Segments> {
     let mut search = CutSearch { seen, degree, most, worst: None };
     let mut cuts: Vec<Segments> = Vec::new();
@@ -229,7 +247,7 @@ fn cuts(seen: &AllowedResults, degree: u32, layout: Option<Layout>, most: usize)
                 least = cut.words();
                 cuts.push(cut);
             } else if octaves > 4 && cut.words() > least {
-                // More octaves have more words from here on.
+                // With more octaves, the number of words only grows.
                 break;
             }
         }
@@ -244,25 +262,27 @@ fn cuts(seen: &AllowedResults, degree: u32, layout: Option<Layout>, most: usize)
     cuts
 }
 
-/// The search for the ways to cut a domain that are fine enough for polynomials of a degree.
+/// A search for the divisions of a domain into segments that are fine enough for polynomials of one degree.
 struct CutSearch<'s> {
     seen: &'s AllowedResults<'s>,
     degree: u32,
-    /// The most segments.
+    /// The largest number of segments.
     most: usize,
-    /// An operand in a segment that was too long.
+    /// An operand in a segment that was too long in an earlier division, or `None` if there was none.
     worst: Option<i64>,
 }
 
 impl CutSearch<'_> {
-    /// Returns whether a cut has few enough segments, and enough bits for the offsets in them.
+    /// Returns whether a division has few enough segments and enough bits for the offsets in the segments, and whether its last
+    /// segment can contain the overhang.
     fn is_possible(&self, cut: &Segments) -> bool {
         cut.words() <= self.most.min(1 << ADDRESS)
             && cut.octaves + cut.prefix + u32::from(self.degree > 0) <= self.seen.bits
             && cut.holds_overhang()
     }
 
-    /// Returns the cut with the fewest segments of a layout that is fine enough, if there is one.
+    /// Returns the division with the fewest segments for this layout and number of octaves that is fine enough, or `None` if no
+    /// possible division is.
     fn coarsest(&mut self, layout: Layout, octaves: u32) -> Option<Segments> {
         let least = u32::from(octaves == 0);
         for prefix in least..=ADDRESS {

@@ -1,39 +1,40 @@
-//! Computes which results a search for coefficients may accept: for each operand that it looks at, the lowest and the highest
-//! result within the allowed error. For example, the value 10.3 with an allowed error of 1.0 has the lowest result 10 and the
-//! highest 11.
+//! Computes the results that a search for coefficients may accept. For each operand that the search evaluates, these are the
+//! lowest and the highest result within the allowed error. For example, the value 10.3 with an allowed error of 1.0 has the
+//! lowest result 10 and the highest result 11.
 
 use rayon::prelude::*;
 
 use super::{Numbering, Reduction, Refusal, TargetFunction};
 use glint_base::fixed::{Format, exp2, nearest};
 
-/// The number of operands that the search may look at. If there are more, the search takes evenly spread ones.
+/// The largest number of operands that the search evaluates. For a larger domain, the search takes evenly spaced operands.
 const HELD: u64 = 1 << 25;
 
-/// The most of them where there are more than can be computed.
+/// The largest number of operands that the search evaluates if the domain is too large for a proof operand by operand.
 const HELD_OF_MANY: u64 = 1 << 18;
 
-/// Operands whose results are found at a time.
+/// The number of operands whose results are computed in one parallel step.
 const BLOCK: usize = 1 << 16;
 
-/// The values of a function at the operands that the search looks at.
+/// The allowed results of a function at the operands that the search evaluates.
 pub(super) struct AllowedResults<'f> {
     pub(super) function: &'f TargetFunction,
     pub(super) origin: i64,
     pub(super) bits: u32,
-    /// The number of operands with numbers from 2^bits on.
+    /// The number of operands whose numbers are 2^`bits` or larger.
     pub(super) overhang: u64,
-    /// From an operand to the next that is looked at.
+    /// The distance between two operands that the search evaluates. It is 1 if the search evaluates every operand.
     pub(super) stride: i64,
-    /// The polynomials that are right, lowest and highest, of each operand that is looked at.
+    /// The lowest and the highest allowed raw value of the polynomial, for each operand that the search evaluates.
     pub(super) right: Vec<(i64, i64)>,
-    /// The polynomial's format.
+    /// The format of the polynomial's value.
     pub(super) result: Format,
-    /// The function of the operands that were reduced to these, and the format of its results.
+    /// The function on the large domain, its range reduction, and the format of its results, or `None` without a range
+    /// reduction.
     pub(super) whole: Option<(&'f TargetFunction, &'f Reduction, Format)>,
 }
 
-/// The results that are right of some operands, and between which numbers the nearest are.
+/// The allowed results of some operands, and the range of the nearest results.
 struct Nearest {
     right: Vec<(i64, i64)>,
     nearest: (i64, i64),
@@ -61,8 +62,12 @@ impl Nearest {
 }
 
 impl TargetFunction {
-    /// Returns the result that is nearest at a raw operand, and the lowest and the highest that are right where less error is
-    /// allowed by `stricter`.
+    /// Returns three raw results for a raw operand: the result nearest to the exact value, the lowest allowed result, and the
+    /// highest allowed result. The allowed error is reduced by the margin `stricter`. The lowest result exceeds the highest if
+    /// no result is allowed.
+    ///
+    /// # Errors
+    /// Fails if the function has no value at the operand, or if the result needs more than 48 bits.
     fn right(&self, raw: i64, stricter: f64) -> Result<(i64, i64, i64), Refusal> {
         let limits = self.limits(raw).map_err(|fault| self.refusal(raw, &fault))?;
         if limits.low.abs().max(limits.high.abs()) > exp2(48) {
@@ -72,7 +77,8 @@ impl TargetFunction {
         }
         let error = self.error - stricter;
         let nearest = nearest(limits.middle()) as i64;
-        // Nearer than the error, whatever the exact value is, and whatever the proof's own rounding of the difference adds.
+        // Subtracts two roundings: these results are nearer than the error for every exact value within the limits, whatever
+        // the proof's rounding of the difference adds.
         let low = (limits.high - error).next_up().next_up().floor() as i64 + 1;
         let high = (limits.low + error).next_down().next_down().ceil() as i64 - 1;
         Ok((nearest, low, high))
@@ -80,8 +86,11 @@ impl TargetFunction {
 }
 
 impl<'f> AllowedResults<'f> {
-    /// Evaluates the function; none if an operand has no result that is right. Where it does not look at every operand, less
-    /// error is allowed by `stricter`.
+    /// Evaluates the function. Returns `None` if an operand has no allowed result. If the search does not evaluate every
+    /// operand, the allowed error is reduced by the margin `stricter`.
+    ///
+    /// # Errors
+    /// Fails if the function has no value at an operand, or if a result needs more than 48 bits.
     pub(super) fn new(
         function: &'f TargetFunction,
         stricter: f64,
@@ -91,7 +100,7 @@ impl<'f> AllowedResults<'f> {
         let Numbering { origin, bits, overhang } = numbering;
         let count = (last - first) as u64 + 1;
         let held = if function.is_wide() { HELD_OF_MANY } else { HELD };
-        // An odd one, so that the low bits take every value.
+        // The stride is odd, so that the low bits of the operands take every value.
         let stride = if count > held { count.div_ceil(held) as i64 | 1 } else { 1 };
         let stricter = if stride > 1 { stricter } else { 0.0 };
         let seen = count.div_ceil(stride as u64) + u64::from(stride > 1);
@@ -115,8 +124,12 @@ impl<'f> AllowedResults<'f> {
         Ok(Some(Self { function, origin, bits, overhang, stride, right, result, whole: None }))
     }
 
-    /// Evaluates a function whose operands are reduced: a polynomial is right with which the results of all operands are that
-    /// are reduced to its own.
+    /// Computes the allowed values of the polynomial behind a range reduction. Several operands of `whole` may be reduced to
+    /// the same number; a polynomial's value is allowed if the results of all these operands are. `inner` is the function that
+    /// the polynomial approximates. Returns `None` if a number has no allowed value.
+    ///
+    /// # Errors
+    /// Fails if a function has no value at an operand, or if a result needs more than 48 bits.
     pub(super) fn reduced(
         whole: &'f TargetFunction,
         reduction: &'f Reduction,
@@ -153,9 +166,10 @@ impl<'f> AllowedResults<'f> {
         Ok(Some(seen))
     }
 
-    /// Returns a sample of the operands, taken evenly, of no more than `most` or so.
+    /// Returns evenly spaced operands of this list: about `most` of them, always fewer than twice as many. A shorter list stays
+    /// the same.
     pub(super) fn thinned(&self, most: usize) -> Self {
-        // An odd one, so that the low bits take every value.
+        // The stride is odd, so that the low bits of the operands take every value.
         let by = if self.right.len() > most { (self.right.len() / most) | 1 } else { 1 };
         let last = self.right.last().filter(|_| by > 1);
         let right = self.right.iter().step_by(by).chain(last).copied().collect();
@@ -171,7 +185,7 @@ impl<'f> AllowedResults<'f> {
         (raw - self.origin) as u64
     }
 
-    /// Returns the number of operands below `raw` that the search looks at.
+    /// Returns the number of operands below the raw operand `raw` that the search evaluates.
     pub(super) fn seen_below(&self, raw: i64) -> usize {
         let (first, _) = self.function.domain;
         ((raw - first) as u64).div_ceil(self.stride as u64) as usize

@@ -1,10 +1,10 @@
-//! Finds the table of coefficients for given segments: the narrowest coefficients with which the result of every operand is
-//! within the allowed error.
+//! Finds the table of coefficients for given segments. The table has the narrowest coefficients with which the result of every
+//! operand is within the allowed error.
 //!
-//! The search rounds the coefficients one after the other, the highest first. After each it subtracts the part of the function
-//! that the hardware computes from the coefficients so far, and fits the rest again. The constant comes last: every operand of a
-//! segment allows an interval of constants, and a constant in the intersection of these intervals suits all operands of the
-//! segment.
+//! The search rounds the coefficients one after the other, the highest first. After each coefficient it subtracts the part of
+//! the function that the hardware computes from the coefficients so far, and fits the rest again. The constant comes last:
+//! every operand of a segment allows an interval of constants, and the constant is taken from the intersection of these
+//! intervals.
 
 use rayon::prelude::*;
 
@@ -14,36 +14,39 @@ use super::{HornerStep, MOST_SUMS, Piecewise, Segments};
 use glint_base::fixed::{Format, MAX_WIDTH, exp2};
 use glint_base::interval::Interval;
 
-/// Points of a segment to which polynomials are fitted.
+/// The largest number of points in a segment to which a polynomial is fitted.
 const FITTED: i64 = 40;
 
-/// The fraction bits of coefficients, in addition to the fraction bits of the result, with which the search begins.
+/// The number of fraction bits of a coefficient with which the search begins, in addition to the fraction bits of the result.
 const GENEROUS: i32 = 8;
 
-/// The fewest of them.
+/// The smallest number of additional fraction bits. A negative number means fewer fraction bits than the result has.
 const FEWEST: i32 = -8;
 
-/// Bits of a factor that a multiplier of an FPGA takes, with its sign.
+/// The largest width of a factor that a multiplier of an FPGA accepts, in bits with the sign.
 const FACTOR: u32 = 18;
 
-/// Look-up tables for a bit of a partial product that a multiplier does not take, and its adder.
+/// The cost of one bit of a partial product that an FPGA's multiplier does not compute, in look-up tables. The cost includes
+/// the adder.
 const PARTIAL: f64 = 2.0;
 
-/// Bits of a table that a look-up table of four inputs holds.
+/// The number of table bits that a look-up table with four inputs stores.
 pub(super) const BITS_A_CELL: f64 = 16.0;
 
-/// A segment in the search.
+/// A segment of a domain, with the operands and points by which the search chooses its coefficients.
 pub(super) struct CandidateSegment {
-    /// The operands of the segment that the search looks at, as a range of indices.
+    /// The operands of the segment that the search evaluates, as a range of indices into [`AllowedResults::right`].
     seen: std::ops::Range<usize>,
-    /// The points to which polynomials are fitted: as offsets, as fractions of the segment, and their values.
+    /// The offsets of the points to which polynomials are fitted. `at` has the same offsets as fractions of the segment's
+    /// length, and `values` has the function's values at these points.
     offsets: Vec<i64>,
     at: Vec<f64>,
     values: Vec<f64>,
 }
 
-/// The fraction bits in addition to the fraction bits of the result, for the constant first, and the number of leading
-/// offset bits that each step multiplies.
+/// The bit widths of coefficients and offsets. `guard` has the fraction bits of each coefficient in addition to the fraction
+/// bits of the result, the constant first. `offset` has the number of leading offset bits that each step of Horner's rule
+/// multiplies. The variables are numbered from 0, first all of `guard`, then all of `offset`.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Widths {
     guard: Vec<i32>,
@@ -51,7 +54,8 @@ pub(super) struct Widths {
 }
 
 impl Widths {
-    /// Returns the cuts of the products; none if one would have to gain bits.
+    /// Returns the steps of Horner's rule, or `None` if the product of a step would have too few fraction bits for the next
+    /// coefficient.
     fn steps(&self) -> Option<Vec<HornerStep>> {
         let mut steps = Vec::with_capacity(self.offset.len());
         for (k, &offset) in self.offset.iter().enumerate() {
@@ -62,7 +66,8 @@ impl Widths {
         Some(steps)
     }
 
-    /// Returns the widths with `change` bits more of variable number `at`, if that may be.
+    /// Returns the widths with `change` bits added to variable number `at`. Returns `None` if the variable would become too
+    /// small: below 0 for the constant, below [`FEWEST`] for another coefficient, or below 1 for an offset.
     fn with(&self, at: usize, change: i32) -> Option<Self> {
         let mut other = self.clone();
         match other.guard.get_mut(at) {
@@ -92,27 +97,27 @@ impl Widths {
         self
     }
 
-    /// Returns the widths with one bit more of variable number `at`, but none wider than in `most`. Returns `None` if that changes
-    /// nothing.
+    /// Returns the widths with one bit more in variable number `at`, limited to the widths `most`. Returns `None` if that
+    /// changes nothing.
     fn widened(&self, at: usize, most: &Self) -> Option<Self> {
         let wider = self.with(at, 1)?.no_wider(most);
         (wider != *self).then_some(wider)
     }
 
-    /// Returns how many variables there are.
+    /// Returns the number of variables.
     fn count(&self) -> usize {
         self.guard.len() + self.offset.len()
     }
 }
 
-/// The segments of a domain, in the search for the words of their table.
+/// The segments of a domain, for which the search looks for the words of the table.
 pub(super) struct Table<'s> {
     seen: &'s AllowedResults<'s>,
     cut: Segments,
     pieces: Vec<Option<CandidateSegment>>,
 }
 
-/// The words of a table. `None` is a word that no operand reads.
+/// The words of a table, each a list of raw coefficients with the constant first. `None` is a word that no operand reads.
 pub(super) type Words = Vec<Option<Vec<i64>>>;
 
 impl<'s> Table<'s> {
@@ -122,14 +127,14 @@ impl<'s> Table<'s> {
         table
     }
 
-    /// Returns the words that operands of the domain read, and those before them.
+    /// Returns the indices of the words up to the last one that an operand of the domain reads.
     fn words(&self) -> impl IndexedParallelIterator<Item = usize> {
         let (first, last) = self.seen.function.domain;
         let ends = [first, last].map(|raw| self.cut.place(self.seen.number(raw)).word);
         (0..ends[0].max(ends[1]) + 1).into_par_iter()
     }
 
-    /// Returns the samples in the segment of a word; none without an operand of the domain.
+    /// Returns the segment of a word with the points to fit, or `None` if no operand of the domain lies in the segment.
     fn piece(&self, word: usize) -> Option<CandidateSegment> {
         let Self { seen, cut, .. } = self;
         let (first, last) = seen.function.domain;
@@ -145,11 +150,11 @@ impl<'s> Table<'s> {
         for k in 0..many {
             let raw = low + (high - low) * k / step;
             let offset = cut.place(seen.number(raw)).offset;
-            // It had limits before: all formulas have, or the nearest operand that was looked at has.
+            // This operand has limits: either every operand was evaluated before, or the nearest evaluated one has limits.
             let value = seen.function.limits(raw).map_or(f64::NAN, |limits| limits.middle());
             points.push((offset, value));
         }
-        // Halving segments run the other way.
+        // Offsets fall with rising operands in the layout `Halving`, so the points are sorted by offset.
         points.sort_by_key(|it| it.0);
         let unit = exp2(-(cut.rest() as i32));
         let mut piece = CandidateSegment {
@@ -166,9 +171,9 @@ impl<'s> Table<'s> {
         Some(piece)
     }
 
-    /// Returns whether polynomials of unlimited precision are so near to the function that a rounding to the nearest may be. The
-    /// segment of the operand `worst` is looked at first, and one that is too long leaves an operand there: where one cut is too
-    /// coarse, others mostly are.
+    /// Returns whether polynomials with unrounded coefficients come near enough to the function in all segments of `cut`.
+    /// `worst` is an operand whose segment is examined first, because a segment that was too long in one division is often too
+    /// long in another. If a segment is too long, `worst` becomes an operand in this segment.
     pub(super) fn may_fit(
         seen: &'s AllowedResults<'s>,
         cut: Segments,
@@ -188,7 +193,8 @@ impl<'s> Table<'s> {
         false
     }
 
-    /// Returns whether the segment of a word is too long for polynomials of the degree, even with unlimited precision.
+    /// Returns whether the segment of a word is too long for polynomials of the degree `degree`, even with unrounded
+    /// coefficients. A segment without operands is never too long.
     fn is_too_long(&self, word: usize, degree: u32) -> bool {
         let Some(piece) = self.piece(word) else { return false };
         if degree == 0 {
@@ -199,10 +205,11 @@ impl<'s> Table<'s> {
         !fits
     }
 
-    /// Returns the narrowest coefficients and offsets, none wider than these, if any are right.
+    /// Returns the narrowest widths, none wider than `generous`, for which every operand has an allowed result, and the
+    /// words of the table. Returns `None` if the widths `generous` do not suffice.
     pub(super) fn narrowest(&self, generous: &Widths) -> Option<(Widths, Words)> {
         let mut words = self.fitted(generous)?;
-        // How far each can go alone; together they need about a bit more.
+        // Each variable is first lowered alone. The combination of all lowered variables usually needs about one bit more.
         let mut widths = generous.clone();
         for at in 0..generous.count() {
             let mut alone = generous.clone();
@@ -226,7 +233,8 @@ impl<'s> Table<'s> {
         Some(self.lowered(widths, words))
     }
 
-    /// Lowers widths one at a time until no operand would be right any more.
+    /// Lowers the widths one bit at a time while the table can still be filled with words. `words` are the words for the given
+    /// widths. Returns the lowest widths and their words.
     pub(super) fn lowered(&self, mut widths: Widths, mut words: Words) -> (Widths, Words) {
         let mut changed = true;
         while changed {
@@ -241,14 +249,15 @@ impl<'s> Table<'s> {
         (widths, words)
     }
 
-    /// Returns the widths with which the search begins.
+    /// Returns the widths with which the search begins. For degree 0 there are no additional fraction bits.
     pub(super) fn generous(&self, degree: usize) -> Widths {
         let guard = if degree == 0 { 0 } else { GENEROUS };
         Widths { guard: vec![guard; degree + 1], offset: vec![self.cut.rest(); degree] }
     }
 
-    /// Returns widths that were chosen by fewer operands, a bit wider where these are not right but none wider than these, and
-    /// the words with them.
+    /// Returns the words for the widths `widths`, which were chosen by fewer operands. If the widths do not suffice, they grow
+    /// bit by bit up to the widths `most`. Returns the final widths and the words, or `None` if the widths `most` do not
+    /// suffice.
     pub(super) fn settled(&self, mut widths: Widths, most: &Widths) -> Option<(Widths, Words)> {
         let count = widths.count();
         loop {
@@ -271,7 +280,8 @@ impl<'s> Table<'s> {
         }
     }
 
-    /// Returns the words of a table with these widths, if there are such with which every operand that is looked at is right.
+    /// Returns words of these widths with which every evaluated operand has an allowed result, or `None` if a segment has no
+    /// such word.
     fn fitted(&self, widths: &Widths) -> Option<Words> {
         let steps = widths.steps()?;
         let fitted_words = self.pieces.par_iter().map(|piece| match piece {
@@ -281,7 +291,8 @@ impl<'s> Table<'s> {
         fitted_words.collect()
     }
 
-    /// Returns coefficients of these widths with which every operand of the segment that is looked at is right.
+    /// Returns coefficients of these widths with which every evaluated operand of the segment has an allowed result, or `None`
+    /// if the search finds none.
     fn fitted_piece(
         &self,
         piece: &CandidateSegment,
@@ -295,8 +306,9 @@ impl<'s> Table<'s> {
         found.then_some(coefficients)
     }
 
-    /// Chooses coefficient `k` and all lower coefficients. `product` is the addend of coefficient `k` at the points of the
-    /// fit.
+    /// Chooses coefficient `k` and all lower coefficients, and writes them to `coefficients`. `product` has the hardware's
+    /// product that coefficient `k` is added to, at each point of the fit. Tries the two nearest integers for each coefficient.
+    /// Returns whether it found coefficients with which every operand has an allowed result.
     fn place(
         &self,
         piece: &CandidateSegment,
@@ -336,8 +348,9 @@ impl<'s> Table<'s> {
         false
     }
 
-    /// Returns the constant with which every operand of the segment is right: the middle of all such. `above` are the other
-    /// coefficients.
+    /// Returns the middle of the constants with which every evaluated operand of the segment has an allowed result, or `None`
+    /// if there is no such constant. `above` has the other coefficients, the lowest first. `guard` is the number of low bits
+    /// that the sum drops.
     fn constant(
         &self,
         piece: &CandidateSegment,
@@ -361,11 +374,11 @@ impl<'s> Table<'s> {
                 return None;
             }
         }
-        // No operand was looked at if all operands of the segment lie between the operands that the search visits.
+        // If the search evaluates no operand of the segment, any constant is allowed, and the constant is 0.
         Some(if least == i64::MIN { 0 } else { least + (most - least) / 2 })
     }
 
-    /// Returns the formats of the coefficients, the constant first.
+    /// Returns the narrowest formats that contain the coefficients of all words, the constant first.
     fn formats(&self, widths: &Widths, words: &Words) -> Vec<Format> {
         let fraction = self.seen.function.fraction as i32;
         let mut formats = Vec::with_capacity(widths.guard.len());
@@ -380,7 +393,7 @@ impl<'s> Table<'s> {
         formats
     }
 
-    /// Returns by how many bits each coefficient that is multiplied is too wide for a multiplier.
+    /// Returns the number of bits by which each coefficient except the constant is wider than a multiplier's factor, or 0.
     fn excess(formats: &[Format]) -> impl Iterator<Item = u32> {
         formats.iter().skip(1).map(|format| {
             let signed_width = format.width() + u32::from(!format.signed);
@@ -388,7 +401,8 @@ impl<'s> Table<'s> {
         })
     }
 
-    /// Returns the cost of table and partial products in look-up tables. A table counts as one of at least `least_words` words.
+    /// Returns the cost of the table and of the partial products, in look-up tables. A table with fewer than `least_words`
+    /// words counts as one with `least_words`.
     pub(super) fn cost(&self, widths: &Widths, words: &Words, least_words: usize) -> f64 {
         let formats = self.formats(widths, words);
         let width: u32 = formats.iter().map(|format| format.width()).sum();
@@ -399,7 +413,9 @@ impl<'s> Table<'s> {
         cells(words.len().max(least_words), width) + PARTIAL * f64::from(partial)
     }
 
-    /// Returns narrower widths than `most`, from which the search begins again so that no factor is too wide; none where none is.
+    /// Returns widths from which the search can begin again so that no coefficient is too wide for a multiplier. They are the
+    /// widths `most` with fewer fraction bits for each coefficient that is too wide. Returns `None` if no coefficient is too
+    /// wide.
     pub(super) fn within_factors(
         &self,
         most: &Widths,
@@ -417,13 +433,13 @@ impl<'s> Table<'s> {
         is_wide.then_some(generous)
     }
 
-    /// Returns the approximation with these words, if its nets are not too wide.
+    /// Returns the approximation with these words. Returns `None` if a product would have [`MAX_WIDTH`] bits or more, or if no
+    /// operand reads a word. The bound is infinite until it is proved.
     pub(super) fn finished(&self, widths: &Widths, words: Words) -> Option<Piecewise> {
         let AllowedResults { result: polynomial, whole, .. } = self.seen;
         let function = whole.map_or(self.seen.function, |it| it.0);
         let coefficients = self.formats(widths, &words);
-        // A word that no operand of the domain reads gets the word before it, or the first known word if there is none before
-        // it.
+        // A word that no operand of the domain reads gets the preceding word, or the first known word if no word precedes.
         let mut before = words.iter().flatten().next()?.clone();
         let mut filled: Vec<Vec<i64>> = Vec::with_capacity(words.len());
         for word in words {
@@ -459,13 +475,13 @@ impl<'s> Table<'s> {
     }
 }
 
-/// Returns the look-up tables that a table of coefficients takes.
+/// Returns the number of look-up tables with four inputs that store a table of `words` words with `width` bits.
 pub(super) fn cells(words: usize, width: u32) -> f64 {
     words as f64 * f64::from(width) / BITS_A_CELL
 }
 
-/// Returns the limits of each partial sum over all operands of the domain. If the domain is wide, it computes intervals within each
-/// segment, and otherwise the sums of every operand.
+/// Returns the smallest and the largest value of each partial sum over all operands of the domain. For a wide domain, the
+/// limits follow from intervals for each segment and may be too wide; otherwise the sums of every operand are computed.
 fn limits_of_sums(found: &Piecewise, is_wide: bool) -> [Interval; MOST_SUMS] {
     let no_limits = [(i128::MAX, i128::MIN); MOST_SUMS];
     if is_wide {
@@ -488,7 +504,7 @@ fn limits_of_sums(found: &Piecewise, is_wide: bool) -> [Interval; MOST_SUMS] {
     parts.reduce(|| no_limits, |a, b| hull(a, &b))
 }
 
-/// Widens each interval of `ends` so that it contains the interval of the same partial sum in `sums`.
+/// Widens each interval of `ends` so that it contains the interval with the same index in `sums`.
 fn hull(mut ends: [Interval; MOST_SUMS], sums: &[Interval]) -> [Interval; MOST_SUMS] {
     for (end, sum) in ends.iter_mut().zip(sums) {
         *end = (end.0.min(sum.0), end.1.max(sum.1));

@@ -1,11 +1,11 @@
-//! Tests that approximations are proved, and that a wrong coefficient is refused.
+//! Tests that approximations are proved, that a wrong coefficient is refused, and that a refusal names the right key and
+//! remedy.
 
 use super::{Curve, Identity, Layout, Outside, Samples, TargetFunction, Wish, find};
 use glint_base::fixed::{Format, exp2};
 use glint_formula::parse;
 
-/// Returns a function with as many fraction bits in its result as its operand has, from one value to another that does not belong
-/// to it.
+/// Returns a function on the domain from `from` to below `to`. Operand and result both have `fraction` fraction bits.
 fn function(text: &str, (from, to): (f64, f64), fraction: i32, error: f64) -> TargetFunction {
     let raw = |value: f64| (value * exp2(fraction)) as i64;
     let domain = (raw(from), raw(to) - 1);
@@ -28,7 +28,7 @@ fn a_planted_wrong_coefficient_is_refused_at_every_degree() {
         assert_eq!(found.degree(), degree as usize);
         assert!(found.bound < 1.0 && found.bound == found.prove(&it).unwrap());
         for k in 0..=degree as usize {
-            // As much as moves results at the end of a segment by two units.
+            // Adds enough to move the results at the end of a segment by two units.
             let unit = 1i64 << (found.coefficients[k].frac - 10).max(0);
             let mut wrong = (*found).clone();
             wrong.words[1][k] += (2 * unit) << k;
@@ -38,7 +38,7 @@ fn a_planted_wrong_coefficient_is_refused_at_every_degree() {
     }
 }
 
-/// A formula, its domain, and a function that computes it.
+/// A formula, the ends of its domain, and a function that computes the formula in `f64`.
 type Case = (&'static str, (f64, f64), fn(f64) -> f64);
 
 #[test]
@@ -94,7 +94,8 @@ fn what_cannot_be_had_is_refused_with_what_can() {
     assert_eq!((wide.key, wide.remedy.as_str()), ("operand.fraction", "at most 23"));
 }
 
-/// The bound over intervals equals the bound over every operand or is a little larger, and a wrong coefficient breaks it.
+/// The bound over intervals is equal to or a little larger than the bound over every operand. A wrong coefficient exceeds the
+/// bound.
 #[test]
 fn a_bound_over_intervals_holds_at_every_operand() {
     for (text, degree) in [
@@ -135,7 +136,8 @@ fn more_operands_than_can_be_computed_have_a_bound() {
     assert!(largest <= found.bound && largest > 0.6, "{largest} of {}", found.bound);
 }
 
-/// The square at every third operand. Steffen's slopes of it are its own, so that the curve between the samples is the square.
+/// The samples are the square function at every third operand. Steffen's slopes are exact for squares, so the curve is the
+/// square itself.
 #[test]
 fn the_curve_of_samples_is_met_and_a_wrong_coefficient_is_refused() {
     let points: Vec<String> =
@@ -158,7 +160,7 @@ fn the_curve_of_samples_is_met_and_a_wrong_coefficient_is_refused() {
     }
 }
 
-/// Checks a function of each identity: every operand of the whole domain is right against `libm`, and a wrong coefficient is
+/// For a function of each identity, every operand of the large domain is right against `libm`, and a wrong coefficient is
 /// refused.
 #[test]
 fn reduced_operands_serve_the_whole_domain() {
@@ -204,7 +206,7 @@ fn reduced_operands_serve_the_whole_domain() {
     }
 }
 
-/// Both ends of the domain belong to it, so that the last operand is one beyond a power of two.
+/// The domain includes both ends, so its last operand is one beyond a power of two.
 #[test]
 fn a_domain_with_both_ends_may_have_every_layout() {
     let mut it = function("sqrt(2 - x)", (0.0, 1.0), 10, 1.0);
@@ -217,7 +219,8 @@ fn a_domain_with_both_ends_may_have_every_layout() {
     }
 }
 
-/// A wave so short that each operand needs a segment of its own: the last segment cannot contain more operands.
+/// The function is a wave so short that each operand needs its own segment, so the last segment cannot contain further
+/// operands.
 #[test]
 fn a_steep_function_does_without_an_overhang() {
     let it = TargetFunction {

@@ -1,9 +1,9 @@
-//! Proves a bound on the error of a piecewise polynomial by intervals, for domains with too many operands to compute each.
+//! Proves a bound on the error of a piecewise polynomial by intervals, for domains with more than 2^26 operands.
 //!
-//! The proof treats the offset of an operand in its segment as a real number t. A word of the table is then a polynomial P(t). The
-//! hardware drops bits, so its result is less than P(t); the proof bounds this difference for a whole segment. Within an interval,
-//! the distance between the function and P is at most the distance in the middle plus the largest derivative times half of the
-//! length. If this bound is too large, the interval is halved, down to single operands.
+//! The proof treats the offset of an operand in its segment as a real number t, so that a word of the table is a polynomial
+//! P(t). The hardware drops bits, so its result differs from P(t); the proof bounds this difference for a whole segment. Within
+//! an interval, the distance between the function and P is at most the distance in the middle plus the largest derivative times
+//! half of the length. If this bound is too large, the interval is halved, down to a few operands that are computed one by one.
 
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -14,22 +14,24 @@ use glint_base::fixed::exp2;
 use glint_base::interval::{self, Interval};
 use glint_formula::Enclosure;
 
-/// Intervals that are looked at before the proof is given up.
+/// The largest number of intervals that a proof examines.
 const MOST: u64 = 1 << 20;
 
-/// Operands that are computed one by one rather than as an interval.
+/// An interval with at most this number of operands is computed operand by operand.
 const FEW: i64 = 4;
 
-/// The sums of a segment between their limits.
+/// The limits of the partial sums and of the dropped bits, over all operands of a segment.
 pub(super) struct Walk {
-    /// For each coefficient, the interval of the partial sum from this coefficient on, in units of the sum's last bit.
+    /// For each coefficient k, the interval of the partial sum that includes coefficient k and all higher ones, in units of the
+    /// sum's last bit.
     pub sums: Vec<Interval>,
-    /// The limits of the lag: how much the result is below the polynomial, in units of the result.
+    /// The limits of P(t) minus the hardware's result, in units of the result's last bit. The difference arises from dropped
+    /// bits.
     lag: Enclosure,
 }
 
 impl Piecewise {
-    /// Returns the operands of the domain that read a word, first and last.
+    /// Returns the first and the last raw operand of the domain that read a word, or `None` if no operand reads it.
     fn operands_of(&self, word: usize) -> Option<(i64, i64)> {
         let (from, count) = self.segments.numbers(word);
         let low = (self.origin + from as i64).max(self.domain.0);
@@ -37,12 +39,12 @@ impl Piecewise {
         (low <= high).then_some((low, high))
     }
 
-    /// Returns the fraction bits that a coefficient has beyond the result.
+    /// Returns the number of fraction bits of coefficient `k` minus the number of fraction bits of the result.
     fn beyond(&self, k: usize) -> i32 {
         self.coefficients[k].frac - self.sums[0].frac
     }
 
-    /// Returns the sums of all operands that read a word, if there are any.
+    /// Returns the limits of the sums over all operands that read a word, or `None` if no operand reads it.
     pub(super) fn walk(&self, word: usize) -> Option<Walk> {
         let (low, high) = self.operands_of(word)?;
         let [a, b] = [low, high].map(|raw| self.place(raw).offset);
@@ -71,12 +73,14 @@ impl Piecewise {
         Some(Walk { sums, lag: lag + last })
     }
 
-    /// Returns the way from the middle of the segment that an offset denotes, as a fraction of the segment's length.
+    /// Returns the real number t for an offset: the distance from the middle of the segment, as a fraction of the segment's
+    /// length.
     fn way(&self, offset: i64) -> Enclosure {
         Enclosure::exactly(offset as f64 * exp2(-(self.segments.rest() as i32)))
     }
 
-    /// Returns the polynomial of a word and its derivative, in units of the result.
+    /// Returns the values of the polynomial of a word over the interval `way` of t, and the values of its derivative, in
+    /// units of the result's last bit.
     fn polynomial(&self, word: usize, way: Enclosure) -> (Enclosure, Enclosure) {
         let mut value = Enclosure::exactly(0.0);
         let mut slope = Enclosure::exactly(0.0);
@@ -88,10 +92,10 @@ impl Piecewise {
         (value, slope)
     }
 
-    /// Proves the bound over intervals, as [`Piecewise::prove`] does over operands.
+    /// Proves the bound by intervals of operands. The bound has the same meaning as the bound of [`Piecewise::prove`].
     ///
     /// # Errors
-    /// Fails as [`Piecewise::prove`] does, or if the proof takes too long.
+    /// Fails as [`Piecewise::prove`] does, or if the proof needs more than [`MOST`] intervals.
     pub(super) fn prove_by_segments(&self, function: &TargetFunction) -> Result<f64, Refusal> {
         let left = AtomicU64::new(MOST);
         let words = (0..self.words.len()).into_par_iter();
@@ -99,10 +103,11 @@ impl Piecewise {
         bounds.try_reduce(|| 0.0, |a, b| Ok(a.max(b)))
     }
 
-    /// Proves the bound over the operands that read a word. `left` is the number of intervals that the proof may still look at.
+    /// Proves the bound over the operands that read a word. `left` is the number of intervals that the proof may still examine.
+    /// Returns 0 if no operand reads the word.
     ///
     /// # Errors
-    /// Fails as [`Piecewise::prove`] does, or if no intervals are left.
+    /// Fails as [`Piecewise::prove`] does, or if `left` reaches 0.
     fn prove_segment(
         &self,
         function: &TargetFunction,
@@ -140,8 +145,9 @@ impl Piecewise {
         Ok(bound)
     }
 
-    /// Returns the largest error of some operands of a word; none where the formula may jump among them or have no derivative, or
-    /// where a result may leave its format.
+    /// Returns a bound on the error over the raw operands from `low` to `high`, which must all read the word `word`. `lag` has
+    /// the limits of the dropped bits. Returns `None` if the formula may jump between these operands, may have no value or no
+    /// derivative, or if a result may not fit its format.
     fn error_between(
         &self,
         function: &TargetFunction,
@@ -157,7 +163,7 @@ impl Piecewise {
         let (value, _) = self.polynomial(word, self.way(here));
         let (_, lean) =
             self.polynomial(word, self.way(first.min(last)).hull(self.way(first.max(last))));
-        // From an operand to the next.
+        // The change of the offset from an operand to the next one.
         let step = (last - first) / (high - low).max(1);
         let lean = lean * self.way(step);
         let unit = exp2(function.fraction as i32 - self.operand.frac);
@@ -173,7 +179,7 @@ impl Piecewise {
     }
 }
 
-/// Returns the refusal of a proof that takes too long.
+/// Returns the refusal of a proof that needs too many intervals.
 fn unproved() -> Refusal {
     let message = format!("the bound is not proved with 2^{} intervals", MOST.ilog2());
     Refusal::new("result.error", message, "allow a larger error, or fewer operand.fraction bits")

@@ -1,10 +1,10 @@
 //! The hardware description of the device `blinn`, which computes f = cⁿ for a run-time exponent n.
 //!
-//! c = cos γ, where γ is the angle between the surface normal and the half vector; f is the reflectance, the factor by which the
-//! device multiplies colours. Seeds 000 to 002, which are source documents of other devices, start from this formula of Blinn, but
-//! give no circuit for it. This circuit computes cⁿ = 2^(−n·decay) with the decay −log₂ c: a logarithm, a product and an
-//! exponential. An octave is a factor of two: the decay is the number of octaves that c lies below 1/2, plus the decay of the
-//! remaining mantissa.
+//! c = cos γ, where γ is the angle between the surface normal and the half vector; f is the reflectance, the factor by which
+//! the device multiplies colours. Seeds 000 to 002, which are source documents of other devices, start from this formula of
+//! Blinn, but give no circuit for it. This circuit computes cⁿ = 2^(−n·decay) with the decay −log₂ c: a logarithm, a product
+//! and an exponential. An octave is a factor of two: the decay is the number of octaves that c lies below 1/2, plus the
+//! decay of the remaining mantissa.
 
 use glint_base::fixed::Format;
 use glint_config::Config;
@@ -24,7 +24,7 @@ pub fn describe(d: &Designer, config: &Config) {
     let bits = keys.operands.cosine.fraction;
     let fraction = cos_gamma.bits(0, Format::unsigned(0, bits as i32));
     let normalised = shift::normalise(d, "octave", fraction);
-    // The normaliser is slow, so a pipeline register follows it.
+    // The normaliser has a long delay, so a pipeline register follows it.
     let octave = d.pipeline("octave", normalised.zeros).doc("leading zeros of cos gamma");
     let mantissa = normalised.word.bits(0, Format::unsigned(bits as i32 - 1, 0));
     let u = d.not("distance_next", mantissa);

@@ -11,21 +11,21 @@ use glint_rtl::blocks::colour::{ChannelBlocks, Colours};
 use glint_rtl::blocks::line::{LineBlocks, OperandBlocks};
 use glint_rtl::dsl::{Designer, InputOperand, Note, Signal, Step, Topic, end, step, valid};
 
-/// Adds the operand `cos_gamma`, whose register limits it to 0 … 1.0.
+/// Adds the operand `cos_gamma`. Its register limits written values to 0 … 1.0.
 #[track_caller]
 pub fn cosine<'d>(d: &'d Designer, keys: &keys::Cosine) -> InputOperand<'d> {
     d.operand_clamped("cos_gamma", keys.format(), 0.0, 1.0)
         .doc("cosine of the angle between normal and half vector")
 }
 
-/// Adds the operand `exponent` with `bits` bits.
+/// Adds the operand `exponent`, an unsigned integer with `bits` bits.
 #[track_caller]
 pub fn exponent(d: &Designer, bits: u32) -> InputOperand<'_> {
     d.operand("exponent", Format::unsigned(bits as i32, 0)).doc("specular exponent n")
 }
 
-/// The products of the reflectance f with the three colours, by one multiplier or by three, as the configuration key
-/// `colour.multipliers` says.
+/// The products of the reflectance f with the three colours. The configuration key `colour.multipliers` chooses one multiplier
+/// for all colours or one for each.
 pub struct ColourProducts<'d> {
     colours: Colours<'d>,
     in_turn: bool,
@@ -33,7 +33,7 @@ pub struct ColourProducts<'d> {
 
 impl<'d> ColourProducts<'d> {
     /// Adds the colour operands to the description. `blocks` are the numbers of their blocks in the figure of the device's
-    /// source, if the source has a figure.
+    /// source, or `None` if the source has no figure.
     #[track_caller]
     pub fn new(
         d: &'d Designer,
@@ -43,8 +43,8 @@ impl<'d> ColourProducts<'d> {
         Self { colours: Colours::new(d, keys.bits as i32, blocks), in_turn: keys.in_turn() }
     }
 
-    /// Adds the colour outputs, which are the colours times `f`. Returns the microinstructions that compute the products; they must
-    /// come before the microinstruction that raises `valid`. Returns none if each colour has its own multiplier.
+    /// Adds the colour outputs, which are the colours times `f`. Returns the microinstructions that compute the products; they
+    /// must come before the microinstruction that raises `valid`. The list is empty if each colour has its own multiplier.
     #[track_caller]
     pub fn outputs(&self, f: Signal<'d>, rounding: Rounding) -> Vec<Step> {
         if self.in_turn {

@@ -1,10 +1,10 @@
 //! The hardware description of the device `cosine-power`, which computes f = (n/m·(c − 1) + 1)^m.
 //!
-//! c = cos γ, where γ is the angle between the surface normal and the half vector; n is the specular exponent; the configuration
-//! chooses m = 2, 4, 8 or 16; f is the reflectance, the factor by which the device multiplies colours. The source is the paper "A
-//! model for reproducing the specular component of colour in computer graphics" (in Ukrainian; Glint calls it seed 002), which
-//! gives no circuit. This circuit has one multiplier and one accumulator. It computes the base as 1 − n/m·(1 − c): the division
-//! by m is a shift by wiring, and limiting the product to 1 also sets a negative base to 0.
+//! c = cos γ, where γ is the angle between the surface normal and the half vector, and n is the specular exponent. The
+//! configuration chooses m = 2, 4, 8 or 16. f is the reflectance, the factor by which the device multiplies colours. The source
+//! is the paper "A model for reproducing the specular component of colour in computer graphics" (in Ukrainian; Glint calls it
+//! seed 002), which gives no circuit. This circuit has one multiplier and one accumulator. It computes the base as 1 − n/m·(1 −
+//! c). The division by m is a shift by wiring, and limiting the product to 1 also sets a negative base to 0.
 
 use glint_base::fixed::{Format, Overflow};
 use glint_config::Config;

@@ -20,7 +20,7 @@ pub fn describe(d: &Designer, config: &Config) {
     let keys = Keys::of(config);
     let table = keys.table_address as i32;
     let f = keys.f_format();
-    // Registers behind the address and the word of ROM 12, and behind multiplier 13.
+    // The registers after the address and after the word of ROM 12, and after multiplier 13.
     let staged = keys.stages == 5;
     d.about(about(keys.stages));
 
@@ -43,7 +43,7 @@ pub fn describe(d: &Designer, config: &Config) {
     } else {
         colours.outputs(cosine.out(), rounding);
     }
-    // Register 8, ROM 12, and the stages between them.
+    // The clocks of register 8 and ROM 12, and of the registers between them.
     line.microprogram(keys.stages);
 }
 

@@ -18,9 +18,9 @@ use super::piecewise::{PolynomialDatapath, StepMultiplier, Tables};
 /// The distance 1 − c and the octave of the cosine c (the power of two by which c is scaled). `blinn` and `gauss` compute them in
 /// different ways.
 pub struct Distance<'d> {
-    /// The distance 1 − c, less one unit in the last place, as an integer.
+    /// The distance 1 − c in units of its last place, less one unit, as an integer.
     pub u: Signal<'d>,
-    /// The number of octaves, an integer that is added to the product of distance and ratio. `gauss` has none.
+    /// The number of octaves, an integer that is added to the product of distance and ratio. `None` for `gauss`.
     pub octave: Option<Signal<'d>>,
 }
 
@@ -28,7 +28,7 @@ pub struct Distance<'d> {
 /// function adds the operands, the products, the table of 2^−x, the outputs and the microprogram.
 ///
 /// # Panics
-/// Panics if the check of the schema has not accepted the configuration. The caller must check it first.
+/// Panics if the schema's check does not accept the configuration. The caller must check the configuration first.
 pub fn describe<'d>(
     d: &'d Designer,
     config: &Config,
@@ -73,7 +73,7 @@ pub fn describe<'d>(
     let product = d
         .shared_mul("product", &first, &second)
         .doc_on(Topic::Microprogram, "its point depends on the operands");
-    // Below 2.0, as the decay is.
+    // The product is below 2.0, because the decay is.
     let decay = product.of(way, ratio.q());
     let decay = d.narrow("decay", decay, keys.decay_format(), Rounding::Truncate, Overflow::Wrap);
     let (factor_next, large) = factor_of(d, keys, octave, decay.doc("without the octave"));
@@ -93,7 +93,7 @@ pub fn describe<'d>(
     let number = halvings.q().bits(0, Format::unsigned(keys.argument as i32, 0));
     let exp2 = PolynomialDatapath::new(d, "power_", &sums, number, &powers, tables);
     let _ = exp2.q().doc("2^-x of the fraction x of halvings");
-    // An integer part that shifts every bit of f out, and no larger.
+    // An integer part that shifts all bits of f out need not be larger.
     let most = integer((f.frac as u32 + 2).ilog2() + 1);
     let whole = halvings.q().bits(keys.argument, integer(halvings.format().int as u32));
     let places = d.narrow("places", whole, most, Rounding::Truncate, Overflow::Saturate);
@@ -122,11 +122,11 @@ pub fn describe<'d>(
     d.microprogram(steps.into_iter().chain(outputs));
 }
 
-/// Returns the decay as an operand of the multiplier, and whether it is a large one.
+/// Returns the decay as a factor of the multiplier, and a bit that is 1 if the decay is large.
 ///
-/// A small decay, below ¼, meets large n and needs all its fraction bits; its three upper bits are zeros. Any other needs few,
-/// and has an octave number in front. So both are of about one width, and which it was decides only where the point of the
-/// product is.
+/// A small decay, below ¼, is multiplied by large n and needs all its fraction bits; its three upper bits are zeros. A large
+/// decay needs few fraction bits, but also the number of octaves. Both factors therefore have about the same width. The bit
+/// decides only where the binary point of the product is.
 fn factor_of<'d>(
     d: &'d Designer,
     keys: &Keys,
@@ -150,8 +150,7 @@ fn factor_of<'d>(
     (d.choose("factor_next", large, [fine, coarse]), large)
 }
 
-/// Returns f, with the values that are known without tables: 0 for cos γ ≤ 0, and all ones, as near 1 as it can be, where cos γ
-/// is 1.0.
+/// Returns f with the values that need no table: 0 if cos γ ≤ 0, and all ones, the largest value below 1, if cos γ is 1.0.
 fn ends<'d>(d: &'d Designer, cos_gamma: Signal<'d>, rounded: Signal<'d>) -> Signal<'d> {
     let format = rounded.format();
     let facing = d.any("facing", cos_gamma).doc("the surface faces the half vector");

@@ -34,7 +34,7 @@ pub fn describe(d: &Designer, config: &Config) {
     let first = d.mux("first", normal.map(|it| it.q()));
     let second = d.mux("second", half.map(|it| it.q()));
 
-    // Three products of at most 4.0 fit: bits above them are copies of the sign.
+    // Three products of at most 4.0 fit. The bits above are copies of the sign.
     let sum_of = |name: &str, product, format: Format, doc: &str| {
         let sum = d.register(name, format).doc(doc);
         let zero = d.constant(&format!("no_{name}"), 0.0, format);
@@ -94,7 +94,7 @@ pub fn describe(d: &Designer, config: &Config) {
     ]);
 }
 
-/// Returns a number without its sign.
+/// Returns the absolute value of a number.
 fn size<'d>(d: &'d Designer, number: Signal<'d>) -> Signal<'d> {
     let format = number.format();
     let zero = d.constant("none", 0.0, format);
@@ -104,7 +104,8 @@ fn size<'d>(d: &'d Designer, number: Signal<'d>) -> Signal<'d> {
     d.choose("without_sign", is_negative, [number, negated])
 }
 
-/// Returns the products times 2^places, half of it. A bit that no place to come can bring into the result is dropped.
+/// Returns the sum of products times 2^`places`, divided by 2. Each stage drops the low bits that the later shifts cannot move
+/// into the result.
 fn shifted<'d>(d: &'d Designer, sum: Signal<'d>, places: Signal<'d>, keys: &Keys) -> Signal<'d> {
     let mut row = sum;
     for bit in (0..places.format().width()).rev() {

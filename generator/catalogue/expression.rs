@@ -15,7 +15,7 @@ use crate::plan::describe_plan;
 /// Describes the hardware of `expression`: a datapath and a microprogram for the plan of the configuration's formulas.
 ///
 /// # Panics
-/// Panics if the check of the schema has not accepted the configuration. The caller must check it first.
+/// Panics if the schema's check does not accept the configuration. The caller must check the configuration first.
 pub fn describe(d: &Designer, config: &Config) {
     let found = found(config).expect("a configuration that is checked");
     d.about(about(&Keys::of(config), &found));

@@ -1,8 +1,8 @@
 //! The hardware description of the device `function`, which computes y = g(x) for one operand x.
 //!
-//! A configuration states g as a formula, such as `sqrt(x)`, or as samples of a curve. A table gives the coefficients of a
-//! polynomial for the segment of x, and Horner's rule evaluates the polynomial with one multiplier. The hardware is built from a plan
-//! with this one function, as the hardware of `expression` is.
+//! A configuration states g as a formula, such as `sqrt(x)`, or as samples of a curve. A table has the coefficients of a
+//! polynomial for each segment of x, and Horner's rule evaluates the polynomial with one multiplier. The hardware is built from
+//! a plan with this one function, like the hardware of `expression`.
 
 use glint_approximate::Piecewise;
 use glint_base::text;
@@ -17,7 +17,7 @@ use crate::plan::describe_plan;
 /// Describes the hardware of `function`: a table of coefficients, and Horner's rule with one multiplier.
 ///
 /// # Panics
-/// Panics if the check of the schema has not accepted the configuration. The caller must check it first.
+/// Panics if the schema's check does not accept the configuration. The caller must check the configuration first.
 pub fn describe(d: &Designer, config: &Config) {
     let (function, it) = found(config).expect("a configuration that is checked");
     d.about(about(&Keys::of(config), function.proof(), &it));

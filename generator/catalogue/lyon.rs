@@ -15,7 +15,7 @@ use glint_rtl::netlist::{About, Note, Topic};
 
 use super::common::{self, ColourProducts};
 
-/// How D² is formed, to the fraction bits of the register that takes it.
+/// The part of the hardware that computes D², rounded to the fraction bits of its register.
 struct SquaredDistance<'d> {
     value: Signal<'d>,
     /// The microinstructions before the microinstruction that loads D² into its register.
@@ -24,9 +24,9 @@ struct SquaredDistance<'d> {
     settings: Vec<StepSetting>,
 }
 
-/// How beta·D² is formed: the words that do it, and the result.
+/// The part of the hardware that computes β·D²: its result and its microinstructions.
 struct Scaled<'d> {
-    /// β·D². If the shift register makes it, it still has more fraction bits than f.
+    /// β·D². If the shift register computes it, it has more fraction bits than f.
     value: Signal<'d>,
     steps: Vec<Step>,
     squarings: Squarings<'d>,
@@ -72,7 +72,7 @@ pub fn describe(d: &Designer, config: &Config) {
     d.microprogram(steps.into_iter().chain(outputs));
 }
 
-/// Returns D² = dx² + dy² + dz², 0 … 12.0, with a multiplier for each square.
+/// Builds D² = dx² + dy² + dz², which is from 0 to 12.0, with one multiplier for each square.
 fn distance<'d>(d: &'d Designer, keys: &Keys, components: [Signal<'d>; 3]) -> SquaredDistance<'d> {
     let mut number = 0;
     let squares = components.map(|component| {
@@ -88,7 +88,7 @@ fn distance<'d>(d: &'d Designer, keys: &Keys, components: [Signal<'d>; 3]) -> Sq
     }
 }
 
-/// Makes the distance by one multiplier and one adder: two squares to a register, before the third comes to them.
+/// Builds D² with one multiplier and one adder. A register collects the first two squares, and the third is then added.
 fn distance_in_turn<'d>(
     d: &'d Designer,
     keys: &Keys,
@@ -102,7 +102,7 @@ fn distance_in_turn<'d>(
     let addend = d.mux("addend", [zero, sum.q()]).doc("the squares before it");
     let multiplier1 = d.mul("multiplier1", component.out(), component.out()).block(1);
     let adder1 = d.add("adder1", multiplier1, addend.out()).block(1).doc("in the end D^2");
-    // As below, the interval knows nothing of squares.
+    // As in `rounded_distance`, the interval of a sum does not consider that squares are not negative.
     let (rounding, overflow) = (Rounding::Truncate, Overflow::Wrap);
     sum.takes(d.narrow("sum_next", adder1, sum.format(), rounding, overflow));
     let [x, y, z] = components.map(|it| component.pick(it));
@@ -118,18 +118,18 @@ fn distance_in_turn<'d>(
 
 fn rounded_distance<'d>(d: &'d Designer, keys: &Keys, sum: Signal<'d>) -> Signal<'d> {
     let format = Format::unsigned(4, keys.distance_fraction as i32);
-    // The interval of the sum knows nothing of squares; it is never negative, and 12.0 at most.
+    // The interval of the sum does not consider that squares are not negative. The sum is from 0 to 12.0.
     d.narrow("distance_rounded", sum, format, keys.distance_rounding, Overflow::Wrap)
 }
 
-/// Returns the patent's scaling: a register that shifts one place a clock, under the counter.
+/// Builds the scaling of the patent: a register that shifts one bit in each clock, controlled by the counter.
 ///
-/// It starts from half of D²/2^(s+1), by wiring, so that it shifts at least once. A value that has left the range saturates
-/// to the largest word, above 1.0.
+/// The register starts with half of D²/2^(s+1), by wiring, so that it shifts at least once. A value that exceeds the format
+/// saturates to the largest word, which is above 1.0.
 fn by_shift<'d>(d: &'d Designer, keys: &Keys, distance: SquaredDistance<'d>) -> Scaled<'d> {
     let count = keys.squarings();
     let half_down = count as i32 + 2;
-    // It holds every log2 of an exponent, rounded: 0 … `exponent.bits`.
+    // The format can represent every rounded log₂ of an exponent: 0 to `exponent.bits`.
     let format = Format::holding(0, keys.exponent_bits.into(), 0);
     let shift = d.operand("shift", format).doc("log2 of the specular exponent n, rounded").q();
     let register = d
@@ -159,7 +159,7 @@ fn by_shift<'d>(d: &'d Designer, keys: &Keys, distance: SquaredDistance<'d>) -> 
     Scaled { value: register.q(), steps, squarings }
 }
 
-/// Returns the exact β·D², from a multiplier that the patent does not have, and n/2^(s+1) by wiring.
+/// Builds the exact β·D², with a multiplier that the patent does not have. The factor n/2^(s+1) is a shift by wiring.
 fn by_multiplier<'d>(d: &'d Designer, keys: &Keys, distance: SquaredDistance<'d>) -> Scaled<'d> {
     let count = keys.squarings();
     let exponent = common::exponent(d, keys.exponent_bits).q();

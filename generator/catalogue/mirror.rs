@@ -1,42 +1,43 @@
 //! Builds a value that conditions mirror, such as an angle in one of eight octants, as a single sum.
 //!
-//! A plan mirrors a value v at a constant c by a choice between v and c − v. A chain of such choices, and the rounding behind it,
-//! has the value ±v + base: the sign is the parity of the conditions, and the base is a constant for each combination of them. So
-//! one adder does what the plan states as a difference and a choice for each mirror.
+//! A plan mirrors a value v at a constant c by a choice between v and c − v. A chain of such choices, and the rounding after
+//! it, has the value ±v + base. The sign is the parity of the conditions, and the base is a constant for each combination of
+//! them. One adder therefore computes the whole chain, although the plan has a difference and a choice for each mirror.
 
 use glint_base::fixed::{Format, Overflow, Rounding};
 use glint_plan::{ExpressionPlan, NodeId, Operation};
 use glint_rtl::dsl::{Designer, Signal};
 
-/// The most mirrors in a chain: each doubles the number of constants.
+/// The largest number of mirrors in a chain. Each mirror doubles the number of constants.
 const MOST_MIRRORS: usize = 3;
 
 /// One mirror of a chain.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Mirror {
-    /// The value is mirrored where this node is 1.
+    /// The value is mirrored if this node is 1.
     condition: NodeId,
     /// The constant c of c − v: its raw value and its fraction bits.
     constant: (i128, i32),
 }
 
-/// A value that one condition after the other mirrors.
+/// A value that several conditions mirror, one after the other.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct MirrorChain {
     /// The value before the first mirror.
     start: NodeId,
-    /// The condition and the cases of the value before the first mirror, if it is a choice that nothing else reads.
+    /// The condition and the cases of `start`, if it is a choice that only the first mirror reads.
     choice: Option<(NodeId, [NodeId; 2])>,
-    /// The first mirror first.
+    /// The mirrors, in the order in which they are applied.
     mirrors: Vec<Mirror>,
-    /// The node that rounds the mirrored value to nearest, if there is one.
+    /// The node that rounds the mirrored value to the nearest; `None` without rounding.
     rounded: Option<NodeId>,
-    /// The nodes that are not built themselves, because the chain takes their place.
+    /// The nodes that are not built, because the chain replaces them.
     inner: Vec<NodeId>,
 }
 
 impl MirrorChain {
-    /// Returns the chain that ends at a node, if it saves an adder. `held` says which nodes have registers.
+    /// Returns the chain of mirrors that ends at node `end`. Returns `None` if the node ends no chain, or if the chain would
+    /// save no adder. `held` says for each node whether it has a register.
     pub(super) fn ending_at(plan: &ExpressionPlan, end: NodeId, held: &[bool]) -> Option<Self> {
         let mut chain = Self {
             start: end,
@@ -66,7 +67,7 @@ impl MirrorChain {
             chain.inner.push(top);
             chain.start = before;
         }
-        // The difference and the choice of a mirror read the value.
+        // Two operations read this value: the difference and the choice of the first mirror.
         let is_inner = !held[chain.start.0] && readers(plan, chain.start).len() == 2;
         if let Operation::Choose { condition, cases } = plan.node(chain.start).operation
             && is_inner
@@ -80,13 +81,13 @@ impl MirrorChain {
         (!chain.mirrors.is_empty() && adders > 1).then_some(chain)
     }
 
-    /// Returns the nodes that are not built themselves.
+    /// Returns the nodes that are not built, because the chain replaces them.
     pub(super) fn inner(&self) -> &[NodeId] {
         &self.inner
     }
 
-    /// Builds the chain and returns its value, which still may be wider than the format of its last node. `signal` gives the
-    /// nodes that are built.
+    /// Builds the chain and returns its value, which may be wider than the format of its last node. `signal` returns the
+    /// signal of a node that is already built.
     pub(super) fn build<'d>(
         &self,
         d: &'d Designer,
@@ -112,7 +113,7 @@ impl MirrorChain {
         for (number, condition) in conditions.iter().enumerate().skip(1) {
             is_negative = d.xor(&format!("{name}_is_negative{number}"), is_negative, *condition);
         }
-        // −v is ~v with a carry into the sum.
+        // −v equals ~v with a carry into the sum.
         let [value, inverted] = match self.choice {
             Some((condition, cases)) => {
                 let cases = cases.map(|case| signal(case).as_signed().with_fraction(frac));
@@ -139,8 +140,8 @@ impl MirrorChain {
         }
     }
 
-    /// Returns the constant of each combination of conditions, raw with `frac` fraction bits, and with `half` added. Bit 0 of a
-    /// combination is the first condition.
+    /// Returns the constant for each combination of conditions, as a raw value with `frac` fraction bits, plus `half`. Bit 0 of
+    /// the index of a combination is the first condition.
     fn bases(&self, frac: i32, half: i128) -> Vec<i128> {
         let mut bases = Vec::new();
         for combination in 0..1usize << self.mirrors.len() {
@@ -157,7 +158,8 @@ impl MirrorChain {
     }
 }
 
-/// Returns the mirror at a node, the value before it, and the node of the difference; `None` for any other node.
+/// Returns the mirror at a node, the node of the value that is mirrored, and the node of the difference. Returns `None` for any
+/// other node.
 fn mirror_at(plan: &ExpressionPlan, id: NodeId) -> Option<(Mirror, NodeId, NodeId)> {
     let Operation::Choose { condition, cases: [value, mirrored] } = plan.node(id).operation else {
         return None;
@@ -173,7 +175,7 @@ fn mirror_at(plan: &ExpressionPlan, id: NodeId) -> Option<(Mirror, NodeId, NodeI
     Some((Mirror { condition, constant }, value, mirrored))
 }
 
-/// Returns the nodes that read a node.
+/// Returns the nodes that read node `id`.
 fn readers(plan: &ExpressionPlan, id: NodeId) -> Vec<NodeId> {
     let mut readers = Vec::new();
     for (at, node) in plan.nodes.iter().enumerate() {
@@ -184,7 +186,7 @@ fn readers(plan: &ExpressionPlan, id: NodeId) -> Vec<NodeId> {
     readers
 }
 
-/// Returns the constant that the conditions choose. `bases` has the constants by combination.
+/// Builds the choice of one constant by the conditions. `bases` has the raw constant for each combination of conditions.
 fn chosen_base<'d>(
     d: &'d Designer,
     name: &str,

@@ -76,7 +76,8 @@ pub fn describe(d: &Designer, config: &Config) {
     ]);
 }
 
-/// Returns a word shifted left by pairs of places until one of its two top bits is 1, and by how many pairs.
+/// Shifts a word left by pairs of bits until one of its two top bits is 1. Returns the shifted word and the number of pairs. A
+/// word of zeros stays 0.
 pub(super) fn by_pairs<'d>(d: &'d Designer, mut word: Signal<'d>) -> (Signal<'d>, Signal<'d>) {
     let width = word.format().width();
     let mut places = Vec::new();
@@ -93,7 +94,8 @@ pub(super) fn by_pairs<'d>(d: &'d Designer, mut word: Signal<'d>) -> (Signal<'d>
     (word, d.join("pairs", &places, count))
 }
 
-/// Returns 1/√m of the mantissa m, by a chord between two rounded values of the function.
+/// Builds 1/√m for the mantissa m, from 1.0 to below 4.0, by a chord between two rounded values of the function. `address` is
+/// the number of address bits of the table, and `inverse` the number of fraction bits of the result.
 pub(super) fn inverse_root<'d>(
     d: &'d Designer,
     mantissa: Signal<'d>,
@@ -101,7 +103,7 @@ pub(super) fn inverse_root<'d>(
     inverse: i32,
 ) -> Signal<'d> {
     let width = mantissa.format().width() as i32;
-    // A segment is cut as fine as half a last place of the result needs.
+    // The position within a segment has as many bits as half a unit of the result needs.
     let along = (width - address).min(inverse - address + 2);
     let first = 1i128 << (address - 2);
     let count = 1i128 << address;
@@ -127,13 +129,13 @@ pub(super) fn inverse_root<'d>(
     let whole =
         d.narrow("fallen_cut", fallen, integer(fall_bits), Rounding::Truncate, Overflow::Saturate);
     let left = d.sub("inverse_found", start, whole.shift_right(inverse));
-    // The fall over a segment is less than its start.
+    // The fall over a segment is less than the value at its start.
     let format = Format::unsigned(1, inverse);
     d.narrow("inverse_kept", left, format, Rounding::Truncate, Overflow::Wrap)
 }
 
-/// Returns a component times 2^places, half of it: in −2 … 2 with one fraction bit more. Its square is at most the mantissa,
-/// so that the bits that are dropped at the top are copies of the sign.
+/// Returns a component times 2^`places`, divided by 2: from −2 to 2, with one more fraction bit. Its square is at most the
+/// mantissa, so the bits that are dropped at the top are copies of the sign.
 fn shifted<'d>(d: &'d Designer, x: Signal<'d>, places: Signal<'d>, fraction: i32) -> Signal<'d> {
     let wide = Format::signed(2, fraction);
     let keep = |name: &str, x| d.narrow(name, x, wide, Rounding::Truncate, Overflow::Wrap);

@@ -1,4 +1,5 @@
-//! Builds the hardware of a piecewise polynomial: a table of coefficients, and Horner's rule with one product and one sum a step.
+//! Builds the hardware of a piecewise polynomial: a table of coefficients, and Horner's rule with one product and one sum in
+//! each step.
 //!
 //! The devices `function`, `expression`, `blinn` and `gauss` use it. The position of the operand within its domain addresses the
 //! table, which gives the coefficients of the operand's segment. One multiplier serves all polynomials of a device.
@@ -9,17 +10,17 @@ use glint_approximate::{HornerStep, Layout, Piecewise};
 use glint_base::fixed::{Format, MAX_WIDTH, Overflow, Rounding};
 use glint_rtl::dsl::{Designer, OperandMux, Register, SharedProduct, Signal, StepSetting};
 
-/// One multiplier that the steps of all polynomials of a device share, with other products. Each product has its own
-/// microinstruction.
+/// One multiplier for the products in all steps of all polynomials of a device, and for other products. Each product has its
+/// own microinstruction.
 pub struct StepMultiplier<'d> {
     d: &'d Designer,
     name: &'d str,
-    /// The mux of the first factors, and the shared product; `None` if there is only one product.
+    /// The mux of the first factors, and the shared product; `None` if the device has at most one product.
     shared: Option<(OperandMux<'d>, SharedProduct<'d>)>,
 }
 
 impl<'d> StepMultiplier<'d> {
-    /// Makes the multiplier. The four names are for its select lines, its two operands and its product. `others` are the names
+    /// Makes the multiplier. The four names are for its select lines, its two operands and its product. `others` has the names
     /// and factors of products that belong to no polynomial. No two products may have the same first factor.
     pub fn new(
         d: &'d Designer,
@@ -47,7 +48,8 @@ impl<'d> StepMultiplier<'d> {
         Self { d, name: product, shared }
     }
 
-    /// Returns the settings of the microinstruction that carries out one step of a polynomial.
+    /// Connects the register of one step of a polynomial, and returns the settings of the microinstruction that executes this
+    /// step.
     pub fn step(&self, polynomial: &PolynomialDatapath<'d, '_>, step: usize) -> Vec<StepSetting> {
         let mut settings = Vec::new();
         let mut product = None;
@@ -59,7 +61,7 @@ impl<'d> StepMultiplier<'d> {
         settings
     }
 
-    /// Returns the product of a pair of factors, as the shared multiplier computes it.
+    /// Returns the product of a pair of factors. The factors must be known to [`StepMultiplier::new`].
     pub fn product(&self, [first, second]: [Signal<'d>; 2]) -> Signal<'d> {
         match &self.shared {
             Some((_, product)) => product.of(first, second),
@@ -67,44 +69,45 @@ impl<'d> StepMultiplier<'d> {
         }
     }
 
-    /// Returns the setting with which a microinstruction selects a pair of factors for the multiplier; `None` if the multiplier has
-    /// only one product.
+    /// Returns the setting with which a microinstruction selects a pair of factors for the multiplier. Returns `None` if the
+    /// multiplier has only one product.
     pub fn pick(&self, [first, _]: [Signal<'d>; 2]) -> Option<StepSetting> {
         let (factors, _) = self.shared.as_ref()?;
         Some(factors.pick(first))
     }
 }
 
-/// How the table of a polynomial stores its coefficients.
+/// The form in which the table of a polynomial stores its coefficients.
 #[derive(Clone, Copy, Debug)]
 pub struct Tables {
-    /// Whether each coefficient has its own table. Otherwise one table has words that contain all coefficients, as far as a net
-    /// can be that wide.
+    /// Whether each coefficient has its own table. Otherwise one table has all coefficients of a segment in one word, or
+    /// several tables if the word would be wider than a net can be.
     pub split: bool,
-    /// Whether the table is read at the rising edge. The coefficients then arrive one clock after the address.
+    /// Whether the table is read at the rising clock edge. The coefficients then arrive one clock after the address.
     pub synchronous: bool,
 }
 
-/// The bits of the smallest table for which a family of FPGAs has a block memory.
+/// The smallest size of a table, in bits, for which some family of FPGAs uses a block memory.
 const SMALLEST_BLOCK: u64 = 2048;
 
 impl Tables {
-    /// Returns how a table that is read at the rising edge stores its coefficients. In a pipeline, each coefficient has its own
-    /// table, because the address then waits in registers instead of the wider coefficient. Otherwise, one block memory has all
-    /// coefficients.
+    /// Returns the form of a table that is read at the rising clock edge. In a pipeline, each coefficient of a small table has
+    /// its own table, because registers then delay the address instead of the wider coefficient. Otherwise, one block memory
+    /// has all coefficients.
     pub fn of(it: &Piecewise, is_pipelined: bool) -> Self {
         Self { split: is_pipelined && it.rom_bits() < SMALLEST_BLOCK, synchronous: true }
     }
 }
 
-/// Returns the raw value of a signal, as an integer.
+/// Returns the raw value of a signal as an integer, with the same bits.
 pub(super) fn whole(x: Signal) -> Signal {
     let Format { signed, .. } = x.format();
     let int = x.format().width() as i32 - i32::from(signed);
     x.read_as(Format { int, frac: 0, ..x.format() })
 }
 
-/// Returns the number of an operand within the domain of a table, without a sign, as [`Piecewise::number`] computes it.
+/// Builds the number of an operand within the domain of a table, an integer without a sign, as [`Piecewise::number`] computes
+/// it.
 pub(super) fn number<'d>(d: &'d Designer, name: &str, x: Signal<'d>, it: &Piecewise) -> Signal<'d> {
     let width = x.format().width() as i32;
     let integer = |bits: i32| Format::unsigned(bits, 0);
@@ -128,17 +131,18 @@ pub struct PolynomialDatapath<'d, 'p> {
     prefix: String,
     /// The coefficients of the operand's segment, the constant first.
     coefficients: Vec<Signal<'d>>,
-    /// The offset of the operand from the middle of its segment, cut to the bits that each step multiplies.
+    /// The offset of the operand from the middle of its segment, shortened to the bits that each step multiplies.
     offsets: Vec<Signal<'d>>,
-    /// The register of the partial sum from each coefficient on; the first holds the whole polynomial.
+    /// The registers of the partial sums. Register k has the sum of the terms from coefficient k on, so that the first has the
+    /// whole polynomial.
     registers: Vec<Register<'d>>,
 }
 
 impl<'d, 'p> PolynomialDatapath<'d, 'p> {
     /// Makes the table, and the registers of the partial sums. `registers` are the names of these registers, starting with the
-    /// register of the whole polynomial; the names of other nets begin with `prefix`. `number` is the position of the operand in
-    /// its domain, an integer of [`glint_approximate::Segments::number_bits`] bits. It must be stable while the sums are loaded, and one
-    /// clock earlier if the table is read at the rising edge.
+    /// register of the whole polynomial. The names of other nets begin with `prefix`. `number` is the position of the operand
+    /// in its domain, an integer of [`glint_approximate::Segments::number_bits`] bits. It must be stable while the sums are
+    /// loaded, and one clock earlier if the table is read at the rising clock edge.
     pub fn new(
         d: &'d Designer,
         prefix: &str,
@@ -161,21 +165,22 @@ impl<'d, 'p> PolynomialDatapath<'d, 'p> {
         Self { d, it, prefix: prefix.to_owned(), coefficients, offsets, registers }
     }
 
-    /// Returns the numbers of Horner's steps in the order of execution; the last is 0. For example, two registers give the steps
-    /// 1 and 0.
+    /// Returns the numbers of Horner's steps in the order of execution. The last step is 0. For example, two registers give the
+    /// steps 1 and 0.
     pub fn steps(&self) -> impl Iterator<Item = usize> + use<> {
         (0..self.registers.len()).rev()
     }
 
-    /// Returns the factors of the product that a step adds to its coefficient: the sum of the step before, and the offset. A
-    /// table of results has none.
+    /// Returns the factors of the product that a step adds to its coefficient: the sum of the previous step, or the highest
+    /// coefficient, and the offset. Returns `None` for a step without a product, which occurs only if the polynomial is a
+    /// constant.
     fn factors(&self, step: usize) -> Option<[Signal<'d>; 2]> {
         let offset = *self.offsets.get(step)?;
         let above = self.registers.get(step + 1).map(|register| register.q());
         Some([above.unwrap_or(self.coefficients[step + 1]), offset])
     }
 
-    /// Lets the register of a step take the sum with its product, and returns the setting that loads it.
+    /// Connects the register of a step to its coefficient plus the product, and returns the setting that loads the register.
     fn add(&self, step: usize, product: Option<Signal<'d>>) -> StepSetting {
         let Self { d, it, prefix, .. } = self;
         let coefficient = self.coefficients[step];
@@ -199,7 +204,8 @@ impl<'d, 'p> PolynomialDatapath<'d, 'p> {
     }
 }
 
-/// Returns the bits of a word with the top one inverted, in a format of the same width: a sign added or taken away.
+/// Returns the bits of a word with the top bit inverted, in a format of the same width. For example, this converts an unsigned
+/// number to its signed distance from the middle.
 pub(super) fn flipped<'d>(
     d: &'d Designer,
     name: &str,
@@ -214,7 +220,8 @@ pub(super) fn flipped<'d>(
     d.join(name, &[top, word.bits(0, Format::unsigned(low as i32, 0))], format)
 }
 
-/// Returns the word of the table, and the offset from the middle of the segment, on which a polynomial depends.
+/// Builds the address of the segment in the table, and the operand's offset from the middle of the segment. The offset is
+/// `None` if the polynomial is a constant.
 fn place<'d>(
     d: &'d Designer,
     prefix: &str,
@@ -228,7 +235,8 @@ fn place<'d>(
         _ => number,
     };
     let words = usize::BITS - (cut.words() - 1).leading_zeros();
-    // Word and rest of the operands of a block, the rest beginning with the bits that every block has.
+    // The address and the position within the segment for the operands of one block of segments. The position begins with the
+    // bits that every block has.
     let arm = |block: u32| {
         let rest = cut.rest_of(block);
         let base = d.raw_constant("block", i128::from(block) << cut.prefix, integer(words));
@@ -268,8 +276,8 @@ fn place<'d>(
     (word, way.map(|way| offset_with_overhang(d, &name, way, beyond)))
 }
 
-/// Returns the offset from the middle of a segment, where `way` is the offset from the segment's beginning. An operand beyond the
-/// last segment has the offset half a segment plus `way`.
+/// Builds the offset from the middle of a segment. `way` is the offset from the segment's beginning. If `beyond` is 1, the
+/// operand lies beyond the last segment, and its offset is half a segment plus `way`.
 fn offset_with_overhang<'d>(
     d: &'d Designer,
     name: &str,
@@ -284,7 +292,7 @@ fn offset_with_overhang<'d>(
     d.join(name, &[sign, top, low], Format::signed(0, rest as i32))
 }
 
-/// Returns the coefficients of the segment, the constant first.
+/// Builds the tables, and returns the coefficients of the addressed segment, the constant coefficient first.
 fn table<'d>(
     d: &'d Designer,
     prefix: &str,

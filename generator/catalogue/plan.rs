@@ -1,8 +1,8 @@
 //! Builds the hardware of a plan: logic between registers for each operation, and a microprogram.
 //!
-//! The devices `function` and `expression` use it. A plan is a list of fixed-point operations ([`glint_plan`]). All products of a
-//! plan share one multiplier, each in a microinstruction of its own. A pipeline unrolls the microprogram, so that each product gets a
-//! multiplier of its own.
+//! The devices `function` and `expression` use it. A plan is a list of fixed-point operations ([`glint_plan`]). All products of
+//! a plan share one multiplier, and each product has its own microinstruction. If the device is a pipeline, the microprogram is
+//! unrolled, and each product gets its own multiplier.
 
 use glint_approximate::{Outside, Piecewise};
 use glint_base::fixed::{Format, Overflow, Rounding};
@@ -15,8 +15,8 @@ use glint_rtl::dsl::{Designer, Register, Signal, Step, end, step, valid};
 use crate::mirror::MirrorChain;
 use crate::piecewise::{PolynomialDatapath, StepMultiplier, Tables, number};
 
-/// Describes the hardware of a plan. The result number k of the plan goes to the port with the name number k of `outputs`.
-/// `is_pipelined` says how tables store their coefficients.
+/// Describes the hardware of a plan. Result number k of the plan is connected to the port `outputs[k]`. `is_pipelined` decides
+/// how tables store their coefficients.
 pub(super) fn describe_plan(
     d: &Designer,
     operands: &[StatedOperand],
@@ -34,23 +34,23 @@ pub(super) fn describe_plan(
     d.microprogram(steps);
 }
 
-/// A plan in the making as a datapath.
+/// The state of the construction of a plan's datapath.
 struct PlanDatapath<'d, 'p> {
     d: &'d Designer,
     operands: &'p [StatedOperand],
     plan: &'p ExpressionPlan,
     schedule: &'p PlanSchedule,
     is_pipelined: bool,
-    /// The register of each node of the plan, or `None` for a node without one. Polynomials have their own registers.
+    /// The register of each node of the plan; `None` for a node without a register. Polynomials have their own registers.
     registers: Vec<Option<Register<'d>>>,
-    /// The value of each node as later nodes read it; `None` for a product until its register is made.
+    /// The signal that later nodes read for each node; `None` if the node is not built yet.
     signals: Vec<Option<Signal<'d>>>,
     polynomials: Vec<Option<PolynomialDatapath<'d, 'p>>>,
     /// The two factors of each product, or `None` for a node that is no product.
     factors: Vec<Option<[Signal<'d>; 2]>>,
-    /// The chain of mirrors that ends at each node, if one does.
+    /// The chain of mirrors that ends at each node; `None` if no chain ends at the node.
     chains: Vec<Option<MirrorChain>>,
-    /// Whether each node is inside a chain of mirrors, and so not built itself.
+    /// Whether each node is replaced by a chain of mirrors, and therefore not built.
     is_inner: Vec<bool>,
 }
 
@@ -85,7 +85,8 @@ impl<'d, 'p> PlanDatapath<'d, 'p> {
         }
     }
 
-    /// Builds the nodes in their order, except for what follows from products: these need the multiplier.
+    /// Builds the nodes in their order, except for products and the nodes that are computed from them up to a register.
+    /// `microprogram` builds these with the multiplier.
     fn build(&mut self) {
         for at in 0..self.plan.nodes.len() {
             if self.is_inner[at] {
@@ -115,8 +116,8 @@ impl<'d, 'p> PlanDatapath<'d, 'p> {
         }
     }
 
-    /// Returns the factors of a product. A first factor that another product has, too, gets a net of its own, by which the
-    /// microprogram selects this product.
+    /// Returns the factors of a product. If another product has the same first factor, the factor gets a new net, because the
+    /// microprogram selects a product by its first factor.
     fn distinct_factors(&self, name: &str, inputs: [NodeId; 2]) -> [Signal<'d>; 2] {
         let [first, second] = inputs.map(|input| self.signal(input));
         let mut others = self.factors.iter().flatten();
@@ -129,22 +130,22 @@ impl<'d, 'p> PlanDatapath<'d, 'p> {
         [first, second]
     }
 
-    /// Returns the value of a node as later nodes read it.
+    /// Returns the signal of a node. Panics if the node is not built yet.
     fn signal(&self, id: NodeId) -> Signal<'d> {
         self.signals[id.0].unwrap_or_else(|| panic!("`{}` is built", self.plan.node(id).name))
     }
 
-    /// Returns a signal in the format of a node, with the bits above dropped.
+    /// Returns a signal in the format `format`. Bits above the format are dropped.
     fn in_format(&self, name: &str, signal: Signal<'d>, format: Format) -> Signal<'d> {
         if signal.format() == format {
             return signal;
         }
-        // The plan knows narrower limits of the value than the signal's.
+        // The plan knows narrower limits of the value than the interval of the signal.
         let name = format!("{name}_kept");
         self.d.narrow(&name, signal, format, Rounding::Truncate, Overflow::Wrap)
     }
 
-    /// Builds the chain of mirrors that ends at a node.
+    /// Builds the chain of mirrors that ends at node `id`.
     fn mirrored(&self, id: NodeId) -> Signal<'d> {
         let PlanNode { name, format, .. } = self.plan.node(id);
         let chain = self.chains[id.0].as_ref().expect("a chain that ends at the node");
@@ -156,7 +157,7 @@ impl<'d, 'p> PlanDatapath<'d, 'p> {
         self.in_format(&name, value, *format)
     }
 
-    /// Builds a node as logic.
+    /// Builds the combinational logic of node `id`. The nodes that it reads must be built.
     fn logic(&mut self, id: NodeId) -> Signal<'d> {
         let d = self.d;
         let plan = self.plan;
@@ -190,7 +191,8 @@ impl<'d, 'p> PlanDatapath<'d, 'p> {
             Operation::Subtract(a, b) => d.sub(name, input(a), input(b)),
             Operation::Multiply(..) => unreachable!("a product needs the multiplier"),
             Operation::Absolute(a) => {
-                // −a is ~a and a carry. A choice behind the sum would become one large function with the choices that follow it.
+                // −a equals ~a plus a carry. If the choice came after the sum, synthesis would merge it with the choices that
+                // follow into one large function.
                 let a = input(a);
                 let is_negative = a.bit(a.format().width() - 1);
                 let inverted = d.not(&format!("{name}_inverted"), a);
@@ -212,7 +214,7 @@ impl<'d, 'p> PlanDatapath<'d, 'p> {
                 let zero = matches!(plan.node(*b).operation, Operation::Constant { raw: 0, .. });
                 let format = input(a).format();
                 return match zero && format.signed {
-                    // A number below 0 shows its sign.
+                    // The sign bit says whether a number is below 0.
                     true => input(a).bit(format.width() - 1),
                     false => d.less(name, input(a), input(b)),
                 };
@@ -230,7 +232,7 @@ impl<'d, 'p> PlanDatapath<'d, 'p> {
             Operation::Bit(a, number) => {
                 let a = input(a);
                 let top = a.format().width() - 1;
-                // Above its sign a number has copies of the sign, or zeros.
+                // Above its sign bit, a number has copies of the sign. Above its top bit, a number without a sign has zeros.
                 return match *number <= top || a.format().signed {
                     true => a.bit((*number).min(top)),
                     false => d.raw_constant(name, 0, Format::BIT),
@@ -240,7 +242,7 @@ impl<'d, 'p> PlanDatapath<'d, 'p> {
                 return d.narrow(name, input(a), *format, Rounding::Truncate, Overflow::Wrap);
             }
             Operation::FractionPart(a, _) => {
-                // A number below 1 can have fewer bits than its fraction.
+                // A number below 1 may have fewer bits than its fraction.
                 return d.narrow(name, input(a), *format, Rounding::Truncate, Overflow::Wrap);
             }
             Operation::Lookup { address, words } => {
@@ -251,7 +253,7 @@ impl<'d, 'p> PlanDatapath<'d, 'p> {
                     true => normalise_by_pairs(d, name, input(word)),
                     false => normalise(d, name, input(word)),
                 };
-                // The node of the places follows the word.
+                // The node with the number of shifted bits directly follows the node of the word.
                 self.signals[id.0 + 1] = Some(found.zeros);
                 found.word.read_as(*format)
             }
@@ -269,7 +271,7 @@ impl<'d, 'p> PlanDatapath<'d, 'p> {
         self.in_format(name, value, *format)
     }
 
-    /// Builds a table of polynomials and its registers, and returns the last of them.
+    /// Builds a table of polynomials and its registers, and returns the signal of the register with the result.
     fn polynomial(&mut self, id: NodeId, operand: Signal<'d>, it: &'p Piecewise) -> Signal<'d> {
         let prefix = self.plan.table_prefix(id);
         let number = number(self.d, &format!("{prefix}number"), operand, it);
@@ -282,7 +284,7 @@ impl<'d, 'p> PlanDatapath<'d, 'p> {
         q
     }
 
-    /// Returns the microinstructions, and connects the registers of products to the multiplier.
+    /// Builds the microinstructions, and connects the registers of products to the multiplier.
     fn microprogram(&mut self) -> Vec<Step> {
         let polynomials: Vec<&PolynomialDatapath> = self.polynomials.iter().flatten().collect();
         let mut others = Vec::new();
@@ -342,7 +344,8 @@ impl<'d, 'p> PlanDatapath<'d, 'p> {
         }
     }
 
-    /// Returns the value of the node `held`, computed from the value `product`. The nodes between the two only scale and shorten it.
+    /// Returns the value of the node `held`, computed from the signal `product` of the node `from`. The nodes between these two
+    /// only scale and shorten the value.
     fn following(&self, product: Signal<'d>, from: NodeId, held: NodeId) -> Signal<'d> {
         let node = self.plan.node(held);
         if held == from {
@@ -363,7 +366,7 @@ impl<'d, 'p> PlanDatapath<'d, 'p> {
     }
 }
 
-/// Returns a signal with its low bits replaced by a 1, which is the lowest bit of the format.
+/// Returns a signal with its low bits replaced by a single 1, which is the lowest bit of `format`.
 fn middle<'d>(d: &'d Designer, name: &str, signal: Signal<'d>, format: Format) -> Signal<'d> {
     let kept = Format { frac: format.frac - 1, ..format };
     let name_of_kept = format!("{name}_kept");
@@ -372,7 +375,7 @@ fn middle<'d>(d: &'d Designer, name: &str, signal: Signal<'d>, format: Format) -
     d.join(name, &[upper, one], format)
 }
 
-/// Returns the chain of mirrors that ends at each node of a plan, and whether each node is inside a chain.
+/// Returns for each node of a plan the chain of mirrors that ends at the node, and whether a chain replaces the node.
 fn mirror_chains(
     plan: &ExpressionPlan,
     schedule: &PlanSchedule,
@@ -380,7 +383,7 @@ fn mirror_chains(
     let count = plan.nodes.len();
     let mut chains = vec![None; count];
     let mut is_inner = vec![false; count];
-    // Of two chains, the one that ends later is the longer one.
+    // If two chains overlap, the chain that ends later is longer.
     for at in (0..count).rev() {
         if is_inner[at] {
             continue;
@@ -396,13 +399,13 @@ fn mirror_chains(
     (chains, is_inner)
 }
 
-/// Returns two signals with as many fraction bits as the finer one has.
+/// Returns two signals with the same number of fraction bits, the larger of both.
 fn aligned(signals: [Signal<'_>; 2]) -> [Signal<'_>; 2] {
     let [first, second] = signals.map(|signal| signal.format().frac);
     signals.map(|signal| signal.with_fraction(first.max(second)))
 }
 
-/// Returns x · 2^places in a format, with the bits above the format dropped.
+/// Builds x · 2^`places` in `format`. Bits above the format are dropped.
 fn left_by<'d>(
     d: &'d Designer,
     name: &str,
@@ -427,13 +430,13 @@ fn left_by<'d>(
     row.read_as(format)
 }
 
-/// Returns whether two numbers have no bits of the same weight, so that their sum needs no adder: all bits of the first are above the
-/// bits of the second, which has no sign.
+/// Returns whether all bits of the first number have larger weights than the bits of the second, which must have no sign. Their
+/// sum then needs no adder.
 fn is_above(first: Signal<'_>, second: Signal<'_>) -> bool {
     !second.format().signed && second.format().int == -first.format().frac
 }
 
-/// Returns a noun in the singular or in the plural. For example, `operands` for two of them.
+/// Returns a noun in the singular for a count of 1, and in the plural otherwise. For example, 2 gives `operands`.
 fn noun(count: usize, noun: &str) -> String {
     if count == 1 { noun.to_owned() } else { format!("{noun}s") }
 }

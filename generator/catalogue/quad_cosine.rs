@@ -5,13 +5,13 @@
 //! source is a patent that claims this device; Glint calls it seed 000. The numbers of blocks and outputs are the numbers in the
 //! patent's figure.
 //!
-//! Block 14 is the control unit. The patent builds it from triggers (flip-flops). Glint makes it a microprogram with the same order
-//! of events.
+//! Block 14 is the control unit. The patent builds it from triggers (flip-flops). Glint makes it a microprogram with the same
+//! order of events.
 //!
 //! Output 37 (`write_angle`) writes the angle of a point into register 8. The output `valid` is a copy of output 37, delayed
-//! until the result of the point is ready. With the default key `line.stages` = 2 the delay is two clocks: one for register 8, and
-//! one for ROM 12, which is synchronous like ROM 9. With `line.stages` = 7 five more registers lie between register 8 and the
-//! output, and the delay is seven clocks.
+//! until the result of the point is ready. With the default key `line.stages` = 2 the delay is two clocks: one for register 8,
+//! and one for ROM 12, which is synchronous like ROM 9. With `line.stages` = 7 five more registers lie between register 8 and
+//! the output, and the delay is seven clocks.
 
 use glint_base::fixed::Format;
 use glint_config::Config;
@@ -24,7 +24,7 @@ use glint_rtl::netlist::{About, Topic};
 
 use super::common;
 
-/// The powers, in the order of ROM 12's tables and of the decoder's outputs 30 to 33.
+/// The powers k, in the order of ROM 12's tables and of the decoder's outputs 30 to 33.
 const POWERS: [u32; 4] = [1, 2, 4, 16];
 
 /// The numbers that the patent's figure gives to the inputs, the register, the multiplier and the output of the amplitude.
@@ -36,7 +36,8 @@ pub fn describe<'d>(d: &'d Designer, config: &Config) {
     let keys = Keys::of(config);
     let table = keys.table_address as i32;
     let f = keys.f_format();
-    // Registers behind the magnitude and the root, multiplier 11, the address and the word of ROM 12, and multiplier 13.
+    // The registers after the magnitude and the root, after multiplier 11, after the address and the word of ROM 12, and after
+    // multiplier 13.
     let staged = keys.stages == 7;
     let held =
         |name: &str, source: Signal<'d>| if staged { d.pipeline(name, source) } else { source };
@@ -84,11 +85,11 @@ pub fn describe<'d>(d: &'d Designer, config: &Config) {
     } else {
         colours.outputs(cosine.out(), rounding);
     }
-    // Register 8, ROM 12, and the stages between them.
+    // The clocks of register 8 and ROM 12, and of the registers between them.
     line.microprogram(keys.stages);
 }
 
-/// Makes decoder 10, with outputs 30 to 33, one of them 1, and returns the number of the one.
+/// Builds decoder 10, whose outputs 30 to 33 have a single 1, and returns the number of the output that is 1, from 0.
 fn decoder<'d>(d: &'d Designer, exponent: Signal<'d>) -> Signal<'d> {
     let constant = |name: &str, raw: i128| d.raw_constant(name, raw, exponent.format());
     let first = constant("first_exponent", 1);
@@ -107,7 +108,7 @@ fn decoder<'d>(d: &'d Designer, exponent: Signal<'d>) -> Signal<'d> {
     d.concat("power_code", high, low).block(10).doc("the number of the decoder's output that is 1")
 }
 
-/// Returns the place of the power for the exponent n. For example, n = 5 gives 2, and `POWERS[2]` is 4.
+/// Returns the index in `POWERS` of the power for the exponent n. For example, n = 5 gives 2, and `POWERS[2]` is 4.
 fn power_of(n: i64) -> usize {
     match n {
         1 => 0,

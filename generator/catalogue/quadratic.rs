@@ -1,10 +1,10 @@
 //! The hardware description of the device `quadratic`, which computes f = max(0, c + a(n)·(c² − c)).
 //!
-//! c = cos γ, where γ is the angle between the surface normal and the half vector; n is the specular exponent; a(n) is a
-//! coefficient from a table, ROM(n); f is the reflectance, the factor by which the device multiplies colours. The source is the
-//! patent UA 20998, which the patent UA 60139 (Glint calls it seed 001) cites. UA 20998 connects its blocks without a control
-//! block; this description adds two registers, so that no clock contains more than one multiplier before the outputs. Each kind
-//! of block is numbered from 1, as in the text of seed 001: register 1, adder 1, multiplier 1.
+//! c = cos γ, where γ is the angle between the surface normal and the half vector, and n is the specular exponent. A table,
+//! ROM(n), has the coefficients a(n), and f is the reflectance, the factor by which the device multiplies colours. The source
+//! is the patent UA 20998, which the patent UA 60139 (Glint calls it seed 001) cites. UA 20998 connects its blocks without a
+//! control block; this description adds two registers, so that no clock contains more than one multiplier before the outputs.
+//! Each kind of block is numbered from 1, as in the text of seed 001: register 1, adder 1, multiplier 1.
 
 mod coefficient;
 
@@ -17,7 +17,7 @@ use glint_rtl::netlist::About;
 
 use super::common::{self, ColourProducts};
 
-/// The seed's numbers of the colour channels.
+/// The numbers of the colour channels' blocks in the source.
 const CHANNELS: [ChannelBlocks; 3] = [channel(1), channel(2), channel(3)];
 
 const fn channel(output: u16) -> ChannelBlocks {
@@ -48,7 +48,7 @@ pub fn describe(d: &Designer, config: &Config) {
     let intensity = d.register("intensity", keys.f.format()).doc("the reflectance f");
 
     let adder1 = adder1(d, cos_gamma);
-    // The interval of the sum is wider than its values, which lie in -0.25 ... 0: nothing is lost.
+    // The interval of the sum is wider than its values, which are from −0.25 to 0, so no bit is lost.
     let (rounding, overflow) = (keys.difference_rounding, Overflow::Wrap);
     difference.takes(d.narrow("adder1_rounded", adder1, difference.format(), rounding, overflow));
     let coefficient = coefficient_rom(d, &keys, exponent).out();
@@ -66,7 +66,7 @@ pub fn describe(d: &Designer, config: &Config) {
     d.microprogram(steps.into_iter().chain(outputs));
 }
 
-/// Makes adder 1: multiplier 5's c² plus the inverted c plus its carry-in.
+/// Builds adder 1: c² from multiplier 5, plus the inverted c, plus the carry-in.
 fn adder1<'d>(d: &'d Designer, cos_gamma: Signal<'d>) -> Signal<'d> {
     let square = d.mul("multiplier5", cos_gamma, cos_gamma).block(5).doc("c^2");
     let wide = cos_gamma.with_fraction(square.format().frac).as_signed();
@@ -89,7 +89,7 @@ fn coefficient_rom<'d>(d: &'d Designer, keys: &Keys, exponent: Signal<'d>) -> Ro
         .comments(comments)
 }
 
-/// Returns a(n) before it is rounded.
+/// Returns the coefficient a(n) before it is rounded.
 fn value(scheme: Scheme, n: u32) -> f64 {
     match scheme {
         Scheme::Minimax => coefficient::minimax(n),

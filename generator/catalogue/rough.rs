@@ -1,10 +1,11 @@
 //! The hardware description of the device `rough`, which computes f = (n/2·(cos(γ ± dγ) − 1) + 1)², the highlight of a rough
 //! surface.
 //!
-//! γ is the angle between the surface normal and the half vector; dγ is the deviation of the normal on a rough surface; n is the
-//! specular exponent; f is the reflectance, the factor by which the device multiplies colours. The source is the patent UA 60139
-//! (Glint calls it seed 001), and block numbers are the numbers in its figure. Multiplier 10 computes four products one after the
-//! other, and the select lines V1 and V2 choose its operands. The microprogram equals table 1 of the patent, word by word.
+//! γ is the angle between the surface normal and the half vector, dγ is the deviation of the normal on a rough surface, and n
+//! is the specular exponent. f is the reflectance, the factor by which the device multiplies colours. The source is the patent
+//! UA 60139 (Glint calls it seed 001), and block numbers are the numbers in its figure. Multiplier 10 computes four products
+//! one after the other, and the select lines V1 and V2 choose its operands. The microprogram equals table 1 of the patent, word
+//! by word.
 
 mod sine;
 
@@ -18,14 +19,14 @@ use glint_rtl::netlist::{About, Note, Topic};
 use super::common::{self, ColourProducts};
 use sine::sine_rom;
 
-/// The patent's numbers of the colour channels.
+/// The numbers of the colour channels' blocks in the patent.
 const CHANNELS: [ChannelBlocks; 3] = [
     ChannelBlocks { inputs: (32, 33), register: 5, multiplier: 20, output: 40 },
     ChannelBlocks { inputs: (34, 35), register: 6, multiplier: 21, output: 41 },
     ChannelBlocks { inputs: (36, 37), register: 7, multiplier: 22, output: 42 },
 ];
 
-/// The formats that a configuration chooses.
+/// The formats and roundings of a configuration. With `patent`, all numbers are fractions modulo 1.0.
 struct Formats {
     cosine: Format,
     sine: Format,
@@ -61,8 +62,8 @@ impl Formats {
             sine: Format::unsigned(0, keys.sine_fraction as i32),
             cos_cos: Format::unsigned(1, product),
             sin_sin: Format::unsigned(0, product),
-            // From -1.0, where the parabola has its zero and the clamp holds; without the clamp from
-            // -2.0, which is as far as the square can rise again.
+            // The format begins at −1.0, where the parabola has its zero and the clamp acts. Without the clamp it begins at
+            // −2.0, the smallest value that can occur.
             result: Format::signed(i32::from(!keys.clamp), keys.f.fraction as i32),
             f: keys.f.format(),
             product_rounding: keys.product_rounding,
@@ -87,7 +88,7 @@ pub fn describe(d: &Designer, config: &Config) {
         .doc("sign of dgamma: 0 for cos(gamma + dgamma), 1 for cos(gamma - dgamma)");
     let colours = ColourProducts::new(d, &keys.operands.colours, Some(CHANNELS));
 
-    // V1 V2, then V3, then the load lines V4 to V7: in the order of the patent's table.
+    // The order is the order in the patent's table: V1 V2, then V3, then the load lines V4 to V7.
     let operand_select =
         d.select("operand_select", &["cosines", "sines", "half_n", "square"]).lines(&[45, 46]);
     let sine_of = d
@@ -112,8 +113,8 @@ pub fn describe(d: &Designer, config: &Config) {
         .line(51)
         .doc("n/2*(cos(gamma +- dgamma) - 1), then f");
 
-    // A synchronous ROM is addressed with dgamma while register 19 still takes the sine of gamma, a
-    // microinstruction before line 47 says so: the sine of dgamma is then there when mux 8 selects it.
+    // A synchronous ROM is addressed with dγ while register 19 still loads the sine of γ, one microinstruction before line 47
+    // selects dγ. The sine of dγ is then available when mux 8 selects it.
     let addressed = if keys.synchronous {
         d.choose("sine_of", r19.loading(), [sine_of.out(), cos_dgamma])
             .doc("mux 17, ahead by a microinstruction")
@@ -129,8 +130,8 @@ pub fn describe(d: &Designer, config: &Config) {
     };
 
     let half_n = half_n.named("half_exponent").doc("n/2, by wiring");
-    // Words 0, 2, 4 and 6 settle the operands for the loads in words 1, 3, 5 and 7. The operands are held in registers, so
-    // that the multiplier never shares a clock with an adder in front of it.
+    // Words 0, 2, 4 and 6 of the control ROM select the operands, and words 1, 3, 5 and 7 load the products. Registers store
+    // the operands, so that the multiplier and an adder before it never share a clock.
     let mux8 = d
         .bus("mux8", operand_select, [cos_gamma, sine, adder15, adder16])
         .block(8)
@@ -170,7 +171,7 @@ pub fn describe(d: &Designer, config: &Config) {
     let f = if r13.format().int == 0 {
         r13.q().bits(0, formats.f).named("f").doc(doc)
     } else {
-        // Without the clamp the square can be 1.0 or more, where f saturates.
+        // Without the clamp the square can be 1.0 or more. f then saturates.
         d.narrow("f", r13.q(), formats.f, Rounding::Truncate, Overflow::Saturate).doc(doc)
     };
     let outputs = colours.outputs(f, keys.f.output_rounding);
@@ -206,8 +207,8 @@ pub fn describe(d: &Designer, config: &Config) {
     d.microprogram(steps);
 }
 
-/// Makes registers 1 and 2. Exact arithmetic limits both to 0 … 1.0 as they are written; a negative cos γ becomes 0, which
-/// [`facing_only`] turns into f = 0.
+/// Builds the registers 1 and 2. With exact arithmetic, both limit written values to 0 … 1.0. A negative cos γ becomes 0, for
+/// which [`facing_only`] makes f = 0.
 fn operands<'d>(d: &'d Designer, formats: &Formats) -> (Signal<'d>, Signal<'d>) {
     let operand = |name: &str, format: Format| {
         if formats.patent {
@@ -228,10 +229,10 @@ fn operands<'d>(d: &'d Designer, formats: &Formats) -> (Signal<'d>, Signal<'d>) 
     (r1.q(), r2.q())
 }
 
-/// Makes adder 15, n/2 and adder 16 with integer positions.
+/// Builds adder 15, n/2 and adder 16 with integer bits.
 ///
-/// Adder 15 = register 11 ∓ register 12 − 1.0. Mux 14 feeds it the inverse of 1.0 + register 12, to
-/// which the carry-in adds the missing ulp, or adder 31's register 12 − 1.0.
+/// Adder 15 computes register 11 ∓ register 12 − 1.0. For the minus sign, mux 14 passes the inverse of 1.0 + register 12, and
+/// the carry-in adds the missing unit in the last place. For the plus sign, mux 14 passes register 12 − 1.0 from adder 31.
 fn exact_sums<'d>(
     d: &'d Designer,
     negative: Signal<'d>,
@@ -256,10 +257,11 @@ fn exact_sums<'d>(
     (adder15, exponent.shift_right(1), adder16)
 }
 
-/// Makes adder 15, n/2 and adder 16 as the patent has them: fractions modulo 1.0, where every "− 1" is the missing carry and the
-/// low bit of n is dropped.
+/// Builds adder 15, n/2 and adder 16 as in the patent. All numbers are fractions modulo 1.0, so that a missing carry replaces
+/// each "− 1". The low bit of n is dropped.
 ///
-/// Adder 31's second input is all ones in the claim and in the description, zeros in the summary: ones.
+/// The patent contradicts itself about the second input of adder 31: it is all ones in the claim and in the description, and
+/// zeros in the summary. This circuit uses ones.
 fn patent_sums<'d>(
     d: &'d Designer,
     negative: Signal<'d>,
@@ -289,7 +291,7 @@ fn patent_sums<'d>(
     (adder15, half, adder16)
 }
 
-/// Returns the next value of register 13: the product, or −1.0, which makes f = 0, when cos γ ≤ 0.
+/// Returns the next value of register 13: the product if cos γ > 0, and otherwise −1.0, which makes f = 0.
 fn facing_only<'d>(d: &'d Designer, cos_gamma: Signal<'d>, result: Signal<'d>) -> Signal<'d> {
     let facing = d.any("facing", cos_gamma).doc("the surface faces the half vector");
     let dark = d.constant("minus_one", -1.0, Format::signed(0, result.format().frac));

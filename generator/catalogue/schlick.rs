@@ -42,8 +42,8 @@ pub fn describe(d: &Designer, config: &Config) {
     d.microprogram(steps.into_iter().chain(outputs));
 }
 
-/// Returns `n·(1 − cos γ) + cos γ`, exact; an ulp more where cos γ = 0, which only keeps it above 0: the quotient is 0 then,
-/// whatever the divisor.
+/// Builds the exact divisor `n·(1 − cos γ) + cos γ`. If cos γ = 0, the divisor is larger by one unit in the last place, so that
+/// it is not 0 for n = 0. The quotient is then 0, whatever the divisor is.
 fn divisor<'d>(d: &'d Designer, cos_gamma: Signal<'d>, exponent: Signal<'d>) -> Signal<'d> {
     let (c, n) = (cos_gamma.format(), exponent.format());
     let one = d.constant("one", 1.0, Format::unsigned(1, c.frac));
@@ -52,7 +52,7 @@ fn divisor<'d>(d: &'d Designer, cos_gamma: Signal<'d>, exponent: Signal<'d>) -> 
     let facing = d.any("facing", cos_gamma).doc("the surface faces the half vector");
     let dark = d.not("dark", facing).doc("an ulp for the divisor, which n = 0 would leave at 0");
     let sum = d.add_carry("denominator", scaled, cos_gamma, dark);
-    // It lies between cos γ and n, or 1.0, and is n and an ulp at the most.
+    // The divisor lies between cos γ and n, or is at most 1.0; its largest value is n plus one unit in the last place.
     let format = Format::unsigned(n.int, c.frac);
     let divisor = d.narrow("divisor", sum, format, Rounding::Truncate, Overflow::Wrap);
     divisor.doc("n - n*cos gamma + cos gamma, never 0")

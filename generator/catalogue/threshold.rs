@@ -1,11 +1,11 @@
 //! The hardware description of the device `threshold`, which computes f = (n/2·(c − 1) + 1)², or 0 if this square is below a
 //! level.
 //!
-//! c = cos γ, where γ is the angle between the surface normal and the half vector; n is the specular exponent; the level comes
-//! from a table, ROM(n); f is the reflectance, the factor by which the device multiplies colours. The source is the patent UA
-//! 30041, which the patent UA 60139 (Glint calls it seed 001) cites. UA 30041 connects its blocks without a control block; this
-//! description adds two registers, so that no clock contains more than one multiplier before the outputs. Each kind of block is
-//! numbered from 1, as in the text of seed 001: register 1, adder 1, multiplier 1.
+//! c = cos γ, where γ is the angle between the surface normal and the half vector, and n is the specular exponent. The level
+//! comes from a table, ROM(n), and f is the reflectance, the factor by which the device multiplies colours. The source is the
+//! patent UA 30041, which the patent UA 60139 (Glint calls it seed 001) cites. UA 30041 connects its blocks without a control
+//! block; this description adds two registers, so that no clock contains more than one multiplier before the outputs. Each kind
+//! of block is numbered from 1, as in the text of seed 001: register 1, adder 1, multiplier 1.
 
 use glint_base::fixed::{Format, Overflow, Rounding, exp2};
 use glint_config::Config;
@@ -16,7 +16,7 @@ use glint_rtl::netlist::About;
 
 use super::common::{self, ColourProducts};
 
-/// The seed's numbers of the colour channels.
+/// The numbers of the colour channels' blocks in the source.
 const CHANNELS: [ChannelBlocks; 3] = [channel(3), channel(4), channel(5)];
 
 const fn channel(number: u16) -> ChannelBlocks {
@@ -40,7 +40,7 @@ pub fn describe(d: &Designer, config: &Config) {
     let exponent = common::exponent(d, keys.operands.exponent_bits).block(2).inputs(2, 2).q();
     let colours = ColourProducts::new(d, &keys.operands.colours, Some(CHANNELS));
 
-    // From -1.0, where the parabola has its zero: the saturation of the product is the clamp.
+    // The format begins at −1.0, where the parabola has its zero, so that the saturation of the product is the clamp.
     let scaled =
         d.register("scaled", Format::signed(0, f.frac)).doc("n/2*(cos gamma - 1), not below -1.0");
     let intensity = d.register("intensity", f).doc("the reflectance f: what the gates passed");
@@ -66,7 +66,7 @@ pub fn describe(d: &Designer, config: &Config) {
     d.microprogram(steps.into_iter().chain(outputs));
 }
 
-/// Returns the square, or 0 where it is below ROM(n) or the surface faces away.
+/// Returns the square, or 0 if the square is below ROM(n) or the surface faces away.
 fn gates<'d>(
     d: &'d Designer,
     keys: &Keys,
@@ -95,26 +95,27 @@ fn level_rom<'d>(d: &'d Designer, keys: &Keys, exponent: Signal<'d>) -> Rom<'d> 
             format!("{}.{:02} units", level / 100, level % 100)
         })
         .collect();
-    // As wide as f, so that the memory file can be exchanged for one of other levels.
+    // The words are as wide as f, so that a memory file with other levels can replace this one.
     let format = keys.f.format();
     d.rom("levels", exponent, format, &words, true)
         .doc("the smallest f that is shown for an exponent n (the address)")
         .comments(comments)
 }
 
-/// Returns the level for n: the level of the octave of n. For example, n = 20 is in octave 4, from 16 to 31.
+/// Returns the level for the exponent n in hundredths of an output unit: the configured level of n's octave. For example, n =
+/// 20 is in octave 4, from 16 to 31. Octaves beyond the configured levels have the last level.
 fn hundredths(keys: &Keys, n: i64) -> u32 {
     let levels = &keys.levels;
     let octave = n.max(1).ilog2() as usize;
     levels[octave.min(levels.len() - 1)]
 }
 
-/// Returns the smallest word of f, but the largest word at most, whose product with the largest colour reaches a level. For
-/// example, the level 100 gives 258 for colours of 8 bits and an f of 16 fraction bits.
+/// Returns the smallest word of f whose product with the largest colour reaches a level in hundredths of an output unit, but at
+/// most the largest word. For example, the level 100 gives 258 for colours of 8 bits and an f of 16 fraction bits.
 fn level_word(keys: &Keys, hundredths: u32) -> i128 {
     let unit = 100 * ((1 << keys.operands.colours.bits) - 1);
     let words = 1i128 << keys.f.fraction;
-    // 1.0 itself is no word.
+    // 1.0 itself is no word of f.
     ((i128::from(hundredths) * words + unit - 1) / unit).min(words - 1)
 }
 
@@ -140,7 +141,8 @@ fn about(keys: &Keys) -> About {
     }
 }
 
-/// Returns whether the comparator ever matters beyond the clamp.
+/// Returns a sentence for the device's page that says whether the comparator changes any output, beyond the effect of the
+/// clamp.
 fn comparator_note(keys: &Keys) -> String {
     let largest = (1i128 << keys.operands.colours.bits) - 1;
     let blocked = (0..1i64 << keys.operands.exponent_bits)

@@ -1,4 +1,4 @@
-//! Reads arguments that are one of a few words, such as `--target ecp5`, and prints the words with their meanings in `--help`.
+//! Parses arguments that are one of a few words, such as `--target ecp5`, and prints the words with their meanings in `--help`.
 
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use glint_prove::tune::{ErrorUnit, Objective};
@@ -22,12 +22,12 @@ fn one_of<T: Copy + Send + Sync + 'static>(
     })
 }
 
-/// Returns a parser of the name of a target.
+/// Returns a parser for the name of a synthesis target, such as `ecp5`.
 pub fn target() -> impl TypedValueParser<Value = Target> {
     one_of(TARGETS.map(|target| (target.name(), target, target.title())).to_vec())
 }
 
-/// Returns a parser of the unit of an error.
+/// Returns a parser for the unit of an error: `f` or `output`.
 pub fn error_unit() -> impl TypedValueParser<Value = ErrorUnit> {
     one_of(vec![
         ("f", ErrorUnit::F, "The reflectance f, from 0 to 1"),
@@ -35,7 +35,7 @@ pub fn error_unit() -> impl TypedValueParser<Value = ErrorUnit> {
     ])
 }
 
-/// Returns a parser of the cost that is minimised.
+/// Returns a parser for the cost that is minimised: `area`, `luts`, `dsps` or `memory`.
 pub fn objective() -> impl TypedValueParser<Value = Objective> {
     const AREA: &str = "The area: look-up tables, where a DSP block or a block RAM counts for as many look-up tables as the chip has for each";
     one_of(vec![
@@ -50,7 +50,7 @@ pub fn objective() -> impl TypedValueParser<Value = Objective> {
     ])
 }
 
-/// Returns a parser of the name of a shape that Glint has built in.
+/// Returns a parser for the name of a built-in shape: `sphere`, `torus`, `vase` or `group`.
 pub fn shape() -> impl TypedValueParser<Value = BuiltIn> {
     one_of(vec![
         ("sphere", BuiltIn::Sphere, "A ball"),

@@ -1,4 +1,4 @@
-//! Reports errors: as text to people on standard error, as JSON to scripts, and to the shell by the exit code.
+//! Reports errors: as text on standard error, as JSON for scripts on standard output, and to the shell by the exit code.
 
 use std::fmt;
 use std::io::Write;
@@ -9,21 +9,22 @@ use serde_json::{Value, json};
 use super::interrupt::Interrupted;
 use glint_config::Problems;
 
-/// An error that has its own exit code or its own form. All other errors are printed as text with their causes.
+/// An error that has its own exit code or its own form of printing. All other errors are printed as text with their causes, and
+/// have exit code 1.
 #[derive(Debug)]
 pub enum Failure {
-    /// A mistake on the command line itself, which only a command can see: exit code 2.
+    /// A mistake on the command line that clap cannot find, only the command itself: exit code 2.
     WrongUsage(String),
-    /// A signal came, and the command has saved its work.
+    /// A signal arrived, and the command has saved its work.
     Interrupted(Interrupted),
     /// The problems of a configuration.
     Problems(Problems),
-    /// Several errors, none the cause of another: for example, the errors of several configurations.
+    /// Several independent errors, for example the errors of several configurations.
     Several(Vec<anyhow::Error>),
 }
 
 impl Failure {
-    /// Finds the failure that an error is made of, also if the error has a context.
+    /// Returns the failure inside an error, even if context was added to the error. Returns `None` for any other error.
     fn of_error(error: &anyhow::Error) -> Option<&Self> {
         error.downcast_ref()
     }
@@ -42,13 +43,13 @@ impl fmt::Display for Failure {
 
 impl std::error::Error for Failure {}
 
-/// Returns from a function with [`Failure::WrongUsage`], whose words it formats.
+/// Returns from a function with [`Failure::WrongUsage`]. It formats its arguments to the message.
 macro_rules! wrong_usage {
     ($($text:tt)*) => { anyhow::bail!($crate::failure::Failure::WrongUsage(format!($($text)*))) };
 }
 pub(crate) use wrong_usage;
 
-/// Returns the exit code for an error. For example, it is 2 for wrong usage, 130 after Ctrl-C, and 1 for a file that
+/// Returns the exit code for an error. For example, the code is 2 for wrong usage, 130 after Ctrl-C, and 1 for a file that
 /// cannot be read.
 pub fn exit_code(error: &anyhow::Error) -> ExitCode {
     match Failure::of_error(error) {
@@ -58,7 +59,7 @@ pub fn exit_code(error: &anyhow::Error) -> ExitCode {
     }
 }
 
-/// Prints an error with its causes: to standard error, or as a JSON object to standard output.
+/// Prints an error with its causes: to standard error as text, or with `as_json` to standard output as a JSON object.
 pub fn print(error: &anyhow::Error, as_json: bool) {
     if as_json {
         print_problems(problems(error));
@@ -67,17 +68,19 @@ pub fn print(error: &anyhow::Error, as_json: bool) {
     }
 }
 
-/// Prints the problems of a configuration as a JSON object. Each problem has the keys of [`Problems::to_json`].
+/// Prints problems to standard output as a JSON object with the keys `ok`, which is false, and `problems`. Each problem must
+/// have the keys of [`Problems::to_json`].
 pub fn print_problems(problems: Vec<Value>) {
     super::tables::print_json(&json!({ "ok": false, "problems": problems }));
 }
 
-/// Returns the JSON of a problem that has no location in a configuration file. It has the same keys as a problem with a location.
+/// Returns the JSON of a problem that has no location in a configuration file. It has the same keys as a problem with a
+/// location; all but `message` are null.
 pub fn problem(message: &str) -> Value {
     json!({ "file": null, "line": null, "column": null, "key": null, "message": message, "remedy": null })
 }
 
-/// Returns the problems of an error for scripts.
+/// Returns the problems in an error, as JSON for scripts.
 fn problems(error: &anyhow::Error) -> Vec<Value> {
     match Failure::of_error(error) {
         Some(Failure::Several(errors)) => errors.iter().flat_map(problems).collect(),
@@ -91,7 +94,7 @@ fn problems(error: &anyhow::Error) -> Vec<Value> {
     }
 }
 
-/// Prints an error to standard error, with its causes or as the snippets of a file.
+/// Prints an error to standard error: with its causes, or, for problems of a configuration, with snippets of the file.
 fn print_text(error: &anyhow::Error) {
     match Failure::of_error(error) {
         Some(Failure::Several(errors)) => {
@@ -112,12 +115,12 @@ fn print_text(error: &anyhow::Error) {
     }
 }
 
-/// Prints a warning to standard error. For example, the line may begin with `warning: my_core.toml: no waveform`.
+/// Prints a warning to standard error, after `warning: `. For example, the line may be `warning: my_core.toml: no waveform`.
 pub fn warn(message: &str) {
     print_line(&format!("warning: {message}"));
 }
 
-/// Prints a line to standard error. When that cannot be written there is nobody left to tell.
+/// Prints a line to standard error. It ignores a failure to write, because the failure could not be reported anywhere.
 fn print_line(line: &str) {
     let _ = writeln!(std::io::stderr().lock(), "{line}");
 }

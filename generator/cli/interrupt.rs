@@ -1,14 +1,14 @@
-//! Ends the program on Ctrl-C and on other signals that ask a process to end. It kills the child processes and deletes the
+//! Ends the program on Ctrl-C and on other signals that ask a process to end. It ends the child processes and deletes the
 //! temporary files.
 //!
-//! A command can delay the end until it has saved its work; a second signal then ends the program at once.
+//! A command can delay the end until it has saved its work. A second signal then ends the program at once.
 
 use std::fmt;
 use std::sync::atomic::{AtomicBool, AtomicI32, Ordering};
 
-/// Set while the first signal is only noted.
+/// Whether the first signal is only recorded, because a command wants to save its work.
 static DEFERRED: AtomicBool = AtomicBool::new(false);
-/// The signal that was noted, or 0.
+/// The number of the signal that was recorded, or 0.
 static NOTED: AtomicI32 = AtomicI32::new(0);
 
 /// The error of a command that was interrupted after it saved its work.
@@ -16,7 +16,7 @@ static NOTED: AtomicI32 = AtomicI32::new(0);
 pub struct Interrupted {
     /// The number of the signal.
     signal: i32,
-    /// The work that was saved.
+    /// A description of the work that was saved.
     saved: String,
 }
 
@@ -33,12 +33,12 @@ impl fmt::Display for Interrupted {
     }
 }
 
-/// While this value lives, the first signal only sets a flag, so that the command can save its work. The second signal ends the
-/// process. For example, `cosim --exhaustive --resume FILE` saves its progress in this way.
+/// While this value exists, the first signal only sets a flag, so that the command can save its work. The second signal ends
+/// the process. For example, `cosim --exhaustive --resume FILE` saves its progress in this way.
 pub struct Deferred(());
 
 impl Deferred {
-    /// Defers the end of the process from now on.
+    /// Begins to defer the end of the process on a signal. Dropping the returned value ends this.
     pub fn begin() -> Self {
         DEFERRED.store(true, Ordering::SeqCst);
         Self(())
@@ -49,7 +49,8 @@ impl Deferred {
         NOTED.load(Ordering::SeqCst) != 0
     }
 
-    /// Returns the error with which the command must end if a signal has arrived. `saved` describes the saved work.
+    /// Returns the error with which the command must end if a signal has arrived, and `None` otherwise. `saved` returns a
+    /// description of the saved work.
     pub fn end(self, saved: impl FnOnce() -> String) -> Option<Interrupted> {
         match NOTED.load(Ordering::SeqCst) {
             0 => None,
@@ -64,11 +65,11 @@ impl Drop for Deferred {
     }
 }
 
-/// Installs the signal handler: from now on a signal ends this process with all its child processes, and deletes its temporary
-/// files. A signal that is ignored, as under `nohup`, stays ignored.
+/// Installs the signal handler. After this call, SIGINT, SIGTERM and SIGHUP end this process with all its child processes, and
+/// delete its temporary files. A signal that the process was told to ignore, as under `nohup`, stays ignored.
 ///
 /// # Errors
-/// Fails if the system refuses.
+/// Fails if the system cannot install the handler.
 #[cfg(unix)]
 pub fn listen() -> std::io::Result<()> {
     use std::io::Write;
@@ -87,7 +88,8 @@ pub fn listen() -> std::io::Result<()> {
                 continue;
             }
             let _cleared = transient::clear();
-            // Not through a lock that a thread which is stopped now may hold; and nobody may be listening.
+            // This writes without the lock of standard error, because a stopped thread may have the lock. A failure to write is
+            // ignored.
             let _ = writeln!(std::io::stderr(), "\nglint: interrupted");
             std::process::exit(128 + signal);
         }
@@ -95,7 +97,7 @@ pub fn listen() -> std::io::Result<()> {
     Ok(())
 }
 
-/// Does nothing: on this system there are no such signals, and the system ends the process.
+/// Does nothing: this system has no such signals, and ends the process itself.
 ///
 /// # Errors
 /// Never fails.
@@ -104,8 +106,8 @@ pub fn listen() -> std::io::Result<()> {
     Ok(())
 }
 
-/// Returns the signals that this process was told to ignore, a bit each. It is 0 if the system does not say. For
-/// example, `nohup` has SIGHUP, signal 1, ignored: bit 0 is 1.
+/// Returns the signals that this process was told to ignore, as a mask: bit i is 1 for signal i + 1. Returns 0 if the system
+/// does not state them. For example, under `nohup` bit 0 is 1, because SIGHUP is signal 1.
 #[cfg(unix)]
 fn ignored() -> u64 {
     let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();

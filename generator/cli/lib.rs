@@ -1,4 +1,5 @@
-//! Parses the command line and runs the commands. Only this crate prints, and only this crate exits the process.
+//! Parses the command line and runs the commands. Only this crate prints, and only this crate returns the exit code of the
+//! process.
 
 mod choice;
 mod commands;
@@ -67,7 +68,7 @@ Examples:
 
 Exit codes: 0 everything holds; 1 something does not hold or could not be done; 2 wrong usage.";
 
-/// The subcommands, each a module of [`commands`] with its `Arguments` and its `run`.
+/// Declares the subcommands. Each is a module of [`commands`] with a type `Arguments` and a function `run`.
 macro_rules! commands {
     ($($command:ident $module:ident;)*) => {
         #[derive(Subcommand)]
@@ -112,7 +113,7 @@ struct TimeLimit<const DEFAULT: u64 = 600> {
     #[arg(
         long = "time-limit",
         value_name = "SECONDS",
-        // `default_value_t` would keep one text for all values of DEFAULT.
+        // `default_value_t` would store one text for all values of DEFAULT.
         default_value = DEFAULT.to_string(),
         value_parser = clap::value_parser!(u64).range(1..=1_000_000)
     )]
@@ -135,7 +136,8 @@ struct OutputOptions {
     quiet: bool,
 }
 
-/// Reads a command line; help has examples with the name of the running program.
+/// Parses a command line. The examples in the help texts have the name of the running program. Fails with clap's error for
+/// wrong usage, and also for `--help` and `--version`.
 fn parse(arguments: &[OsString]) -> Result<Cli, clap::Error> {
     let examples = |command: clap::Command| match command.get_after_help() {
         None => command,
@@ -148,14 +150,14 @@ fn parse(arguments: &[OsString]) -> Result<Cli, clap::Error> {
     Cli::from_arg_matches(&command.try_get_matches_from_mut(arguments)?)
 }
 
-/// Returns a finite number. For example, `0.75` and `12e6` are numbers, and `inf` is an error.
+/// Parses a finite number. For example, `0.75` and `12e6` are numbers. Fails for any other text, such as `inf`.
 fn number(text: &str) -> Result<f64, String> {
     let number = text.parse().ok().filter(|number: &f64| number.is_finite());
     number.ok_or_else(|| "a number is wanted, as 0.75 or 12e6".to_owned())
 }
 
-/// Returns a number of things, at least one. For example, `1000000`, `1_000_000` and `1e6` are a million, and `1.5e3`
-/// is 1500.
+/// Parses a whole number of at least 1. For example, `1000000`, `1_000_000` and `1e6` are a million, and `1.5e3` is 1500. Fails
+/// for 0, for fractions such as `1.5`, and for numbers beyond 64 bits.
 fn count(text: &str) -> Result<u64, String> {
     let wanted = || "a whole number from 1 on is wanted, as 1000000 or 1e6".to_owned();
     let number = match text.split_once(['e', 'E']) {
@@ -171,20 +173,22 @@ fn count(text: &str) -> Result<u64, String> {
     number.filter(|number| *number > 0).ok_or_else(wanted)
 }
 
-/// Runs the command line of this process with the devices of `registry`, under the name of its file.
+/// Runs the command line of this process with the devices of `registry`, and returns its exit code. Messages call the program
+/// by the name of its executable file.
 pub fn run(registry: &Registry) -> ExitCode {
     let path = std::env::args_os().next().unwrap_or_default();
     let name = Path::new(&path).file_stem().and_then(OsStr::to_str).unwrap_or("glint");
     run_as(name, registry)
 }
 
-/// Runs the command line of this process. Messages and written files call the program `program`.
+/// Runs the command line of this process, and returns its exit code. Messages and written files call the program `program`.
 pub fn run_as(program: &str, registry: &Registry) -> ExitCode {
     run_with(program, registry, std::env::args_os())
 }
 
-/// Runs a command line under the name `program`. `arguments` begins with the program's name. A caller uses it if the arguments of
-/// its process are not the command line; for example, the process may be a Python interpreter.
+/// Runs a command line under the name `program`, and returns its exit code. `arguments` begins with the program's name. A
+/// caller uses this function if the arguments of its process are not the command line; for example, the process may be a Python
+/// interpreter.
 pub fn run_with(
     program: &str,
     registry: &Registry,
@@ -197,7 +201,8 @@ pub fn run_with(
     run_from(registry, arguments)
 }
 
-/// Runs the command line `arguments`, whose first entry is the program's name.
+/// Runs the command line `arguments`, whose first entry is the program's name, and returns its exit code. It installs no signal
+/// handler.
 pub fn run_from(registry: &Registry, arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
     let arguments: Vec<OsString> = arguments.into_iter().collect();
     let cli = match parse(&arguments) {
@@ -209,8 +214,8 @@ pub fn run_from(registry: &Registry, arguments: impl IntoIterator<Item = OsStrin
             return ExitCode::from(error.exit_code() as u8);
         }
         Err(error) => {
-            // Help and version go to standard output with exit code 0, the rest to standard error
-            // with 2; a closed pipe is nobody's error.
+            // Help and version go to standard output with exit code 0, and wrong usage goes to standard error with exit code 2.
+            // A closed pipe is no error.
             let _ = error.print();
             return ExitCode::from(error.exit_code() as u8);
         }

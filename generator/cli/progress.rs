@@ -7,28 +7,29 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle, W
 
 use super::OutputOptions;
 
-/// The narrowest terminal that shows the counts beside the bar.
+/// The width in characters from which a terminal shows the counts next to the bar.
 const WIDE: usize = 100;
 
-/// The bar alone, at most and at least.
+/// The largest and the smallest width of the bar alone, in characters.
 const LONGEST: usize = 30;
 const SHORTEST: usize = 5;
 
-/// Everything else of a line: the name of the work, brackets, share or counts, rate, remaining time, blanks.
+/// The width of everything else in a line: the name of the work, brackets, percentage or counts, rate, remaining time, blanks.
 const BESIDE: usize = 44;
 const BESIDE_WIDE: usize = 76;
 
-/// The width if nothing says how wide the terminal is.
+/// The width if the width of the terminal is unknown.
 const USUAL: u16 = 80;
 
-/// Without a terminal, as in a log, the first line about progress comes after this time.
+/// The time after which the first line about progress is printed if standard error is no terminal, for example a log file.
 const FIRST: Duration = Duration::from_secs(10);
 
-/// Between two such lines.
+/// The time between two such lines.
 const EVERY: Duration = Duration::from_secs(60);
 
-/// Returns a progress bar over `total` steps. It is hidden if the output is for scripts or if the user asks for that. Without a
-/// terminal, it prints a line every minute.
+/// Returns a progress bar on standard error over `total` steps, with the name `what`. The bar is hidden with `--json` or
+/// `--quiet`. If standard error is no terminal, lines of text replace the bar: the first after ten seconds, and then one every
+/// minute.
 pub fn bar(output: OutputOptions, total: u64, what: &str) -> ProgressBar {
     let is_hidden = output.quiet || !output.is_for_people();
     let target = if is_hidden {
@@ -50,7 +51,7 @@ pub fn bar(output: OutputOptions, total: u64, what: &str) -> ProgressBar {
     bar
 }
 
-/// Writes a line after ten seconds and then a line a minute about a bar that nothing draws, until it is finished or dropped.
+/// Prints a line about the progress of a bar after ten seconds and then every minute, until the bar is finished or dropped.
 fn told(bar: &WeakProgressBar, what: &str) {
     let mut wait = FIRST;
     loop {
@@ -68,7 +69,7 @@ fn told(bar: &WeakProgressBar, what: &str) {
     }
 }
 
-/// Returns the bar with a line that fits into `width`.
+/// Returns the bar with a style whose line fits into `width` characters.
 fn styled(bar: ProgressBar, width: usize, what: &str) -> ProgressBar {
     if let Ok(style) = ProgressStyle::with_template(&template(width)) {
         let rate = |state: &ProgressState, out: &mut dyn Write| {
@@ -94,7 +95,8 @@ fn template(width: usize) -> String {
     }
 }
 
-/// Writes a number with three digits, with k, M or G: as much as a rate is worth. For example, 1234.5678 is `1.23k`.
+/// Formats a number with three digits, and with k, M or G for thousands, millions or billions. For example, 1234.5678 is
+/// `1.23k`.
 fn rounded(number: f64) -> String {
     let (size, unit) = match number {
         1e9.. => (1e9, "G"),
@@ -111,8 +113,8 @@ fn rounded(number: f64) -> String {
     format!("{scaled:.decimals$}{unit}")
 }
 
-/// Returns the time that is left at the pace so far; nothing before the first step, when nobody knows. For example,
-/// after 2 seconds for 10 of 40 steps, `6 s` are left.
+/// Returns the remaining time, at the average pace so far, as text. Returns `None` before the first step and after the last
+/// one. For example, 10 of 40 steps in 2 seconds leave `6 s`.
 fn remaining(elapsed: Duration, done: u64, all: u64) -> Option<String> {
     if done == 0 || done >= all {
         return None;
@@ -155,14 +157,14 @@ mod tests {
         let after = |seconds, done| remaining(Duration::from_secs_f64(seconds), done, 40);
         assert_eq!(after(3.0, 0), None);
         assert_eq!(after(2.0, 10).as_deref(), Some("6 s"));
-        // Never 0 s while there is something to do.
+        // It is never 0 s while steps remain.
         assert_eq!(after(0.001, 39).as_deref(), Some("1 s"));
         assert_eq!(after(100.0, 10).as_deref(), Some("5 min 0 s"));
         assert_eq!(after(7200.0, 20).as_deref(), Some("2 h 0 min"));
         assert_eq!(after(9.0, 40), None);
     }
 
-    /// A terminal that remembers everything that was written on it.
+    /// A terminal that records everything that is written to it.
     #[derive(Clone, Debug)]
     struct Paper(u16, Arc<Mutex<Vec<String>>>);
 
@@ -204,7 +206,7 @@ mod tests {
             let paper = Box::new(Paper(u16::try_from(width).expect("narrow"), lines.clone()));
             let target = ProgressDrawTarget::term_like(paper);
             let bar = ProgressBar::with_draw_target(Some(123_456_789_012), target);
-            // So wide that it would be cut: a line that is too long shows its whole length.
+            // The text is longer than the line, so that a line that is not cut shows its whole length.
             let bar = styled(bar, width, "Golden model against simulation, every operand");
             bar.set_position(98_765_432_109);
             bar.tick();

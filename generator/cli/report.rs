@@ -1,6 +1,7 @@
 //! Prints the answers of commands: as JSON for scripts, or as text for people.
 //!
-//! A command returns its answer as a [`CommandReport`], which can do both. Only this file asks which one the user wants.
+//! A command returns its answer as a [`CommandReport`], which supports both forms. Only this file asks which form the user
+//! wants.
 
 use anyhow::Result;
 use serde_json::{Value, json};
@@ -9,24 +10,24 @@ use crate::{OutputOptions, tables};
 
 /// The answer of a command, or one part of it.
 pub trait CommandReport {
-    /// Returns the report for scripts.
+    /// Returns the answer as JSON, for scripts.
     ///
     /// # Errors
-    /// Fails if something that belongs to the report cannot be computed or written.
+    /// Fails if a part of the answer cannot be computed or written.
     fn json(&self) -> Result<Value>;
 
-    /// Prints the report for people.
+    /// Prints the answer as text, for people.
     ///
     /// # Errors
-    /// Fails if something that belongs to the report cannot be computed or written.
+    /// Fails if a part of the answer cannot be computed or written.
     fn print(&self) -> Result<()>;
 }
 
 impl OutputOptions {
-    /// Prints a report: as JSON with `--json`, and else as text.
+    /// Prints a report: as JSON with `--json`, and otherwise as text.
     ///
     /// # Errors
-    /// Fails if the report fails.
+    /// Fails if the report's own method fails.
     pub fn report(self, report: &impl CommandReport) -> Result<()> {
         if self.json {
             tables::print_json(&report.json()?);
@@ -36,8 +37,8 @@ impl OutputOptions {
         }
     }
 
-    /// Returns whether people read the answer, and not a script. For example, only people get an estimate of how long a check of
-    /// several hours will take.
+    /// Returns whether the answer is text for people, and not JSON for a script. For example, only people get an estimate of
+    /// the duration of a long check.
     pub fn is_for_people(self) -> bool {
         !self.json
     }
@@ -48,18 +49,19 @@ impl OutputOptions {
     }
 }
 
-/// A list of reports of the same kind, for example one for each configuration. For people, each report is printed at once. For
-/// scripts, all are printed together at the end.
+/// A list of reports of the same kind, for example one for each configuration. As text, each report is printed when it is
+/// added. As JSON, all reports are printed together at the end.
 pub struct ReportList {
     output: OutputOptions,
     reports: Vec<Value>,
 }
 
 impl ReportList {
-    /// Adds a report, and prints it for people.
+    /// Adds a report. If the command prints text, prints the report at once; with `--json`, stores the report as JSON until the
+    /// list ends.
     ///
     /// # Errors
-    /// Fails if the report fails.
+    /// Fails if the report's own method fails.
     pub fn add(&mut self, report: &impl CommandReport) -> Result<()> {
         if self.output.json {
             self.reports.push(report.json()?);
@@ -69,17 +71,17 @@ impl ReportList {
         }
     }
 
-    /// Ends the list of reports and returns `holds`, which says whether everything that the command checked holds. With `--json` it
-    /// prints the reports and `holds`.
+    /// Ends the list of reports and returns `holds`, which must say whether everything that the command checked holds. With
+    /// `--json` it prints an object with the keys `ok`, which is `holds`, and `configurations`, the list of reports.
     ///
     /// # Errors
-    /// Fails as [`ReportList::finish`] does.
+    /// Never fails with the reports as JSON values; [`ReportList::finish`] has the general rule.
     pub fn conclude(self, holds: bool) -> Result<bool> {
         self.finish(|reports| Ok(json!({ "ok": holds, "configurations": reports })))?;
         Ok(holds)
     }
 
-    /// Ends the list. With `--json` it prints the answer of the command, which `answer` makes of all reports. For example,
+    /// Ends the list. With `--json` it prints the value that `answer` makes from the list of all reports. For example,
     /// `finish(|reports| Ok(json!({ "ok": true, "schedules": reports })))`.
     ///
     /// # Errors

@@ -7,26 +7,26 @@ use anyhow::{Result, bail};
 use comfy_table::{CellAlignment, ColumnConstraint, ContentArrangement, Table, Width, presets};
 use serde_json::Value;
 
-/// The characters beside the text of each cell: blanks and a bar.
+/// The number of characters around the text of a cell: two blanks and a bar.
 const FRAME: usize = 3;
 
 /// A column of a table.
 #[derive(Clone, Copy)]
 struct TerminalColumn<'a> {
     heading: &'a str,
-    /// Whether it has numbers: aligned to the right, and never broken.
+    /// Whether the column has numbers, which are aligned to the right and never broken into lines.
     number: bool,
-    /// If there is too little room, the table leaves columns out, beginning with the largest number. It cannot leave
-    /// out a column with 0.
+    /// The order in which columns are left out if the table is too wide: the largest number first. A column with 0 is never
+    /// left out.
     dispensable: u8,
 }
 
 impl<'a> TerminalColumn<'a> {
-    /// Returns the columns of some headings, which are separated by bars. For example, `device | points:2` is a column
-    /// of words and a column of numbers.
+    /// Parses headings, which are separated by bars. For example, `device | points:2` is a column of words and a column of
+    /// numbers.
     ///
-    /// The cells below a heading with a colon are numbers. Other cells are words, which may be broken into lines. A
-    /// digit behind a colon or a semicolon says when the table may leave a column out.
+    /// A heading with a colon belongs to a column of numbers. Any other column has words, which may be broken into lines. A
+    /// digit after a colon or a semicolon states the order in which the column may be left out.
     fn all(headings: &'a str) -> Vec<Self> {
         let mut columns = Vec::new();
         for marked in headings.split(" | ") {
@@ -41,16 +41,16 @@ impl<'a> TerminalColumn<'a> {
     }
 }
 
-/// Prints rows under headings, no wider than the terminal. `headings` has the form `device | points: | clocks:2 | remark;1`: a
-/// colon marks a column of numbers, and a digit a column that the table may leave out if there is too little room. The column with
-/// the largest digit goes first. If that is not enough, the cells of a row are printed below each other.
+/// Prints rows under headings, no wider than the terminal. `headings` has the form `device | points: | clocks:2 | remark;1`. A
+/// colon marks a column of numbers, and a digit marks a column that the table may leave out if it is too wide. The column with
+/// the largest digit is left out first. If the table is still too wide, the cells of a row are printed below each other.
 pub fn print(headings: &str, rows: impl IntoIterator<Item = Vec<String>>) {
     let rows: Vec<Vec<String>> = rows.into_iter().collect();
     print_line(&text(&TerminalColumn::all(headings), &rows, width()));
 }
 
-/// Returns the largest width of a line: the value of `COLUMNS`, or else the width of the terminal. Returns `None`
-/// without either, and a line may then have any width. For example, `COLUMNS=80` gives 80.
+/// Returns the largest width of a line in characters: the value of the environment variable `COLUMNS`, or else the width of the
+/// terminal. Returns `None` without either; then a line may have any width. For example, `COLUMNS=80` gives 80.
 fn width() -> Option<usize> {
     let width = match std::env::var("COLUMNS").unwrap_or_default().parse() {
         Ok(width) => width,
@@ -87,7 +87,8 @@ fn text(columns: &[TerminalColumn<'_>], rows: &[Vec<String>], room: Option<usize
     }
 }
 
-/// Returns the widths of the columns shown, if the table has room; numbers and words stay whole.
+/// Returns the widths of the columns `shown`, so that the table has at most `room` characters in a line. Numbers and words stay
+/// unbroken. Returns `None` if the table would be wider.
 fn fit(
     columns: &[TerminalColumn<'_>],
     rows: &[Vec<String>],
@@ -115,7 +116,7 @@ fn fit(
     if least.iter().sum::<usize>() + frame > room {
         return None;
     }
-    // The column that has most to give gives first.
+    // The column that can shrink most shrinks first.
     while widths.iter().sum::<usize>() + frame > room {
         let at = (0..widths.len()).max_by_key(|&at| widths[at] - least[at])?;
         widths[at] -= 1;
@@ -159,7 +160,8 @@ fn drawn(
     table.to_string()
 }
 
-/// Returns each row as a paragraph: its first cell, and the others below it with their headings.
+/// Returns the table as text without columns, for a narrow terminal. Each row becomes its first cell, and below it a line for
+/// each other cell with the heading. Lines are broken at `room` characters, or not at all if it is `None`.
 fn stacked(columns: &[TerminalColumn<'_>], rows: &[Vec<String>], room: Option<usize>) -> String {
     let mut lines = Vec::new();
     for row in rows {
@@ -171,7 +173,7 @@ fn stacked(columns: &[TerminalColumn<'_>], rows: &[Vec<String>], room: Option<us
     lines.join("\n")
 }
 
-/// Returns a line, broken between words if it is wider than `room`. The parts after the first are indented.
+/// Returns a line, broken between words if it is wider than `room` characters. The second and later parts are indented.
 fn folded(line: &str, room: Option<usize>) -> String {
     let Some(room) = room else {
         return line.to_owned();
@@ -195,15 +197,15 @@ fn folded(line: &str, room: Option<usize>) -> String {
     text
 }
 
-/// Prints a JSON value, indented.
+/// Prints a JSON value to standard output, indented.
 pub fn print_json(value: &Value) {
     print_line(&format!("{value:#}"));
 }
 
-/// Prints rows as CSV, by RFC 4180.
+/// Prints rows to standard output as CSV, by RFC 4180.
 ///
 /// # Errors
-/// Fails if a row has more or fewer fields than the first.
+/// Fails if a row has more or fewer fields than the first row.
 pub fn print_csv(rows: impl IntoIterator<Item = Vec<String>>) -> Result<()> {
     let mut csv = csv::Writer::from_writer(Vec::new());
     for row in rows {
@@ -213,10 +215,11 @@ pub fn print_csv(rows: impl IntoIterator<Item = Vec<String>>) -> Result<()> {
     Ok(())
 }
 
-/// The first failure to write standard output.
+/// The first failure to write to standard output.
 static FAILURE: OnceLock<io::Error> = OnceLock::new();
 
-/// Prints a line. An error is kept for [`finish`]. It is no error if the reader, such as `head`, has closed the pipe.
+/// Prints a line to standard output. An error is kept for [`finish`]. If the reader, such as `head`, has closed the pipe, this
+/// is no error.
 pub fn print_line(line: &str) {
     if let Err(error) = writeln!(io::stdout().lock(), "{line}")
         && error.kind() != ErrorKind::BrokenPipe
@@ -225,16 +228,16 @@ pub fn print_line(line: &str) {
     }
 }
 
-/// Formats a line and prints it, as [`print_line`] does.
+/// Formats its arguments, and prints the line as [`print_line`] does.
 macro_rules! say {
     ($($text:tt)*) => { $crate::tables::print_line(&format!($($text)*)) };
 }
 pub(crate) use say;
 
-/// Checks that everything that was printed was written.
+/// Reports the first failure to write to standard output, after all was printed.
 ///
 /// # Errors
-/// Fails if standard output cannot be written, as on a full disk.
+/// Fails if a line could not be written, for example because the disk is full.
 pub fn finish() -> Result<()> {
     match FAILURE.get() {
         Some(error) => bail!("cannot write standard output: {error}"),
@@ -253,7 +256,7 @@ mod tests {
         vec![row.map(str::to_owned).to_vec()]
     }
 
-    /// Returns the most that a line takes; numbers are whole.
+    /// Returns the width of the widest line in characters.
     fn widest(text: &str) -> usize {
         text.lines().map(length).max().expect("a line")
     }

@@ -1,5 +1,5 @@
-//! Finds mistakes in a device's schema, the list of its configuration keys. Tests of devices call it. For example, it reports a
-//! default that is outside the range of its key.
+//! Finds mistakes in a device's schema, the list of its configuration keys. Tests of devices call the function. For example, it
+//! reports a default that is outside the range of its key.
 
 use super::problems::Problems;
 use super::schema::{Condition, Key, KeyKind, Schema};
@@ -7,9 +7,9 @@ use super::shared::shared_keys;
 use super::values::Config;
 
 impl Schema {
-    /// Returns the mistakes in the schema itself, for a device's own tests. It reports names that repeat, that are not plain
-    /// TOML, or that name both a table and a value; defaults outside their range or refused by `check`; and conditions on
-    /// keys or values that do not exist.
+    /// Returns a sentence for each mistake in the schema itself, for a device's own tests. A name is a mistake if it repeats,
+    /// is not plain TOML, or names both a table and a value. A default is a mistake if it is outside its range or refused by
+    /// `check`. A condition is a mistake if its key or its value does not exist.
     ///
     /// A schema without mistakes gives an empty list. The schema of a device must have no mistakes, because the reader relies
     /// on it.
@@ -36,7 +36,7 @@ impl Schema {
                 mistakes.push(format!("default of `{name}`: {}", violation.error.message));
             }
             if let Some(Condition { key: other, value, .. }) = key.condition {
-                // Only an earlier key, so that chains of conditions end.
+                // The other key must be declared earlier, so that chains of conditions end.
                 match self.keys[..index].iter().find(|key| key.name == other) {
                     None => mistakes.push(format!(
                         "`{name}` depends on `{other}`, which is not declared before it"
@@ -61,7 +61,8 @@ impl Schema {
 }
 
 impl Key {
-    /// Returns whether some accepted value displays as `bare`.
+    /// Returns whether the key has an accepted value that [`super::Value::bare`] displays as `bare`. Keys for numbers with
+    /// fractions, lists, texts and tables cannot be the subject of a condition.
     fn can_be(&self, bare: &str) -> bool {
         match &self.kind {
             KeyKind::Choice(options) => options.contains(&bare),
@@ -69,7 +70,7 @@ impl Key {
             KeyKind::Integer { min, max } => {
                 bare.parse().is_ok_and(|value: i64| (*min..=*max).contains(&value))
             }
-            // Conditions on fractions, lists and texts would hang on how they are written.
+            // Conditions on fractions, lists and texts would depend on the way in which they are written.
             KeyKind::Number { .. }
             | KeyKind::Integers { .. }
             | KeyKind::Text(_)

@@ -1,8 +1,8 @@
 //! Adjusts the defaults of keys that the user left out.
 //!
 //! If the user's values and a default are invalid together, the default moves to the nearest valid value. For example,
-//! `exponent.bits = 8` lowers the default of `domain.exponent_max` from 1000 to 255. Widths and counts are adjusted; choices, flags
-//! and the keys that every device shares never are.
+//! `exponent.bits = 8` lowers the default of `domain.exponent_max` from 1000 to 255. Only integers and lists of integers are
+//! adjusted; choices, flags and the keys that every device shares are not.
 
 use std::collections::BTreeSet;
 
@@ -10,8 +10,8 @@ use super::problems::Problems;
 use super::schema::{Key, KeyKind, Schema};
 use super::values::{Config, Value};
 
-/// Returns the configuration with adjusted defaults. Each key that is not in `given` moves, one after the other, to the value
-/// that satisfies the most conditions of the device. If a condition still fails afterwards, only a change of a key in `given` can
+/// Returns the configuration with adjusted defaults. One key after another that is not in `given` moves to the value that
+/// satisfies the most conditions of the device. If a condition still fails afterwards, only a change of a key in `given` can
 /// satisfy it.
 pub fn follow(schema: &Schema, config: &Config, given: &BTreeSet<&str>) -> Config {
     let mut config = config.clone();
@@ -19,7 +19,7 @@ pub fn follow(schema: &Schema, config: &Config, given: &BTreeSet<&str>) -> Confi
     let own = schema.keys.iter().filter(|key| key.drawn.is_none());
     let mut free: Vec<&Key> = own.filter(|key| !given.contains(key.name)).collect();
     while !left.is_empty() {
-        // The key that the device complains of comes first where several would do.
+        // If several keys would help equally, the key under which the device reports the problem comes first.
         free.sort_by_key(|key| !left.contains(&key.name.to_owned()));
         let applying = free.iter().filter(|key| config.applies(schema, key.name));
         let moves = applying.filter_map(|key| best(schema, &config, key, left.len()));
@@ -33,8 +33,9 @@ pub fn follow(schema: &Schema, config: &Config, given: &BTreeSet<&str>) -> Confi
     config
 }
 
-/// Returns the nearest value of a key that leaves the fewest complaints, if those are fewer than `limit`: their number, the key and
-/// the configuration.
+/// Finds the value of the key `key` with which the fewest conditions fail. If several values are equal in this, it takes the
+/// value nearest to the default. Returns the number of failing conditions, the key, and the configuration with this value.
+/// Returns `None` if `limit` or more conditions fail with every value.
 fn best<'k>(
     schema: &Schema,
     config: &Config,
@@ -56,15 +57,15 @@ fn best<'k>(
     best
 }
 
-/// Returns the keys under which the device complains, one for each complaint.
+/// Returns the key of each condition that fails, in the order of the report.
 fn complaints(schema: &Schema, config: &Config) -> Vec<String> {
     let mut problems = Problems::default();
     (schema.check)(config, &mut problems);
     problems.iter().map(|problem| problem.error.key.clone()).collect()
 }
 
-/// Returns the other values of a key, the value nearest to its default first. If two integers are equally near, the smaller comes
-/// first.
+/// Returns the other values of a key for integers or for a list of integers, the value nearest to the default first. If two
+/// integers are equally near, the smaller comes first. Returns an empty list for keys of other types.
 fn neighbours(key: &Key) -> Vec<Value> {
     match (&key.kind, &key.default) {
         (KeyKind::Integer { min, max }, Value::Integer(default)) => {
@@ -80,8 +81,9 @@ fn neighbours(key: &Key) -> Vec<Value> {
     }
 }
 
-/// Makes lists of one: its first entries with the large ones cut down, or all of them with the last repeated. The
-/// nearest first, by the sum of the differences; an entry that is not there counts as 0.
+/// Returns lists that are similar to `default`, the nearest first. A list has the first entries of `default`, with large
+/// entries lowered to a limit, or all of its entries with the last one repeated. The distance is the sum of the differences of
+/// the entries; a missing entry counts as 0.
 fn lists(
     default: &[i64],
     (min, max): (i64, i64),

@@ -5,8 +5,9 @@ use serde_json::{Map, Value as Json, json};
 use super::schema::{Key, KeyKind, Schema};
 use super::values::Value;
 
-/// Returns a JSON Schema (draft 7) for configurations of any of these devices: names, types, ranges, defaults and the meaning of
-/// each key. Conditions between keys are only mentioned in descriptions; Glint checks them when it reads a file.
+/// Returns a JSON Schema (draft 7) for configurations of any of these devices: names, types, ranges, defaults and the
+/// meaning of each key. Conditions between keys are only mentioned in descriptions, because Glint checks them when it reads a
+/// file.
 pub fn json_schema(schemas: &[Schema]) -> Json {
     let names: Vec<&str> = schemas.iter().map(|schema| schema.device).collect();
     // Not `oneOf`: if a file is wrong, editors then say only that no alternative fits. With `if` and `then` they name the
@@ -42,7 +43,7 @@ fn of_device(schema: &Schema) -> Json {
     }
     for key in schema.all_keys() {
         if let KeyKind::Table { fields, shorthand, .. } = &key.kind {
-            // Shared keys can be in the same table, as `operands.buffered` among operands.
+            // A shared key can be in the same table, for example `operands.buffered` in the table `operands`.
             let entries = properties(&mut device).entry(key.name).or_insert_with(table);
             entries["additionalProperties"] = record(fields, *shorthand);
             entries["description"] = json!(key.doc);
@@ -59,7 +60,7 @@ fn of_device(schema: &Schema) -> Json {
     device
 }
 
-/// Returns a table without keys, which takes no others.
+/// Returns the schema of a table without keys, in which no other keys are allowed.
 fn table() -> Json {
     json!({ "type": "object", "additionalProperties": false, "properties": {} })
 }
@@ -112,13 +113,13 @@ fn of_key(key: &Key) -> Json {
     entry
 }
 
-/// Returns the schema of an entry: a table of these fields, or the value of the field `shorthand` alone.
+/// Returns the schema of an entry: a table with these fields, or only the value of the field `shorthand`.
 fn record(fields: &[Key], shorthand: Option<&str>) -> Json {
     let mut entry = table();
     let of_fields = properties(&mut entry);
     for field in fields {
         let mut schema = of_key(field);
-        // A field that is not given has no value.
+        // A field that the user does not give has no value, so the schema states no default.
         if let Some(schema) = schema.as_object_mut() {
             schema.remove("default");
         }
@@ -130,7 +131,7 @@ fn record(fields: &[Key], shorthand: Option<&str>) -> Json {
     }
 }
 
-/// Returns a choice as a file writes it.
+/// Returns a word of a choice as a file writes it: an integer without quotes, or a text.
 fn choice(key: &Key, option: &str) -> Json {
     match option.parse::<i64>() {
         Ok(number) if key.kind.takes_integers() => json!(number),

@@ -7,12 +7,14 @@ use glint_base::fixed::Rounding;
 
 /// A type of configuration values: a field of a struct that [`keys!`](macro@crate::keys) declares has such a type.
 pub trait Setting: Sized {
-    /// Reads the value of the field from a configuration. `keys` are the configuration keys that belong to the field.
+    /// Reads the value of the field from a configuration. `keys` are the configuration keys of the field, at least one. Panics
+    /// if the configuration does not have the keys, or if they have another type.
     fn read(config: &Config, keys: &[Key]) -> Self;
 }
 
-/// Makes a struct of keys: `keys()` states them for a [`Schema`](super::Schema) in the order of the fields, and `of`
-/// reads a configuration. A field has a [`Key`] or, as another such struct, several.
+/// Declares a struct whose fields are configuration keys. Its function `keys` returns the keys for a [`Schema`](super::Schema),
+/// in the order of the fields, and its function `of` reads their values from a configuration. Each field has a [`Key`], or is
+/// another such struct with several keys.
 ///
 /// ```
 /// use glint_config::{Config, Key, Schema};
@@ -62,7 +64,8 @@ macro_rules! keys {
     };
 }
 
-/// Makes an enum of the words of a choice, [`Key::choice`], for a field of [`keys!`](macro@crate::keys).
+/// Declares an enum whose variants are the words of a choice ([`Key::choice`](super::Key::choice)), as the type of a field in
+/// [`keys!`](macro@crate::keys).
 #[macro_export]
 macro_rules! choices {
     (
@@ -97,7 +100,7 @@ impl From<Key> for Vec<Key> {
 }
 
 impl Key {
-    /// Makes a key whose value is `"truncate"` or `"nearest"`.
+    /// Makes a key with the name `name` whose value is `"truncate"` or `"nearest"`. `doc` is the description of the key.
     pub fn rounding(name: &'static str, default: &'static str, doc: &'static str) -> Self {
         Self::choice(name, default, &["truncate", "nearest"], doc)
     }
@@ -118,7 +121,7 @@ impl Setting for i64 {
     }
 }
 
-/// A number of bits. The limits of the key must exclude negative values.
+/// A number of bits. The range of the key must exclude negative values.
 impl Setting for u32 {
     fn read(config: &Config, keys: &[Key]) -> Self {
         u32::try_from(config.integer(keys[0].name)).expect("no negative number")

@@ -1,15 +1,15 @@
-//! Checks whether a name can be the name of a Verilog module, and says why if it cannot. For example, `2fast` begins with a
+//! Checks whether a name can be the name of a Verilog module, and explains why if it cannot. For example, `2fast` begins with a
 //! digit.
 
 use super::problems::quoted;
 use glint_base::key_error::KeyError;
 use glint_base::keywords::is_keyword;
 
-/// The number of characters that a name may have. It leaves room for the endings of derived modules and files.
+/// The largest number of characters of a name. Derived modules and files append endings to the name.
 const LONGEST: usize = 60;
 
-/// Checks a module name; nothing is wrong if it is an identifier of Verilog and SystemVerilog
-/// that every tool takes, and a plain file name.
+/// Checks a module name. Returns `None` if the name is an identifier of Verilog and SystemVerilog that every tool accepts, and
+/// a plain file name. Otherwise returns the error, with a similar valid name as the remedy.
 pub(super) fn error(name: &str) -> Option<KeyError> {
     let message = complaint(name)?;
     let remedy = format!(
@@ -44,15 +44,16 @@ fn complaint(name: &str) -> Option<String> {
     }
 }
 
-/// Returns a legal name for a name or path: the part between its last slash and its first dot, with `_` for characters that are
-/// not legal, and `glint_` in front where that is no legal name. For example, `cores/my-core.toml` gives `my_core`, and `2fast`
-/// gives `glint_2fast`.
+/// Returns a valid module name that is similar to a name or path. It is the part between the last slash and the first dot, with
+/// `_` for characters that are not allowed. If this part is still not valid, `glint_` is added at its front. For example,
+/// `cores/my-core.toml` gives `my_core`, and `2fast` gives `glint_2fast`.
 fn legalised(name: &str) -> String {
     let file = name.rsplit(['/', '\\']).find(|part| !part.is_empty()).unwrap_or("");
     let stem = file.split('.').find(|part| !part.is_empty()).unwrap_or("");
     let keep = |c: char| if c.is_ascii_alphanumeric() { c } else { '_' };
     let kept: String = stem.chars().map(keep).collect();
-    // Two underscores in a row are for the names that a tool makes of its own: Verilator refuses them beside these.
+    // Names with two underscores in a row are reserved for tools. Verilator refuses such a name in a module that a wrapper
+    // contains.
     let words: Vec<&str> = kept.split('_').filter(|word| !word.is_empty()).collect();
     let words = words.join("_");
     let words = &words[..words.len().min(LONGEST - "glint_".len())];

@@ -1,14 +1,14 @@
-//! Suggests the valid word that a user meant by a misspelt one, and joins words for a sentence. For example, it suggests
-//! `colours` for `colour`.
+//! Suggests the valid word for a misspelt word, and joins words for a sentence. For example, it suggests `colours` for
+//! `colour`.
 
-/// Returns the candidate that is most similar to `word`, if it is similar enough for a misspelling; otherwise the first candidate
-/// that begins with `word`.
+/// Returns the candidate that is most similar to `word`, if at most about a third of the letters differ. Otherwise returns the
+/// first candidate that begins with `word`, or `None` if there is no such candidate.
 ///
 /// The comparison ignores case and the difference between `-` and `_`. If several candidates are equally similar, the first one
 /// is returned.
 pub fn nearest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     let fold = |text: &str| text.to_lowercase().replace('-', "_");
-    // Nothing that long is a slip of the pen, and the distance takes quadratic time.
+    // A longer word is no misspelling, and the time of the comparison grows with the square of the length.
     if word.len() > 100 {
         return None;
     }
@@ -17,7 +17,7 @@ pub fn nearest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) ->
     let distance = |candidate: &&&str| strsim::damerau_levenshtein(&word, &fold(candidate));
     let best = candidates.iter().min_by_key(distance)?;
     let longest = word.chars().count().max(best.chars().count());
-    // A third of the letters wrong, and one in words of two.
+    // At most a third of the letters may be wrong, or one letter in words of two.
     let slip = Some(best).filter(|best| distance(best) * 3 <= longest.max(3));
     let begins = |candidate: &&&str| word.len() > 2 && fold(candidate).starts_with(&word);
     slip.or_else(|| candidates.iter().find(begins)).copied()

@@ -20,17 +20,18 @@ use glint_base::program::Program;
 
 /// Parses a configuration from the text of a TOML file.
 ///
-/// Messages show `file_name`. Its stem (with `_` for `-`) is the module name unless the text gives one. `schemas` must
+/// Messages show `file_name`. Its stem (with `_` for `-`) is the module name unless the text states a `name`. `schemas` must
 /// contain the schemas of all devices.
 ///
 /// # Errors
-/// Fails if the text has any problem. The error lists all problems at once. Conditions between keys are examined only if the
-/// text is valid TOML, because otherwise the given keys are unknown.
+/// Fails if the text has any problem. The error lists all problems at once. Conditions between keys are checked only if the
+/// text is valid TOML, because otherwise some keys of the file are unknown.
 pub fn parse(file_name: &str, text: &str, schemas: &[Schema]) -> Result<Config, Problems> {
     located(file_name, text, schemas).map(|(config, _)| config)
 }
 
-/// Parses a text as [`parse`] does. It also returns the location of each key in the text, for problems that are found later.
+/// Parses a text as [`parse`] does. Also returns an empty list of problems that knows the location of each key in the text, for
+/// problems that are found later.
 ///
 /// # Errors
 /// Fails as [`parse`] does.
@@ -63,12 +64,13 @@ pub(super) fn located(
 
 struct TomlReader<'t> {
     text: &'t str,
-    /// Where the files are that it names.
+    /// The directory of the file, relative to which the file names other files.
     directory: &'t Path,
-    /// Where its lines end.
+    /// The offset of each newline in the text.
     newlines: Vec<usize>,
     problems: Problems,
-    /// The lines, counted from 0, that contain a syntax error. The parser's result for such a line deserves no message.
+    /// The lines, counted from 0, that contain a syntax error. The parser's result for such a line may be wrong, so no further
+    /// problem is reported there.
     broken: BTreeSet<usize>,
     valid_toml: bool,
 }
@@ -77,7 +79,7 @@ impl TomlReader<'_> {
     fn syntax_error(&mut self, error: &Error) {
         let span = error.span().unwrap_or(0..0);
         let lines = self.line(span.start)..=self.line(span.end);
-        // The first error of a line is the mistake, and further ones are its echo.
+        // The first syntax error of a line is the mistake. Further errors in the line follow from it.
         if self.broken.contains(lines.start()) {
             return;
         }
@@ -100,12 +102,13 @@ impl TomlReader<'_> {
         self.problems.push_error_at(span, KeyError::new("", message, remedy));
     }
 
-    /// Returns the line of an offset, counted from 0.
+    /// Returns the number of the line that contains the byte `offset`, counted from 0.
     fn line(&self, offset: usize) -> usize {
         self.newlines.partition_point(|newline| *newline < offset)
     }
 
-    /// Notes the lines below a heading that could not be read: it is not known to which table their keys belong.
+    /// Adds the lines below a heading with a syntax error to the lines with syntax errors, because the table of their keys is
+    /// unknown.
     fn spoil_below_broken_headings(&mut self) {
         let mut spoilt = false;
         for (number, line) in self.text.lines().enumerate() {
@@ -141,12 +144,13 @@ impl TomlReader<'_> {
         }
     }
 
-    /// Returns the schema of the device that the file names, or else the one that it seems to mean.
+    /// Returns the schema of the device that the file names, or else of the device with the most similar name. Returns `None`
+    /// without either. A missing or wrong name is reported.
     fn device<'s>(&mut self, document: &DeTable, schemas: &'s [Schema]) -> Option<&'s Schema> {
         let devices: Vec<&str> = schemas.iter().map(|schema| schema.device).collect();
         let remedy = format!("devices: {}", devices.join(", "));
         let Some(value) = document.get("device") else {
-            // After a syntax error it may be there, unread.
+            // After a syntax error, the key may be in the file without having been read.
             if self.valid_toml {
                 let message = "the file does not say which device it configures";
                 let remedy = format!("add `device = \"…\"`; {remedy}");
@@ -220,7 +224,7 @@ impl TomlReader<'_> {
         }
     }
 
-    /// Reads a table; `prefix` is its name with a dot, or empty.
+    /// Reads the keys of a table. `prefix` is the name of the table followed by a dot, or empty.
     fn table<'s>(
         &mut self,
         table: &DeTable,
@@ -229,18 +233,18 @@ impl TomlReader<'_> {
         draft: &mut Draft<'s>,
     ) {
         for (key, value) in table {
-            // A quoted key with a dot in it is not a path; with its quotes it matches no name.
+            // A quoted key with a dot in it is no path. With its quotes, it equals no name of a key.
             let name = if is_bare(key.get_ref()) {
                 format!("{prefix}{}", key.get_ref())
             } else {
                 format!("{prefix}{}", quoted(key.get_ref()))
             };
             let as_table = format!("{name}.");
-            // On a line with a syntax error the value is the parser's guess.
+            // On a line with a syntax error, the parser's value may be wrong.
             if self.broken.contains(&self.line(key.span().start)) {
                 continue;
             }
-            // The span of a table is the span of its heading, or of one of its keys.
+            // The parser's span of a table is the heading of the table, or one of its keys.
             let span = match value.get_ref() {
                 DeValue::Table(_) => key.span(),
                 _ => value.span(),
@@ -298,7 +302,7 @@ impl TomlReader<'_> {
         }
     }
 
-    /// Reads the entries of a table of records, in the order of the file.
+    /// Reads the entries of a table whose entries the user names, in the order of the file.
     fn records<'s>(
         &mut self,
         key: &'s Key,
@@ -311,7 +315,7 @@ impl TomlReader<'_> {
         in_order.sort_by_key(|(name, _)| name.span().start);
         let is_optional = matches!(key.kind, KeyKind::Table { least: 0, .. });
         if in_order.is_empty() && !is_optional {
-            // A heading alone gives nothing.
+            // A heading without keys gives no value.
             return;
         }
         let mut records = Vec::new();
@@ -323,7 +327,7 @@ impl TomlReader<'_> {
             }
             let name_text = shown(name.get_ref());
             if let Some(other) = schema.key(&format!("{}.{name_text}", key.name)) {
-                // A key that every device has is in the same table.
+                // A key that every device has may be in the same table.
                 self.value(other, entry, entry.span(), schema, draft);
                 continue;
             }
@@ -345,7 +349,7 @@ impl TomlReader<'_> {
         draft.give(key, is_good.then_some(value));
     }
 
-    /// Returns the fields of an entry of a table of records; `None` if one of them is wrong, which is reported.
+    /// Returns the fields of an entry in such a table. Returns `None` if one of them is wrong, and reports the problem.
     fn record(
         &mut self,
         key: &Key,
@@ -384,7 +388,7 @@ impl TomlReader<'_> {
         is_good.then_some(given)
     }
 
-    /// Returns the value of a field of a record; `None` if it is wrong, which is reported.
+    /// Returns the value of a field of an entry. Returns `None` if the value is wrong, and reports the problem.
     fn field(
         &mut self,
         key: &Key,
@@ -399,7 +403,7 @@ impl TomlReader<'_> {
             Err(violations) => {
                 for violation in violations {
                     let Violation { error, .. } = field.named_within(violation, &within);
-                    // The example in the place of a default.
+                    // Fields have no default, so the remedy states the default of the key as an example.
                     let remedy = error.remedy.replace("(default ", "(for example ");
                     self.report(&within, value.span(), error.message, remedy);
                 }
@@ -452,7 +456,7 @@ impl TomlReader<'_> {
         let remedy = if common_names().chain(names()).chain(tables()).any(|k| k == below) {
             format!("`{below}` is outside [{heading}]: move it above the first [table] heading")
         } else if let Some(meant) = meant {
-            // The name is misspelt, so the true value of the key that was meant is unknown.
+            // The name is misspelt, so the user's value of the intended key is unknown.
             let within = format!("{meant}.");
             for key in keys().filter(|key| key.name == meant || key.name.starts_with(&within)) {
                 draft.doubtful.insert(key.name);
@@ -468,12 +472,12 @@ impl TomlReader<'_> {
         self.report(&name, span, message, remedy);
     }
 
-    /// Adds a problem, unless a syntax error spoilt the line of `span`.
+    /// Adds a problem, unless the first line of `span` has a syntax error.
     fn report(&mut self, key: &str, span: Range<usize>, message: String, remedy: String) {
         self.report_error(span, KeyError::new(key, message, remedy));
     }
 
-    /// Adds an error, unless a syntax error spoilt the line of `span`.
+    /// Adds an error, unless the first line of `span` has a syntax error.
     fn report_error(&mut self, span: Range<usize>, error: KeyError) {
         if !self.broken.contains(&self.line(span.start)) {
             self.problems.push_error_at(span, error);
@@ -481,7 +485,7 @@ impl TomlReader<'_> {
     }
 }
 
-/// Returns a value as its key wants it, or all that is wrong with it.
+/// Returns a value in the type of its key, or all of its mistakes.
 fn converted(key: &Key, value: &Spanned<DeValue>) -> Result<Value, Vec<Violation>> {
     let wrong_type = || vec![key.wrong_type(&described(value))];
     let too_large = || vec![key.violation(out_of_range(key.name, written(value)))];
@@ -532,13 +536,13 @@ fn converted(key: &Key, value: &Spanned<DeValue>) -> Result<Value, Vec<Violation
     if violations.is_empty() { Ok(converted) } else { Err(violations) }
 }
 
-/// Returns the value of an integer that fits 64 bits.
+/// Returns the value of an integer, or `None` if it does not fit into 64 bits.
 fn integer(value: &Spanned<DeValue>) -> Option<i64> {
     let integer = value.get_ref().as_integer()?;
     i64::from_str_radix(integer.as_str(), integer.radix()).ok()
 }
 
-/// Returns a number as the file writes it.
+/// Returns a number as it is written in the file, without underscores.
 fn written(value: &Spanned<DeValue>) -> String {
     match value.get_ref() {
         DeValue::Integer(integer) => integer.to_string(),
@@ -546,7 +550,7 @@ fn written(value: &Spanned<DeValue>) -> String {
     }
 }
 
-/// Describes type and value for a message: `the integer 7`.
+/// Returns the type and the value for a message. For example, `the integer 7`.
 fn described(value: &Spanned<DeValue>) -> String {
     match value.get_ref() {
         DeValue::String(text) => format!("the string {}", quoted(text)),

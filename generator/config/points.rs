@@ -1,15 +1,16 @@
-//! Reads samples, which are measured points, from a CSV file that a configuration of the device `function` names.
+//! Reads samples, which are measured points of a curve, from a CSV file that a configuration of the device `function` names.
 
 use std::path::Path;
 use std::{fs, io};
 
-/// Reads the points of a file as `x,y x,y`.
+/// Reads the points of a file, and returns them in the form `x,y x,y`.
 ///
-/// A line has two numbers, with or without quotes, with a comma, a semicolon, blanks or a tab between them. A first line of
-/// words is a heading, and `#` begins a comment. For example, the lines `x,y`, `0,0` and `1; -0.5 # low` give `0,0 1,-0.5`.
+/// A line must have two numbers, with or without quotes, that are separated by a comma, a semicolon, blanks or a tab. Lines of
+/// words before the first point are headings, and `#` begins a comment. For example, the lines `x,y`, `0,0` and `1; -0.5 # low`
+/// give `0,0 1,-0.5`.
 ///
 /// # Errors
-/// Fails if the file cannot be read, or if a line is not two numbers. The error is a message and a remedy.
+/// Fails if the file cannot be read, if a line is not two numbers, or if no line is. The error is a message and a remedy.
 pub(super) fn read(path: &Path) -> Result<String, (String, String)> {
     let name = path.display();
     let text = text(path).map_err(|error| {
@@ -46,7 +47,8 @@ pub(super) fn read(path: &Path) -> Result<String, (String, String)> {
     Ok(points.join(" "))
 }
 
-/// Returns whether a line has two cells with a comma in each, as spreadsheets of many languages write numbers: `0,5;1,25`.
+/// Returns whether a line has two cells, and at least one is a number with a decimal comma, as spreadsheets write numbers in
+/// many languages: `0,5;1,25`.
 fn has_decimal_commas(line: &str) -> bool {
     let cells = line.split(|c: char| c == ';' || c.is_whitespace()).filter(|cell| !cell.is_empty());
     let is_decimal = |cell: &str| {
@@ -57,7 +59,8 @@ fn has_decimal_commas(line: &str) -> bool {
     is_decimal.len() == 2 && is_decimal.contains(&true)
 }
 
-/// Reads a file in UTF-8, with line ends of any system. The path must name a regular file, because a pipe may never end.
+/// Reads a file in UTF-8, and converts the line ends of any system to newlines. The path must name a regular file, because a
+/// pipe may never end.
 fn text(path: &Path) -> io::Result<String> {
     let refused = |message: String| Err(io::Error::new(io::ErrorKind::InvalidInput, message));
     if !fs::metadata(path)?.is_file() {
@@ -68,7 +71,7 @@ fn text(path: &Path) -> io::Result<String> {
         return refused("it is UTF-16; save it as UTF-8".to_owned());
     }
     match String::from_utf8(bytes) {
-        // Some spreadsheets write a byte order mark first.
+        // Some spreadsheets begin a file with a byte order mark.
         Ok(text) => {
             Ok(text.trim_start_matches('\u{feff}').replace("\r\n", "\n").replace('\r', "\n"))
         }

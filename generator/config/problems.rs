@@ -11,24 +11,24 @@ use glint_base::key_error::KeyError;
 
 /// All mistakes of one configuration file, in the order of their locations.
 ///
-/// `Display` shows each with the lines of the file in plain text; [`Problems::to_json`] writes JSON for scripts.
+/// `Display` shows each mistake with its lines of the file in plain text. [`Problems::to_json`] returns JSON for scripts.
 #[derive(Clone, Debug, Default)]
 pub struct Problems {
     file: String,
     text: String,
-    /// The location of each key in the file. [`Problems::push`] points at it.
+    /// The location of each key in the file, as a range of bytes. [`Problems::push`] uses it.
     locations: BTreeMap<String, Range<usize>>,
     list: Vec<Problem>,
     /// The number of mistakes beyond the limit of the list.
     further: usize,
-    /// Whether the file has others than these.
+    /// Whether the file has other mistakes, which are not in this list.
     refused: bool,
 }
 
-/// The name of standard input in problems.
+/// The name of standard input in messages.
 pub(super) const STANDARD_INPUT: &str = "standard input";
 
-/// The number of problems that a list may keep: a file that is no configuration at all has no end of them.
+/// The largest number of problems in a list. A file that is no configuration at all could have very many.
 const LIMIT: usize = 200;
 
 /// A mistake in a configuration key, with its location in the file.
@@ -36,25 +36,25 @@ const LIMIT: usize = 200;
 pub struct Problem {
     /// The key, the message and the remedy.
     pub error: KeyError,
-    /// The range of bytes in the text of the key's value, if the mistake concerns a part of a text.
+    /// The range of bytes in the text of the key's value, if the mistake concerns only a part of the text.
     pub place: Option<Range<usize>>,
-    /// The range of bytes in the file, if the file contains what is wrong.
+    /// The range of bytes in the file. `None` if the mistake is something that the file does not contain.
     span: Option<Range<usize>>,
 }
 
 impl Problems {
-    /// Starts a list without problems, of a file with this text.
+    /// Makes an empty list of problems for a file with this name and text.
     pub(super) fn of_file(file: &str, text: &str) -> Self {
         Problems { file: file.to_owned(), text: text.to_owned(), ..Problems::default() }
     }
 
-    /// Adds a mistake of a key. The report shows the place at which the file gives the key, or only the file's name if the file
-    /// does not give it.
+    /// Adds a mistake of a key. The report shows the location of the key in the file, or only the name of the file if the file
+    /// does not set the key.
     pub fn push(&mut self, key: &str, message: impl Into<String>, remedy: impl Into<String>) {
         self.push_error(KeyError::new(key, message, remedy));
     }
 
-    /// Adds the mistake of a key as [`Problems::push`] does.
+    /// Adds a mistake of a key as [`Problems::push`] does, in the form of an error.
     pub fn push_error(&mut self, error: KeyError) {
         let span = self.locations.get(&error.key).cloned();
         self.insert(Problem { error, place: None, span });
@@ -71,8 +71,8 @@ impl Problems {
     ) {
         let whole = self.locations.get(key).cloned();
         let within = whole.clone().zip(bytes.clone()).and_then(|(whole, bytes)| {
-            // The text must be between quotes and contain no escape. If something is missing at the end, the span is the
-            // closing quote.
+            // This works only for a text between quotes without escapes. If something is missing at the end of the text, the
+            // span is the closing quote.
             let text = self.text.get(whole.clone())?;
             let plain = text.starts_with(['"', '\''])
                 && !text.starts_with("\"\"\"")
@@ -84,15 +84,15 @@ impl Problems {
         self.insert(Problem { error, place: bytes, span: within.or(whole) });
     }
 
-    /// Adds an error at a location in the text.
+    /// Adds an error with the location `span`, a range of bytes in the file.
     pub(super) fn push_error_at(&mut self, span: Range<usize>, error: KeyError) {
-        // If something is missing at the end of the text, it is missing in the last line, not below it.
+        // If something is missing at the end of the text, the report marks the last line, and no line below it.
         let end = self.text.trim_end_matches(['\r', '\n']).len();
         let span = span.start.min(end)..span.end.min(end);
         self.insert(Problem { error, place: None, span: Some(span) });
     }
 
-    /// Notes where the file gives a key.
+    /// Records the location of a key in the file.
     pub(super) fn locate(&mut self, key: &str, span: Range<usize>) {
         self.locations.insert(key.to_owned(), span);
     }
@@ -102,24 +102,26 @@ impl Problems {
         self.locations.contains_key(key)
     }
 
-    /// Returns the file and locations without problems: for a trial run of a check.
+    /// Returns a list for the same file and with the same locations, but without problems. A check can fill it for a trial.
     pub(super) fn cleared(&self) -> Self {
         Problems { list: Vec::new(), further: 0, refused: self.is_refused(), ..self.clone() }
     }
 
-    /// Returns whether the file already has a mistake for which Glint must refuse it. A check may then skip work that takes long.
+    /// Returns whether the file already has a mistake for which Glint must refuse it. A check may then skip work that takes a
+    /// long time.
     pub fn is_refused(&self) -> bool {
         self.refused || !self.is_empty()
     }
 
-    /// Adds problems found elsewhere, as they are.
+    /// Adds problems with the locations that they already have.
     pub(super) fn extend(&mut self, problems: impl IntoIterator<Item = Problem>) {
         for problem in problems {
             self.insert(problem);
         }
     }
 
-    /// Keeps the list sorted by location, those without one last, and free of repetitions.
+    /// Inserts a problem, unless the list already has it. The list is sorted by location; problems without a location come
+    /// last.
     fn insert(&mut self, problem: Problem) {
         if self.list.len() == LIMIT {
             self.further += 1;
@@ -150,12 +152,14 @@ impl Problems {
         &self.file
     }
 
-    /// Returns the line and the column of a mistake in this list, both counted from 1; columns count characters.
+    /// Returns the line and the column of a mistake in this list, both counted from 1. Columns count characters. Returns `None`
+    /// if the mistake has no location.
     pub fn position(&self, problem: &Problem) -> Option<(usize, usize)> {
         self.line_and_column(problem.start()?)
     }
 
-    /// Returns the line and the column at which the file sets `key`, counted as in [`Problems::position`].
+    /// Returns the line and the column at which the file sets `key`, counted as in [`Problems::position`]. Returns `None` if
+    /// the file does not set the key.
     pub fn place(&self, key: &str) -> Option<(usize, usize)> {
         self.line_and_column(self.locations.get(key)?.start)
     }
@@ -167,8 +171,8 @@ impl Problems {
         Some((line, before[line_start..].chars().count() + 1))
     }
 
-    /// Returns a list with one object per problem: `file`, `line`, `column` (null without a location), `key`
-    /// (null for the whole file), `message`, `remedy`.
+    /// Returns a JSON array with one object per problem: `file`, `line` and `column` (null without a location), `key` (null if
+    /// the problem concerns the whole file), `message` and `remedy`. Problems beyond the limit of the list are left out.
     pub fn to_json(&self) -> Json {
         let each = |problem: &Problem| {
             let (line, column) = self.position(problem).unzip();
@@ -185,7 +189,7 @@ impl Problems {
         Json::Array(self.list.iter().map(each).collect())
     }
 
-    /// Returns the report for people. The renderer decides about colours.
+    /// Returns the report for people, in the style of `renderer`, which also chooses colours.
     pub fn render(&self, renderer: &Renderer) -> String {
         let each = |problem: &Problem| {
             let title = Level::ERROR.primary_title(&problem.error.message);
@@ -210,7 +214,7 @@ impl Problems {
 }
 
 impl Problem {
-    /// Returns the problem with its message in other words.
+    /// Returns the problem with the message that `words` makes from its message.
     pub(super) fn told(self, words: impl FnOnce(&str) -> String) -> Self {
         let message = words(&self.error.message);
         let error = KeyError { message, ..self.error };
@@ -230,9 +234,9 @@ impl fmt::Display for Problems {
 
 impl std::error::Error for Problems {}
 
-/// A key error of a value, before its location is known.
+/// An error of a key's value, before the location of the value is known.
 pub(super) struct Violation {
-    /// The index of the list entry that the error concerns.
+    /// The index of the list entry that is wrong; `None` if the error concerns the whole value.
     pub entry: Option<usize>,
     /// The key, the message and the remedy.
     pub error: KeyError,
@@ -242,7 +246,7 @@ pub(super) fn out_of_range(name: &str, given: impl std::fmt::Display) -> String 
     format!("`{name}` = {} is out of range", shown(&given.to_string()))
 }
 
-/// Returns a text that may be of any length, fit for a message.
+/// Returns the first 40 characters of a text, followed by `…` if the text is longer.
 pub(super) fn shown(text: &str) -> String {
     const LIMIT: usize = 40;
     match text.char_indices().nth(LIMIT) {
@@ -251,7 +255,7 @@ pub(super) fn shown(text: &str) -> String {
     }
 }
 
-/// Returns a string from a file, fit for a message: quoted, control characters escaped.
+/// Returns a text from a file for a message: in quotes, at most 40 characters long, and with control characters escaped.
 pub(super) fn quoted(text: &str) -> String {
     format!("\"{}\"", shown(&text.escape_debug().to_string()))
 }

@@ -12,10 +12,10 @@ use glint_base::input;
 use glint_base::key_error::KeyError;
 use glint_base::program::Program;
 
-/// The number of bytes that a configuration file may have. It is small enough not to exhaust the memory.
+/// The largest size of a configuration file in bytes. It protects against files that would exhaust the memory.
 const LARGEST: u64 = 1 << 16;
 
-/// Reads a configuration file, or standard input where the path is `-`.
+/// Reads a configuration file, or standard input if the path is `-`. `schemas` must contain the schemas of all devices.
 ///
 /// # Errors
 /// Fails if the file cannot be read, is not text, or has a problem that [`parse`](super::parse()) finds. The error lists all
@@ -24,8 +24,8 @@ pub fn read(path: &Path, schemas: &[Schema]) -> Result<Config, Problems> {
     read_located(path, schemas).map(|(config, _)| config)
 }
 
-/// Reads a file as [`read`] does. It also returns [`Problems`] that know the location of each key in the file, so that later
-/// checks can report mistakes there.
+/// Reads a file as [`read`] does. Also returns an empty list of problems that knows the location of each key in the file, so
+/// that later checks can report mistakes there.
 ///
 /// # Errors
 /// Fails as [`read`] does.
@@ -43,7 +43,7 @@ pub fn read_located(path: &Path, schemas: &[Schema]) -> Result<(Config, Problems
     match std::str::from_utf8(&bytes) {
         Ok(text) => located(&file_name, text, schemas),
         Err(error) => {
-            // Up to the wrong byte the lossy text is the file's own, so the location is right in it.
+            // Up to the wrong byte, the converted text equals the file, so the location of the wrong byte is correct.
             let lossy = String::from_utf8_lossy(&bytes);
             let start = error.valid_up_to();
             let end = start + char::REPLACEMENT_CHARACTER.len_utf8();
@@ -59,7 +59,7 @@ pub fn read_located(path: &Path, schemas: &[Schema]) -> Result<(Config, Problems
     }
 }
 
-/// Returns the bytes of a file, or message and remedy.
+/// Returns the bytes of a file, or a message and a remedy if it cannot be read or is too large.
 fn contents(path: &Path) -> Result<Vec<u8>, (String, String)> {
     let mut bytes = Vec::new();
     let read = input::open(path).and_then(|file| file.take(LARGEST + 1).read_to_end(&mut bytes));
@@ -90,7 +90,7 @@ fn contents(path: &Path) -> Result<Vec<u8>, (String, String)> {
     }
 }
 
-/// Returns the path of the file in the same directory whose name is nearest to one that is not there.
+/// Returns the path of the TOML file in the same directory with the most similar name. Returns `None` if no name is similar.
 fn neighbour(path: &Path) -> Option<String> {
     let wanted = path.file_name()?.to_str()?;
     let parent = path.parent()?;

@@ -7,9 +7,9 @@ use super::problems::Problems;
 use super::schema::{Key, KeyKind, Schema};
 use super::values::{Config, Value};
 
-/// Draws of a whole configuration before the search for a valid one is given up.
+/// The number of configurations that are drawn before the search for a valid one fails.
 const DRAWS: usize = 1000;
-/// Attempts to mend one draw by drawing again the keys that the check complains about.
+/// The number of times that keys of one drawn configuration are drawn again, because the device's check reports them.
 const REPAIRS: usize = 100;
 
 /// Returns a random valid configuration of a device. The same seed gives the same configuration.
@@ -41,7 +41,7 @@ pub fn sample(schema: &Schema, seed: u64) -> Config {
                     Some(key) if config.applies(schema, key.name) => {
                         config.set(key.name, draw(key, &mut rng));
                     }
-                    // Not a key that a new value would mend.
+                    // A new value of another key would not help.
                     _ => {}
                 }
             }
@@ -65,7 +65,7 @@ fn draw(key: &Key, rng: &mut ChaCha8Rng) -> Value {
             Value::Text(options[index].to_owned())
         }
         KeyKind::Flag => Value::Flag(rng.next_u32() & 1 == 1),
-        // Any other says as little.
+        // Another text or table would test nothing more.
         KeyKind::Text(_) | KeyKind::Table { .. } => key.default.clone(),
         KeyKind::Integers { min, max, len_min, len_max } => {
             let len = integer(*len_min as i64, *len_max as i64, rng);
@@ -74,7 +74,7 @@ fn draw(key: &Key, rng: &mut ChaCha8Rng) -> Value {
     }
 }
 
-/// Returns the smallest and the largest each once in eight draws, otherwise uniform.
+/// Returns a random integer from `min` to `max`. Each end has a probability of at least 1/8; the rest is uniform.
 fn integer(min: i64, max: i64, rng: &mut ChaCha8Rng) -> i64 {
     match rng.next_u32() % 8 {
         0 => min,

@@ -10,7 +10,7 @@ use glint_base::keywords::is_keyword;
 /// The keys of one device, and the conditions between them.
 #[derive(Clone, Debug)]
 pub struct Schema {
-    /// The name of the device, which the key `device` gives.
+    /// The name of the device, which a configuration has under the key `device`.
     pub device: &'static str,
     /// The device's own keys, in the order in which a written file shows them. The keys that every device shares
     /// ([`super::shared_keys`]) are not among them.
@@ -21,8 +21,8 @@ pub struct Schema {
 }
 
 impl Schema {
-    /// Returns the default name of the Verilog module. It is the name of the device, or `my_` and that name if that is a Verilog
-    /// keyword. For example, a device `table` would have the module `my_table`.
+    /// Returns the default name of the Verilog module. It is the name of the device with `_` for `-`. If this is a Verilog
+    /// keyword, `my_` is added at its front. For example, a device `table` would have the module `my_table`.
     pub fn module(&self) -> String {
         let name = self.device.replace('-', "_");
         if is_keyword(&name) { format!("my_{name}") } else { name }
@@ -32,7 +32,7 @@ impl Schema {
 /// A configuration key of a device, with its type, range, default and description.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Key {
-    /// The dotted name, as `cosine.fraction`: everything before the last dot is a TOML table.
+    /// The dotted name, for example `cosine.fraction`. Everything before the last dot is the name of a TOML table.
     pub name: &'static str,
     /// The type and the range of the values.
     pub kind: KeyKind,
@@ -40,10 +40,11 @@ pub struct Key {
     pub default: Value,
     /// The meaning of the key, in one or two sentences.
     pub doc: &'static str,
-    /// The condition under which the key applies. If it does not hold, a file may set the key only to its default.
+    /// The condition under which the key applies, or `None` if the key always applies. If the condition does not hold, a file
+    /// may set the key only to its default.
     pub condition: Option<Condition>,
-    /// Whether the key was added after configurations of the device existed. Such a key is not written while it has its default, so
-    /// that digests of older configurations stay valid.
+    /// Whether the key was added when configurations of the device already existed. Such a key is not written while it has its
+    /// default, so that digests of older configurations stay valid.
     pub joined_later: bool,
     /// The range from which random configurations draw an integer, if larger values would make a configuration too slow to test.
     pub drawn: Option<(i64, i64)>,
@@ -61,14 +62,14 @@ pub struct Condition {
 }
 
 impl Condition {
-    /// Returns whether the condition holds if the other key has the value `value`. For example, `architecture = "pipelined"` holds
-    /// for the value `pipelined`.
+    /// Returns whether the condition holds if the other key has the value `value`. For example, `architecture = "pipelined"`
+    /// holds for the value `pipelined`.
     pub fn holds(&self, value: &Value) -> bool {
         (value.bare() == self.value) == self.is_equal
     }
 
-    /// Returns the condition as text, such as `architecture = "pipelined"`. `value` is any value of the other key; it tells
-    /// whether its values have quotes.
+    /// Returns the condition as text, for example `architecture = "pipelined"`. `value` must be some value of the other key;
+    /// its type decides whether quotes are written.
     pub fn words(&self, value: &Value) -> String {
         let needed = match value {
             Value::Text(_) => Value::Text(self.value.to_owned()).toml(),
@@ -84,7 +85,8 @@ impl Condition {
 pub enum KeyKind {
     /// An integer between two limits, both included.
     Integer { min: i64, max: i64 },
-    /// A finite number between two limits, both included. `or_zero` allows 0 too. A file may write it as an integer.
+    /// A finite number between two limits, both included. If `or_zero` is true, the number may also be 0. A file may write the
+    /// number as an integer.
     Number { min: f64, max: f64, or_zero: bool },
     /// One of several texts. If all of them are decimal integers, a file writes an integer.
     Choice(&'static [&'static str]),
@@ -99,7 +101,8 @@ pub enum KeyKind {
         /// The fields that an entry can have. The defaults of these keys are only examples: a field that is not given has no
         /// value.
         fields: Vec<Key>,
-        /// The field whose value may replace a whole entry. For example, `s = "x^2"` means `s = { formula = "x^2" }`.
+        /// The field whose value may replace a whole entry, or `None` if an entry must be a table. For example, `s = "x^2"`
+        /// means `s = { formula = "x^2" }`.
         shorthand: Option<&'static str>,
         /// The smallest number of entries.
         least: usize,
@@ -125,7 +128,7 @@ impl Key {
         Self::new(name, KeyKind::Integer { min, max }, Value::Integer(default), doc)
     }
 
-    /// Makes a key for a number in a range. The default must be in the range.
+    /// Makes a key for a number in a range, both ends included. The default must be in the range.
     pub fn number(
         name: &'static str,
         default: f64,
@@ -136,7 +139,7 @@ impl Key {
         Self::new(name, KeyKind::Number { min, max, or_zero: false }, Value::Number(default), doc)
     }
 
-    /// Makes a key for a number in a range above 0, or 0. The default is 0, which means that no number is given.
+    /// Makes a key for a number that is 0 or in the given range. The default is 0, which means that the user states no number.
     pub fn number_or_zero(
         name: &'static str,
         range: RangeInclusive<f64>,
@@ -173,7 +176,7 @@ impl Key {
         Self::new(name, KeyKind::Text(pattern), Value::Text(default.to_owned()), doc)
     }
 
-    /// Makes a key for a list of integers, each in a range. `len` limits the length of the list.
+    /// Makes a key for a list of integers. Each integer must be in `range`, and the length of the list must be in `len`.
     pub fn integers(
         name: &'static str,
         default: &[i64],
@@ -187,8 +190,9 @@ impl Key {
         Self::new(name, kind, Value::Integers(default.to_vec()), doc)
     }
 
-    /// Makes a key for a table with entries that the user names. For example, the table `operands` may have an entry `x`, whose
-    /// fields are the keys in `fields`.
+    /// Makes a key for a table whose entries the user names. For example, the table `operands` may have an entry `x`, whose
+    /// fields are the keys in `fields`. The number of entries must be in `entries`. `shorthand` names a field whose value may
+    /// replace a whole entry.
     pub fn records(
         name: &'static str,
         default: &[TableEntry],
@@ -202,28 +206,30 @@ impl Key {
         Self::new(name, kind, Value::Table(TableEntries(default.to_vec())), doc)
     }
 
-    /// Restricts the key to configurations in which the key `other` has a value. For example, `pipeline.stages` has
+    /// Restricts the key to configurations in which the key `other` has the value `value`. For example, `pipeline.stages` has
     /// `only_when("architecture", "pipelined")`.
     ///
-    /// `value` is written as [`Value`] displays it without quotes: `direct`, `true`, `16`.
+    /// `value` must be written without quotes, as [`Value::bare`] returns it: `direct`, `true`, `16`.
     pub fn only_when(mut self, other: &'static str, value: &'static str) -> Self {
         self.condition = Some(Condition { key: other, value, is_equal: true });
         self
     }
 
-    /// Restricts the key to configurations in which the key `other` has a different value than `value`.
+    /// Restricts the key to configurations in which the key `other` has any other value than `value`, written as for
+    /// [`Key::only_when`].
     pub fn unless(mut self, other: &'static str, value: &'static str) -> Self {
         self.condition = Some(Condition { key: other, value, is_equal: false });
         self
     }
 
-    /// Marks a key that was added to a device after configurations of that device existed. Digests of these configurations then do
-    /// not change.
+    /// Marks a key that was added to a device after configurations of that device existed. Digests of these configurations then
+    /// do not change.
     pub fn joined_later(self) -> Self {
         Self { joined_later: true, ..self }
     }
 
-    /// Sets the range from which random configurations draw the integer, since larger values take long to test.
+    /// Sets the range from which random configurations draw the integer, because larger values take long to test. Both ends are
+    /// included.
     pub fn drawn(self, min: i64, max: i64) -> Self {
         Self { drawn: Some((min, max)), ..self }
     }
@@ -233,8 +239,8 @@ impl Key {
         format!("{}.{entry}.{field}", self.name)
     }
 
-    /// Returns the table and the last part of the key's name, such as `("cosine", "fraction")`. The table is empty for a key at
-    /// the top level. The last part is empty for a key that is itself a table.
+    /// Returns the table and the last part of the key's name, for example `("cosine", "fraction")`. The table is empty for a
+    /// key outside tables. The last part is empty for a key that is itself a table.
     pub fn table_and_leaf(&self) -> (&'static str, &'static str) {
         if matches!(self.kind, KeyKind::Table { .. }) {
             return (self.name, "");
@@ -244,13 +250,13 @@ impl Key {
 }
 
 impl KeyKind {
-    /// Returns whether this is a choice among integers, which TOML writes without quotes.
+    /// Returns whether this is a choice in which all options are integers. TOML writes them without quotes.
     pub fn is_integer_choice(&self) -> bool {
         matches!(self, KeyKind::Choice(options) if options.iter().all(|option| is_integer(option)))
     }
 
-    /// Returns whether a file may write an integer. Among words and integers of a choice, the integers are written without
-    /// quotes.
+    /// Returns whether a file may write an integer for this key: for a choice with an integer among its options, or for a
+    /// formula.
     pub(super) fn takes_integers(&self) -> bool {
         matches!(self, KeyKind::Choice(options) if options.iter().any(|option| is_integer(option)))
             || *self == KeyKind::Text(TextPattern::Formula)

@@ -1,8 +1,9 @@
-//! Declares the configuration keys that every device has, including devices that a user adds. They choose the architecture of the
-//! hardware and its interface, not the function that it computes. For example, `architecture = "pipelined"` asks for a pipeline.
+//! Declares the configuration keys that every device has, including devices that a user adds. They choose the architecture of
+//! the hardware and its interface, not the function that the hardware computes. For example, `architecture = "pipelined"` asks
+//! for a pipeline.
 //!
-//! [`Schema::key`] finds these keys like the keys of a device. A configuration in which they have their defaults is written
-//! without them, so that the digests in older records stay valid.
+//! [`Schema::key`] finds these keys like the keys of a device. A shared key that has its default is not written to a file, so
+//! that the digests in older records stay valid.
 
 use std::sync::LazyLock;
 
@@ -17,7 +18,7 @@ pub fn shared_keys() -> &'static [Key] {
 
 static KEYS: LazyLock<Vec<Key>> = LazyLock::new(Shared::keys);
 
-/// The values of `pipeline.interval`.
+/// The values of `pipeline.interval`: `auto`, or a number of clocks from 1 to 64.
 static INTERVALS: [&str; 65] = [
     "auto", "1", "2", "3", "4", "5", "6", "7", "8", "9", "10", "11", "12", "13", "14", "15", "16",
     "17", "18", "19", "20", "21", "22", "23", "24", "25", "26", "27", "28", "29", "30", "31", "32",

@@ -1,5 +1,5 @@
-//! Patterns that texts in a configuration must match. A text that matches needs no escapes in Tcl, XML, YAML and TOML, except for
-//! `<` and `>` of a formula in XML.
+//! Patterns that texts in a configuration must match. A text that matches, and is a valid formula if the pattern is a formula,
+//! needs no escapes in Tcl, XML, YAML and TOML. The only exceptions are `<` and `>` in XML.
 
 /// A pattern that a text in a configuration must match.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -11,23 +11,24 @@ pub enum TextPattern {
     /// An SPDX licence expression. Only the characters are checked: letters, digits, blanks, `.`, `-`, `+` and parentheses,
     /// beginning with a letter or a parenthesis. For example, `MIT OR Apache-2.0`.
     Licence,
-    /// Letters, digits, blanks and the signs of a formula. The formula parser decides whether the text is a formula. Only
-    /// this pattern allows signs that XML must escape.
+    /// A formula or a number, of 1 to 500 characters without control characters. The formula parser decides which other
+    /// characters a formula may have, because it can mark the wrong character in its message.
     Formula,
-    /// Samples as pairs `x,y x,y`, or nothing. A file may write the path of a CSV file instead. For example, `0,0 0.5,0.25 1,1`.
+    /// Samples as pairs `x,y x,y`, or an empty text. A file may state the path of a CSV file instead. For example, `0,0
+    /// 0.5,0.25 1,1`.
     Samples,
 }
 
-/// The number of characters that a formula may have.
+/// The largest number of characters of a formula.
 const LONGEST_FORMULA: usize = 500;
 
-/// The number of characters that samples may have.
+/// The largest number of bytes of samples.
 const LONGEST_SAMPLES: usize = 1 << 20;
 
-/// The number of characters that a name or a licence may have.
+/// The largest number of bytes of a name or a licence.
 const LONGEST: usize = 60;
 
-/// The number of digits that a number of a version may have.
+/// The largest number of digits of each number in a version.
 const DIGITS: usize = 4;
 
 impl TextPattern {
@@ -43,7 +44,7 @@ impl TextPattern {
             TextPattern::Name => first("") && more(".-_"),
             TextPattern::Licence => first("(") && more(" .-+()"),
             TextPattern::Formula => {
-                // Which signs a formula may have says its parser, with a caret under the first that it may not.
+                // The formula parser checks the signs, and marks the first wrong one in its message.
                 let count = text.chars().count();
                 (1..=LONGEST_FORMULA).contains(&count) && !text.chars().any(char::is_control)
             }
@@ -91,7 +92,8 @@ impl TextPattern {
     }
 }
 
-/// Returns whether a text names a file with points, rather than stating them.
+/// Returns whether a text is the path of a file with points, and not the points themselves: it ends in .csv, .tsv, .txt or
+/// .dat.
 pub(super) fn is_path_of_points(text: &str) -> bool {
     let ending = text.rsplit_once('.').map(|(_, ending)| ending.to_ascii_lowercase());
     ending.is_some_and(|ending| ["csv", "tsv", "txt", "dat"].contains(&ending.as_str()))

@@ -14,7 +14,7 @@ use super::write::tables;
 use glint_base::key_error::KeyError;
 
 impl Key {
-    /// Returns the problems of a value; none if the key accepts it.
+    /// Returns the mistakes of a value; an empty list if the key accepts the value.
     pub(super) fn violations_of(&self, value: &Value) -> Vec<Violation> {
         let name = self.name;
         match (&self.kind, value) {
@@ -74,13 +74,14 @@ impl Key {
         }
     }
 
-    /// Returns the problems of a value of this key as a field of a record, whose whole name is `within`.
+    /// Returns the mistakes of a value in a field of an entry. `within` is the full name of the field, for example
+    /// `operands.x.fraction`.
     pub(super) fn violations_within(&self, value: &Value, within: &str) -> Vec<Violation> {
         let violations = self.violations_of(value).into_iter();
         violations.map(|violation| self.named_within(violation, within)).collect()
     }
 
-    /// Returns a violation with the whole name of a record's field in the place of the field's own name.
+    /// Returns a violation in which the full name `within` of a field replaces the short name.
     pub(super) fn named_within(&self, mut violation: Violation, within: &str) -> Violation {
         let own = format!("`{}`", self.name);
         let message = violation.error.message.replacen(&own, &format!("`{within}`"), 1);
@@ -89,7 +90,7 @@ impl Key {
         violation
     }
 
-    /// Returns the violation of a value of another type, which `found` describes.
+    /// Returns the violation of a value whose type does not fit. `found` describes the value, for example `the integer 7`.
     pub(super) fn wrong_type(&self, found: &str) -> Violation {
         let wanted = match self.kind {
             KeyKind::Integer { .. } => "an integer",
@@ -106,7 +107,7 @@ impl Key {
         self.violation(format!("`{}` must be {wanted}, not {found}", self.name))
     }
 
-    /// Returns a violation with the usual remedy, which lists the accepted values of the key.
+    /// Returns a violation with this message, and with the accepted values of the key as the remedy.
     pub(super) fn violation(&self, message: String) -> Violation {
         let remedy = format!("give {} (default {})", self.accepts(), self.default.toml());
         Violation { entry: None, error: KeyError::new(self.name, message, remedy) }
@@ -120,7 +121,7 @@ impl Key {
         let KeyKind::Choice(options) = self.kind else {
             return violation;
         };
-        // Among numbers the nearest spelling means nothing.
+        // Among numbers, a similar spelling means nothing.
         let near = nearest(given, options.iter().copied()).filter(|_| !is_integer(given));
         match near {
             None => violation,
@@ -144,7 +145,7 @@ impl Key {
                 let (numbers, words): (Vec<&str>, Vec<&str>) =
                     options.iter().copied().partition(|option| is_integer(option));
                 let text = |option: &&str| Value::Text((*option).to_owned()).toml();
-                // A long row of integers is said by its ends.
+                // Many integers are described by the first and the last.
                 let options: Vec<String> = match numbers[..] {
                     [first, .., last] if numbers.len() > 8 && !words.is_empty() => {
                         let integers = format!("an integer from {first} to {last}");
@@ -177,7 +178,8 @@ impl Key {
         }
     }
 
-    /// Returns values that replace an unknown value in trial runs of a check.
+    /// Returns values that replace an unknown value in trials of the device's check: the default, and the ends of the range or
+    /// all options.
     fn stand_ins(&self) -> Vec<Value> {
         let ends: Vec<Value> = match &self.kind {
             KeyKind::Integer { min, max } => vec![Value::Integer(*min), Value::Integer(*max)],
@@ -198,7 +200,7 @@ impl Key {
 }
 
 impl Value {
-    /// Describes type and value, for a message: `the integer 7`.
+    /// Returns type and value for a message. For example, `the integer 7`.
     fn described(&self) -> String {
         let kind = match self {
             Value::Integer(_) => "integer",
@@ -212,9 +214,9 @@ impl Value {
     }
 }
 
-/// A configuration in the making.
+/// The state of a configuration while its values are read.
 pub(super) struct Draft<'a> {
-    /// The values so far. A key has its default if the user gave no value, or a value out of range.
+    /// The values so far. A key has its default if the user gave no value, or a value that is not accepted.
     pub config: Config,
     /// The names of the keys that the user gave.
     pub given: BTreeSet<&'a str>,
@@ -222,15 +224,16 @@ pub(super) struct Draft<'a> {
     pub doubtful: BTreeSet<&'a str>,
 }
 
-/// Checks the conditions between keys: the conditions of `only_when`, and the device's own check.
+/// Checks the conditions between keys: the conditions of `only_when` and `unless`, the conditions between shared keys, and the
+/// device's own check.
 ///
-/// A condition is reported only if it fails whatever the doubtful values may turn out to be (as
-/// far as the ends of their ranges tell), so that one mistake raises no messages about others.
+/// A value that is not accepted is unknown. A condition is reported only if it fails for all trial values of the unknown keys,
+/// so that one mistake raises no messages about other keys.
 fn check(schema: &Schema, draft: &Draft, problems: &mut Problems) {
     for key in schema.all_keys() {
         let governors = chain(schema, key);
         let doubtful = governors.iter().any(|it| draft.doubtful.contains(it.key));
-        // A key at its default asks for nothing that would be missing.
+        // A key at its default has no effect that could be missing.
         let is_default = *draft.config.value(key.name) == key.default;
         if !draft.given.contains(key.name) || doubtful || is_default {
             continue;
@@ -304,18 +307,19 @@ fn check(schema: &Schema, draft: &Draft, problems: &mut Problems) {
     problems.extend(found);
 }
 
-/// Returns a message about a key that was not given: which it is, and where its value comes from.
+/// Returns the message about a key that the user did not give. It begins with the key's value, and says that this is the
+/// default.
 fn of_default(key: &Key, draft: &Draft, message: &str) -> String {
     let value = draft.config.value(key.name).toml();
     format!("`{}` = {value}, its default, since it is not given: {message}", key.name)
 }
 
-/// Returns the keys that decide whether `key` applies, nearest first, with the values that it needs.
+/// Returns the conditions on which it depends whether `key` applies, the key's own condition first.
 fn chain(schema: &Schema, key: &Key) -> Vec<Condition> {
     let mut conditions = Vec::new();
     let mut condition = key.condition;
     while let Some(next) = condition {
-        // A schema with a cycle is faulty; do not hang on it.
+        // A schema with a cycle of conditions has a mistake, but must not cause an endless loop.
         if conditions.contains(&next) {
             break;
         }
@@ -325,7 +329,8 @@ fn chain(schema: &Schema, key: &Key) -> Vec<Condition> {
     conditions
 }
 
-/// Returns configurations in which each doubtful value is replaced by its trial values in turn.
+/// Returns configurations in which trial values replace each unknown value. Each configuration uses the next trial value of
+/// every such key.
 fn trials(schema: &Schema, draft: &Draft) -> Vec<Config> {
     let stand_ins: Vec<(&str, Vec<Value>)> = schema
         .all_keys()
@@ -345,7 +350,7 @@ fn trials(schema: &Schema, draft: &Draft) -> Vec<Config> {
 }
 
 impl Config {
-    /// Returns the configuration in which every key of the device has its default.
+    /// Returns the configuration with the module name `name` in which every key has its default.
     pub fn defaults(schema: &Schema, name: &str) -> Self {
         Config {
             name: name.to_owned(),
@@ -355,10 +360,11 @@ impl Config {
         }
     }
 
-    /// Returns the configuration with the given values, and defaults for all other keys. The same rules apply as to a file.
+    /// Returns the configuration with the given values, and adjusted defaults for all other keys. The same rules apply as to a
+    /// file.
     ///
     /// # Errors
-    /// Fails if a file with these values would have problems. The error lists them without positions.
+    /// Fails if a file with these values would have problems. The error lists them without locations.
     pub fn from_values(
         schema: &Schema,
         name: &str,
@@ -384,8 +390,8 @@ impl Config {
         draft.finish(schema, problems)
     }
 
-    /// Gives the keys that have no effect their defaults. For example, `output.registered` is a key of sequential cores, so that a
-    /// configuration that has become a pipeline must not keep it.
+    /// Sets the keys that do not apply to their defaults. For example, `output.registered` applies only to sequential cores, so
+    /// a configuration that has become a pipeline must not keep its value.
     pub fn reset_keys_without_effect(&mut self, schema: &Schema) {
         for key in schema.all_keys() {
             if !self.applies(schema, key.name) {
@@ -394,7 +400,8 @@ impl Config {
         }
     }
 
-    /// Returns whether the key has an effect, given the values of the other keys.
+    /// Returns whether the key `key` has an effect, given the values of the other keys. It also returns true for a key without
+    /// a condition.
     pub fn applies(&self, schema: &Schema, key: &str) -> bool {
         match schema.key(key).and_then(|key| key.condition) {
             None => true,
@@ -406,7 +413,7 @@ impl Config {
 }
 
 impl<'a> Draft<'a> {
-    /// Starts a draft with the defaults, in which nothing is given.
+    /// Makes a draft in which all keys have their defaults, and no key counts as given.
     pub(super) fn new(schema: &Schema, name: &str) -> Self {
         Draft {
             config: Config::defaults(schema, name),
@@ -415,7 +422,7 @@ impl<'a> Draft<'a> {
         }
     }
 
-    /// Notes that a key was given, with its value if that is in range.
+    /// Records that the user gave a key. `value` must be `None` if the given value is not accepted.
     pub(super) fn give(&mut self, key: &'a Key, value: Option<Value>) {
         self.given.insert(key.name);
         match value {
@@ -426,14 +433,14 @@ impl<'a> Draft<'a> {
         }
     }
 
-    /// Checks the conditions between keys, and returns the configuration if nothing is wrong. Keys that were not given follow
-    /// from the keys that were given.
+    /// Adjusts the defaults of keys that the user left out, and checks the conditions between keys. Returns the configuration,
+    /// or all problems if there is any.
     pub(super) fn finish(
         mut self,
         schema: &Schema,
         mut problems: Problems,
     ) -> Result<Config, Problems> {
-        // While a value is not known, nothing follows from it.
+        // If a given value is unknown, no default is adjusted.
         if self.doubtful.is_empty() {
             self.config = follow(schema, &self.config, &self.given);
         }
@@ -442,7 +449,7 @@ impl<'a> Draft<'a> {
     }
 }
 
-/// Returns a list of the keys of a table, for a remedy; the table of the keys at the top is empty.
+/// Returns a list of the keys in a table as a remedy. An empty `table` means the keys outside tables.
 pub(super) fn keys_of(schema: &Schema, table: &str) -> String {
     let mut keys: Vec<&str> = schema
         .all_keys()
@@ -454,7 +461,7 @@ pub(super) fn keys_of(schema: &Schema, table: &str) -> String {
         return format!("keys of [{table}]: {}", keys.join(", "));
     }
     keys.splice(0..0, super::COMMON.map(|(name, _)| name));
-    // The first table contains the keys at the top, and has no heading.
+    // The first entry has the keys outside tables, and no heading.
     let tables = tables(schema).into_iter().skip(1).map(|(name, _)| format!("[{name}]"));
     let tables = Vec::from_iter(tables).join(", ");
     let keys = keys.join(", ");

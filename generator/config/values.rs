@@ -30,11 +30,11 @@ pub enum Value {
 }
 
 impl Value {
-    /// Returns the text that [`super::Key::condition`] compares with: the value without quotes.
+    /// Returns the value as text without quotes. [`super::Key::condition`] compares with this text.
     pub fn bare(&self) -> String {
         match self {
             Value::Integer(value) => value.to_string(),
-            // The shortest text that reads back as the same number; `1e300` in place of 300 zeros.
+            // The shortest text that is read as the same number, for example `1e300` instead of 300 zeros.
             Value::Number(value) => format!("{value:?}"),
             Value::Text(value) => value.clone(),
             Value::Flag(value) => value.to_string(),
@@ -46,8 +46,8 @@ impl Value {
         }
     }
 
-    /// Returns the value as TOML: [`Value::bare`], with quotes around a word. For example, the text `truncate` becomes
-    /// `"truncate"`, and the text `16` stays `16`.
+    /// Returns the value in TOML syntax: like [`Value::bare`], but with quotes around a text that is no integer. For example,
+    /// the text `truncate` becomes `"truncate"`, and the text `16` stays `16`.
     pub fn toml(&self) -> String {
         match self {
             Value::Text(text) if !is_integer(text) => format!("\"{text}\""),
@@ -59,9 +59,9 @@ impl Value {
 /// One entry of a table: the name that the user chose, and the fields that the user gave.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TableEntry {
-    /// The name that the user gave to the entry of the table.
+    /// The name of the entry, which the user chose.
     pub name: String,
-    /// The fields that are given, by their names.
+    /// The fields that the user gave: pairs of name and value.
     pub fields: Vec<(&'static str, Value)>,
 }
 
@@ -80,7 +80,7 @@ impl TableEntry {
         self.fields.iter().find(|(own, _)| *own == name).map(|(_, value)| value)
     }
 
-    /// Returns the text of a field, or `None` if the user did not give it.
+    /// Returns the text in a field. Returns `None` if the user did not give the field, or if it is no text.
     pub fn text(&self, name: &str) -> Option<&str> {
         match self.field(name)? {
             Value::Text(text) => Some(text),
@@ -88,7 +88,8 @@ impl TableEntry {
         }
     }
 
-    /// Returns the number of bits in a field, or `None` if the user did not give it.
+    /// Returns the number of bits in a field. Returns `None` if the user did not give the field, or if it is no integer of 0 or
+    /// more.
     pub fn bits(&self, name: &str) -> Option<u32> {
         match self.field(name)? {
             Value::Integer(value) => u32::try_from(*value).ok(),
@@ -96,7 +97,7 @@ impl TableEntry {
         }
     }
 
-    /// Returns the number in a field, or `None` if the user did not give it.
+    /// Returns the number in a field. Returns `None` if the user did not give the field, or if it is no number.
     pub fn number(&self, name: &str) -> Option<f64> {
         match self.field(name)? {
             Value::Number(value) => Some(*value),
@@ -109,7 +110,8 @@ impl TableEntry {
         self.field(name) == Some(&Value::Flag(true))
     }
 
-    /// Returns the entry as TOML. `shorthand` names the field whose value alone states an entry without others.
+    /// Returns the entry in TOML syntax. If the field `shorthand` is the only field, returns only its value. For example, `{
+    /// from = -1, to = 1 }`.
     pub(super) fn toml(&self, shorthand: Option<&str>) -> String {
         if let [(name, value)] = self.fields.as_slice()
             && Some(*name) == shorthand
@@ -166,15 +168,15 @@ pub struct Config {
     pub device: String,
     /// Whether Glint must refuse a configuration that violates the accuracy contract, instead of warning about it.
     pub strict: bool,
-    /// In the order of the schema.
+    /// The keys with their values, in the order of the schema.
     pub(super) values: Vec<(&'static str, Value)>,
 }
 
 impl Config {
-    /// Returns the value of an integer key, or of a choice among integers.
+    /// Returns the value of a key for integers, or of a choice among integers.
     ///
     /// # Panics
-    /// Panics if the device has no such key, or if the key is of another kind. The caller must know both.
+    /// Panics if the device has no such key, or if the key is of another type. The caller must know both.
     pub fn integer(&self, key: &str) -> i64 {
         match self.value(key) {
             Value::Integer(value) => *value,
@@ -185,7 +187,7 @@ impl Config {
         }
     }
 
-    /// Returns the value of a number key.
+    /// Returns the value of a key for numbers.
     ///
     /// # Panics
     /// Panics as [`Config::integer`] does.
@@ -196,7 +198,7 @@ impl Config {
         }
     }
 
-    /// Returns the value of a choice.
+    /// Returns the word of a choice.
     ///
     /// # Panics
     /// Panics as [`Config::integer`] does.
@@ -207,7 +209,7 @@ impl Config {
         }
     }
 
-    /// Returns the value of a text.
+    /// Returns the text of a key for texts, or the word of a choice.
     ///
     /// # Panics
     /// Panics as [`Config::integer`] does.
@@ -218,7 +220,7 @@ impl Config {
         }
     }
 
-    /// Returns the value of a flag.
+    /// Returns the value of a key for `true` or `false`.
     ///
     /// # Panics
     /// Panics as [`Config::integer`] does.
@@ -229,7 +231,7 @@ impl Config {
         }
     }
 
-    /// Returns the value of a list of integers.
+    /// Returns the value of a key for a list of integers.
     ///
     /// # Panics
     /// Panics as [`Config::integer`] does.
@@ -240,7 +242,7 @@ impl Config {
         }
     }
 
-    /// Returns the entries of a table of records.
+    /// Returns the entries of a key for a table.
     ///
     /// # Panics
     /// Panics as [`Config::integer`] does.
@@ -251,12 +253,12 @@ impl Config {
         }
     }
 
-    /// Returns every key with its value, in the order of the schema.
+    /// Returns every key with its value, in the order of the schema, and then the keys that every device shares.
     pub fn values(&self) -> impl Iterator<Item = (&'static str, &Value)> {
         self.values.iter().map(|(name, value)| (*name, value))
     }
 
-    /// Returns the value of a key of any kind.
+    /// Returns the value of a key of any type.
     ///
     /// # Panics
     /// Panics if the device has no such key. The caller must know the keys.
@@ -267,7 +269,8 @@ impl Config {
         }
     }
 
-    /// Replaces a value. The caller must make sure that the value is in the range of its key.
+    /// Replaces the value of a key. The caller must make sure that the key accepts the value. It does nothing if the device has
+    /// no such key.
     pub fn set(&mut self, key: &str, value: Value) {
         if let Some(slot) = self.values.iter_mut().find(|(name, _)| *name == key) {
             slot.1 = value;
@@ -279,7 +282,7 @@ impl Config {
     }
 }
 
-/// Returns whether a word is an integer as it is displayed: `007` and `+7` are not.
+/// Returns whether a text is an integer in its usual form. For example, `7` is one, and `007` and `+7` are not.
 pub(super) fn is_integer(word: &str) -> bool {
     word.parse::<i64>().is_ok_and(|value| value.to_string() == word)
 }

@@ -1,23 +1,23 @@
-//! Writes configurations as TOML: the files from which a user starts, and files that read back as the same configuration.
+//! Writes configurations as TOML: files from which a user can start, and files that are read as the same configuration.
 
 use super::schema::{Key, KeyKind, Schema};
 use super::shared::shared_keys;
 use super::values::{Config, Value};
 
-/// The number of columns that a line of a comment may have.
+/// The largest width of a comment line.
 const WIDTH: usize = 90;
 
-/// The width that a value of [`brief`] is padded to, so that the remarks begin in one column.
+/// The width to which a line of [`brief`] is padded, so that the remarks begin in the same column.
 const REMARK_COLUMN: usize = 38;
 
-/// The most letters that a remark may have.
+/// The largest length of a remark with the values of a choice.
 const REMARK_WIDTH: usize = 80;
 
 /// Returns the short file that `glint new` prints: one line for each key of the device, with a remark.
 ///
-/// The keys in `given` have values. All others are comments that show their values, so that a default still adjusts to the keys that
-/// a user sets (see [`super::parse()`]). Keys that do not apply are left out, and so are the keys that every device shares unless they
-/// are given. `glint new DEVICE --all` prints [`commented`].
+/// The keys in `given` are set. All other keys are comments that show their values, so that a default still adjusts to the keys
+/// that a user sets (see [`super::parse()`]). Keys that do not apply are left out, and so are the keys that every device
+/// shares, unless they are in `given`. `glint new DEVICE --all` prints the text of [`commented`].
 pub fn brief(schema: &Schema, config: &Config, given: &[String]) -> String {
     let mut text = String::new();
     for (key, value) in common(config) {
@@ -55,8 +55,8 @@ fn assignment(config: &Config, key: &str) -> String {
     format!("{key} = {}", config.value(key).toml())
 }
 
-/// Returns the lines that give a key its value under `name`: for a table one line for each entry, for any other key one line.
-/// The name of a table is empty below its heading. For example, `operands.x = { fraction = 15 }`.
+/// Returns the lines that set a key under the name `name`: one line for each entry of a table, and one line for any other key.
+/// If `name` is empty, the lines are below the heading of the table. For example, `operands.x = { fraction = 15 }`.
 fn assignments(key: &Key, config: &Config, name: &str) -> Vec<String> {
     let value = config.value(key.name);
     if let (KeyKind::Table { shorthand, .. }, Value::Table(records)) = (&key.kind, value)
@@ -75,9 +75,9 @@ fn assignments(key: &Key, config: &Config, name: &str) -> Vec<String> {
     vec![format!("{name} = {}", value.toml())]
 }
 
-/// Returns the meaning of a key in a few words: its first clause, and the values of a choice. If the values are too long for
-/// both, the remark is the list of values alone. For example, `cosine.fraction` has the remark "Fraction bits of the cosine
-/// operands".
+/// Returns the meaning of a key in a few words: the first clause of its description, and the options of a choice. If both are
+/// too long together, the remark is only the list of options. For example, `cosine.fraction` has the remark "Fraction bits of
+/// the cosine operands".
 fn remark(key: &Key) -> String {
     let ends = [". ", ": ", "; "].map(|mark| key.doc.find(mark).unwrap_or(key.doc.len()));
     let end = ends.into_iter().min().unwrap_or(key.doc.len());
@@ -90,15 +90,15 @@ fn remark(key: &Key) -> String {
     if is_said { format!("{clause}: {values}") } else { values }
 }
 
-/// Returns a line with a remark behind it.
+/// Returns a line followed by a remark, which is a comment.
 fn remarked(line: &str, remark: &str) -> String {
     format!("{line:REMARK_COLUMN$} # {remark}\n")
 }
 
 /// Returns the file that `glint new --all` prints: every key with its value, its meaning, and the values that it accepts.
 ///
-/// The keys in `given` have values. All others are comments that show their values. Without the `# ` before them the lines of the keys
-/// read back as the same configuration.
+/// The keys in `given` are set. All other keys are comments that show their values. If `# ` is removed from the lines of these
+/// keys, the file is read as the same configuration.
 pub fn commented(schema: &Schema, config: &Config, given: &[String]) -> String {
     let mut text = comment(&format!(
         "Glint configuration of the device \"{}\". All keys are shown. A key in a comment has its default, which adjusts to the keys \
@@ -118,7 +118,7 @@ pub fn commented(schema: &Schema, config: &Config, given: &[String]) -> String {
             }
             text += &comment(&sentence(key.doc));
             let mut rule = match key.kind {
-                // The lines below show the entries, which are too long for a sentence.
+                // The lines below this comment show the entries, which are too long for a sentence.
                 KeyKind::Table { .. } => key.accepts(),
                 _ => format!("{}, default {}", key.accepts(), key.default.toml()),
             };
@@ -137,16 +137,15 @@ pub fn commented(schema: &Schema, config: &Config, given: &[String]) -> String {
 }
 
 impl Config {
-    /// Returns the configuration as a TOML file that reads back as the same configuration. The file contains every key of the
-    /// device that applies. A key that joined later or that every device shares is written only if it differs from its
-    /// default.
+    /// Returns the configuration as the text of a TOML file, which is read as the same configuration. The file contains every
+    /// key of the device that applies. A key with [`Key::joined_later`](super::Key::joined_later), or a key that every device
+    /// shares, is written only if it differs from its default.
     pub fn to_toml(&self, schema: &Schema) -> String {
         plain(schema, self)
     }
 }
 
-/// Returns the keys of a configuration that apply, without comments. A key that joined later or that every device shares is
-/// included only if it differs from its default.
+/// Returns the text of [`Config::to_toml`].
 fn plain(schema: &Schema, config: &Config) -> String {
     let mut text = String::new();
     for (key, value) in common(config) {
@@ -171,7 +170,7 @@ fn is_written(schema: &Schema, config: &Config, key: &Key) -> bool {
     config.applies(schema, key.name) && !(is_quiet && *config.value(key.name) == key.default)
 }
 
-/// Returns the keys that every device has, in the order of [`super::COMMON`], with their values as TOML.
+/// Returns the keys that every device has, in the order of [`super::COMMON`], with their values in TOML syntax.
 fn common(config: &Config) -> [(&'static str, String); 3] {
     [
         ("device", toml::Value::from(config.device.as_str()).to_string()),
@@ -180,7 +179,7 @@ fn common(config: &Config) -> [(&'static str, String); 3] {
     ]
 }
 
-/// Returns the keys by table. The keys at the top come first, and the rest have the order of the schema.
+/// Returns the keys by table. The keys outside tables come first, and the tables have the order of the schema.
 pub(super) fn tables(schema: &Schema) -> Vec<(&'static str, Vec<&Key>)> {
     let mut tables: Vec<(&str, Vec<&Key>)> = vec![("", Vec::new())];
     for key in schema.all_keys() {
@@ -193,7 +192,7 @@ pub(super) fn tables(schema: &Schema) -> Vec<(&'static str, Vec<&Key>)> {
     tables
 }
 
-/// Returns a text as comment lines.
+/// Returns a text as comment lines of at most [`WIDTH`] columns.
 fn comment(text: &str) -> String {
     let mut lines = String::new();
     let mut line = String::from("#");
@@ -209,7 +208,7 @@ fn comment(text: &str) -> String {
     lines + &line + "\n"
 }
 
-/// Returns a text with a capital at its start and a full stop at its end.
+/// Returns a text with a capital letter at its start and a full stop at its end.
 fn sentence(text: &str) -> String {
     let text = text.trim_end_matches('.');
     let mut letters = text.chars();

@@ -8,7 +8,8 @@ use std::path::{Path, PathBuf};
 
 use sha2::{Digest, Sha256};
 
-/// The sources that compute: formats, configurations, golden models, descriptions, simulator, and the proof itself.
+/// The sources whose change can change the result of an exhaustive check: formats, configurations, golden models, descriptions,
+/// the simulator, and the check itself.
 const SOURCES: [&str; 10] = [
     "../approximate",
     "../base",
@@ -31,7 +32,7 @@ fn main() {
     files.sort();
     let mut digest = Sha256::new();
     for path in files {
-        // Names with `/` and lines without carriage returns: the same on every machine.
+        // File names have `/`, and lines have no carriage returns, so that the digest is the same on every machine.
         let name = path.to_string_lossy().replace('\\', "/");
         let text = fs::read_to_string(&path).unwrap_or_default().replace("\r\n", "\n");
         digest.update(format!("{name}\n{}\n{text}", text.len()));

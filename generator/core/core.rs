@@ -27,14 +27,14 @@ pub const TEST_POINTS: u64 = 100_000;
 /// The seed of the random inputs of the default test.
 pub const TEST_SEED: u64 = 1;
 
-/// Computations at random at the beginning of the shipped bench, with everything that the handshake allows. For lines, the
-/// number of results is this times [`BENCH_LINE`].
+/// The number of random computations at the beginning of the emitted bench, which use everything that the handshake allows. For
+/// a device with lines, the number of results is this times [`BENCH_LINE`].
 const BENCH_POINTS: u64 = 64;
 
-/// The results of a line there, at most.
+/// The largest number of results of a line among these computations.
 const BENCH_LINE: i64 = 6;
 
-/// Points of the shipped bench of a pipeline, which takes one a clock.
+/// The number of random points at the beginning of the emitted bench of a pipeline, which takes one in every clock.
 const PIPELINE_POINTS: u64 = 2000;
 
 /// The seed of the random inputs of emitted test benches.
@@ -48,7 +48,7 @@ pub struct Core {
     pub config: Config,
     /// The netlist that the device's description builds from the configuration.
     pub design: Design,
-    /// The accuracy contract of the device for this configuration.
+    /// The accuracy contract of the device for this configuration: operands, formula and error bound.
     pub contract: Box<dyn Contract>,
 }
 
@@ -59,17 +59,18 @@ impl Core {
     /// Fails in these cases:
     /// - The description has mistakes.
     /// - The pipeline cannot be made.
-    /// - A result depends on an earlier computation, or is never shown.
-    /// - The constraints ask for a faster clock than the pipeline is made for.
+    /// - A result depends on an earlier computation, or no output shows it.
+    /// - The constraints ask for a faster clock than the pipeline was scheduled for.
     /// - The configuration sets `package.rom_style`, and no ROM of the core can have such an attribute.
-    /// - The configuration asks for a program that recomputes results, and [`Core::recomputation`] fails.
+    /// - The configuration asks for a program that recomputes results, and the contract does not allow one; see
+    ///   [`Core::recomputation`].
     /// - The golden model cannot model the output registers or the operand buffers.
     pub fn new(device: Device, config: Config) -> Result<Self> {
         let design = device.design(&config);
         Self::of_design(device, config, design)
     }
 
-    /// Builds the netlist of a configuration that does not set a clock frequency. [`Device::design_with_free_clock`] chooses the
+    /// Builds the core of a configuration that does not set a clock frequency. [`Device::design_with_free_clock`] chooses the
     /// frequency.
     ///
     /// # Errors
@@ -106,23 +107,24 @@ impl Core {
         Ok(Self { device, config, design, contract })
     }
 
-    /// Returns a digest that identifies this configuration and the version of Glint: SHA-256 in hexadecimal.
+    /// Returns a digest that identifies this configuration and the version of Glint: SHA-256 of the TOML text, in hexadecimal.
     pub fn digest(&self) -> String {
         let text = self.config.to_toml(&(self.device.schema)());
         package::digest(format!("{}\n{text}", env!("CARGO_PKG_VERSION")).as_bytes())
     }
 
-    /// Returns a digest that identifies the contract in a record of a proof: the device, and its own keys that are not at
-    /// their defaults. A key that is added later does not change the digest while it is at its default. SHA-256 in
-    /// hexadecimal.
+    /// Returns a digest that identifies the contract in a record of a proof: SHA-256 in hexadecimal. It covers the name of the
+    /// device, and its own keys that are not at their defaults. A key that is added to the device later does not change the
+    /// digest while it is at its default.
     pub fn contract_digest(&self) -> String {
         self.digest_of((self.device.schema)().keys.iter())
     }
 
-    /// Returns the evidence for the contract's bound; `proofs` is the directory of records.
+    /// Returns the evidence for the contract's bound. `proofs` is the directory of records; a device of the catalogue needs
+    /// none.
     ///
     /// # Errors
-    /// Fails if a record cannot be read.
+    /// Fails if a record cannot be read, or does not fit the contract.
     pub fn backing(&self, proofs: &Path) -> Result<Backing> {
         if self.device.proved {
             return Ok(Backing::Catalogue);
@@ -130,9 +132,9 @@ impl Core {
         Backing::of_records(proofs, &self.contract_digest(), self.contract.as_ref())
     }
 
-    /// Returns a digest that identifies this core, whatever its name. It covers the same keys as [`Core::contract_digest`], and
-    /// the architecture. Keys of the tables `interface` and `package` do not change it, because they concern only wrappers and
-    /// packages around the core.
+    /// Returns a digest that identifies this core, whatever its name: SHA-256 in hexadecimal. It covers the same keys as
+    /// [`Core::contract_digest`], and the keys that all devices share, such as the architecture. Keys of the tables `interface`
+    /// and `package` do not change it, because they concern only wrappers and packages around the core.
     pub fn core_digest(&self) -> String {
         let schema = (self.device.schema)();
         self.digest_of(schema.all_keys().filter(|key| {
@@ -153,9 +155,9 @@ impl Core {
         package::digest(text.as_bytes())
     }
 
-    /// Returns a digest that identifies an exhaustive check of this configuration. It covers the configuration, the sweep, the
-    /// sources of all code that takes part, and the errors at some operand combinations of the sweep. The errors also reveal a
-    /// changed golden model in another crate. The digest is the same on every machine.
+    /// Returns a digest that identifies an exhaustive check of this configuration: SHA-256 in hexadecimal. It covers the
+    /// configuration, the sweep, the sources of the code that takes part, and the errors at some operand combinations. The
+    /// errors also reveal a changed golden model in another crate. The digest is the same on every machine.
     pub fn fingerprint(&self, sweep: &Sweep) -> String {
         let contract = self.contract.as_ref();
         let places = [Places::of_sweep(contract, sweep.clone()), Places::of_colours(contract)];
@@ -172,7 +174,7 @@ impl Core {
     /// Returns a co-simulation of the golden model and the netlist, whose random inputs are drawn from `seed`.
     ///
     /// # Errors
-    /// Fails if model and design do not name the same signals.
+    /// Fails if golden model, design and contract do not have the same signals, operands and outputs.
     pub fn lockstep(&self, seed: u64) -> Result<Lockstep<'_>> {
         self.lockstep_of(&self.design, seed)
     }
@@ -181,17 +183,17 @@ impl Core {
     /// mutant.
     ///
     /// # Errors
-    /// Fails if model and design do not name the same signals.
+    /// Fails if golden model, design and contract do not have the same signals, operands and outputs.
     pub fn lockstep_of<'a>(&'a self, design: &'a Design, seed: u64) -> Result<Lockstep<'a>> {
         let model = self.device.golden(&self.config);
         Lockstep::new(design, model, self.contract.as_ref(), seed)
     }
 
-    /// Returns the exhaustive check of this core. It checks the error bound and, if the operands have few bits, compares model and
-    /// hardware clock by clock for every combination of operands.
+    /// Returns the exhaustive check of this core. It checks the error bound and, if the operands have few bits, compares model
+    /// and hardware clock by clock for every combination of operands.
     ///
     /// # Errors
-    /// Fails if model and design do not name the same signals.
+    /// Fails if golden model, design and contract do not have the same signals, operands and outputs.
     pub fn job(&self) -> Result<Job<'_>> {
         self.job_of(self.contract.sweep())
     }
@@ -199,7 +201,7 @@ impl Core {
     /// Returns the exhaustive check of this core for the operand values in `sweep`, instead of the contract's own sweep.
     ///
     /// # Errors
-    /// Fails if model and design do not name the same signals.
+    /// Fails if golden model, design and contract do not have the same signals, operands and outputs.
     pub fn job_of(&self, sweep: Sweep) -> Result<Job<'_>> {
         Ok(Job::of_sweep(self.contract.as_ref(), sweep).with(self.clocks()?))
     }
@@ -207,17 +209,17 @@ impl Core {
     /// Returns the check that compares golden model and simulated hardware clock by clock for every combination of operands.
     ///
     /// # Errors
-    /// Fails if model and design do not name the same signals.
+    /// Fails if golden model, design and contract do not have the same signals, operands and outputs.
     pub fn clocks(&self) -> Result<Clocks<'_>> {
         let model = self.device.golden(&self.config);
         Clocks::new(&self.design, model, self.contract.as_ref())
     }
 
-    /// Returns the number of clocks between the events of the handshake, such as `start` and `valid`. [`trial::timing`] measures
-    /// them.
+    /// Returns the numbers of clocks between the events of the handshake, such as `start` and `valid`. [`trial::timing`]
+    /// measures them.
     ///
     /// # Errors
-    /// Fails if a simulated computation does not finish within 65 536 clocks.
+    /// Fails if a simulated computation does not finish within 65 536 clocks, or never raises `valid`.
     pub fn timing(&self) -> Result<HandshakeTiming> {
         trial::timing(&self.design, self.contract.as_ref())
     }
@@ -230,8 +232,8 @@ impl Core {
         trial::example(&self.design, self.contract.as_ref())
     }
 
-    /// Returns the clock numbers of a line (the points that the device computes after one `start`) as functions of its length.
-    /// Returns `None` if the device computes single points.
+    /// Returns the clock numbers of a line (the points that the device computes after one `start`) as linear functions of its
+    /// length. Returns `None` if the device computes single points, or if the numbers are no linear functions.
     ///
     /// # Errors
     /// Fails if a simulated computation does not finish within 65 536 clocks.
@@ -239,32 +241,32 @@ impl Core {
         trial::line(&self.design, self.contract.as_ref())
     }
 
-    /// Returns the vectors of a test bench: the inputs and the expected outputs of every clock. The golden model and the
-    /// simulated netlist agree on the outputs.
+    /// Returns the vectors of a test bench: the inputs and the expected outputs of every clock, for random computations with
+    /// `points` results in all. The golden model and the simulated netlist agree on the outputs.
     ///
     /// # Errors
-    /// Fails if they do not agree.
+    /// Fails if golden model and simulation differ.
     pub fn vectors(&self, points: u64, seed: u64) -> Result<Vectors> {
         self.lockstep(seed)?.record(points, &[])
     }
 
-    /// Returns the vectors of the test bench that is emitted with the core. Random computations show the handshake; computations
-    /// that `directed` chooses detect faults in the datapath and its ROMs.
+    /// Returns the vectors of the test bench that is emitted with the core. Random computations use all of the handshake. The
+    /// module `directed` then chooses computations that detect faults in the datapath and its ROMs.
     ///
     /// # Errors
-    /// Fails as [`Core::vectors`] does.
+    /// Fails as [`Core::vectors`] does, or if a computation does not end.
     pub fn shipped_vectors(&self) -> Result<Vectors> {
         self.shipped_vectors_of(&directed::ComputationCache::default())
     }
 
-    /// Returns the same as [`Core::shipped_vectors`], but avoids a repeated search. If the cache `known` has the computations that
-    /// were chosen for this design, the function takes them from the cache; otherwise it adds them to the cache.
+    /// Returns the same as [`Core::shipped_vectors`], but avoids a repeated search. If the cache `known` has the computations
+    /// that were chosen for this design, the function takes them from the cache. Otherwise it adds them to the cache.
     ///
     /// # Errors
     /// Fails as [`Core::vectors`] does.
     pub fn shipped_vectors_of(&self, known: &directed::ComputationCache) -> Result<Vectors> {
         let contract = self.contract.as_ref();
-        // A pipeline has the datapath of the microprogram that it was made of.
+        // A pipeline has the same datapath as the microprogram from which it was made.
         let sequential = self.microprogram(true)?;
         let datapath = sequential.as_ref().unwrap_or(&self.design);
         let directed = known.computations(datapath, contract, &self.contract_digest())?;
@@ -278,12 +280,12 @@ impl Core {
         Ok(Vectors { word_stride: directed.word_stride, ..vectors? })
     }
 
-    /// Returns the C program that recomputes the results of every combination of operands, with the C model that it includes and
+    /// Returns a C program that recomputes the results of every combination of operands, with the C model that it includes and
     /// the contents of the ROMs.
     ///
     /// # Errors
-    /// Fails if the contract is neither a formula of one operand nor a list of formulas with conditions, or if there are more than
-    /// 2^32 combinations of operands.
+    /// Fails if the contract is neither a formula of one operand nor a list of formulas with conditions, or if there are more
+    /// than 2^32 combinations of operands.
     pub fn recomputation(&self) -> Result<OutputFiles> {
         let asked = Surroundings { software: true, recomputation: true, ..Surroundings::default() };
         let inputs = EmitInputs {
@@ -295,17 +297,19 @@ impl Core {
         package::emit(&self.design, &inputs)
     }
 
-    /// Returns the design with the microprogram if the core is a pipeline and `is_wanted` is true, and else `None`.
+    /// Returns the sequential design from which the core was made, if the core is a pipeline and `is_wanted` is true; otherwise
+    /// `None`.
     fn microprogram(&self, is_wanted: bool) -> Result<Option<Design>> {
         let wanted = is_wanted && self.design.pipeline.is_some();
         Ok(wanted.then(|| self.device.sequential(&self.config)).transpose()?)
     }
 
-    /// Returns every emitted file of the configuration. `config` is the path of its file, for the commands in the files' heads.
-    /// Without `vectors` there are no test benches.
+    /// Returns every emitted file of the configuration. `config` is the path of the configuration file, which the heads of the
+    /// files print in a command. Without `vectors` there are no test benches.
     ///
     /// # Errors
-    /// Fails if golden model and simulation do not agree, or if the design cannot be written as Verilog.
+    /// Fails if golden model and simulation differ, if a computation does not end, or if a file or wrapper that the
+    /// configuration asks for does not fit the core.
     pub fn files(&self, config: &str, vectors: impl Into<Option<Vectors>>) -> Result<OutputFiles> {
         let around = Surroundings::new(&self.config, self.design.pipeline.as_ref());
         let sequential = self.microprogram(around.software)?;
@@ -323,7 +327,7 @@ impl Core {
         package::emit(&self.design, &inputs)
     }
 
-    /// Returns an example instance in Verilog of each module that a system can instantiate, the outermost wrapper first.
+    /// Returns an example of a Verilog instance for each module that a system can instantiate, the outermost wrapper first.
     ///
     /// # Errors
     /// Fails if a wrapper that the configuration asks for does not fit the core.
@@ -336,8 +340,8 @@ impl Core {
         package::instances(&self.design, &inputs)
     }
 
-    /// Returns only the files that synthesis needs: the Verilog of the core and the contents of its ROMs. A file that has a form of
-    /// its own for an FPGA family is returned in the portable form and in that form.
+    /// Returns only the files that synthesis needs: the Verilog of the core and the contents of its ROMs. If a file has a
+    /// special form for an FPGA family, the list has the portable form and the special form.
     ///
     /// # Errors
     /// Fails if the design cannot be written as Verilog.
@@ -357,8 +361,8 @@ impl Core {
         self.verilog_for("")
     }
 
-    /// Returns the files of [`Core::core_files`] for the FPGA family `target`: files with a form for this family replace the
-    /// portable ones.
+    /// Returns the files of [`Core::core_files`] for the FPGA family `target`, as pairs of a file name and contents. A file
+    /// with a special form for this family replaces the portable one.
     ///
     /// # Errors
     /// Fails if the design cannot be written as Verilog.

@@ -1,6 +1,6 @@
 //! Builds a core from a configuration, emits its files, and co-simulates it with the golden model.
 //!
-//! This crate and the crates below it start no processes, no threads of their own and no signal handlers. A test
+//! This crate and the crates below it start no processes, no threads of their own, and handle no signals. A test
 //! (`tests/quick/rooms.rs`) checks this.
 
 pub mod core;

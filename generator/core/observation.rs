@@ -1,6 +1,5 @@
-//! Defines the facts about a core that come from simulation or from its contract, and not from its netlist.
-//!
-//! They are worked examples, computations with their results, the clocks of a line, and the vectors of a test bench. Manifests
+//! Defines the facts about a core that come from simulation or from its contract, and not from its netlist. The facts are
+//! worked examples, computations with their results, the clock numbers of a line, and the vectors of a test bench. Manifests
 //! and pages print them.
 
 use glint_formula::Comparison;
@@ -17,8 +16,8 @@ pub struct WorkedExample {
     pub results: Vec<Vec<Quantity>>,
 }
 
-/// The clock numbers of the handshake for a device that computes a line: several points after one `start`. They are functions of
-/// the line's length.
+/// The clock numbers of the handshake for a device that computes a line: several points after one `start`. Each number is a
+/// function of the line's length. The clock that takes `start` is number 0.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct LineClocks {
     /// The name of the operand that gives the length of the line.
@@ -41,12 +40,13 @@ pub struct Linear {
 }
 
 impl Linear {
-    /// Returns the value of the function for a length. For example, `4 + length` gives 24 for the length 20.
+    /// Returns the value of the function for a length, in clocks. For example, `4 + length` gives 24 for the length 20.
     pub fn at(self, length: i64) -> i64 {
         self.constant + self.each * length
     }
 
-    /// Returns the function as text, in which `length` is the name of the operand. For example, `4 + length`.
+    /// Returns the function as text, in which `length` is the name of the operand. For example, `4 + length`, `4 + 2 · length`,
+    /// or `4` if the length does not matter.
     pub fn text(self, length: &str) -> String {
         match self.each {
             0 => self.constant.to_string(),
@@ -56,26 +56,28 @@ impl Linear {
     }
 }
 
-/// The contract of a device's results, as far as a program can use it. For example, `rough` promises for `exponent` 1 to 1000
-/// that each output is within 0.97 units of the formula.
+/// The contract of a device's results, in a form that an emitted program can use. For example, `rough` promises for `exponent`
+/// 1 to 1000 that each output is within 0.97 units of the formula.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ContractFacts {
     /// The operands, each with the smallest and the largest raw value for which the contract holds.
     pub domain: Vec<(String, (i64, i64))>,
-    /// The result outputs. Each has the name of the colour operand that a highlight multiplies by f, or `None` for another device.
+    /// The result outputs. Each has the name of the colour operand that a highlight multiplies by f, or `None` for another
+    /// device.
     pub outputs: Vec<(String, Option<String>)>,
-    /// The operand that gives the number of results beyond the first, if a computation has several results.
+    /// The operand that gives the number of results beyond the first; `None` if a computation has one result.
     pub length: Option<String>,
     /// Python expressions of the correct values: the values of `f` for a highlight, or one value for each output of another
-    /// device.
+    /// device. Empty if the contract states no bound, because results could not be compared with anything.
     pub f: Vec<String>,
-    /// For each output the comparison under which the error is promised, as [`Contract::conditions`] states them.
+    /// For each output, the comparison under which the error is promised, or `None` for an output whose error is promised for
+    /// the whole domain. The list is `None` if the device does not state its promises as comparisons.
     pub conditions: Option<Vec<Option<Comparison>>>,
-    /// Whether an output wraps, as [`Contract::wraps`] says.
+    /// Whether an output may differ from the formula by a multiple of its range, as [`Contract::wraps`] says.
     pub wraps: bool,
-    /// The largest error of an output, in units of its last place.
+    /// The largest error of an output, in units of its last bit.
     pub bound: f64,
-    /// The largest error of each output, in units of its last place.
+    /// The largest error of each output, in units of its last bit.
     pub bounds: Vec<f64>,
 }
 
@@ -86,7 +88,7 @@ impl ContractFacts {
         for operand in contract.operands() {
             domain.push((operand.name.clone(), operand.domain));
         }
-        // Each colour operand belongs to an output, in their order.
+        // Each output of a highlight belongs to a colour operand, in the same order.
         let mut colours = contract.operands().iter().filter(|operand| operand.colour);
         let mut outputs = Vec::new();
         for output in contract.outputs() {
@@ -97,7 +99,7 @@ impl ContractFacts {
             domain,
             outputs,
             length: contract.length().map(str::to_owned),
-            // Without a bound there is nothing that results could be held against.
+            // Without a bound, results could not be compared with anything.
             f: match contract.highlight() {
                 _ if !contract.bound().is_stated() => Vec::new(),
                 Some(highlight) => highlight.expressions(),
@@ -111,7 +113,7 @@ impl ContractFacts {
     }
 }
 
-/// A computation with its results and their clocks, as a user of the ports sees it. The clock in which `start` is taken is number
+/// A computation with its results and their clocks, as a user of the ports observes it. The clock that takes `start` is number
 /// 0. For example, `rough` shows its result in clock 9, and `done` in clock 10.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Computation {
@@ -124,7 +126,7 @@ pub struct Computation {
 }
 
 impl Computation {
-    /// Returns whether the last result is shown in the clock of `done`.
+    /// Returns whether the last result is shown in the clock of `done`. It is false for a computation without results.
     pub fn ends_with_result(&self) -> bool {
         let last = self.results.last();
         last.is_some_and(|result| result.clock == self.done)
@@ -161,10 +163,10 @@ pub struct Vectors {
     pub inputs: Vec<Vec<u64>>,
     /// For each clock, the expected bit patterns of all output ports, in the order of the ports.
     pub expected: Vec<Vec<u64>>,
-    /// The first clock in which the bench compares results and status. It compares the handshake outputs from the first clock
-    /// after a clock with reset.
+    /// The index of the first clock in which the bench compares results and status. It compares the handshake outputs from the
+    /// first clock after a clock with reset.
     pub known_from: usize,
-    /// The spacing of the ROM words in which the bench detects a fault: every word if this is 1, every second word if it is 2, and
-    /// so on. It is 0 if the bench has no computations for ROM words.
+    /// The distance between two ROM words with computations that detect faults, in words. For example, 1 means that every word
+    /// has such computations, and 2 that every second word has them. It is 0 if the bench has no computations for ROM words.
     pub word_stride: usize,
 }

@@ -26,17 +26,17 @@ const OPERANDS_BUFFERED: &str = "operands.buffered";
 
 /// A device that Glint can generate, simulate and check.
 ///
-/// Callers must call the functions only with configurations that the schema accepts. The file `examples/fresnel` is an example of a
-/// complete device outside Glint.
+/// Callers must call the functions only with configurations that the schema accepts. The file `examples/fresnel` is an
+/// example of a complete device outside Glint.
 #[derive(Clone, Copy)]
 pub struct Device {
     /// The name of the device, which the key `device` of a configuration gives. It must equal [`Schema::device`].
     pub name: &'static str,
     /// A line about the device, which `glint list` prints.
     pub summary: &'static str,
-    /// Returns the configuration keys of the device.
+    /// Returns the device's own configuration keys, with their defaults.
     pub schema: fn() -> Schema,
-    /// Describes the hardware of a configuration: adds blocks and a microprogram to a designer that has the module's name. It
+    /// Describes the hardware of a configuration: adds blocks and a microprogram to a designer, whose name is the module's. It
     /// must not call `finish`.
     pub describe: fn(&Designer, &Config),
     /// Returns the golden model of a configuration.
@@ -46,21 +46,22 @@ pub struct Device {
     /// Whether the contract's bound is proved for every configuration, by a proof beside the golden model. Otherwise the bound is
     /// only the statement of the author.
     ///
-    /// A device with another contract must set this field anew: `Device { contract, proved: false, ..own }`.
+    /// A device that replaces the contract must set this field too: `Device { contract, proved: false, ..own }`.
     pub proved: bool,
 }
 
 impl Device {
-    /// Returns the default configuration of the device. Its name is [`Schema::module`].
+    /// Returns the default configuration of the device. Its module name is [`Schema::module`].
     pub fn defaults(&self) -> Config {
         let schema = (self.schema)();
         Config::defaults(&schema, &schema.module())
     }
 
-    /// Returns the netlist of a configuration: with a microprogram, or a pipeline if the configuration asks for one.
+    /// Returns the netlist of a configuration: with a microprogram, or as a pipeline if the configuration asks for one.
     ///
     /// # Errors
-    /// Fails if the description has mistakes, or if the pipeline cannot be made.
+    /// Fails if the description has mistakes, or if the pipeline cannot be made. The error lists the mistakes, or names the key
+    /// to change.
     pub fn design(&self, config: &Config) -> Result<Design, DesignError> {
         let sequential = self.sequential(config)?;
         let pipelined = pipeline_keys::pipelined(&sequential, config)?;
@@ -68,7 +69,7 @@ impl Device {
     }
 
     /// Returns the netlist of a configuration that does not set a clock frequency. If a pipeline cannot reach the default of
-    /// [`CLOCK_MHZ`], the function sets this key to the fastest clock that the pipeline can reach.
+    /// [`CLOCK_MHZ`], the function sets this key in `config` to the fastest clock that the pipeline can reach.
     ///
     /// # Errors
     /// Fails if the description has mistakes, or if the pipeline cannot be made with that clock either.
@@ -96,7 +97,7 @@ impl Device {
         Ok(results.unwrap_or_default())
     }
 
-    /// Returns the sequential netlist, which executes a microprogram. [`Device::design`] makes pipelines from it.
+    /// Returns the sequential netlist, which executes a microprogram. [`Device::design`] makes pipelines from this netlist.
     ///
     /// # Errors
     /// Fails if the description has mistakes. The error lists them.
@@ -116,7 +117,8 @@ impl Device {
         designer.finish().map_err(|mistakes| with_key_remedies(mistakes, &keys))
     }
 
-    /// Returns the golden model of the sequential netlist.
+    /// Returns the golden model of the sequential netlist, with output registers and operand buffers if the configuration asks
+    /// for them and the model supports them.
     pub fn golden(&self, config: &Config) -> Box<dyn Model> {
         let mut model = (self.model)(config);
         // A model that lacks the registers or buffers differs from the design, and the comparison reports the difference.
@@ -132,7 +134,7 @@ impl Device {
     /// Checks whether the golden model supports the keys of the configuration.
     ///
     /// # Errors
-    /// Fails if the golden model cannot model the output registers or the operand buffers that the configuration asks for.
+    /// Fails if the configuration asks for output registers or operand buffers, and the golden model does not model them.
     pub fn check_golden(&self, config: &Config) -> Result<()> {
         let model = (self.model)(config);
         ensure!(
@@ -153,7 +155,8 @@ impl Device {
     /// Checks that the contract can describe the results of the device.
     ///
     /// # Errors
-    /// Fails if results depend on values that an earlier computation left, or are never shown.
+    /// Fails if [`Contract::check`] fails, for example because the golden model never shows a result. Fails also if results
+    /// depend on values that an earlier computation left, or if no output shows them.
     pub fn check_contract(
         &self,
         config: &Config,
@@ -162,7 +165,7 @@ impl Device {
     ) -> Result<()> {
         contract.check().map_err(anyhow::Error::msg)?;
         let carried = if design.pipeline.is_some() {
-            // It could not have been made.
+            // The design is a pipeline, and no pipeline can be made from a description that carries values over.
             None
         } else if config.flag(OPERANDS_BUFFERED) {
             // The value in a buffer is an operand, and not a value that an earlier computation left.
@@ -182,7 +185,7 @@ impl Device {
     }
 }
 
-/// Devices by the modules that describe and predict them, each with its name and summary.
+/// Makes a list of devices from the modules with their keys, description and golden model, each with its name and summary.
 macro_rules! of_catalogue {
     ($($module:ident: $name:literal, $summary:literal;)*) => {
         vec![$(Device {
@@ -207,8 +210,8 @@ impl Registry {
         Self(Vec::new())
     }
 
-    /// Returns the highlight devices, and the device `function`, which computes a formula of one operand. This repository has
-    /// records of their checks.
+    /// Returns a registry with the highlight devices, and with the device `function`, which computes a formula of one operand.
+    /// This repository has records of their checks.
     pub fn catalogue() -> Self {
         Self(of_catalogue![
             quad_cosine: "quad-cosine", "cos^k(sqrt(n/k)*delta) along a scan line, k = 1, 2, 4, 16 by n (seed 000)";
@@ -225,8 +228,8 @@ impl Registry {
         ])
     }
 
-    /// Returns all devices of Glint: the catalogue, and the devices without records in this repository, for example `normaliser`
-    /// and `shading`.
+    /// Returns a registry with all devices of Glint: the catalogue, and the devices without records in this repository, for
+    /// example `normaliser` and `shading`.
     pub fn shipped() -> Self {
         let mut all = Self::catalogue();
         all.0.extend(of_catalogue![
@@ -250,7 +253,7 @@ impl Registry {
         &self.0
     }
 
-    /// Returns the device with this name.
+    /// Returns the device with this name, or `None`.
     pub fn device(&self, name: &str) -> Option<&Device> {
         self.0.iter().find(|device| device.name == name)
     }
@@ -261,7 +264,7 @@ impl Registry {
     }
 }
 
-/// Adds to each mistake that a key of the configuration leads to that the key can be left out.
+/// Completes the messages about mistakes that come from a key of the configuration: the user can also leave out this key.
 fn with_key_remedies(mut mistakes: Diagnostics, keys: &Shared) -> Diagnostics {
     for mistake in &mut mistakes.0 {
         if mistake.code == codes::OUTPUT_REGISTER && keys.output_registered {

@@ -1,11 +1,11 @@
 //! Interval arithmetic in `f64`: computes limits between which the exact value of a real number certainly lies. Every rounding
-//! goes outward.
+//! goes outwards.
 
-/// Far more than any function of `libm` is off: musl's, from which they come, state errors below 1.5 units in the last
-/// place, and this is at least four of them.
+/// The relative error that results of `libm` are assumed to have at most. The functions come from musl, which states errors
+/// below 1.5 units in the last place, and this margin is at least four units.
 const MARGIN: f64 = 1.0 / (1u64 << 50) as f64;
 
-/// Below this, products lose bits that a remainder cannot show.
+/// Below this size, a product loses low bits that its computed error cannot show.
 const SMALL: f64 = 1e-280;
 
 /// The largest `f64` that is not above π.
@@ -31,7 +31,7 @@ impl Enclosure {
         Self { low, high }
     }
 
-    /// Returns the middle of the interval.
+    /// Returns the number in the middle between both limits.
     pub fn middle(self) -> f64 {
         self.low + (self.high - self.low) / 2.0
     }
@@ -41,7 +41,7 @@ impl Enclosure {
         self.low.is_finite() && self.high.is_finite()
     }
 
-    /// Returns whether the interval contains the number `value`.
+    /// Returns whether the interval contains the number `value`, limits included.
     pub fn holds(self, value: f64) -> bool {
         (self.low..=self.high).contains(&value)
     }
@@ -52,16 +52,17 @@ impl Enclosure {
         Self { low: self.low.min(other.low), high: self.high.max(other.high) }
     }
 
-    /// Makes the enclosure of a number that was computed up to an error of [`MARGIN`], relative to it.
+    /// Makes the interval of a number between `low` and `high`, which were computed with a relative error of at most
+    /// [`MARGIN`].
     fn near(low: f64, high: f64) -> Self {
         let margin = |value: f64| value.abs() * MARGIN + f64::MIN_POSITIVE;
-        // A value beyond the range of f64 is above the largest f64, or below the smallest.
+        // A value beyond the range of `f64` is above the largest `f64`, or below the smallest.
         let (low, high) = (low.min(f64::MAX), high.max(f64::MIN));
         Self { low: low - margin(low), high: high + margin(high) }
     }
 
-    /// Returns the hull of the results of `of` at the corners of two enclosures. These are the limits of a function that is
-    /// monotone in each operand.
+    /// Returns the smallest interval that contains the results of `of` at the four combinations of the intervals' limits. It
+    /// contains all results if the function is monotone in each operand.
     fn corners(self, other: Self, of: impl Fn(f64, f64) -> Self) -> Self {
         let first = of(self.low, other.low);
         if self.low == self.high && other.low == other.high {
@@ -72,46 +73,50 @@ impl Enclosure {
         a.hull(b).hull(c.hull(d))
     }
 
-    /// Returns the enclosure limited to the values that a function can have.
+    /// Returns the interval, limited to the values from `least` to `most` that a function can have.
     fn within(self, least: f64, most: f64) -> Self {
         Self { low: self.low.clamp(least, most), high: self.high.clamp(least, most) }
     }
 
-    /// Returns the values of a function of `libm` that never falls.
+    /// Returns the interval of a function of `libm` that never falls.
     pub(super) fn rising(self, function: fn(f64) -> f64) -> Self {
         let low = function(self.low);
         Self::near(low, if self.low == self.high { low } else { function(self.high) })
     }
 
-    /// Returns the values of an exponential function, which are never below 0. Beyond the range of `f64` the value is
-    /// somewhere between the largest `f64` and infinity.
+    /// Returns the interval of an exponential function, whose values are never below 0. If a value is beyond the range of
+    /// `f64`, the interval is from the largest `f64` to infinity.
     pub(super) fn exponential(self, function: fn(f64) -> f64) -> Self {
         let Self { low, high } = self.rising(function);
         Self { low: low.clamp(0.0, f64::MAX), high }
     }
 
-    /// Returns the values of a logarithm, which has the sign of the distance from 1.
+    /// Returns the interval of a logarithm. Its values are not negative for numbers of 1 or more, and not positive for numbers
+    /// up to 1.
     pub(super) fn logarithm(self, function: fn(f64) -> f64) -> Self {
         let least = if self.low >= 1.0 { 0.0 } else { f64::NEG_INFINITY };
         let most = if self.high <= 1.0 { 0.0 } else { f64::INFINITY };
         self.rising(function).within(least, most)
     }
 
-    /// Returns the values of an odd function that never falls and is never beyond `largest`: they have the sign of the argument.
+    /// Returns the interval of a function that never falls, that is odd, and whose values are never beyond ±`largest`. The
+    /// values have the sign of the argument.
     pub(super) fn odd_and_rising(self, function: fn(f64) -> f64, largest: f64) -> Self {
         let least = if self.low >= 0.0 { 0.0 } else { -largest };
         let most = if self.high <= 0.0 { 0.0 } else { largest };
         self.rising(function).within(least, most)
     }
 
-    /// Returns the values of a sine. Within half a turn to either side it has the sign of the angle.
+    /// Returns the interval of a sine. If the angle is certainly from 0 to π, or from −π to 0, the values have the sign of the
+    /// angle.
     pub(super) fn sine(self) -> Self {
         let least = if self.low >= 0.0 && self.high <= HALF_TURN { 0.0 } else { -1.0 };
         let most = if self.high <= 0.0 && self.low >= -HALF_TURN { 0.0 } else { 1.0 };
         self.wave(libm::sin).within(least, most)
     }
 
-    /// Returns the values of a sine or a cosine, which is never steeper than 1.
+    /// Returns the interval of a sine or a cosine, from the value in the middle of the interval. Its slope is never steeper
+    /// than 1.
     pub(super) fn wave(self, function: fn(f64) -> f64) -> Self {
         let middle = self.middle();
         let reach = ((self.high - middle).max(middle - self.low)).next_up();
@@ -120,7 +125,7 @@ impl Enclosure {
         Self { low: (low - reach).next_down().max(-1.0), high: (high + reach).next_up().min(1.0) }
     }
 
-    /// Returns the square root. The number must not be negative.
+    /// Returns the interval of the square root. The numbers must not be negative.
     pub(super) fn sqrt(self) -> Self {
         let root = |value: f64| {
             let root = value.sqrt();
@@ -129,7 +134,7 @@ impl Enclosure {
         Self { low: root(self.low).low, high: root(self.high).high }
     }
 
-    /// Returns the absolute value.
+    /// Returns the interval of the absolute value.
     pub(super) fn abs(self) -> Self {
         if self.low >= 0.0 {
             self
@@ -140,30 +145,31 @@ impl Enclosure {
         }
     }
 
-    /// Returns a power with a whole exponent, which must be above 0.
+    /// Returns the interval of a power with an integer exponent, which must be above 0.
     pub(super) fn repeated_product(self, exponent: u32) -> Self {
         let base = if exponent.is_multiple_of(2) { self.abs() } else { self };
         let power = |value: f64| {
             let value = Self::exactly(value);
             (1..exponent).fold(value, |power, _| power * value)
         };
-        // Without a sign between them, or with an odd exponent, a power rises.
+        // For numbers of one sign, and for an odd exponent, a power rises with the absolute value of its base.
         Self { low: power(base.low).low, high: power(base.high).high }
     }
 
-    /// Returns a power, by `libm`. The base must not be negative.
+    /// Returns the interval of a power, which `libm` computes. The base must not be negative.
     pub(super) fn power(self, exponent: Self) -> Self {
         self.corners(exponent, |base, exponent| {
             let power = libm::pow(base, exponent);
             let Self { low, high } = Self::near(power, power);
-            // Beyond the range of f64 the power is somewhere above the largest.
+            // Beyond the range of `f64`, the power is above the largest `f64`.
             let least = if base == 0.0 { power } else { low.clamp(0.0, f64::MAX) };
             Self { low: least, high: if base == 0.0 { power } else { high } }
         })
     }
 }
 
-/// Returns the enclosure of a number. Its nearest f64 is `value`, and the number minus `value` has the sign of `error`.
+/// Returns the smallest interval of a number whose nearest `f64` is `value`. `error` must have the sign of the number minus
+/// `value`.
 fn directed(value: f64, error: f64) -> Enclosure {
     if value.abs() < SMALL && (value != 0.0 || error != 0.0) || !error.is_finite() {
         return Enclosure { low: value.next_down(), high: value.next_up() };
@@ -220,11 +226,11 @@ impl std::ops::Mul for Enclosure {
 impl std::ops::Div for Enclosure {
     type Output = Self;
 
-    /// Divides. The divisor must not contain 0.
+    /// Returns the interval of the quotients. The interval of the divisor must not contain 0.
     fn div(self, other: Self) -> Self {
         self.corners(other, |a, b| {
             if b.is_infinite() {
-                // The divisor is larger than any f64, with its sign; without another sign the quotient is near 0.
+                // The divisor is beyond the largest `f64`, so the quotient of a finite number is near 0.
                 let tiny = f64::MIN_POSITIVE.copysign(a) * b.signum();
                 return match a.is_infinite() {
                     true => Self { low: f64::NAN, high: f64::NAN },

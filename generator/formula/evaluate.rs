@@ -8,32 +8,34 @@ use super::arithmetic::{Arithmetic, Double};
 use super::precise::{Precise, PreciseValue};
 use super::{Comparison, Enclosure, Expression, Fault, Function, Kind, Operator};
 
-/// Integer exponents up to this are repeated products, which may have a negative base; larger ones are computed with logarithms.
+/// The largest integer exponent for which a power is computed as a repeated product, which allows a negative base. Larger
+/// exponents need logarithms.
 const LARGEST_PRODUCT: u32 = 64;
 
-/// The precisions, in bits, that are tried one after the other until every comparison and every step is decided.
+/// The precisions in bits. They are tried one after the other until every comparison and every jump is decided.
 const PRECISIONS: [usize; 3] = [128, 320, 1024];
 
 impl Expression {
-    /// Evaluates the formula in `f64`, for operands within intervals. The returned interval includes all rounding errors.
+    /// Evaluates the formula in `f64`, for operands within the given intervals of values. The returned interval includes all
+    /// rounding errors.
     ///
     /// If a comparison or a jump such as `floor` is undecided, the interval contains the values on both sides.
     ///
     /// # Errors
-    /// Fails at a part that may have no value: a pole, the root of a number that may be negative, an operand that is not
-    /// listed, a word of a ROM.
+    /// Fails at a part that may have no value: a pole, the root of a number that may be negative, an operand that `operands`
+    /// does not have, or a word of a ROM. The error has the location of the part.
     pub fn enclose(&self, operands: &[(&str, Enclosure)]) -> Result<Enclosure, Fault> {
         self.evaluate(&Double, operands)
     }
 
-    /// Evaluates the formula for exact operands, with as much precision as its comparisons and steps need, and in any case so
-    /// much that the `f64` limits of the result are neighbours or equal.
+    /// Evaluates the formula for exact operands. It increases the precision until all comparisons and jumps are decided, and
+    /// until the `f64` limits of the result are at most two steps apart.
     ///
     /// For example, `floor(x * 0.1)` is 3 for x = 30, although 0.1 is no `f64`. It is about a thousand times slower than
     /// [`Expression::enclose`].
     ///
     /// # Errors
-    /// Fails as [`Expression::enclose`] does, and where 1024 bits do not decide a comparison or a step.
+    /// Fails as [`Expression::enclose`] does, or if 1024 bits do not decide a comparison or a jump.
     pub fn evaluate_exactly(&self, operands: &[(&str, RBig)]) -> Result<Enclosure, Fault> {
         let is_narrow = |precise: &Precise, value: &PreciseValue| {
             let Enclosure { low, high } = precise.enclosure(value);
@@ -43,13 +45,13 @@ impl Expression {
         Ok(precise.enclosure(&value))
     }
 
-    /// Returns the smallest integer that is not below the value times 2 to the power `fraction`, and whether both are equal.
-    /// The formula must have no operands.
+    /// Returns the smallest integer that is not below the value times 2^`fraction`, and whether both are equal. The formula
+    /// must have no operands.
     ///
     /// For example, `0.3` with two fraction bits gives (2, false), and `log2(16)` with none gives (4, true).
     ///
     /// # Errors
-    /// Fails as [`Expression::evaluate_exactly`] does, and where 1024 bits do not tell the value from an integer.
+    /// Fails as [`Expression::evaluate_exactly`] does, or if 1024 bits do not show whether the value is an integer.
     pub fn ceiling(&self, fraction: u32) -> Result<(i128, bool), Fault> {
         let (precise, value) =
             self.decided(&[], |precise, value| precise.ceiling(value, fraction).is_some())?;
@@ -60,14 +62,15 @@ impl Expression {
         })
     }
 
-    /// Returns the value of the formula, which must have no operands, if it is a rational number and known to be one. For
-    /// example, `log2(16)` gives 4, and `sqrt(2)` gives `None`.
+    /// Returns the value of a formula without operands, if it is rational and known to be so. Returns `None` otherwise, or if
+    /// the formula has no value. For example, `log2(16)` gives 4, and `sqrt(2)` gives `None`.
     pub fn rational(&self) -> Option<RBig> {
         let (_, value) = self.decided(&[], |_, _| true).ok()?;
         value.rational().cloned()
     }
 
-    /// Evaluates with one precision after the other until the formula has a value that is `enough`, and returns the last.
+    /// Evaluates the formula with increasing precision until `enough` returns true for the value. Returns the last result, even
+    /// if it is not enough.
     fn decided(
         &self,
         operands: &[(&str, RBig)],
@@ -141,8 +144,9 @@ impl Expression {
 }
 
 impl Comparison {
-    /// Returns whether the comparison holds for all operands within intervals; `None` if it holds for some of them only, or is
-    /// undecided. For example, for x from 0 to 1, `x < 2` holds, and `x < 0.5` is undecided.
+    /// Returns whether the comparison holds for all operands within the given intervals. Returns `None` if it holds for some of
+    /// them only, or if the intervals do not decide it. For example, for x from 0 to 1, `x < 2` holds, and `x < 0.5` is
+    /// undecided.
     ///
     /// # Errors
     /// Fails as [`Expression::enclose`] does.
@@ -153,7 +157,7 @@ impl Comparison {
         self.decided(&Double, &left, &right).map_err(fault)
     }
 
-    /// Returns whether the comparison holds; `None` where the intervals of both sides do not tell.
+    /// Returns whether the comparison holds for the intervals of both sides; `None` if they do not decide it.
     pub(super) fn decided<A: Arithmetic>(
         &self,
         arithmetic: &A,
@@ -172,7 +176,8 @@ impl Comparison {
     }
 }
 
-/// Computes a function of one number, after checking that the number is in its domain.
+/// Returns the interval of the values of a function for a number in the interval `a`. Fails if the number may be outside the
+/// function's domain, for example a root of a negative number.
 pub(super) fn unary<A: Arithmetic>(
     arithmetic: &A,
     function: Function,
@@ -189,7 +194,7 @@ pub(super) fn unary<A: Arithmetic>(
             return Err(format!("the logarithm of {value}, which is not above 0"));
         }
         Function::Tan => {
-            // Between two poles the tangent rises, and the cosine has one sign.
+            // Between two poles, the tangent rises and the cosine has one sign.
             let cosine = arithmetic.function(Function::Cos, a)?;
             let Enclosure { low, high } = arithmetic.enclosure(a);
             if holds_zero(arithmetic, &cosine) || high - low > 1.0 {
@@ -204,7 +209,8 @@ pub(super) fn unary<A: Arithmetic>(
     arithmetic.function(function, a)
 }
 
-/// Computes a function of two numbers, after checking that they are in its domain.
+/// Returns the interval of the values of `operator` for numbers in the intervals `a` and `b`. Fails if the numbers may be
+/// outside the domain, for example a division by an interval that contains 0.
 pub(super) fn binary<A: Arithmetic>(
     arithmetic: &A,
     operator: Operator,
@@ -227,7 +233,8 @@ pub(super) fn binary<A: Arithmetic>(
     }
 }
 
-/// Computes the remainder of a division, which is between 0 and the divisor. For example, the remainder of −1 by 4 is 3.
+/// Computes the remainder of a division, which is from 0 to below the divisor, or above it for a negative divisor. For example,
+/// the remainder of −1 by 4 is 3.
 fn remainder<A: Arithmetic>(
     arithmetic: &A,
     a: &A::Value,
@@ -238,7 +245,7 @@ fn remainder<A: Arithmetic>(
     }
     let quotient = arithmetic.divide(a, b)?;
     let Some(floor) = arithmetic.floor(&quotient) else {
-        // The remainder jumps somewhere in the interval: it is anything up to the divisor.
+        // The remainder jumps within the interval, so it can be any number from 0 to the divisor.
         let doubt = "1024 bits do not tell on which side of a step this is";
         return arithmetic.either(arithmetic.integer(0), b.clone(), doubt);
     };
@@ -266,10 +273,11 @@ fn power<A: Arithmetic>(arithmetic: &A, a: &A::Value, b: &A::Value) -> Result<A:
     arithmetic.power(a, b)
 }
 
-/// Computes the direction of the point (x, y), an angle from −π to π. For example, the direction of (0, 1) is π/2.
+/// Computes the direction of the point (x, y), an angle from −π to π. For example, the direction of (0, 1) is π/2. Fails for
+/// the origin.
 ///
-/// The formula of each half plane divides by a number that is not 0 there: `atan(y / x)` right of the y axis and, with a
-/// half turn added or subtracted, left of it; a quarter turn less `atan(x / y)` above the x axis and below it.
+/// The function uses a formula whose divisor is certainly not 0. Right of the y axis, this is `atan(y / x)`, and left of it the
+/// same plus or minus half a turn. Above or below the x axis, it is plus or minus a quarter turn, minus `atan(x / y)`.
 fn direction<A: Arithmetic>(
     arithmetic: &A,
     y: &A::Value,
@@ -308,7 +316,7 @@ fn holds_zero<A: Arithmetic>(arithmetic: &A, a: &A::Value) -> bool {
     low != Ordering::Greater && high != Ordering::Less
 }
 
-/// Returns a number in words, or the two numbers that it is between.
+/// Returns a number as text, or the two limits between which it lies.
 fn words(a: Enclosure) -> String {
     let middle = a.middle();
     if (a.high - a.low).abs() <= middle.abs() * 1e-12 {
@@ -318,7 +326,7 @@ fn words(a: Enclosure) -> String {
     }
 }
 
-/// Returns a number in few digits: with a power of ten where it is very large or very small.
+/// Returns a number as text, with a power of ten if it is very large or very small.
 fn digits(value: f64) -> String {
     let is_moderate = value == 0.0 || (1e-6..1e9).contains(&value.abs());
     if is_moderate { format!("{value}") } else { format!("{value:e}") }

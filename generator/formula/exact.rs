@@ -10,10 +10,11 @@ use dashu_ratio::RBig;
 
 use super::{Function, Operator};
 
-/// The number of bits that a numerator and a denominator together may have. Beyond it, a value counts as not exact.
+/// The largest number of bits that a numerator and a denominator may have together. A larger value is treated as not exactly
+/// known.
 const MOST_BITS: usize = 1 << 14;
 
-/// The largest exponent for which the powers of a base are tried when a logarithm is divided by another.
+/// The largest exponent that is tried if a logarithm is divided by another logarithm.
 const LARGEST_LOGARITHM: usize = 1100;
 
 /// A value that is known exactly.
@@ -30,25 +31,25 @@ pub(super) enum Exact {
 use Exact::{LogarithmOf, Rational, TimesPi};
 
 impl Exact {
-    /// Makes an integer.
+    /// Returns an integer as an exact value.
     pub(super) fn integer(value: i64) -> Self {
         Rational(value.into())
     }
 
-    /// Makes a rational number of moderate size.
+    /// Returns a rational number as an exact value; `None` if it has more than [`MOST_BITS`] bits.
     fn rational(value: RBig) -> Option<Self> {
         let bits = value.numerator().bit_len() + value.denominator().bit_len();
         (bits <= MOST_BITS).then_some(Rational(value))
     }
 
-    /// Makes a multiple of π.
+    /// Returns `factor` times π as an exact value.
     fn times_pi(factor: RBig) -> Self {
         if factor.is_zero() { Rational(factor) } else { TimesPi(factor) }
     }
 
-    /// Returns the value of a function; `None` where it is not known to be exact.
+    /// Returns the exact value of a function. Returns `None` if the value is not known to be exact.
     ///
-    /// The values of sine, cosine and tangent are those at rational multiples of π that are rational (Niven's theorem).
+    /// The sine, cosine and tangent are exact only at rational multiples of π where they are rational (Niven's theorem).
     pub(super) fn function(&self, function: Function) -> Option<Self> {
         match (function, self) {
             (Function::Negate, Rational(a)) => Some(Rational(-a.clone())),
@@ -78,7 +79,7 @@ impl Exact {
         }
     }
 
-    /// Returns the rational factor of π, of 0 also.
+    /// Returns the rational factor of π; 0 for the number 0. Returns `None` if the value is no rational multiple of π.
     fn turns(&self) -> Option<RBig> {
         match self {
             TimesPi(a) => Some(a.clone()),
@@ -87,7 +88,7 @@ impl Exact {
         }
     }
 
-    /// Returns the value of an operator; `None` where it is not known to be exact.
+    /// Returns the exact value of a function of two numbers. Returns `None` if the value is not known to be exact.
     pub(super) fn operator(operator: Operator, a: &Self, b: &Self) -> Option<Self> {
         match operator {
             Operator::Add => a.add(b),
@@ -95,7 +96,7 @@ impl Exact {
             Operator::Mul => a.multiply(b),
             Operator::Div => a.divide(b),
             Operator::Power => a.power(b),
-            // Remainders, minima, maxima and directions are made of comparisons, which the evaluation does.
+            // Remainders, minima, maxima and directions need comparisons, which the evaluation makes.
             Operator::Mod | Operator::Min | Operator::Max | Operator::Atan2 => None,
         }
     }
@@ -163,8 +164,8 @@ impl Exact {
     }
 }
 
-/// Returns the root of a number if the root is rational. A negative number gives a root only if `degree` is 1. For example, the
-/// root of degree 3 of 8/27 is 2/3.
+/// Returns the root of a number if the root is rational, and `None` otherwise. A negative number has a root only if `degree` is
+/// 1. For example, the root of degree 3 of 8/27 is 2/3.
 fn root(value: &RBig, degree: usize) -> Option<RBig> {
     if degree == 1 {
         return Some(value.clone());
@@ -185,8 +186,8 @@ fn root(value: &RBig, degree: usize) -> Option<RBig> {
     Some(RBig::from_parts(IBig::from(numerator), denominator))
 }
 
-/// Returns the integer k with baseᵏ = value, if there is one. Both numbers must be above 0. For example, 1/8 and base 2 give
-/// −3.
+/// Returns the integer k with baseᵏ = value. Returns `None` if there is no such integer up to ±1100. Both numbers must be above
+/// 0. For example, the value 1/8 and the base 2 give −3.
 fn logarithm(value: &RBig, base: &RBig) -> Option<isize> {
     if base.is_one() {
         return None;
@@ -207,9 +208,9 @@ fn logarithm(value: &RBig, base: &RBig) -> Option<isize> {
     None
 }
 
-/// Returns the sine of a multiple of π if that is 0, ±1/2 or ±1.
+/// Returns the sine of `turns` · π if it is 0, ±1/2 or ±1, and `None` otherwise.
 fn sine(turns: &RBig) -> Option<Exact> {
-    // The sixths of π, modulo a whole turn.
+    // The angle in sixths of π, modulo a whole turn.
     let sixths = turns * RBig::from(6);
     if !sixths.is_int() {
         return None;
@@ -226,7 +227,7 @@ fn sine(turns: &RBig) -> Option<Exact> {
     Some(Rational(RBig::from(doubled) / RBig::from(2)))
 }
 
-/// Returns the tangent of a multiple of π if that is 0 or ±1.
+/// Returns the tangent of `turns` · π if it is 0 or ±1, and `None` otherwise.
 fn tangent(turns: &RBig) -> Option<Exact> {
     let fourths = turns * RBig::from(4);
     if !fourths.is_int() {

@@ -1,8 +1,8 @@
 //! Parses formulas such as `1 / sqrt(x)` to trees, evaluates the trees with interval arithmetic, and prints them as Python and C.
 //!
 //! The formulas come from configurations and from accuracy contracts; another example is `max(x, 0) if x > 1 else 2 ** -x`. An
-//! evaluation gives an interval that certainly contains the exact value. Each node of a tree knows its bytes in the text, so that
-//! a message can point at a mistake.
+//! evaluation gives an interval that certainly contains the exact value. Each node of a tree knows its range of bytes in the
+//! text, so that a message can point at a mistake.
 
 mod arithmetic;
 mod enclosure;
@@ -23,15 +23,16 @@ pub use literal::Literal;
 pub use parse::{FUNCTIONS, parse};
 pub use print::CArithmetic;
 
-/// A formula, or a part of one, as a tree. Two are equal if their kinds are equal, wherever they come from.
+/// A formula, or a part of a formula, as a tree. Two formulas are equal if their kinds are equal, even if they have different
+/// locations.
 #[derive(Clone, Debug)]
 pub struct Expression {
     /// The operation, the operand or the number at the root of the tree. For example, the root of `1 / x` is a division.
     pub kind: Kind,
-    /// The range of bytes in the text from which this part was parsed.
+    /// The range of bytes in the text from which this part was parsed; 0..0 if it comes from no text.
     pub span: Range<usize>,
-    /// The value, if the part contains no operand and no word of a ROM. It is computed once, because formulas are evaluated at
-    /// millions of operands.
+    /// The value, if the part contains no operand and no word of a ROM, and has a value. It is computed only once, because
+    /// formulas are evaluated at millions of operands.
     constant: Option<Enclosure>,
 }
 
@@ -40,11 +41,11 @@ pub struct Expression {
 pub enum Kind {
     /// A number, exactly as the text states it.
     Number(Literal),
-    /// A named constant such as `pi`, with the largest `f64` below its value.
+    /// A named constant such as `pi`, with the largest `f64` that is not above its value.
     Constant(&'static str, f64),
     /// An operand, by its name. Its value is a real number, not a raw integer.
     Operand(String),
-    /// A word of a ROM, as a real number: the name of the ROM, and the formula for the index of the word.
+    /// A word of a ROM as a real number. The fields are the name of the ROM, and the formula for the index of the word.
     Word(String, Box<Expression>),
     /// A function of one number.
     Unary(Function, Box<Expression>),
@@ -54,7 +55,7 @@ pub enum Kind {
     If(Comparison, Box<Expression>, Box<Expression>),
 }
 
-/// A comparison: whether the left number exceeds the right one.
+/// A comparison: whether the left number is larger than the right number.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Comparison {
     /// The number on the left of `>`.
@@ -92,7 +93,8 @@ pub enum Operator {
     Sub,
     Mul,
     Div,
-    /// The remainder of the first number divided by the second. It lies between 0 and the second number.
+    /// The remainder of the first number divided by the second. It lies between 0 and the second number. For example, −1 and 4
+    /// give 3.
     Mod,
     Power,
     Min,
@@ -123,8 +125,8 @@ impl Fault {
         Self { span, message: message.into() }
     }
 
-    /// Returns the text on one line, and on the next line carets under the mistake and the message. For example, in `sqrt(y)` the
-    /// operand y has the fault "there is no `y`: the operand is `x`", and the carets are under y.
+    /// Returns the text on one line, and on the next line carets under the mistake and the message. For example, in `sqrt(y)`
+    /// the operand y has the mistake "there is no `y`: the operand is `x`", and a caret is under the y.
     pub fn under(&self, text: &str) -> String {
         let count = |range: Range<usize>| text.get(range).map_or(0, |it| it.chars().count());
         let carets = count(self.span.clone()).max(1);
@@ -140,12 +142,13 @@ impl PartialEq for Expression {
 }
 
 impl Expression {
-    /// Makes the formula that is only the operand `name`. It belongs to no text.
+    /// Makes the formula that consists only of the operand `name`. Its location is 0..0.
     pub fn operand(name: &str) -> Self {
         Self::new(Kind::Operand(name.to_owned()), 0..0)
     }
 
-    /// Makes a formula of this kind, which was parsed from the bytes `span` of a text.
+    /// Makes a formula of this kind, which was parsed from the bytes `span` of a text. It computes the value of a constant
+    /// formula.
     pub fn new(kind: Kind, span: Range<usize>) -> Self {
         let mut formula = Self { kind, span, constant: None };
         let is_constant = formula.parts().iter().all(|part| part.constant.is_some())
@@ -156,7 +159,8 @@ impl Expression {
         formula
     }
 
-    /// Returns the formulas directly below the root of the tree.
+    /// Returns the formulas directly below the root of the tree, in the order of the text. A number, a constant or an operand
+    /// has none.
     pub fn parts(&self) -> Vec<&Self> {
         match &self.kind {
             Kind::Number(..) | Kind::Constant(..) | Kind::Operand(_) => Vec::new(),
@@ -166,15 +170,18 @@ impl Expression {
         }
     }
 
-    /// Visits the formula and all its parts, operands before the operations that use them.
+    /// Calls `visit` for every part of the formula and then for the formula itself, each part before the operation that uses
+    /// it.
     pub fn walk<'f>(&'f self, visit: &mut dyn FnMut(&'f Self)) {
         self.parts().into_iter().for_each(|part| part.walk(visit));
         visit(self);
     }
 
-    /// Returns the `f64` that a decimal of 17 or more digits was printed from; `None` for any other formula.
+    /// Returns the `f64` from which a decimal of 17 or more significant digits was printed, with its sign. Returns `None` for
+    /// any other formula.
     ///
-    /// For example, NumPy's `savetxt` prints 1 − 2^−20 as `9.999990463256835938e-01`, which is the nearest decimal of 19 digits.
+    /// For example, NumPy's `savetxt` prints 1 − 2^−20 as `9.999990463256835938e-01`, which is the nearest decimal of 19
+    /// digits.
     pub fn printed_double(&self) -> Option<f64> {
         match &self.kind {
             Kind::Number(literal) if literal.significant_digits() >= 17 => Some(literal.nearest()),
@@ -183,17 +190,17 @@ impl Expression {
         }
     }
 
-    /// Returns the number of parts for which `is` returns true. The formula itself counts as a part.
+    /// Returns the number of parts for which `is` returns true. The formula itself is also a part.
     pub fn count(&self, is: &dyn Fn(&Self) -> bool) -> usize {
         let mut count = 0;
         self.walk(&mut |part| count += usize::from(is(part)));
         count
     }
 
-    /// Returns the formula if its only operand is `operand` and it has no words of ROMs.
+    /// Returns the formula unchanged if `operand` is its only operand and it has no words of ROMs.
     ///
     /// # Errors
-    /// Fails at the first such name.
+    /// Fails at the first other operand or word of a ROM. The error has its location.
     pub fn of_operand(self, operand: &str) -> Result<Self, Fault> {
         let mut fault = None;
         self.walk(&mut |part| {
@@ -221,13 +228,14 @@ impl Expression {
         names
     }
 
-    /// Returns whether `is` returns true for some part of the formula.
+    /// Returns whether `is` returns true for the kind of some part of the formula. The formula itself is also a part.
     pub fn has(&self, is: &dyn Fn(&Kind) -> bool) -> bool {
         is(&self.kind) || self.parts().into_iter().any(|part| part.has(is))
     }
 
-    /// Replaces operands by formulas. `replacement` returns the formula for a name, or `None` for an operand that stays. A
-    /// replacement gets the place of the operand in the text; all other parts keep their places.
+    /// Returns the formula with operands replaced by formulas. `replacement` returns the formula for the name of an operand, or
+    /// `None` for an operand that stays. A replacement gets the location of the operand in the text; all other parts keep their
+    /// locations.
     pub fn with_operands(&self, replacement: &dyn Fn(&str) -> Option<Self>) -> Self {
         if let Kind::Operand(name) = &self.kind {
             return match replacement(name) {
@@ -239,14 +247,14 @@ impl Expression {
         Self::new(kind, self.span.clone())
     }
 
-    /// Returns the formula with one place in a text for all of its parts.
+    /// Returns the formula in which all parts have the same location `place`.
     fn at(&self, place: &Range<usize>) -> Self {
         let nothing = Self::new(Kind::Operand(String::new()), 0..0);
         let moved = self.substitute(&nothing, &nothing, place);
         Self { span: place.clone(), ..moved }
     }
 
-    /// Replaces every part that equals `old` by `new`. Every other part gets the bytes `call` as its place.
+    /// Returns the formula in which every part that equals `old` is replaced by `new`. All other parts get the location `call`.
     pub fn substitute(&self, old: &Self, new: &Self, call: &Range<usize>) -> Self {
         if self == old {
             return new.clone();
@@ -257,7 +265,7 @@ impl Expression {
 }
 
 impl Kind {
-    /// Returns the kind with other parts: `new` returns the part that replaces a part.
+    /// Returns the kind with its direct parts replaced. `new` returns the replacement of a part.
     fn with_parts(&self, new: &dyn Fn(&Expression) -> Expression) -> Self {
         let inner = |part: &Expression| Box::new(new(part));
         match self {

@@ -10,7 +10,7 @@ pub const FUNCTIONS: [(&str, Function); 13] = [
     ("sqrt", Function::Sqrt),
     ("exp", Function::Exp),
     ("exp2", Function::Exp2),
-    // First the name that Python has too.
+    // A formula is printed with the first name of a function, which Python has too.
     ("log", Function::Ln),
     ("ln", Function::Ln),
     ("log2", Function::Log2),
@@ -22,8 +22,8 @@ pub const FUNCTIONS: [(&str, Function); 13] = [
     ("erf", Function::Erf),
 ];
 
-/// Functions that are combinations of others, of a number u. For example, `cosh(2 * x)` is parsed as its formula with `2 * x`
-/// in the place of u.
+/// Functions of one number u that are combinations of other functions. For example, `cosh(2 * x)` is parsed as the formula for
+/// `cosh`, with `2 * x` in the place of u.
 const DEFINED: [(&str, &str); 14] = [
     ("reciprocal", "1 / u"),
     ("rsqrt", "1 / sqrt(u)"),
@@ -38,11 +38,11 @@ const DEFINED: [(&str, &str); 14] = [
     ("log10", "ln(u) / ln(10)"),
     ("cbrt", "if(u < 0, -(-u) ^ (1 / 3), u ^ (1 / 3))"),
     ("floor", "u - u % 1"),
-    // As Python has it, toward 0.
+    // As in Python, `int` rounds toward 0.
     ("int", "if(u < 0, u + -u % 1, u - u % 1)"),
 ];
 
-/// Functions of two numbers, by the names that a formula may use.
+/// The functions of two numbers that a formula may call, with their names.
 const FUNCTIONS_OF_TWO: [(&str, Operator); 4] = [
     ("min", Operator::Min),
     ("max", Operator::Max),
@@ -50,10 +50,10 @@ const FUNCTIONS_OF_TWO: [(&str, Operator); 4] = [
     ("pow", Operator::Power),
 ];
 
-/// Functions of two numbers u and v that are combinations of others.
+/// Functions of two numbers u and v that are combinations of other functions.
 const DEFINED_OF_TWO: [(&str, &str); 1] = [("hypot", "sqrt(u^2 + v^2)")];
 
-/// Some functions that this language lacks, each with a formula to write instead.
+/// Some functions that a formula cannot call, each with a formula to write instead.
 const INSTEAD: [(&str, &str); 5] = [
     ("ceil", "-floor(-x)"),
     ("round", "floor(x + 0.5)"),
@@ -62,24 +62,24 @@ const INSTEAD: [(&str, &str); 5] = [
     ("log1p", "ln(1 + x)"),
 ];
 
-/// Constants and the largest f64 that is not above them.
+/// The named constants, each with the largest `f64` that is not above it.
 const CONSTANTS: [(&str, f64); 2] = [("pi", std::f64::consts::PI), ("e", std::f64::consts::E)];
 
-/// The sign of the first of them.
+/// Another way to write the constant `pi`.
 const PI: &str = "π";
 
-/// The depth to which parts may be nested. It limits the depth of recursion of the parser.
+/// The largest depth to which parts may be nested. It limits the recursion of the parser.
 const DEEPEST: usize = 200;
 
-/// The number of parts that a formula may have once its functions are written out. For example, `silu(x)` has 6 parts more than
-/// x, and names x twice, so that each `silu` around another doubles the parts.
+/// The largest number of parts of a formula after its functions are replaced by their formulas. For example, `silu(x)` has 6
+/// parts more than x and contains x twice, so each `silu` around another doubles the number of parts.
 const MOST_PARTS: usize = 4096;
 
-/// Parses a formula: sums, products, powers (`^` or `**`), parentheses, numbers, `pi`, `e`, names of operands, functions, `if(a <
-/// b, x, y)`, and the same in Python's notation, `x if a < b else y`.
+/// Parses a formula. It may have sums, products, powers (`^` or `**`), parentheses, numbers, `pi`, `e`, names of operands,
+/// functions, `if(a < b, x, y)`, and the same in Python's notation, `x if a < b else y`.
 ///
 /// # Errors
-/// Fails at the first mistake. The error has its place.
+/// Fails at the first mistake. The error has the location of the mistake.
 pub fn parse(text: &str) -> Result<Expression, Fault> {
     let mut parser = Parser { text, tokens: tokens(text)?, at: 0, depth: 0 };
     let formula = parser.choice()?;
@@ -94,7 +94,8 @@ pub fn parse(text: &str) -> Result<Expression, Fault> {
     }
 }
 
-/// Returns the places of names, numbers and signs. For example, `2*x` gives 0..1, 1..2 and 2..3.
+/// Returns the ranges of bytes of all names, numbers and signs. For example, `2*x` gives 0..1, 1..2 and 2..3. Fails at a
+/// character that no formula can have.
 fn tokens(text: &str) -> Result<Vec<Range<usize>>, Fault> {
     let mut tokens = Vec::new();
     let mut at = 0;
@@ -125,7 +126,7 @@ fn tokens(text: &str) -> Result<Vec<Range<usize>>, Fault> {
     Ok(tokens)
 }
 
-/// Returns how a formula states the meaning of a sign that it cannot have.
+/// Returns an advice about the notation that replaces a sign. Returns `None` for a sign without a known replacement.
 fn instead_of_sign(sign: char) -> Option<&'static str> {
     Some(match sign {
         '=' | '!' => "`<`, `>`, `<=` and `>=` compare",
@@ -147,8 +148,8 @@ fn instead_of_sign(sign: char) -> Option<&'static str> {
     })
 }
 
-/// Returns the length of the number at the beginning of a text: digits with a point, and a power of ten. For example, `1.5e3*x`
-/// gives 5.
+/// Returns the length in bytes of the number at the beginning of a text: digits with a point, and a power of ten. For example,
+/// `1.5e3*x` gives 5.
 fn number(text: &str) -> usize {
     let digits = |from: usize, also: char| {
         let rest = &text[from..];
@@ -163,7 +164,7 @@ fn number(text: &str) -> usize {
         _ => 0,
     };
     let power = digits(end + 1 + sign, '0');
-    // The constant e behind a number is a mistake that the parser tells.
+    // If the constant e directly follows a number, the parser reports the mistake.
     if power > end + 1 + sign { power } else { end }
 }
 
@@ -175,7 +176,7 @@ struct Parser<'t> {
 }
 
 impl Parser<'_> {
-    /// Returns the token that follows, or no text.
+    /// Returns the text of the next token, or an empty text at the end.
     fn peek(&self) -> &str {
         self.tokens.get(self.at).map_or("", |token| &self.text[token.clone()])
     }
@@ -198,7 +199,7 @@ impl Parser<'_> {
         if self.taken(&[token]) { Ok(()) } else { self.fault(format!("`{token}` is missing")) }
     }
 
-    /// Returns a part from the token `from` to the last that was read.
+    /// Makes a part from the tokens from number `from` to the last token that was read.
     fn made(&self, from: usize, kind: Kind) -> Expression {
         Expression::new(kind, self.tokens[from].start..self.tokens[self.at - 1].end)
     }
@@ -232,7 +233,7 @@ impl Parser<'_> {
         Ok(Comparison { left, right, or_equal: sign.len() == 2 })
     }
 
-    /// Parses operators of one rank, which apply from the left.
+    /// Parses operators of the same precedence, which are applied from left to right. `part` parses an operand.
     fn chain(
         &mut self,
         signs: &[(&str, Operator)],
@@ -259,7 +260,7 @@ impl Parser<'_> {
         self.chain(&signs, Self::signed)
     }
 
-    /// Returns a power with a sign before it, which is weaker. For example, `-x^2` is −(x²).
+    /// Parses a power with a sign before it. The sign is applied after the power. For example, `-x^2` is −(x²).
     fn signed(&mut self) -> Result<Expression, Fault> {
         let from = self.at;
         let mut negations = 0;
@@ -313,7 +314,7 @@ impl Parser<'_> {
         }
         self.at += 1;
         if self.taken(&["["]) {
-            // The number of a word is an integer. A formula for Python says so with `int`.
+            // The index of a word is an integer. In Python, `int` makes it one.
             self.taken(&["int"]);
             let place = Box::new(self.choice()?);
             self.expect("]")?;
@@ -330,7 +331,7 @@ impl Parser<'_> {
         self.call(from, &token)
     }
 
-    /// Parses the arguments of a call; the opening parenthesis has been consumed.
+    /// Parses the arguments of a call of the function `name`. The opening parenthesis has been read.
     fn call(&mut self, from: usize, name: &str) -> Result<Expression, Fault> {
         if name == "if" {
             let comparison = self.comparison()?;
@@ -370,12 +371,12 @@ impl Parser<'_> {
     }
 }
 
-/// Returns the entry of a table that has this name.
+/// Returns the entry of a table with this name, or `None`.
 fn named<T: Copy>(table: &[(&str, T)], name: &str) -> Option<T> {
     table.iter().find(|(own, _)| *own == name).map(|(_, entry)| *entry)
 }
 
-/// Returns the message about a function that the language lacks: what to write in its place, or all functions.
+/// Returns the message about a function that formulas do not have: a formula to write instead, or a list of all functions.
 fn unknown_function(name: &str) -> String {
     if let Some(text) = named(&INSTEAD, name) {
         return format!("there is no function `{name}`: write {text}");
@@ -389,8 +390,8 @@ fn unknown_function(name: &str) -> String {
     format!("there is no function `{name}`; there are {}", all.join(", "))
 }
 
-/// Returns the formula `body` of the function `name`, with the arguments of a call in the place of u and v. For example,
-/// `hypot(a, 2)` becomes `sqrt(a^2 + 2^2)`. `span` is the place of the call.
+/// Returns the formula `body` of the function `name`, in which the arguments of a call replace u and v. For example, `hypot(a,
+/// 2)` becomes `sqrt(a^2 + 2^2)`. `span` is the location of the call. Fails if the result has more than [`MOST_PARTS`] parts.
 fn written_out(
     name: &str,
     body: &str,
@@ -412,7 +413,8 @@ fn written_out(
         );
         return Err(Fault::new(span, message));
     }
-    // An argument may itself contain an operand u or v. Marks that no text can contain keep the two apart.
+    // An argument may itself contain an operand u or v. Temporary names that no text can contain keep these apart from the
+    // parameters.
     let marks = [Expression::operand("(u)"), Expression::operand("(v)")];
     for (parameter, mark) in parameters.iter().zip(&marks) {
         formula = formula.substitute(parameter, mark, &span);

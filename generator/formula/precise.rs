@@ -1,7 +1,8 @@
-//! Interval arithmetic of any precision. It stores a value exactly if the value is known exactly.
+//! Interval arithmetic of any precision. It also stores a value exactly if the value is known exactly.
 //!
-//! It is slow, so it only decides questions that `f64` intervals leave open: on which side of a jump (for example of `floor` at
-//! 1) a value lies, or a value beyond the range of `f64`. For example, `exp(1000)` in `1 / (1 + exp(1000))` is beyond that range.
+//! It is slow, so it only decides questions that `f64` intervals leave open. These are the side of a jump on which a value
+//! lies, for example of `floor` at 1, and values beyond the range of `f64`. For example, `exp(1000)` in `1 / (1 + exp(1000))`
+//! is beyond this range.
 
 use std::cmp::Ordering;
 
@@ -18,11 +19,11 @@ use super::{Enclosure, Function, Literal, Operator};
 /// A number m · 2ᵉ of any size.
 type BigFloat = Repr<2>;
 
-/// The result of an operation of the library: a number that is rounded in the direction of the context, or an error.
+/// The result of an operation of the library: a number that is rounded in the direction of the context `R`, or an error.
 type Rounded<R> =
     Result<dashu_base::Approximation<FBig<R, 2>, dashu_float::round::Rounding>, FpError>;
 
-/// An interval that contains a value, and the value itself where it is known exactly.
+/// An interval that contains a value, and the exact value if it is known.
 #[derive(Clone, Debug)]
 pub(super) struct PreciseValue {
     low: BigFloat,
@@ -35,7 +36,7 @@ impl PreciseValue {
         Self { low, high, exact: None }
     }
 
-    /// Returns the value if it is known to be rational.
+    /// Returns the value if it is known to be rational, and `None` otherwise.
     pub(super) fn rational(&self) -> Option<&RBig> {
         match &self.exact {
             Some(Exact::Rational(value)) => Some(value),
@@ -44,7 +45,7 @@ impl PreciseValue {
     }
 }
 
-/// Arithmetic with numbers of a given count of bits. The lower end of each result is rounded down, the higher end up.
+/// Arithmetic with numbers of a given number of bits. The lower limit of each result is rounded down, and the upper limit up.
 pub(super) struct Precise {
     bits: usize,
     down: Context<mode::Down>,
@@ -56,13 +57,13 @@ impl Precise {
         Self { bits, down: Context::new(bits), up: Context::new(bits) }
     }
 
-    /// Returns a rational number.
+    /// Returns the interval of a rational number, which is also stored exactly.
     pub(super) fn rational(&self, value: &RBig) -> PreciseValue {
         self.exactly(Exact::Rational(value.clone()))
     }
 
-    /// Returns the smallest integer that is not below `value` · 2^`fraction`, and whether it is equal to it; `None` where the
-    /// interval does not tell.
+    /// Returns the smallest integer that is not below `value` · 2^`fraction`, and whether both are equal. Returns `None` if the
+    /// interval does not decide it, or if the integer has more than 127 bits.
     pub(super) fn ceiling(&self, value: &PreciseValue, fraction: u32) -> Option<(i128, bool)> {
         if let Some(exact) = value.rational() {
             let scaled = exact * RBig::from(IBig::ONE << fraction as usize);
@@ -81,7 +82,7 @@ impl Precise {
         Some((i128::try_from(ceiling).ok()?, false))
     }
 
-    /// Returns the interval of an exact value.
+    /// Returns the interval of an exact value, with the value.
     fn exactly(&self, exact: Exact) -> PreciseValue {
         let (low, high) = match &exact {
             Exact::Rational(value) => self.quotient(value),
@@ -124,7 +125,8 @@ impl Precise {
         PreciseValue::between(low, high)
     }
 
-    /// Returns the interval between the results of an operation rounded down and rounded up.
+    /// Returns the interval between the results of an operation that were rounded down and up. Fails if one of them is an
+    /// error of the library.
     fn rounded(down: Rounded<mode::Down>, up: Rounded<mode::Up>) -> Result<PreciseValue, String> {
         let beyond = |error: FpError| match error {
             FpError::Overflow(_) | FpError::Underflow(_) => {
@@ -141,8 +143,8 @@ impl Precise {
         Self::rounded(self.down.mul(a, b), self.up.mul(a, b))
     }
 
-    /// Returns the smallest interval that contains an operation's results at the four corners of two intervals. This is the
-    /// interval of the operation if it is monotone in each operand.
+    /// Returns the smallest interval that contains an operation's results at the four combinations of the intervals' limits. It
+    /// contains all results if the operation is monotone in each operand.
     fn corners(
         &self,
         a: &PreciseValue,
@@ -158,7 +160,8 @@ impl Precise {
         Ok(hull)
     }
 
-    /// Returns the interval of a function that never falls.
+    /// Returns the interval of a function that never falls. `down` and `up` compute the function with the two directions of
+    /// rounding.
     fn rising(
         &self,
         a: &PreciseValue,
@@ -168,7 +171,8 @@ impl Precise {
         Self::rounded(down(&self.down, &a.low), up(&self.up, &a.high))
     }
 
-    /// Returns the interval of a function that is nowhere steeper than 1, from its value in the middle: a sine or cosine.
+    /// Returns the interval of a sine or a cosine, whose slope is never steeper than 1. The function adds the length of the
+    /// interval, in both directions, to the value at its lower limit.
     fn wave(
         &self,
         a: &PreciseValue,
@@ -183,7 +187,8 @@ impl Precise {
         )
     }
 
-    /// Returns two values, the lower first, if it is known which that is; equal values in any order.
+    /// Returns two values, the lower one first. Returns `None` if it is unknown which one is lower. Equal values may have any
+    /// order.
     fn in_order<'v>(
         &self,
         a: &'v PreciseValue,
@@ -199,13 +204,13 @@ impl Precise {
 
     /// Returns the interval of the error function of a number that is not below 0.
     ///
-    /// The series is erf(x) = 2x / √π · exp(−x²) · (1 + 2x²/3 + (2x²)²/(3·5) + …), whose terms are all positive. It ends where the
-    /// rest is below the last term: each further term is less than half of the one before.
+    /// The series is erf(x) = 2x / √π · exp(−x²) · (1 + 2x²/3 + (2x²)²/(3·5) + …), whose terms are all positive. It ends as
+    /// soon as each further term is less than half of the previous one, so that their sum is less than the last term.
     fn error_function(&self, x: &BigFloat) -> Result<PreciseValue, String> {
         let one = self.integer(1);
         let x = PreciseValue::between(x.clone(), x.clone());
         let square = self.multiply(&x, &x)?;
-        // exp(−x²) is below 2^−bits there.
+        // For such numbers, 1 − erf(x) is below 2^−bits, because exp(−x²) is.
         if square.low > BigFloat::new(IBig::from(self.bits), 0) {
             let unit = BigFloat::new(IBig::ONE, -(self.bits as isize));
             return self.subtract(&one, &PreciseValue::between(BigFloat::zero(), unit));
@@ -231,7 +236,7 @@ impl Precise {
         Ok(self.minimum(&value, &one))
     }
 
-    /// Returns the error function of any number: it is odd.
+    /// Returns the interval of the error function of any number. The function is odd.
     fn signed_error_function(&self, x: &BigFloat) -> Result<PreciseValue, String> {
         if *x < BigFloat::zero() {
             let value = self.error_function(&-x.clone())?;
@@ -241,7 +246,7 @@ impl Precise {
     }
 }
 
-/// Returns a computation with the value that is known exactly where there is one.
+/// Returns the exact value if it is known, and otherwise the result of `compute`.
 fn or_computed(
     arithmetic: &Precise,
     exact: Option<Exact>,
@@ -253,7 +258,7 @@ fn or_computed(
     }
 }
 
-/// Returns an operator's result where both operands are known exactly and it is, too.
+/// Returns the exact result of a function of two numbers. Returns `None` if an operand or the result is not known exactly.
 fn exact_operator(operator: Operator, a: &PreciseValue, b: &PreciseValue) -> Option<Exact> {
     Exact::operator(operator, a.exact.as_ref()?, b.exact.as_ref()?)
 }
@@ -268,7 +273,7 @@ fn sign(number: &BigFloat) -> Ordering {
     }
 }
 
-/// Rounds a number to an `f64` in a direction.
+/// Rounds a number to an `f64` in the direction `R`.
 fn to_f64<R: ErrorBounds>(number: &BigFloat) -> f64 {
     if number.is_infinite() {
         return if number.sign() == Sign::Negative { f64::NEG_INFINITY } else { f64::INFINITY };
@@ -293,7 +298,7 @@ impl Arithmetic for Precise {
         PreciseValue::between(low, high)
     }
 
-    /// Returns nothing: limits in `f64` are not precise enough.
+    /// Returns `None`, because limits in `f64` are not precise enough.
     fn folded(&self, _constant: Enclosure) -> Option<Self::Value> {
         None
     }

@@ -2,7 +2,7 @@
 
 use super::{Comparison, Expression, Function, Kind, Literal, Operator};
 
-/// The precedence of a part: sums, products, signs, powers, and parts that need no parentheses.
+/// The precedences of parts, the weakest first: sums, products, signs, powers, and parts that need no parentheses.
 const SUM: u8 = 0;
 const PRODUCT: u8 = 1;
 const SIGN: u8 = 2;
@@ -10,24 +10,25 @@ const POWER: u8 = 3;
 const ATOM: u8 = 4;
 
 impl Expression {
-    /// Returns the formula as Python, to be evaluated after `from math import *`; [`super::parse()`] reads it too. For example,
-    /// `x^2 + 1` becomes `x ** 2.0 + 1.0`.
+    /// Returns the formula as a Python expression, which can be evaluated after `from math import *`. [`super::parse()`] can
+    /// parse it too. For example, `x^2 + 1` becomes `x ** 2.0 + 1.0`.
     pub fn python(&self) -> String {
         python(self).0
     }
 }
 
-/// The arithmetic of the C functions that evaluate a formula.
+/// The arithmetic of the C functions that evaluate a formula. Each has its own set of functions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CArithmetic {
-    /// Intervals of MPFR numbers: the functions in `templates/recompute_limits.c`. For example, `add(x, number("1.0"))`.
+    /// Intervals of MPFR numbers, with the functions in `templates/recompute_limits.c`. For example, `add(x, number("1.0"))`.
     Limits,
-    /// Doubles with a margin: the functions in `templates/recompute_near.c`. For example, `near_add(x, near_exactly(1.0))`.
+    /// Doubles with a margin of error, with the functions in `templates/recompute_near.c`. For example, `near_add(x,
+    /// near_exactly(1.0))`.
     Near,
 }
 
 impl CArithmetic {
-    /// Returns the start of the names of all functions.
+    /// Returns the prefix of the names of all functions of this arithmetic.
     fn prefix(self) -> &'static str {
         match self {
             Self::Limits => "",
@@ -43,7 +44,7 @@ impl CArithmetic {
         }
     }
 
-    /// Returns a named constant; `below` is the largest `f64` below its value.
+    /// Returns the C expression of a named constant. `below` is the largest `f64` that is not above its value.
     fn constant(self, name: &str, below: f64) -> String {
         match (self, name) {
             (Self::Limits, "pi") => "constant(mpfr_const_pi)".to_owned(),
@@ -52,7 +53,8 @@ impl CArithmetic {
         }
     }
 
-    /// Returns the function of the library for a function of a formula. For example, the sine is `mpfr_sin`, or `sin`.
+    /// Returns the name of the library function that computes a function of a formula. For example, the sine is `mpfr_sin` or
+    /// `sin`.
     fn library_function(self, function: Function) -> String {
         match self {
             Self::Limits => format!("mpfr_{}", function.name()),
@@ -62,7 +64,7 @@ impl CArithmetic {
 }
 
 impl Expression {
-    /// Returns the formula as C: calls of the functions of an arithmetic.
+    /// Returns the formula as a C expression, which calls the functions of `arithmetic`. A word of a ROM becomes its name.
     pub fn c(&self, arithmetic: CArithmetic) -> String {
         match &self.kind {
             Kind::Number(literal) => arithmetic.number(literal),
@@ -85,26 +87,27 @@ impl Expression {
 }
 
 impl Comparison {
-    /// Returns the comparison as a call of a C function that tells whether the comparison holds. The last argument is 1 if equal
-    /// numbers satisfy the comparison (`>=`), and 0 if not (`>`). For example, `x >= 0` becomes `exceeds(x, number("0.0"), 1)`.
+    /// Returns the comparison as a call of a C function, which returns whether the comparison holds. The last argument is 1 if
+    /// the comparison also holds for equal numbers (`>=`), and 0 if not (`>`). For example, `x >= 0` becomes `exceeds(x,
+    /// number("0.0"), 1)`.
     pub fn c(&self, arithmetic: CArithmetic) -> String {
         let or_equal = format!(", {}", u8::from(self.or_equal));
         c_call(arithmetic, "exceeds", &[&self.left, &self.right], &or_equal)
     }
 
-    /// Returns the comparison as Python. For example, `x >= 0.0`.
+    /// Returns the comparison as a Python expression. For example, `x >= 0.0`.
     pub fn python(&self) -> String {
         let sign = if self.or_equal { ">=" } else { ">" };
         format!("{} {sign} {}", self.left.python(), self.right.python())
     }
 }
 
-/// Returns whether a formula is the number 2. A square in doubles is a product, which the C compiler makes faster than a power.
+/// Returns whether a formula is the number 2. For doubles, a square is printed as a product, which is faster than a power.
 fn is_two(formula: &Expression) -> bool {
     matches!(&formula.kind, Kind::Number(literal) if literal.is_exact() && literal.nearest() == 2.0)
 }
 
-/// Returns the C call of a function with formulas as arguments, and `more` behind them.
+/// Returns a call of the C function `name` with formulas as arguments, followed by the text `more`.
 fn c_call(arithmetic: CArithmetic, name: &str, parts: &[&Expression], more: &str) -> String {
     let parts: Vec<String> = parts.iter().map(|part| part.c(arithmetic)).collect();
     format!("{}{name}({}{more})", arithmetic.prefix(), parts.join(", "))
@@ -138,7 +141,7 @@ fn c_operator(operator: Operator) -> &'static str {
     }
 }
 
-/// Returns a part in parentheses where it holds together less than `least`.
+/// Returns a part, in parentheses if its precedence is weaker than `least`.
 fn within((text, rank): (String, u8), least: u8) -> String {
     if rank < least { format!("({text})") } else { text }
 }
@@ -180,7 +183,7 @@ fn python(formula: &Expression) -> (String, u8) {
 }
 
 impl Function {
-    /// Returns the name of the function in formulas.
+    /// Returns the name of the function in formulas; `-` for [`Function::Negate`].
     pub fn name(self) -> &'static str {
         super::FUNCTIONS.iter().find(|(_, own)| *own == self).map_or("-", |(name, _)| name)
     }

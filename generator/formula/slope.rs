@@ -1,10 +1,10 @@
-//! Differentiates a formula: computes limits between which its derivative certainly lies, for an operand in an interval.
+//! Differentiates a formula: computes limits between which the derivative certainly lies, for an operand in an interval.
 
 use super::arithmetic::Double;
 use super::evaluate::{binary, unary};
 use super::{Enclosure, Expression, Fault, Function, Kind, Operator};
 
-/// The limits of a value and of its derivative.
+/// The limits of a value, and the limits of its derivative.
 #[derive(Clone, Copy)]
 struct ValueAndSlope {
     value: Enclosure,
@@ -12,12 +12,12 @@ struct ValueAndSlope {
 }
 
 impl Expression {
-    /// Returns intervals that contain the value and the derivative of the formula, for `operand` anywhere within `limits`. At a
-    /// corner the derivative lies between the derivatives of both sides. For example, x · x for x from 1 to 2 has values from 1 to
-    /// 4 and derivatives from 2 to 4.
+    /// Returns intervals that contain the value and the derivative of the formula, for all values of `operand` within `limits`.
+    /// At a corner, such as `abs(x)` at 0, the interval contains the derivatives of both sides. For example, x · x for x from 1
+    /// to 2 has values from 1 to 4 and derivatives from 2 to 4.
     ///
     /// # Errors
-    /// Fails if a part of the formula has no value, may jump, or is infinitely steep.
+    /// Fails if a part of the formula has no value, may jump, or may be infinitely steep.
     pub fn slope(&self, operand: &str, limits: Enclosure) -> Result<(Enclosure, Enclosure), Fault> {
         self.pair(operand, limits).map(|it| (it.value, it.slope))
     }
@@ -66,7 +66,7 @@ fn of_unary(function: Function, a: ValueAndSlope, value: Enclosure) -> Enclosure
     let ValueAndSlope { value: at, slope } = a;
     let number = Enclosure::exactly;
     let one = number(1.0);
-    // The nearest f64 and its neighbours.
+    // The nearest `f64` and its neighbours.
     let about = |value: f64| Enclosure::between(value.next_down(), value.next_up());
     let steep = Enclosure::between(f64::NEG_INFINITY, f64::INFINITY);
     match function {
@@ -92,7 +92,7 @@ fn of_unary(function: Function, a: ValueAndSlope, value: Enclosure) -> Enclosure
     }
 }
 
-/// Returns the slope of a binary operation; none where the value may jump.
+/// Returns the limits of the derivative of a function of two numbers. Returns `None` if the value may jump.
 fn of_binary(
     operator: Operator,
     a: ValueAndSlope,

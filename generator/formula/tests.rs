@@ -9,7 +9,8 @@ fn value(text: &str, x: f64) -> Enclosure {
         .unwrap_or_else(|fault| panic!("{}", fault.under(text)))
 }
 
-/// Values to 20 digits, from tables (Abramowitz and Stegun) and by hand: between the limits, which are near.
+/// Values to 20 digits, from tables (Abramowitz and Stegun) and by hand, lie between the limits, and the limits are close to
+/// each other.
 #[test]
 #[expect(
     clippy::excessive_precision,
@@ -62,7 +63,7 @@ fn enclosures_hold_known_values() {
     }
 }
 
-/// An argument of a function of two numbers may have the name of the function's own operands.
+/// An argument of a function of two numbers may have the name of the function's own parameters.
 #[test]
 fn arguments_keep_their_names() {
     let formula = parse("hypot(v, u) - 2 * u").unwrap();
@@ -71,7 +72,7 @@ fn arguments_keep_their_names() {
     assert_eq!(formula.operands(), ["v", "u"]);
 }
 
-/// Beyond the negative x axis the direction jumps from π to −π, and at the origin there is none.
+/// At the negative x axis the direction jumps from π to −π, and the origin has no direction.
 #[test]
 fn directions_near_their_jump_and_at_the_origin() {
     let formula = parse("atan2(y, x)").unwrap();
@@ -86,7 +87,7 @@ fn directions_near_their_jump_and_at_the_origin() {
     assert!(slope.holds(0.25) && slope.high - slope.low < 1e-12);
 }
 
-/// Values that f64 has exactly stay exact, so that a root at the end of its domain is one.
+/// Values that `f64` represents exactly stay exact, so that a root at the end of its domain has a value.
 #[test]
 fn exact_steps_stay_exact() {
     for (text, x, known) in [
@@ -170,7 +171,8 @@ fn ceiling(text: &str, fraction: u32) -> (i128, bool) {
     formula.ceiling(fraction).unwrap_or_else(|fault| panic!("{}", fault.under(text)))
 }
 
-/// Formulas whose value is an operand, by hand: the operand is found, however the number is written.
+/// The values of these formulas, computed by hand, are multiples of 2^−fraction, and the evaluation finds this for every
+/// notation.
 #[test]
 fn exact_values_are_known_to_be_exact() {
     for (text, fraction, raw) in [
@@ -206,7 +208,7 @@ fn exact_values_are_known_to_be_exact() {
     ] {
         assert_eq!(ceiling(text, fraction), (raw, true), "{text}");
     }
-    // Just beside an operand, and not at one: π = 3.14…, 2^16·π = 205887.4…, e^700 is large.
+    // These values lie between two neighbouring multiples: π = 3.14…, 2^16·π = 205887.4…, e^700 is large.
     for (text, fraction, raw) in [
         ("pi", 16, 205_888),
         ("-pi", 16, -205_887),
@@ -223,7 +225,8 @@ fn exact_values_are_known_to_be_exact() {
     assert!(doubt.message.contains("1024 bits do not tell"), "{doubt}");
 }
 
-/// Random decimals, with and without a power of ten, against integer arithmetic: digits · 10^(exponent − places) ≥ k / 2^fraction.
+/// Compares random decimals, with and without a power of ten, with integer arithmetic: digits · 10^(exponent − places) ≥ k /
+/// 2^fraction.
 #[test]
 fn random_decimals_are_read_exactly() {
     let mut state = 1u64;
@@ -255,7 +258,8 @@ fn random_decimals_are_read_exactly() {
     }
 }
 
-/// Values at exact operands, by hand, where `f64` rounds to the wrong side of a step, is too small, or overflows.
+/// Values at exact operands, computed by hand, for formulas in which `f64` rounds to the wrong side of a jump, is too small, or
+/// overflows.
 #[test]
 fn steps_signs_and_sizes_are_decided_at_exact_operands() {
     for (text, operand, known) in [
@@ -294,7 +298,7 @@ fn steps_signs_and_sizes_are_decided_at_exact_operands() {
     );
 }
 
-/// The two evaluations agree: the intervals of both contain the exact value, so that they overlap.
+/// Both evaluations give intervals that contain the exact value, so the intervals must overlap.
 #[test]
 fn both_evaluations_overlap() {
     for text in [

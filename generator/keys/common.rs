@@ -1,12 +1,12 @@
-//! Declares and checks configuration keys that several devices share, so that a key means the same in all of them. For example,
-//! `blinn` and `rough` both have the key `exponent.bits`, the width of the specular exponent n.
+//! Declares and checks configuration keys that several devices share, so that a key means the same in all these devices. For
+//! example, `blinn` and `rough` both have the key `exponent.bits`, the width of the specular exponent n.
 
 use glint_base::fixed::{Format, Rounding, exp2};
 use glint_config::{Key, Problems};
 
 glint_config::keys! {
-    /// The keys of the operand `cos_gamma`, the cosine of the angle γ between the surface normal and the half vector. For example,
-    /// `cosine.fraction` states its fraction bits.
+    /// The keys of the operand `cos_gamma`, the cosine of the angle γ between the surface normal and the half vector. For
+    /// example, `cosine.fraction` sets the number of fraction bits.
     pub struct Cosine {
         fraction: u32 = Key::integer("cosine.fraction", 20, 6..=24,
             "Fraction bits of the cosine operands; 1.0 is representable."),
@@ -27,19 +27,19 @@ impl Cosine {
         1 << self.fraction
     }
 
-    /// Returns the weight of the last bit of a cosine (an ulp). For example, it is 2^−20 for `cosine.fraction = 20`.
+    /// Returns the value of the last bit of a cosine (an ulp). For example, it is 2^−20 for `cosine.fraction = 20`.
     pub fn ulp(&self) -> f64 {
         exp2(-(self.fraction as i32))
     }
 
-    /// Returns the raw cosine that the operand's register loads for `raw`, limited to 0 … 1.0. For example, a negative cosine
-    /// becomes 0.
+    /// Returns the raw cosine that the device computes with if its input is the raw cosine `raw`: `raw` limited to the range
+    /// from 0 to the raw value of 1.0. For example, a negative cosine becomes 0.
     #[inline]
     pub fn clamped(&self, raw: i64) -> i64 {
         raw.clamp(0, self.one())
     }
 
-    /// Returns the value of a raw cosine, limited to 0 … 1.0.
+    /// Returns the real value of a raw cosine, after the raw cosine is limited to the range from 0 to the raw value of 1.0.
     #[inline]
     pub fn value(&self, raw: i64) -> f64 {
         self.clamped(raw) as f64 * self.ulp()
@@ -47,7 +47,7 @@ impl Cosine {
 }
 
 glint_config::keys! {
-    /// The keys of the colour operands, which the reflectance f multiplies.
+    /// The keys of the colour operands, which the device multiplies by the reflectance f.
     pub struct ColourKeys {
         bits: u32 = colour_bits(),
         multipliers: u32 = Key::choice("colour.multipliers", "3", &["1", "3"],
@@ -57,12 +57,13 @@ glint_config::keys! {
 }
 
 impl ColourKeys {
-    /// Returns whether one multiplier makes the products with all colours, one after the other.
+    /// Returns whether one multiplier computes the products of f and all colours one after the other, instead of one multiplier
+    /// for each.
     pub fn in_turn(&self) -> bool {
         self.multipliers == 1
     }
 
-    /// Makes keys for colours of four bits, for tests that can be followed by hand.
+    /// Makes keys for colours of four bits, for tests with numbers that can be followed by hand.
     #[doc(hidden)]
     pub fn small() -> Self {
         Self { bits: 4, multipliers: 3 }
@@ -84,7 +85,7 @@ impl Operands {
         Format::unsigned(self.exponent_bits as i32, 0)
     }
 
-    /// Makes keys for operands of four bits, for tests that can be followed by hand.
+    /// Makes keys for operands of four bits, for tests with numbers that can be followed by hand.
     #[doc(hidden)]
     pub fn small() -> Self {
         Self {
@@ -96,8 +97,8 @@ impl Operands {
 }
 
 glint_config::keys! {
-    /// The keys of the reflectance f, the factor by which a highlight device multiplies colours, and of the roundings of f and of
-    /// the products.
+    /// The keys of the reflectance f, the factor by which a highlight device multiplies colours. They set the fraction bits of
+    /// f, the rounding of f, and the rounding of the products.
     pub struct Intensity {
         fraction: u32 = intensity_fraction(16),
         rounding: Rounding = Key::rounding("intensity.rounding", "truncate",
@@ -112,7 +113,7 @@ impl Intensity {
         Format::unsigned(0, self.fraction as i32)
     }
 
-    /// Makes keys for a reflectance of four bits, for tests that can be followed by hand.
+    /// Makes keys for a reflectance of four bits, for tests with numbers that can be followed by hand.
     #[doc(hidden)]
     pub fn small() -> Self {
         let (rounding, output_rounding) = (Rounding::Truncate, Rounding::Nearest);
@@ -121,7 +122,7 @@ impl Intensity {
 }
 
 glint_config::keys! {
-    /// The keys of the specular exponents n for which a device's accuracy contract is stated.
+    /// The keys of the range of specular exponents n for which a device's accuracy contract is stated.
     pub struct Domain {
         least: i64 = Key::integer("domain.exponent_min", 1, 0..=4095,
             "The smallest n for which the accuracy contract is stated."),
@@ -131,24 +132,24 @@ glint_config::keys! {
 }
 
 impl Domain {
-    /// Returns the smallest and the largest exponent of the domain.
+    /// Returns the smallest and the largest exponent of the range, both included.
     pub fn exponents(&self) -> (i64, i64) {
         (self.least, self.most)
     }
 
-    /// Makes the domain of all exponents with four bits, for tests that can be followed by hand.
+    /// Makes the range of all exponents with four bits except 0, for tests with numbers that can be followed by hand.
     #[doc(hidden)]
     pub fn small() -> Self {
         Self { least: 1, most: 15 }
     }
 }
 
-/// Makes the key `exponent.bits`, the width of the specular exponent n.
+/// Makes the key `exponent.bits`, the width of the specular exponent n in bits.
 pub fn exponent_bits() -> Key {
     Key::integer("exponent.bits", 10, 1..=12, "Bits of the specular exponent n.")
 }
 
-/// Makes the key `power`, the power m of the devices `cosine-power` and `lyon`.
+/// Makes the key `power`, the power m in the formulas of the devices `cosine-power` and `lyon`: 2, 4, 8 or 16.
 pub fn power() -> Key {
     Key::choice(
         "power",
@@ -158,12 +159,12 @@ pub fn power() -> Key {
     )
 }
 
-/// Makes the key `colour.bits`, the width of a colour.
+/// Makes the key `colour.bits`, the width of a colour operand and of an output in bits.
 pub fn colour_bits() -> Key {
     Key::integer("colour.bits", 8, 1..=12, "Bits of a colour operand, and of an output.")
 }
 
-/// Makes the key `intensity.fraction`, the fraction bits of the reflectance f.
+/// Makes the key `intensity.fraction`, the number of fraction bits of the reflectance f, with the default `default`.
 pub fn intensity_fraction(default: i64) -> Key {
     Key::integer(
         "intensity.fraction",
@@ -173,12 +174,13 @@ pub fn intensity_fraction(default: i64) -> Key {
     )
 }
 
-/// Makes the key `output.rounding`, the rounding of the outputs.
+/// Makes the key `output.rounding`, the rounding of the colour outputs to integers.
 pub fn output_rounding() -> Key {
     Key::rounding("output.rounding", "nearest", "Rounding of the colour outputs to integers.")
 }
 
-/// Makes the key `angle.fraction`, the fraction bits of an angle along a scan line.
+/// Makes the key `angle.fraction`, the number of fraction bits of an angle along a scan line, with the default `default`.
+/// Angles are in right angles.
 pub fn angle_fraction(default: i64) -> Key {
     Key::integer(
         "angle.fraction",
@@ -188,7 +190,8 @@ pub fn angle_fraction(default: i64) -> Key {
     )
 }
 
-/// Makes the key `table.address`, the address bits of a table of cosines.
+/// Makes the key `table.address`, the number of address bits of a table over a right angle, with the default `default`. The
+/// table has powers of the cosine.
 pub fn table_address(default: i64) -> Key {
     Key::integer(
         "table.address",
@@ -198,7 +201,7 @@ pub fn table_address(default: i64) -> Key {
     )
 }
 
-/// Makes the key `length.bits`, the width of the length of a scan line.
+/// Makes the key `length.bits`, the width in bits of the operand that is the length of a scan line.
 pub fn length_bits() -> Key {
     Key::integer(
         "length.bits",
@@ -208,7 +211,8 @@ pub fn length_bits() -> Key {
     )
 }
 
-/// Makes the key `line.stages`, the number of clocks from the angle of a point on a scan line to its output.
+/// Makes the key `line.stages`, the number of clocks from the angle of a point on a scan line to its output. `choices` are the
+/// allowed values.
 pub fn line_stages(choices: &'static [&'static str]) -> Key {
     Key::choice(
         "line.stages",
@@ -219,8 +223,8 @@ pub fn line_stages(choices: &'static [&'static str]) -> Key {
     .joined_later()
 }
 
-/// Checks that the domain of the exponent n is not empty, and that the operand `exponent` of `bits` bits can represent it. For
-/// example, `exponent.bits = 8` cannot represent n = 1000.
+/// Checks the range of the exponent n, and adds the problems to `problems`. The smallest exponent may not exceed the largest,
+/// and an operand of `bits` bits must be able to represent the largest. For example, 8 bits cannot represent n = 1000.
 pub fn check_exponents(domain: &Domain, bits: u32, problems: &mut Problems) {
     let (min, max) = domain.exponents();
     if min > max {
@@ -234,11 +238,12 @@ pub fn check_exponents(domain: &Domain, bits: u32, problems: &mut Problems) {
     }
 }
 
-/// The number of bits that a ROM may have: a megabit.
+/// The largest number of bits of a ROM, 2^20.
 const ROM_LIMIT: i64 = 1 << 20;
 
-/// Checks that a ROM has at most 2^20 bits. For example, a ROM with 15 address bits may have words of up to 32 bits. The problem
-/// is reported under the key `key`, which governs the size.
+/// Checks that a ROM has at most 2^20 bits. `address` is the number of its address bits, and `width` the width of an entry. For
+/// example, a ROM with 15 address bits may have entries of up to 32 bits. A larger ROM is a problem of the configuration key
+/// `key`, which governs the size. `rom` names the ROM, and `remedy` says how to make it smaller.
 pub fn check_rom_size(
     key: &str,
     rom: &str,
@@ -254,10 +259,11 @@ pub fn check_rom_size(
     }
 }
 
-/// Checks the segments of a table over 1 − cos. The operand has `bits` bits. The table has ranges, each a quarter as long as the
-/// range before, so range j has `bits` − 2·j operand bits. `segments` gives the number of leading bits that select a segment in
-/// each range; it may not exceed the operand bits of the range. Returns the largest number of bits that remain in a segment, up to
-/// the first range that has too few. For example, 20 bits and segments of 6 and 5 bits give 14.
+/// Checks the segments of a table over the distance 1 − cos γ, an operand of `bits` bits. The table has ranges, each a quarter
+/// as long as the preceding range, so range j has `bits` − 2·j operand bits. `segments` has the number of leading bits that
+/// select a segment in each range. This number may not exceed the operand bits of the range; otherwise the function adds a
+/// problem of the key `key`. Returns the largest number of bits that remain in a segment, up to the first range with a problem.
+/// For example, 20 bits and segments of 6 and 5 bits give 14.
 pub fn check_segments(segments: &[u32], key: &str, bits: u32, problems: &mut Problems) -> u32 {
     let mut most = 0;
     for (range, &prefix) in (0u32..).zip(segments) {

@@ -1,6 +1,6 @@
 //! Declares the configuration keys of the device `cosine-power`, and checks that their values are valid together.
 //!
-//! `cosine-power` computes f = (n/m·(cos γ − 1) + 1)^m, an approximation of cosⁿγ. For example, the key `power` states m.
+//! `cosine-power` computes f = (n/m·(cos γ − 1) + 1)^m, an approximation of cosⁿγ. For example, the key `power` sets m.
 
 use super::common::{self, Domain, Intensity, Operands};
 use glint_config::{Config, Problems, Schema};

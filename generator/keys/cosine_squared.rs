@@ -1,7 +1,7 @@
 //! Declares the configuration keys of the device `cosine-squared`, and checks that their values are valid together.
 //!
-//! `cosine-squared` computes f = cos²(a·δ) for the points of a scan line. For example, the key `angle.fraction` states the
-//! fraction bits of an angle.
+//! `cosine-squared` computes f = cos²(a·δ) for the points of a scan line. δ is an angle that changes from point to point, and a
+//! is a factor that stretches it. For example, the key `angle.fraction` sets the number of fraction bits of an angle.
 
 use super::common;
 use glint_base::fixed::{Format, Rounding};
@@ -23,12 +23,12 @@ glint_config::keys! {
 }
 
 impl Keys {
-    /// Returns the format of an angle along the scan line, in right angles.
+    /// Returns the format of a stretched angle along the scan line, in right angles. For example, the defaults give `s7.22`.
     pub fn angle_format(&self) -> Format {
         Format::signed(self.angle_integer as i32, self.angle_fraction as i32)
     }
 
-    /// Returns the format of the reflectance f.
+    /// Returns the format of the reflectance f. For example, the default gives `u0.10`.
     pub fn f_format(&self) -> Format {
         Format::unsigned(0, self.fraction as i32)
     }

@@ -1,7 +1,8 @@
 //! Declares the configuration keys of the devices `blinn` and `gauss`, and computes their tables of polynomials.
 //!
-//! Both devices compute f = 2^(−n·decay(c)), where c = cos γ and n is the specular exponent. The decay is −log₂ c in `blinn` and
-//! γ²/(2 ln 2) in `gauss`. One table gives the decay divided by the distance 1 − c, the other gives 2^−x.
+//! Both devices compute f = 2^(−n·decay(c)), where c = cos γ and n is the specular exponent. The decay is −log₂ c in `blinn`
+//! and γ²/(2 ln 2) in `gauss`. Both have two tables of polynomials. One table gives the ratio of the decay to the distance 1 −
+//! c, and the other gives 2^−x.
 
 use std::sync::Arc;
 
@@ -31,7 +32,7 @@ glint_config::keys! {
     }
 }
 
-/// Returns the degree of a table's polynomials.
+/// Makes the key `name`, the degree of the polynomials of a table. Its default `auto` chooses the cheapest degree.
 fn degree(name: &'static str) -> Key {
     Key::choice(
         name,
@@ -41,17 +42,19 @@ fn degree(name: &'static str) -> Key {
     )
 }
 
-/// The decay of a device as a function of c = cos γ: the device computes f = 2^(−n·decay).
+/// The decay of a device as a function of c = cos γ. The device computes f = 2^(−n·decay).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Decay {
-    /// `blinn`: −log₂ c, for a cosine from one half on. Each octave below one half adds 1 to it.
+    /// The decay −log₂ c of the device `blinn`. The table covers c from 1/2 to 1. For smaller c, every doubling of c up to this
+    /// range adds 1 to the decay.
     Logarithm,
-    /// `gauss`: γ²/(2 ln 2).
+    /// The decay γ²/(2 ln 2) of the device `gauss`.
     Angle,
 }
 
 impl Decay {
-    /// Returns the decay over the distance v = 1 − c, a formula of a v.
+    /// Returns the formula of the decay divided by the distance 1 − c. The text `v` is the formula of the distance. For
+    /// example, the distance `x` gives `-log2(1 - x) / x` in `blinn`.
     fn over_distance(self, v: &str) -> String {
         match self {
             Self::Logarithm => format!("-log2(1 - {v}) / {v}"),
@@ -59,9 +62,9 @@ impl Decay {
         }
     }
 
-    /// Returns the largest slope of the ratio decay/(1 − c) as a function of the distance v = 1 − c. The ratio is convex, so the
-    /// slope is largest at the largest distance: 1/(ln 2·(1 − v)·v) + log₂(1 − v)/v² at v = ½ in `blinn`, and (π − π²/4)/(2 ln 2)
-    /// at v = 1 in `gauss`.
+    /// Returns the largest slope of the ratio decay/(1 − c) as a function of the distance v = 1 − c, rounded up to three
+    /// decimals. The ratio is convex, so the slope is largest at the largest distance. In `blinn` the slope is 1/(ln 2·(1 −
+    /// v)·v) + log₂(1 − v)/v² at v = ½. In `gauss` it is (π − π²/4)/(2 ln 2) at v = 1.
     pub fn steepest(self) -> f64 {
         match self {
             Self::Logarithm => 1.771,
@@ -69,54 +72,57 @@ impl Decay {
         }
     }
 
-    /// Returns the number of leading bits of the distance that are always 0: 1 for `blinn`, 0 for `gauss`.
+    /// Returns the number of leading bits of the distance that are always 0: 1 for `blinn`, whose distance is at most 1/2, and
+    /// 0 for `gauss`.
     fn known(self) -> u32 {
         u32::from(self == Self::Logarithm)
     }
 }
 
 impl Keys {
-    /// Returns the number of bits of u, the operand of the table. u is the distance 1 − c less one unit in the last place of the
-    /// cosine c. For example, for a cosine with 20 fraction bits u has 19 bits in `blinn` and 20 in `gauss`.
+    /// Returns the number of bits of u, the operand of the ratio's table. u is the distance 1 − c minus one unit in the last
+    /// place of the cosine c. For example, for a cosine with 20 fraction bits u has 19 bits in `blinn` and 20 in `gauss`.
     pub fn distance(&self, decay: Decay) -> u32 {
         self.operands.cosine.fraction - decay.known()
     }
 
-    /// Returns the format of the decay, whose values are below 2.0. For example, the default `decay.fraction = 26` gives `u1.26`.
-    /// In `blinn`, this is the decay of the mantissa, without the octaves (powers of two) of the cosine.
+    /// Returns the format of the decay, whose values are below 2.0. For example, the default `decay.fraction = 26` gives
+    /// `u1.26`. In `blinn`, this is the decay of the mantissa of the cosine, a value from 1/2 to 1, without the powers of two.
     pub fn decay_format(&self) -> Format {
         Format::unsigned(1, self.decay_fraction as i32)
     }
 
-    /// Returns the number of bits of the integer of a decay: the bits of the number of an octave, and one more.
+    /// Returns the number of integer bits of the complete decay. In `blinn` the integer also counts the doublings of the
+    /// cosine: for 20 fraction bits of the cosine it has 6 bits. In `gauss` it has 1 bit.
     fn whole_bits(&self, decay: Decay) -> u32 {
         let octave = (self.operands.cosine.fraction - 1).ilog2() + 1;
         1 + octave * decay.known()
     }
 
-    /// Returns the number of bits with which the decay enters the multiplier for n·decay. A decay below ¼ keeps all its bits. A
-    /// larger decay keeps its integer bits and `decay.coarse_fraction` fraction bits.
+    /// Returns the width in bits with which the decay enters the multiplier for n·decay. A decay below ¼ is multiplied with all
+    /// its fraction bits. A larger decay is multiplied with its integer bits and `decay.coarse_fraction` fraction bits.
     pub fn factor_bits(&self, decay: Decay) -> u32 {
         (self.decay_fraction - 2).max(self.whole_bits(decay) + self.coarse_fraction)
     }
 
-    /// Returns the format of the product n·decay. For example, the defaults of `gauss` give `u11.18`.
+    /// Returns the format of the product n·decay. For example, the defaults of `gauss` give `u11.18`. The integer part of the
+    /// product says how often the result is halved.
     pub fn halvings(&self, decay: Decay) -> Format {
         let whole = self.operands.exponent_bits + self.whole_bits(decay);
         Format::unsigned(whole as i32, self.argument as i32)
     }
 
-    /// Returns the number of low bits of u that do not address the table of the ratio, which reads one bit more of 1 − c than the
-    /// ratio has. For example, the defaults of 20 cosine bits and 16 ratio bits leave 3 bits.
+    /// Returns the number of low bits of u that do not address the table of the ratio. The table reads one fraction bit of 1 −
+    /// c more than the ratio has. For example, the defaults of 20 cosine bits and 16 ratio bits leave 3 bits.
     pub fn unseen(&self) -> u32 {
         self.operands.cosine.fraction.saturating_sub(self.ratio_fraction + 1)
     }
 
-    /// Returns the table of the ratio, the decay divided by the distance 1 − c. Its operand is u without the low bits that the
-    /// table does not read. Its value is the ratio at the middle of the distances that have the same operand.
+    /// Returns the table of the ratio, the decay divided by the distance 1 − c. The table's operand is u without the low bits
+    /// that the table does not read. Its value is the ratio at the middle of all distances with the same operand.
     ///
     /// # Errors
-    /// Fails if no approximation can be found. The error says why.
+    /// Fails if no approximation can be found. The error has the key `ratio.fraction` and says why.
     pub fn ratio(&self, decay: Decay) -> Result<Arc<Piecewise>, Refusal> {
         let unseen = self.unseen();
         let fraction = self.operands.cosine.fraction - unseen;
@@ -128,11 +134,11 @@ impl Keys {
         table(&formula, (last, of), self.ratio_fraction, &self.ratio_degree, "ratio.fraction")
     }
 
-    /// Returns the table of 2^−x, where x is the fraction of n·decay. Its value is the power at the middle of the fractions that
-    /// are truncated to the same x.
+    /// Returns the table of 2^−x, where x is the fraction of n·decay. The table's value is the power at the middle of the
+    /// fractions that are truncated to the same x.
     ///
     /// # Errors
-    /// Fails if no approximation can be found. The error says why.
+    /// Fails if no approximation can be found. The error has the key `exponential.fraction` and says why.
     pub fn power(&self) -> Result<Arc<Piecewise>, Refusal> {
         let formula = format!("exp2(-x - 1/2^{})", self.argument + 1);
         let (last, of) = ((1 << self.argument) - 1, (0, self.argument as i32));
@@ -140,8 +146,12 @@ impl Keys {
     }
 }
 
-/// Returns the approximation of a formula over operands from 0 to `last`, with `int` bits before and `frac` bits behind the
-/// point.
+/// Returns the approximation of the formula `formula` for the raw operands from 0 to `last`. The operand has `int` integer bits
+/// and `frac` fraction bits, and the result has `fraction` fraction bits. Every error is below one unit of the result's last
+/// bit. `degree` is the value of the key for the degree.
+///
+/// # Errors
+/// Fails if no approximation can be found. The error has the key `key`.
 fn table(
     formula: &str,
     (last, (int, frac)): (i64, (i32, i32)),
@@ -161,7 +171,8 @@ fn table(
     find(&function, wish).map_err(|refusal| Refusal { key, place: None, ..refusal })
 }
 
-/// Returns the keys of one of the devices.
+/// Returns the schema of `blinn` or `gauss`: the configuration keys, and the check `check` of their combinations. The default
+/// of `intensity.rounding` is `nearest`.
 pub(super) fn schema(device: &'static str, check: fn(&Config, &mut Problems)) -> Schema {
     let mut keys = Keys::keys();
     for key in &mut keys {
@@ -172,7 +183,8 @@ pub(super) fn schema(device: &'static str, check: fn(&Config, &mut Problems)) ->
     Schema { device, keys, check }
 }
 
-/// Checks the conditions between keys.
+/// Checks that the values of the keys are valid together and that both tables can be found, and adds the problems to
+/// `problems`.
 pub(super) fn check(config: &Config, decay: Decay, problems: &mut Problems) {
     let keys = Keys::of(config);
     common::check_exponents(&keys.domain, keys.operands.exponent_bits, problems);

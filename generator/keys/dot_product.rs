@@ -1,7 +1,7 @@
 //! Declares the configuration keys of the device `dot-product`, and checks that their values are valid together.
 //!
-//! `dot-product` computes the cosine between a vector of any length and a unit vector. For example, the key `two_sided` makes it
-//! |cos γ|.
+//! `dot-product` computes the cosine of the angle γ between a vector N of any length and a unit vector H. With the key
+//! `two_sided` it computes |cos γ|.
 
 use super::normaliser;
 use glint_base::fixed::{Format, Rounding};
@@ -26,24 +26,26 @@ glint_config::keys! {
     }
 }
 
-/// Returns the key that lights both sides of a surface.
+/// Makes the key `two_sided`, with which a device takes the absolute value of a cosine and so lights both sides of a surface.
 pub(super) fn two_sided() -> Key {
     let doc = "Light both sides of a surface: cosines lose their sign.";
     Key::flag("two_sided", false, doc).joined_later()
 }
 
 impl Keys {
-    /// Returns the number of fraction bits of the product of two vector components, such as x of N times x of H.
+    /// Returns the number of fraction bits of the product of two vector components, such as the x components of N and H.
     pub fn products(&self) -> u32 {
         self.fraction + self.other
     }
 
-    /// Returns the format of the scalar product N·H, after N was shifted so that its length lies between 1 and 2.
+    /// Returns the format of the scalar product N·H, where N is shifted so that its length lies between 1 and 2. For example,
+    /// `factor.bits = 18` gives `u1.17`.
     pub fn distance(&self) -> Format {
         Format::unsigned(1, self.factor as i32 - 1)
     }
 
-    /// Returns the format of the inverse length 1/|N|, after N was shifted so that its length lies between 1 and 2.
+    /// Returns the format of the inverse length 1/|N|, where N is shifted so that its length lies between 1 and 2. For example,
+    /// `factor.bits = 18` gives `u0.18`.
     pub fn shortened(&self) -> Format {
         Format::unsigned(0, self.factor as i32)
     }

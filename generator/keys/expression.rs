@@ -1,8 +1,8 @@
 //! Declares the configuration keys of the device `expression`, and finds the plan of its formulas.
 //!
-//! The tables `operands`, `let` and `results` of a configuration state operands, named parts and formulas. For example, the
-//! result `r` has the formula `sqrt(x^2 + y^2)`. A plan is a list of fixed-point operations that computes the formulas
-//! ([`glint_plan`]).
+//! The tables `operands`, `let` and `results` of a configuration have operands, named parts of formulas, and formulas. For
+//! example, the result `r` may have the formula `sqrt(x^2 + y^2)`. A plan is a list of fixed-point operations that computes the
+//! formulas ([`glint_plan`]).
 
 use std::ops::Range;
 use std::sync::Arc;
@@ -20,11 +20,11 @@ use glint_plan::{
 
 use super::function::End;
 
-/// The errors that may be stated, in units of a result's last place.
+/// The smallest and the largest error that a configuration may allow, in units of a result's last bit.
 const LEAST_ERROR: f64 = 0.5;
 const LARGEST_ERROR: f64 = 1024.0;
 
-/// The remedy for a relative error that is no part of a value.
+/// The remedy, as text for the user, for a relative error that is not a number between 0 and 1.
 const RELATIVE_ERROR: &str = "a number between 0 and 1, or a formula of numbers: \"2^-12\", say";
 
 glint_config::keys! {
@@ -98,7 +98,7 @@ fn result_fields() -> Vec<Key> {
     ]
 }
 
-/// Returns the operands of the example: the coordinates of a point.
+/// Returns the operands of the example configuration: the coordinates `x` and `y` of a point.
 fn example_operands() -> Vec<TableEntry> {
     let fields = [
         ("bits", Value::Integer(12)),
@@ -108,7 +108,7 @@ fn example_operands() -> Vec<TableEntry> {
     vec![TableEntry::new("x", &fields), TableEntry::new("y", &fields)]
 }
 
-/// Returns the result of the example: the distance of the point from the origin.
+/// Returns the result of the example configuration: the distance `r` of the point from the origin.
 fn example_results() -> Vec<TableEntry> {
     let fields = [
         ("formula", Value::Text("sqrt(x^2 + y^2)".to_owned())),
@@ -129,12 +129,12 @@ fn check(config: &Config, problems: &mut Problems) {
     }
 }
 
-/// An error in a key of the device `expression`, with the place in the text of the key.
+/// An error in a key of the device `expression`, with the part of the key's text that is wrong.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StatementError {
-    /// The error. Its key names the entry and the field, for example `results.r.formula`.
+    /// The error. Its key names the table, the entry and the field, for example `results.r.formula`.
     pub error: KeyError,
-    /// The range of bytes in the text of the formula, if the error concerns a part of it.
+    /// The range of bytes in the text of the formula, or `None` if the error does not concern a part of a formula.
     pub place: Option<Range<usize>>,
 }
 
@@ -149,16 +149,17 @@ impl StatementError {
     }
 }
 
-/// Returns the plan for the formulas of a configuration, with a proven bound for each result.
+/// Returns the plan for the formulas of a configuration, with a proved error bound for each result.
 ///
 /// # Errors
-/// Fails if an operand or a formula is wrong, or if there is no plan. The error says why.
+/// Fails if a name, an operand, a formula or an allowed error is wrong, or if no plan can be found. The error says why.
 pub fn found(config: &Config) -> Result<Arc<ProvedPlan>, StatementError> {
     let statement = statement(&Keys::of(config))?;
     find(&statement).map_err(|refusal| refused(&statement, refusal))
 }
 
-/// Returns the refusal of a plan as an error in the formula that it concerns.
+/// Returns the refusal of a plan as an error in the formula that the refusal concerns, or in the table `results` if it concerns
+/// no single formula.
 fn refused(statement: &ExpressionStatement, refusal: PlanRefusal) -> StatementError {
     let key = match refusal.result {
         Some(number) => format!("results.{}.formula", statement.results[number].name),
@@ -168,7 +169,11 @@ fn refused(statement: &ExpressionStatement, refusal: PlanRefusal) -> StatementEr
     StatementError { place: refusal.place, ..error }
 }
 
-/// Returns the statement of a configuration: its formulas in terms of operands alone.
+/// Returns the operands and results that a configuration states. Its formulas contain operands alone: named parts are replaced
+/// by their formulas.
+///
+/// # Errors
+/// Fails if an entry is wrong, if a name is used twice, or if no result depends on an operand.
 fn statement(keys: &Keys) -> Result<ExpressionStatement, StatementError> {
     check_names(keys)?;
     let mut operands = Vec::new();
@@ -203,8 +208,12 @@ fn statement(keys: &Keys) -> Result<ExpressionStatement, StatementError> {
     Ok(statement)
 }
 
-/// Returns the allowed error of a result whose error is stated as a part of its value, in units of its last place. The smallest
-/// value decides. For example, 2^-12 of values from 0.5 to 1 is 2^-13, which is 4 units with 15 fraction bits.
+/// Returns the allowed error of the result with the index `number`, in units of its last bit. The text `text` states the error
+/// as a part of the result's value, and the smallest absolute value decides. For example, 2^-12 of values from 0.5 to 1 is
+/// 2^-13, just below 4 units with 15 fraction bits. The error is at most [`LARGEST_ERROR`].
+///
+/// # Errors
+/// Fails if `text` is not a number between 0 and 1, if the result may be 0, or if the error would be below half a unit.
 fn error_of_relative(
     statement: &ExpressionStatement,
     number: usize,
@@ -242,7 +251,7 @@ fn error_of_relative(
     Ok(units.min(LARGEST_ERROR))
 }
 
-/// The ports that every core has, as a pipeline or with a microprogram.
+/// The names of ports that a core has as a pipeline or with a microprogram. An entry may not have such a name.
 const PORTS: [&str; 12] = [
     "clk",
     "rst_n",
@@ -258,7 +267,8 @@ const PORTS: [&str; 12] = [
     "side_out",
 ];
 
-/// Checks that every name is an identifier, and that no two entries have the same name.
+/// Checks that every name is an identifier and neither a port of every core nor a constant of formulas. Checks also that no two
+/// entries have the same name.
 fn check_names(keys: &Keys) -> Result<(), StatementError> {
     let mut known: Vec<(&str, &str)> = Vec::new();
     let tables = [("operands", &keys.operands), ("let", &keys.parts), ("results", &keys.results)];
@@ -430,14 +440,16 @@ fn result(
     Ok(StatedResult { name, formula, fraction, error, promise, width })
 }
 
-/// Returns the format of a result with `bits` bits.
+/// Returns the format of a result with `bits` bits, `fraction` of them fraction bits. The field `signed` of the entry says
+/// whether one bit is a sign.
 fn stated_format(record: &TableEntry, bits: u32, fraction: u32) -> Format {
     let signed = record.flag("signed");
     let frac = fraction as i32;
     Format { signed, int: bits as i32 - i32::from(signed) - frac, frac }
 }
 
-/// Returns the formula with its value limited to a format. For example, `x + y` in s0.7 is `min(max(x + y, -1), 127/128)`.
+/// Returns the formula with its value limited to the range of a format. For example, `x + y` in s0.7 becomes `min(max(x + y,
+/// -1), 127/128)`.
 fn limited(formula: &Expression, format: Format) -> Expression {
     let span = formula.span.clone();
     let (least, most) = format.range();
@@ -450,7 +462,11 @@ fn limited(formula: &Expression, format: Format) -> Expression {
     Expression::new(Kind::Binary(Operator::Min, not_below, limit(most)), span.clone())
 }
 
-/// Returns a formula in terms of operands alone.
+/// Parses a formula, and replaces named parts by their formulas. `key` is the configuration key for errors. A missing text
+/// counts as an empty one.
+///
+/// # Errors
+/// Fails if the text is not a formula, or if it has a name that is neither an operand nor one of `parts`.
 fn formula(
     text: Option<&str>,
     key: &str,
@@ -462,7 +478,10 @@ fn formula(
     resolved(&formula, key, keys, parts)
 }
 
-/// Returns a formula with the formulas of named parts in the place of their names.
+/// Returns a formula in which the names of parts are replaced by the formulas in `parts`.
+///
+/// # Errors
+/// Fails if the formula has a name that is neither an operand nor one of `parts`.
 fn resolved(
     formula: &Expression,
     key: &str,
@@ -492,7 +511,10 @@ fn resolved(
     Ok(formula.with_operands(&of_part))
 }
 
-/// Returns the comparison that a text states. For example, `x < y`.
+/// Parses the comparison of two formulas, for example `x < y`, and replaces named parts by their formulas.
+///
+/// # Errors
+/// Fails if the text is not a comparison, or if it has an unknown name. The error's place counts from the start of `text`.
 fn promise(
     text: &str,
     key: &str,

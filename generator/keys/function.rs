@@ -1,7 +1,7 @@
 //! Declares the configuration keys of the device `function`, and finds the piecewise polynomial for its function.
 //!
-//! The keys state a function g of one operand x, as a formula such as `1 / sqrt(x)` or as samples; its domain; and the allowed
-//! error.
+//! The keys state a function of one operand x, as a formula such as `1 / sqrt(x)` or as samples (measured points). They also
+//! state the domain and the allowed error.
 
 use std::sync::Arc;
 
@@ -58,7 +58,8 @@ pub fn schema() -> Schema {
 fn check(config: &Config, problems: &mut Problems) {
     let [formula, samples] = ["function.formula", "function.samples"];
     if config.text(samples).is_empty() && problems.gives(samples) {
-        // They could not be read, which the reader has said; the formula's default is not in their place.
+        // The samples could not be read, and the reader has already reported the problem. The default of the formula must not
+        // replace them.
         return;
     }
     if !config.text(samples).is_empty() && problems.gives(formula) {
@@ -74,10 +75,12 @@ fn check(config: &Config, problems: &mut Problems) {
     }
 }
 
-/// Returns the function that a configuration states, and the piecewise polynomial that approximates it.
+/// Returns the function that a configuration states, and the piecewise polynomial that approximates it with a proved error
+/// bound.
 ///
 /// # Errors
-/// Fails if the formula or the domain is wrong, or if there is no approximation. The error says why.
+/// Fails if the formula, the samples or the domain are wrong, if no approximation can be found, or if its plan is refused. The
+/// error says why, and names a key to change.
 pub fn found(config: &Config) -> Result<(TargetFunction, Arc<Piecewise>), Refusal> {
     let keys = Keys::of(config);
     let function = function(&keys)?;
@@ -94,7 +97,7 @@ pub fn found(config: &Config) -> Result<(TargetFunction, Arc<Piecewise>), Refusa
     Ok((function, it))
 }
 
-/// Returns the operand of the device.
+/// Returns the operand x of the device, with the format and the domain of the piecewise polynomial.
 pub fn operand(polynomials: &Piecewise) -> StatedOperand {
     StatedOperand {
         name: "x".to_owned(),
@@ -149,18 +152,22 @@ fn function(keys: &Keys) -> Result<TargetFunction, Refusal> {
     })
 }
 
-/// An end of a domain, in units of the operand's last place. For example, `1.5` with no fraction bits has the `ceiling` 2,
-/// and is no operand.
+/// An end of a domain, as a raw operand. For example, the end `1.5` of an operand without fraction bits has the `ceiling` 2,
+/// and the end itself is not an operand.
 #[derive(Clone, Copy)]
 pub(super) struct End {
     /// The smallest raw operand that is not below the end.
     pub(super) ceiling: i128,
-    /// Whether that raw operand is the end.
+    /// Whether the raw operand `ceiling` is exactly the end of the domain.
     pub(super) is_operand: bool,
 }
 
 impl End {
-    /// Evaluates the text of an end exactly: `0.1 * 10` is 1, and `log2(16)` is 4.
+    /// Evaluates the text of an end exactly, for an operand with `fraction` fraction bits. For example, `0.1 * 10` is 1, and
+    /// `log2(16)` is 4. `key` is the configuration key for errors.
+    ///
+    /// # Errors
+    /// Fails if the text is not a formula, or if the formula has no exact value.
     pub(super) fn read(key: &'static str, text: &str, fraction: u32) -> Result<Self, Refusal> {
         let formula = parse(text).map_err(|fault| misread(key, fault))?;
         let (ceiling, is_operand) = formula.ceiling(fraction).map_err(|fault| {
@@ -171,7 +178,7 @@ impl End {
     }
 }
 
-/// Returns the remedy for a domain whose operands have too many bits.
+/// Returns the remedy for a domain whose raw operands have too many bits. `fraction` is the operand's number of fraction bits.
 fn too_wide(from: &End, to: &End, fraction: u32) -> String {
     let bits = |end: &End| i128::BITS - end.ceiling.unsigned_abs().leading_zeros();
     let excess = bits(from).max(bits(to)) - (MAX_WIDTH - 2);

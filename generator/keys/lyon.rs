@@ -1,6 +1,7 @@
 //! Declares the configuration keys of the device `lyon`, and checks that their values are valid together.
 //!
-//! `lyon` computes f = max(0, 1 − β·D²)^m from the difference D of normal and half vector. For example, the key `power` states m.
+//! `lyon` computes f = max(0, 1 − β·D²)^m, where D is the difference between normal and half vector. For example, the key
+//! `power` sets m.
 
 use super::common::{self, ColourKeys, Domain, Intensity};
 use glint_base::fixed::Rounding;
@@ -9,9 +10,9 @@ use glint_config::{Config, Key, Problems, Schema};
 glint_config::choices! {
     /// The ways to obtain the factor β = n/(2·m) of the formula (1 − β·D²)^m.
     pub enum Scale {
-        /// `2^shift/(2·m)`; the operand is `shift`.
+        /// β = `2^shift/(2·m)`. The device has an operand `shift`, which is log₂ n, rounded.
         Shift = "shift",
-        /// `n/(2·m)`; the operand is `exponent`.
+        /// β = `n/(2·m)`. The device has an operand `exponent`, which is n.
         Multiplier = "multiplier",
     }
 }
@@ -39,12 +40,13 @@ glint_config::keys! {
 }
 
 impl Keys {
-    /// Returns s, the number of squarings that compute the power m = 2^s. For example, the power 16 takes 4.
+    /// Returns the number s of squarings that compute the power m = 2^s. For example, the power 16 takes 4 squarings.
     pub fn squarings(&self) -> u32 {
         self.power.ilog2()
     }
 
-    /// Returns whether one multiplier squares the three components of D one after the other.
+    /// Returns whether one multiplier squares the three components of D one after the other, instead of one multiplier for
+    /// each.
     pub fn squares_in_turn(&self) -> bool {
         self.distance_multipliers == 1
     }

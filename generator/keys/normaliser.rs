@@ -1,14 +1,14 @@
 //! Declares the configuration keys of the device `normaliser`, and checks that their values are valid together.
 //!
-//! `normaliser` computes the unit vector of a vector of any length. For example, the key `vector.fraction` states the fraction
-//! bits of a component.
+//! `normaliser` computes the unit vector in the direction of a vector of any length. For example, the key `vector.fraction`
+//! sets the number of fraction bits of a component.
 
 use glint_base::fixed::Rounding;
 use glint_config::{Config, Key, Problems, Schema};
 
 glint_config::keys! {
     /// The values of a configuration of the device `normaliser`, one field for each of its keys. For example, `vector.fraction`
-    /// states the fraction bits of a component.
+    /// sets the number of fraction bits of a component.
     pub struct Keys {
         fraction: u32 = Key::integer("vector.fraction", 14, 2..=14,
             "Fraction bits of a component, s1.F."),
@@ -20,13 +20,14 @@ glint_config::keys! {
     }
 }
 
-/// Returns the bits that choose a segment of the table of inverse roots.
+/// Makes the key `table.address`, the number of leading bits of the sum of squares that select a segment in the table of
+/// inverse roots.
 pub(super) fn address() -> Key {
     let doc = "Leading bits of the sum of squares that choose a segment.";
     Key::integer("table.address", 9, 3..=12, doc)
 }
 
-/// Returns the width of a word of that table.
+/// Makes the key `inverse.fraction`, the number of fraction bits of the inverse root that the table gives.
 pub(super) fn inverse() -> Key {
     Key::integer("inverse.fraction", 20, 6..=24, "Fraction bits of the inverse root, u1.R.")
 }
@@ -46,7 +47,8 @@ fn check(config: &Config, problems: &mut Problems) {
     }
 }
 
-/// Checks the table of inverse roots for components with `fraction` fraction bits.
+/// Checks the table of inverse roots for vectors whose components have `fraction` fraction bits. The sum of squares must have
+/// more bits than `address`, and `inverse` may not be below `address`. Adds the problems to `problems`.
 pub(super) fn check_root(fraction: u32, address: u32, inverse: u32, problems: &mut Problems) {
     let sum = 2 * fraction + 4;
     if address >= sum {

@@ -1,7 +1,7 @@
 //! Declares the configuration keys of the device `quad-cosine`, and checks that their values are valid together.
 //!
-//! `quad-cosine` computes f = cosᵏ(√(n/k)·δ) for the points of a scan line. For example, the key `exponent.bits` states the width
-//! of n.
+//! `quad-cosine` computes f = cosᵏ(√(n/k)·δ) for the points of a scan line, where δ is an angle and n is the specular exponent.
+//! For example, the key `exponent.bits` sets the width of n.
 
 use super::common::{self, Domain};
 use glint_base::fixed::{Format, Rounding};
@@ -27,12 +27,12 @@ glint_config::keys! {
 }
 
 impl Keys {
-    /// Returns the format of an angle along the scan line, in right angles.
+    /// Returns the format of an angle along the scan line, in right angles. For example, the defaults give `s1.26`.
     pub fn angle_format(&self) -> Format {
         Format::signed(1, self.angle_fraction as i32)
     }
 
-    /// Returns the format of the reflectance f.
+    /// Returns the format of the reflectance f. For example, the default gives `u0.10`.
     pub fn f_format(&self) -> Format {
         Format::unsigned(0, self.fraction as i32)
     }

@@ -1,17 +1,18 @@
 //! Declares the configuration keys of the device `quadratic`, and checks that their values are valid together.
 //!
-//! `quadratic` computes f = max(0, c + a(n)·(c² − c)) with c = cos γ.
+//! `quadratic` computes f = max(0, c + a(n)·(c² − c)) with c = cos γ. A table gives the coefficient a(n) for the specular
+//! exponent n.
 
 use super::common::{self, Domain, Intensity, Operands};
 use glint_base::fixed::Rounding;
 use glint_config::{Config, Key, Problems, Schema};
 
 glint_config::choices! {
-    /// The coefficients a(n) that the table ROM(n) contains.
+    /// The choice of the coefficients a(n) in the table ROM(n).
     pub enum Scheme {
-        /// n − 1.
+        /// a(n) = n − 1, and 0 for n = 0. For n ≥ 1, f agrees with cosⁿγ in value and slope at the peak.
         Taylor = "taylor",
-        /// The coefficient with the smallest largest error.
+        /// The a(n) for which the largest error of f is smallest.
         Minimax = "minimax",
     }
 }
@@ -34,7 +35,8 @@ glint_config::keys! {
 }
 
 impl Keys {
-    /// Returns the number of fraction bits of the coefficient a(n).
+    /// Returns the number of fraction bits of the coefficient a(n). It is 0 for the scheme `Taylor`, whose coefficients are
+    /// integers.
     pub fn coefficient_fraction(&self) -> u32 {
         if self.scheme == Scheme::Minimax { self.fraction } else { 0 }
     }

@@ -1,7 +1,7 @@
-//! Declares the configuration keys of the device `rough`, and checks which of their combinations are valid.
+//! Declares the configuration keys of the device `rough`, and checks that their values are valid together.
 //!
-//! `rough` computes f = (n/2·(cos(γ ± dγ) − 1) + 1)². For example, the key `sine.scheme` chooses the organisation of its table of
-//! sines, ROM 18.
+//! `rough` computes f = (n/2·(cos(γ ± dγ) − 1) + 1)², where dγ is a perturbation of the normal's angle. For example, the key
+//! `sine.scheme` chooses the layout of ROM 18, the table of sines.
 
 use super::common::{self, Domain, Intensity, Operands};
 use glint_base::fixed::Rounding;
@@ -10,19 +10,21 @@ use glint_config::{Config, Key, Problems, Schema};
 glint_config::choices! {
     /// The number system in which `rough` computes its sums and products.
     pub enum ArithmeticMode {
-        /// With integer bits and signs.
+        /// Numbers with integer bits and signs.
         Exact = "exact",
-        /// The patent's: every word is a fraction modulo 1.0, and every "−1" a missing carry.
+        /// The arithmetic of the patent UA 60139. Every number is a fraction modulo 1.0, so a missing carry replaces the
+        /// subtraction of 1.
         Patent = "patent",
     }
 }
 
 glint_config::choices! {
-    /// The organisation of ROM 18, the table of sines.
+    /// The layout of ROM 18, the table of sines.
     pub enum RomLayout {
-        /// Ranges that shrink toward cos = 1, in straight segments.
+        /// The table has ranges of 1 − cos that become shorter toward cos = 1. A range consists of segments, within which the
+        /// sine is interpolated along a straight line.
         Segmented = "segmented",
-        /// One entry a bucket.
+        /// The table has one entry for each of 2^`sine.address` equally long intervals of the cosine, without interpolation.
         Direct = "direct",
     }
 }
@@ -30,8 +32,8 @@ glint_config::choices! {
 glint_config::keys! {
     /// The values of a configuration of the device `rough`, one field for each of its keys.
     ///
-    /// In the patent's arithmetic all words have `cosine.fraction` bits; `cosine.signed`, `clamp`,
-    /// `product.*`, `intensity.*` and `sine.fraction` do not apply.
+    /// In the patent's arithmetic all numbers have `cosine.fraction` bits; `cosine.signed`, `clamp`, `product.*`, `intensity.*`
+    /// and `sine.fraction` do not apply.
     pub struct Keys {
         arithmetic: ArithmeticMode = Key::choice("arithmetic", "exact", ArithmeticMode::WORDS,
             "exact: numbers with an integer position. patent: numbers modulo 1.0, as in UA 60139."),
@@ -74,7 +76,7 @@ fn exact_of(keys: Vec<Key>, names: &[&str]) -> Vec<Key> {
 }
 
 impl Keys {
-    /// Returns whether the configuration asks for the arithmetic of the patent UA 60139.
+    /// Returns whether the configuration chooses the arithmetic of the patent UA 60139.
     pub fn patent(&self) -> bool {
         self.arithmetic == ArithmeticMode::Patent
     }
@@ -89,8 +91,8 @@ fn check(config: &Config, problems: &mut Problems) {
     let keys = Keys::of(config);
     common::check_exponents(&keys.domain, keys.operands.exponent_bits, problems);
     let cosine = keys.operands.cosine.fraction;
-    // No range of a key makes a net wider than 64 bits: the widest is n/2 * adder 15 with the point of the
-    // square, 13 + 48 bits.
+    // No combination of key values makes a net wider than 64 bits. The widest net is the product of n/2 and the output of adder
+    // 15, with the fraction bits of the square: 13 + 48 bits.
     if keys.patent() && keys.operands.exponent_bits < 2 {
         let message = "the patent's wiring of n/2 drops the only bit of n".to_owned();
         let remedy = "at least 2 with arithmetic = \"patent\"".to_owned();

@@ -1,6 +1,6 @@
 //! Declares the configuration keys of the device `schlick`, and checks that their values are valid together.
 //!
-//! `schlick` computes f = c / (n − n·c + c) with c = cos γ. For example, the key `exponent.bits` states the width of n.
+//! `schlick` computes f = c / (n − n·c + c) with c = cos γ. For example, the key `exponent.bits` sets the width of n.
 
 use super::common::{self, Domain, Operands};
 use glint_base::fixed::{Format, Rounding};
@@ -21,7 +21,7 @@ glint_config::keys! {
 }
 
 impl Keys {
-    /// Returns the format of the reflectance f.
+    /// Returns the format of the reflectance f. For example, the default gives `u0.10`.
     pub fn f_format(&self) -> Format {
         Format::unsigned(0, self.fraction as i32)
     }

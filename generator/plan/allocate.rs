@@ -1,7 +1,8 @@
-//! Distributes the allowed error of an expression among the operations of its plan that round.
+//! Distributes the allowed error of an expression among the rounding operations of its plan.
 //!
-//! Each such operation starts with few fraction bits. The operation with the largest share of the error gets one more bit, until
-//! every result is within its allowed error. Afterwards the module removes bits that are not needed.
+//! Each of these operations has guard bits: the number of its fraction bits beyond the finest result. All begin with few. The
+//! operation with the largest share of the error gets one more bit, until every result is within its allowed error. Afterwards
+//! the module removes bits that are not needed.
 
 use super::boxes::{BoxError, ResultProof};
 use super::lower::{FoundPolynomials, Guards, PlanStyle, lowered};
@@ -9,33 +10,33 @@ use super::plan::ExpressionPlan;
 use super::refusal::PlanRefusal;
 use super::statement::ExpressionStatement;
 
-/// The guard with which each place begins.
+/// The guard bits with which each operation begins.
 const FIRST_GUARD: i32 = -3;
 
-/// The guard with which the places begin at most, where no plan has fewer bits.
+/// The largest number of guard bits with which all operations begin, if no plan has fewer bits.
 const MOST_FIRST_GUARD: i32 = 9;
 
-/// The most bits that a place gets beyond the bits of the results.
+/// The largest number of guard bits of an operation.
 const MOST_GUARD: i32 = 24;
 
-/// The divisions of the domain for an estimate of the error, in the order in which they are tried. Few divisions are faster. With
-/// more, a decision that rounding can make wrong is seen to be wrong for few operands.
+/// The numbers of divisions of the domain for an estimate of the error, in the order in which they are tried. Few divisions are
+/// faster. With more divisions, the operands for which rounding can make a decision wrong are confined to smaller boxes.
 const DIVISIONS: [usize; 2] = [400, 1500];
 
-/// The fraction bits of a plan's parts with which every result keeps its error.
+/// The guard bits of a plan's operations with which every result keeps its allowed error.
 pub(super) struct Allocation {
     pub(super) guards: Guards,
-    /// The plan with these guards. Its polynomials are estimates.
+    /// The plan with these guard bits. The errors of its polynomials are estimates.
     pub(super) plan: ExpressionPlan,
-    /// The divisions of the domain by which the errors are known.
+    /// The number of divisions of the domain with which the errors were computed.
     pub(super) divisions: usize,
 }
 
-/// Returns guards with which every result keeps its error, as far as the estimates of the polynomials' errors tell, and the
-/// plan with them.
+/// Returns guard bits with which every result keeps its allowed error, and the plan with them. The errors of polynomials are
+/// estimates.
 ///
 /// # Errors
-/// Fails if a formula has no plan, or if no number of bits is enough.
+/// Fails if a formula has no plan in this style, or if no number of bits is enough.
 pub(super) fn allocated(
     statement: &ExpressionStatement,
     style: PlanStyle,
@@ -45,7 +46,8 @@ pub(super) fn allocated(
     allocated_with(statement, &none, few).or_else(|_| allocated_with(statement, &none, many))
 }
 
-/// Returns guards with which every result keeps its error, where the errors are computed with so many divisions of the domain.
+/// Returns guard bits with which every result keeps its allowed error, if errors are computed with `divisions` divisions of the
+/// domain. `none` has the style of the plan and no guard bits. Fails as [`allocated`] does.
 fn allocated_with(
     statement: &ExpressionStatement,
     none: &Guards,
@@ -70,7 +72,9 @@ fn allocated_with(
     Ok(Allocation { guards, plan, divisions })
 }
 
-/// Returns guards that grow, where the largest share of an error is, until every result keeps its error.
+/// Returns guard bits with which every result keeps its allowed error, and the plan with them. The function begins with few
+/// bits, and adds one at a time to the operation with the largest share of the error. Fails if a formula has no plan, or if no
+/// number of bits is enough.
 fn grown(
     statement: &ExpressionStatement,
     none: &Guards,
@@ -86,8 +90,8 @@ fn grown(
     Ok((guards, plan))
 }
 
-/// Returns the same guard for all operations, with which every result keeps its error; `None` if there is none. This finds a plan
-/// where one operation alone gets so many bits that a product is too wide.
+/// Returns the same number of guard bits for all operations, with which every result keeps its allowed error; `None` if no
+/// number is enough. This finds a plan if [`grown`] gives one operation so many bits that a product is too wide.
 fn equally_many(
     statement: &ExpressionStatement,
     none: &Guards,
@@ -103,8 +107,9 @@ fn equally_many(
     None
 }
 
-/// Returns the first plan, with the fewest bits for which there is one. With fewer bits a divisor may be rounded to 0, for
-/// example.
+/// Returns the plan with the fewest guard bits, the same number for all operations, and these bits. With fewer bits there may
+/// be no plan, for example because a divisor is rounded to 0. Fails if no number of bits up to [`MOST_FIRST_GUARD`] gives a
+/// plan.
 fn first_plan(
     statement: &ExpressionStatement,
     none: &Guards,
@@ -118,7 +123,7 @@ fn first_plan(
         let mut guards = none.clone();
         match with_guards(statement, &mut guards, first) {
             Ok(plan) => return Ok((guards, plan)),
-            // With very many bits a part is too wide, which is not the reason.
+            // With very many bits, a part is too wide, and this error would hide the actual reason.
             Err(other) if first <= 0 => refusal = other,
             Err(_) => {}
         }
@@ -126,7 +131,8 @@ fn first_plan(
     Err(refusal)
 }
 
-/// Returns the plan with these guards. An operation that has no guard yet gets the guard `first`.
+/// Returns the plan with the guard bits `guards`. Operations beyond the end of the list get `first` guard bits, and the
+/// function adds these bits to the list. Fails if a formula has no plan with these bits.
 fn with_guards(
     statement: &ExpressionStatement,
     guards: &mut Guards,
@@ -141,14 +147,14 @@ fn with_guards(
     }
 }
 
-/// A result that does not keep its error yet.
+/// A result whose error exceeds the allowed error.
 pub(super) struct ExcessiveResult {
     result: usize,
     /// The box of operands in which the error is largest.
     worst: BoxError,
 }
 
-/// Returns the result that exceeds its error by the largest factor; `None` if every result keeps its error.
+/// Returns the result that exceeds its allowed error by the largest factor; `None` if every result keeps its error.
 pub(super) fn largest_excess(
     statement: &ExpressionStatement,
     plan: &ExpressionPlan,
@@ -168,7 +174,8 @@ pub(super) fn largest_excess(
 }
 
 impl ExcessiveResult {
-    /// Returns the place with the largest share of the error. A place that cannot have more bits does not count.
+    /// Returns the number of the rounding operation with the largest share of the error. An operation with the largest number
+    /// of guard bits does not count. Fails if no operation is left.
     pub(super) fn source(
         &self,
         statement: &ExpressionStatement,
@@ -183,7 +190,7 @@ impl ExcessiveResult {
                 continue;
             }
             let share = proof.share(&self.worst.limits, source);
-            // A part that alone has no limit tells nothing where all together have one.
+            // A share without a limit is not meaningful if the whole error has a limit.
             let share = match share.is_finite() || self.worst.units.is_infinite() {
                 true => share,
                 false => f64::MIN_POSITIVE,

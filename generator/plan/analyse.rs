@@ -1,8 +1,9 @@
-//! Encloses the error of the nodes of a plan for all operands in a box. A box is an interval of values for each operand.
+//! Encloses the error of the nodes of a plan for all operands in a box. A box has an interval of values for each operand.
 //!
-//! Each node gets two intervals. Its *ideal* contains its value in real-number arithmetic, if every choice and every shift is as
-//! the hardware makes it. Its *error* contains the hardware's value minus the ideal. An operation adds its own rounding to the
-//! errors of its inputs, as it magnifies them. For example, a product a · b has the error a · εb + b · εa + εa · εb.
+//! Each node gets two intervals. Its *ideal* contains its value in real-number arithmetic, if every choice and every shift is
+//! decided as in the hardware. Its *error* contains the hardware's value minus the ideal value. An operation adds its own
+//! rounding to the errors that follow from the errors of its inputs. For example, a product a · b has the error a · εb + b · εa
+//! + εa · εb.
 //!
 //! The shift that normalises a word depends on the word. The analysis therefore treats each possible shift separately, with the
 //! word limited to the values that have this shift.
@@ -13,7 +14,7 @@ use glint_formula::Enclosure;
 use super::node::{Approximation, NodeId, Operation, PlanNode, middle, normalising_shifts};
 use super::plan::ExpressionPlan;
 
-/// The values of an integer part that are followed one by one.
+/// The largest number of integer parts that are analysed one by one.
 const MOST_INTEGERS: i64 = 70;
 
 /// The limits of a node's value and of its error, for all operands within a box.
@@ -21,7 +22,7 @@ const MOST_INTEGERS: i64 = 70;
 pub(super) struct NodeError {
     /// Contains the value in real-number arithmetic.
     pub(super) ideal: Enclosure,
-    /// Contains the hardware's value minus the ideal one.
+    /// Contains the hardware's value minus the ideal value.
     pub(super) error: Enclosure,
     /// Contains the hardware's value.
     pub(super) actual: Enclosure,
@@ -30,12 +31,12 @@ pub(super) struct NodeError {
 const NOTHING: Enclosure = Enclosure::exactly(0.0);
 const ANYTHING: Enclosure = Enclosure::between(f64::NEG_INFINITY, f64::INFINITY);
 
-/// Why a box has no error that can be stated: the box must be divided.
+/// The reason why no error can be stated for a box. The box must be divided.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Undecided {
-    /// The node that it is about.
+    /// The node whose error has no limit.
     pub(super) node: NodeId,
-    /// The reason.
+    /// The reason, as a phrase about the node. For example, `its value has no limit`.
     pub(super) what: &'static str,
 }
 
@@ -48,7 +49,7 @@ impl NodeError {
         Self { ideal, error: NOTHING, actual: ideal }
     }
 
-    /// The value of a node without limits. It does no harm where a choice takes the other case.
+    /// The value of a node without limits. It does not matter if a choice takes its other case.
     const UNKNOWN: Self = Self { ideal: ANYTHING, error: ANYTHING, actual: ANYTHING };
 
     /// Returns whether the value and its error have limits.
@@ -56,7 +57,7 @@ impl NodeError {
         self.ideal.is_finite() && self.error.is_finite()
     }
 
-    /// Returns the value with the ideal one limited to an interval that contains it, too.
+    /// Returns the value, with its ideal value limited to `limits` too. The caller must know that `limits` contain it.
     fn within(self, limits: Enclosure) -> Self {
         let low = self.ideal.low.max(limits.low);
         let high = self.ideal.high.min(limits.high);
@@ -67,44 +68,44 @@ impl NodeError {
         Self { ideal, ..self }.limited(ideal + self.error)
     }
 
-    /// Returns the value with the hardware's value limited to an interval that contains it, too.
+    /// Returns the value, with the hardware's value limited to `limits` too. The caller must know that `limits` contain it.
     fn limited(self, limits: Enclosure) -> Self {
         let low = self.actual.low.max(limits.low);
         let high = self.actual.high.min(limits.high);
-        // Where rounding has made the limits empty, the earlier limits stay.
+        // Rounding may have made the limits empty; then the earlier limits are kept.
         if low > high { self } else { Self { actual: Enclosure::between(low, high), ..self } }
     }
 
-    /// Returns the value if it is the same for the whole box, and exact.
+    /// Returns the value if it is exact, and the same for the whole box; otherwise `None`.
     fn known(self) -> Option<f64> {
         let is_known = self.error == NOTHING && self.ideal.low == self.ideal.high;
         is_known.then_some(self.ideal.low)
     }
 }
 
-/// Takes the values of all nodes, and the first node without limits.
+/// A function that takes the values of all nodes in one branch of the analysis, and the first node without limits.
 type Visit<'v> = dyn FnMut(&[NodeError], Option<&Undecided>) + 'v;
 
-/// The limits of the nodes so far.
+/// The limits of the nodes that were analysed so far.
 #[derive(Clone)]
 struct Known {
     values: Vec<NodeError>,
     undecided: Option<Undecided>,
 }
 
-/// The analysis of a plan: which of its errors count.
+/// The analysis of the errors of a plan.
 #[derive(Clone, Copy)]
 pub(super) struct ErrorAnalysis<'p> {
     pub(super) plan: &'p ExpressionPlan,
-    /// The nodes whose values are wanted; the others get 0.
+    /// For each node, whether its value is needed. The other nodes get the value 0.
     pub(super) needed: &'p [bool],
-    /// The only source whose error counts; `None` for all of them.
+    /// The only rounding operation whose error counts, by its number; `None` if all errors count.
     pub(super) only: Option<usize>,
 }
 
 impl ErrorAnalysis<'_> {
-    /// Calls `visit` with the values of all nodes, once for each way in which words can be normalised. `operands` are the
-    /// limits of the operands' values.
+    /// Calls `visit` with the values of all nodes, once for each combination of shifts and integer parts that can occur.
+    /// `operands` has the limits of the operands' values.
     pub(super) fn run(&self, operands: &[(&str, Enclosure)], visit: &mut Visit<'_>) {
         let values = Vec::with_capacity(self.plan.nodes.len());
         self.run_from(Known { values, undecided: None }, operands, visit);
@@ -140,7 +141,7 @@ impl ErrorAnalysis<'_> {
         visit(&known.values, known.undecided.as_ref());
     }
 
-    /// Continues behind a normalised word, once for each shift that the word can need.
+    /// Continues the analysis after a normalised word, once for each shift that can occur.
     fn each_shift(
         &self,
         word: NodeId,
@@ -156,7 +157,7 @@ impl ErrorAnalysis<'_> {
         let (low, high) = raw_limits(actual, format);
         let step = if by_pairs { 2 } else { 1 };
         if low <= 0 {
-            // A word of zeros stays so, and counts as shifted as far as possible.
+            // A word of zeros stays 0, and its shift has the largest number of bits.
             let mut branch = known.clone();
             self.limit(&mut branch.values, word, NOTHING);
             branch.values.push(NodeError::exactly(NOTHING));
@@ -165,7 +166,7 @@ impl ErrorAnalysis<'_> {
         }
         let mut places = 0;
         while places < format.width() {
-            // The words whose top bits are `places` zeros, and not `step` more.
+            // The words whose top `places` bits are 0, and whose next `step` bits are not all 0.
             let above = 1i128 << (format.width() - places);
             let least = (above >> step).max(1);
             places += step;
@@ -179,7 +180,7 @@ impl ErrorAnalysis<'_> {
             );
             let mut branch = known.clone();
             self.limit(&mut branch.values, word, octave);
-            // The bits of the word are a fraction of as many bits.
+            // The bits of the word become a fraction with as many bits.
             let factor = exp2(shift as i32 + format.frac - format.width() as i32);
             let NodeError { ideal, error, actual } = branch.values[word.0];
             branch.values.push(NodeError {
@@ -192,14 +193,15 @@ impl ErrorAnalysis<'_> {
         }
     }
 
-    /// Returns the integer parts that a node can have, the first and the last; `None` if they are too many.
+    /// Returns the smallest and the largest integer part that the value of a node can have. Returns `None` if there are more
+    /// than 70 such integers.
     fn integers(&self, id: NodeId, values: &[NodeError]) -> Option<(i64, i64)> {
         let actual = values[id.0].actual;
         let (first, last) = (actual.low.floor() as i64, actual.high.floor() as i64);
         (last - first < MOST_INTEGERS).then_some((first, last))
     }
 
-    /// Continues behind an integer part, once for each value that it can have.
+    /// Continues the analysis after an integer part, once for each value that the integer part can have.
     fn each_integer(
         &self,
         id: NodeId,
@@ -218,7 +220,8 @@ impl ErrorAnalysis<'_> {
         }
     }
 
-    /// Continues behind a normalised word, the last of `branch`, whose node of places follows it.
+    /// Continues the analysis after a normalised word, which is the last value of `branch`. The next node is the number of bits
+    /// of its shift, with the value `places`.
     fn with_places(
         &self,
         mut branch: Known,
@@ -230,7 +233,8 @@ impl ErrorAnalysis<'_> {
         self.run_from(branch, operands, visit);
     }
 
-    /// Limits a node to hardware values within `limits`, and the nodes that it comes from as far as that follows.
+    /// Limits a node to hardware values within `limits`, and also the nodes from which it is computed, if limits for them
+    /// follow.
     fn limit(&self, values: &mut [NodeError], id: NodeId, limits: Enclosure) {
         let NodeError { ideal, error, .. } = values[id.0];
         let within = limits - error;
@@ -260,7 +264,8 @@ impl ErrorAnalysis<'_> {
         }
     }
 
-    /// Returns the limits of a node, from the limits of its inputs.
+    /// Returns the limits of the value and of the error of a node, computed from the limits of the nodes that the operation
+    /// reads. Fails if the box must be divided first.
     fn value(
         &self,
         id: NodeId,
@@ -375,7 +380,7 @@ impl ErrorAnalysis<'_> {
         }
         let value = value.within(node.limits).limited(self.actual(node, values));
         let value = value.limited(node.actual_limits);
-        // A result's format holds all values that are within the allowed error, so that its error tells whether it fits.
+        // The format of a result can represent all values within the allowed error, so its error shows whether the value fits.
         let drops_bits = match node.operation {
             Operation::ShiftLeft(..) => true,
             Operation::Narrow(..) | Operation::Middle(_) => !self.plan.proved.contains(&id),
@@ -387,10 +392,12 @@ impl ErrorAnalysis<'_> {
         Ok(value)
     }
 
-    /// Returns limits of the hardware's value that follow from the hardware's values of its inputs alone.
+    /// Returns limits of the hardware's value of a node that follow from the hardware's values of its inputs alone. They may be
+    /// infinite.
     fn actual(&self, node: &PlanNode, values: &[NodeError]) -> Enclosure {
         let input = |id: NodeId| values[id.0].actual;
-        // If the operands are known, so is each rounding error, and may be 0 by chance. A share counts the largest that it can be.
+        // If the operands have single values, so has each rounding error, which may be 0 by chance. A share counts the largest
+        // possible error.
         let shortened = |before: NodeId, after: Enclosure| {
             if self.only.is_none() {
                 return after;
@@ -439,12 +446,12 @@ impl ErrorAnalysis<'_> {
 
 /// Returns the limits of a choice.
 ///
-/// If rounding can make the condition wrong, the hardware may give the other case than the formula has. Both cases then count,
-/// and how far they are apart.
+/// If rounding can make the condition wrong, the hardware may take the other case than the formula. Then the errors of both
+/// cases count, and the difference between both cases.
 fn chosen(condition: NodeId, cases: [NodeId; 2], values: &[NodeError]) -> NodeError {
     let [zero, one] = cases.map(|case| values[case.0]);
     let condition = values[condition.0];
-    // If nothing was rounded before the condition, the hardware decides as the formula does.
+    // If nothing was rounded before the condition, the hardware decides like the formula.
     let decides_alike = condition.error == NOTHING;
     let ideal = zero.ideal.hull(one.ideal);
     let Some(bit) = fixed(condition.actual) else {
@@ -462,21 +469,21 @@ fn chosen(condition: NodeId, cases: [NodeId; 2], values: &[NodeError]) -> NodeEr
     NodeError::new(ideal, taken.error + (taken.ideal - other.ideal).hull(NOTHING))
 }
 
-/// Returns the values of a bit, which is 1 for the whole box, or 0 for the whole box, or neither.
+/// Returns the values of a bit that is 1 for the whole box, 0 for the whole box, or undecided.
 fn bit(is_one: bool, is_zero: bool) -> Enclosure {
     let low = if is_one { 1.0 } else { 0.0 };
     let high = if is_zero { 0.0 } else { 1.0 };
     Enclosure::between(low, high)
 }
 
-/// Returns the limits of a condition, from the bit that the formula has and the bit that the hardware has. If nothing
-/// was rounded before it, both are the same bit.
+/// Returns the limits of a condition, from the limits of the bit in the formula and of the bit in the hardware. If nothing was
+/// rounded before the condition, `is_exact` must be true: then both are the same bit.
 fn condition(ideal: Enclosure, actual: Enclosure, is_exact: bool) -> NodeError {
     let error = if is_exact { NOTHING } else { actual - ideal };
     NodeError { ideal, error, actual }
 }
 
-/// Returns the value, if the limits leave a single one.
+/// Returns the value if the limits contain only one value; otherwise `None`.
 fn fixed(limits: Enclosure) -> Option<f64> {
     (limits.low == limits.high).then_some(limits.low)
 }
@@ -487,7 +494,7 @@ fn product(a: NodeError, b: NodeError, is_square: bool) -> NodeError {
     NodeError::new(ideal, error)
 }
 
-/// Returns limits of the square of a value, which is never below 0.
+/// Returns limits of the square of a value, which are never below 0.
 fn squared(a: Enclosure) -> Enclosure {
     let square = a * a;
     let holds_zero = a.low <= 0.0 && a.high >= 0.0;
@@ -512,18 +519,18 @@ fn absolute(a: NodeError) -> NodeError {
     NodeError::new(Enclosure::between(0.0, largest), a.error.hull(other.error))
 }
 
-/// Returns the smaller of two. An error of the result is never beyond the errors of both.
+/// Returns the limits of the smaller of two values. Its error lies within the errors of both values.
 fn minimum(a: NodeError, b: NodeError) -> NodeError {
     let ideal = Enclosure::between(a.ideal.low.min(b.ideal.low), a.ideal.high.min(b.ideal.high));
     NodeError::new(ideal, a.error.hull(b.error))
 }
 
-/// Returns the enclosure times a power of two, which loses nothing.
+/// Returns the enclosure times a power of two, without rounding.
 fn scaled(a: Enclosure, factor: f64) -> Enclosure {
     Enclosure::between(a.low * factor, a.high * factor)
 }
 
-/// Returns the error of dropping the lowest `places` bits of a value, which then has the format.
+/// Returns the error of removing the lowest `places` bits of a value. `format` is the format after the rounding.
 fn rounding_error(places: i32, format: Format, rounding: Rounding) -> Enclosure {
     if places <= 0 {
         return NOTHING;
@@ -546,12 +553,12 @@ fn raw_limits(value: Enclosure, format: Format) -> (i128, i128) {
     (first.max(least as f64) as i128, last.min(most as f64) as i128)
 }
 
-/// Checks that the bits that a node drops at the top are copies of the sign.
+/// Checks that the bits that a node drops at the top are copies of the sign. Fails if the value may exceed the format.
 fn check_fit(node: NodeId, value: NodeError, format: Format) -> Result<(), Undecided> {
     let unit = exp2(format.frac);
     let actual = value.actual;
     let (low, high) = format.range();
-    // A raw value is an integer, so that up to one unit beyond the limits is none.
+    // A raw value is an integer, so a limit that is less than one unit beyond the format allows no raw value beyond it.
     let is_below = actual.low * unit <= low as f64 - 1.0;
     let is_above = actual.high * unit >= high as f64 + 1.0;
     if is_below || is_above {
@@ -567,8 +574,8 @@ fn known_places(node: NodeId, places: NodeError) -> Result<i32, Undecided> {
     }
 }
 
-/// Returns the limits of a function of one number: the error of its polynomials, and the error of its operand times the
-/// slope of the function.
+/// Returns the limits of the value and of the error of a function of one number. The error is the error of the polynomials plus
+/// the effect of the operand's error. Fails if the operand may leave the domain, or if the function has no value for it.
 fn approximated(
     id: NodeId,
     approximation: &Approximation,
@@ -582,7 +589,7 @@ fn approximated(
         function.operand.to_f64(first.into()),
         function.operand.to_f64(last.into()),
     );
-    // Between the last raw operand of the domain and the next there is none.
+    // No raw operand lies between the end of the domain and one unit beyond it.
     let unit = exp2(-function.operand.frac);
     if actual.low <= domain.low - unit || actual.high >= domain.high + unit {
         return Err(Undecided { node: id, what: "its operand may leave the domain" });
@@ -603,7 +610,7 @@ fn approximated(
     let mut error = NOTHING;
     if !is_exact {
         let whole = operand.ideal.hull(inside(actual));
-        // The value at the hardware's operand, minus the value at the ideal one.
+        // The value at the hardware's operand, minus the value at the ideal operand.
         let at_actual = formula.enclose(&[("x", inside(actual))]).map_err(|_| undecided)?;
         error = at_actual - ideal;
         if let Ok((_, slope)) = formula.slope("x", whole) {

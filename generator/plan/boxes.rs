@@ -1,7 +1,7 @@
 //! Proves a bound of the error of a result over all of its operands, box by box.
 //!
-//! The box with the largest error is divided first. A box in which nothing can be said, because a part may leave its format
-//! or a function may have no value there, counts as the largest.
+//! The box with the largest error is divided first. A box whose error has no limit counts as the largest: a part may exceed its
+//! format there, or a function may have no value.
 
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
@@ -12,15 +12,15 @@ use super::analyse::{ErrorAnalysis, NodeError, Undecided};
 use super::plan::ExpressionPlan;
 use super::statement::ExpressionStatement;
 
-/// Raw limits of each operand, both included.
+/// The smallest and the largest raw value of each operand, both included.
 pub(super) type OperandBox = Vec<(i64, i64)>;
 
-/// The error of a result within a box, in units of its last place.
+/// The largest error of a result in a box of operands, in units of the result's last bit.
 #[derive(Clone, Debug)]
 pub(super) struct BoxError {
     pub(super) limits: OperandBox,
     pub(super) units: f64,
-    /// Why there is no error, if `units` is infinite.
+    /// The reason why the error has no limit, if `units` is infinite.
     pub(super) undecided: Option<Undecided>,
 }
 
@@ -40,14 +40,15 @@ impl PartialOrd for BoxError {
 
 impl Ord for BoxError {
     fn cmp(&self, other: &Self) -> Ordering {
-        // Among boxes without a limit of the error, the largest is divided first.
+        // Among boxes whose error has no limit, the box with the most combinations is divided first.
         let size = |it: &Self| size_of(&it.limits);
         self.units.total_cmp(&other.units).then_with(|| size(self).cmp(&size(other)))
     }
 }
 
 impl BoxError {
-    /// Returns the error in words, with the part of the plan that has no limit. For example, `cannot be proved below 1.250 units`.
+    /// Returns the error as a phrase, with the part of the plan that has no limit, if there is one. For example, `cannot be
+    /// proved below 1.250 units`.
     pub(super) fn words(&self, plan: &ExpressionPlan) -> String {
         match &self.undecided {
             None => format!("cannot be proved below {:.3} units", self.units),
@@ -58,7 +59,7 @@ impl BoxError {
     }
 }
 
-/// Returns the number of combinations of operands in a box, or the largest number there is.
+/// Returns the number of combinations of operands in a box, at most the largest `u128`.
 fn size_of(limits: &OperandBox) -> u128 {
     let mut size: u128 = 1;
     for (low, high) in limits {
@@ -67,12 +68,12 @@ fn size_of(limits: &OperandBox) -> u128 {
     size
 }
 
-/// The proof of one result of a plan.
+/// The proof of an error bound for one result of a plan.
 pub(super) struct ResultProof<'p> {
     pub(super) statement: &'p ExpressionStatement,
     pub(super) plan: &'p ExpressionPlan,
     pub(super) result: usize,
-    /// For each node, whether the result reads it.
+    /// For each node, whether the result depends on it.
     pub(super) needed: Vec<bool>,
 }
 
@@ -85,10 +86,8 @@ impl<'p> ResultProof<'p> {
         Self { statement, plan, result, needed: plan.needed_for(result) }
     }
 
-    /// Returns the box with the largest error, after as many divisions as bring the error below `enough` units, at most
-    /// `divisions`.
-    ///
-    /// No error of any operand is larger than the error of the box.
+    /// Returns the box with the largest error. Boxes are divided until this error is at most `enough` units, or `divisions`
+    /// times. No operands have a larger error than this box states. Returns `None` if the result is promised for no operands.
     pub(super) fn worst(&self, enough: f64, divisions: usize) -> Option<BoxError> {
         let mut open = BinaryHeap::new();
         open.extend(self.error_in(self.statement.domain()));
@@ -107,7 +106,7 @@ impl<'p> ResultProof<'p> {
         open.pop()
     }
 
-    /// Returns the error within a box; `None` if nothing is promised there.
+    /// Returns the largest error in a box; `None` if nothing is promised in the box.
     fn error_in(&self, limits: OperandBox) -> Option<BoxError> {
         let operands = self.statement.enclosed_operands(&limits);
         if self.statement.results[self.result].is_promised(&operands) == Some(false) {
@@ -124,7 +123,8 @@ impl<'p> ResultProof<'p> {
         Some(BoxError { limits, units, undecided: first_undecided })
     }
 
-    /// Calls `visit` with each value that the result can have within a box.
+    /// Analyses the result in a box, and calls `visit` with the values of each branch of the analysis. If `only` has a source,
+    /// no other source has rounding errors.
     fn run(
         &self,
         limits: &OperandBox,
@@ -137,7 +137,7 @@ impl<'p> ResultProof<'p> {
         analysis.run(&operands, &mut |values, undecided| visit(&values[node.0], undecided));
     }
 
-    /// Returns the largest error of a value, in units of the last place of the result.
+    /// Returns the largest error of a value, in units of the last bit of the result. It is infinite if the value has no limits.
     fn units(&self, value: &NodeError) -> f64 {
         if !value.is_limited() {
             return f64::INFINITY;
@@ -146,7 +146,7 @@ impl<'p> ResultProof<'p> {
         value.error.low.abs().max(value.error.high.abs()) * exp2(fraction)
     }
 
-    /// Returns how many units of the error within a box come from one source alone.
+    /// Returns the error in a box that remains if only the rounding of `source` counts, in units of the result's last bit.
     pub(super) fn share(&self, limits: &OperandBox, source: usize) -> f64 {
         let mut units: f64 = 0.0;
         self.run(limits, Some(source), &mut |value, _| units = units.max(self.units(value)));
@@ -154,9 +154,9 @@ impl<'p> ResultProof<'p> {
     }
 }
 
-/// Something that is known of a box, for the choice of the operand along which a box is divided.
+/// Facts about a box of operands that decide along which operand the box is divided.
 pub(super) trait BoxScore {
-    /// Returns a number that is smaller the more is known; infinite if nothing is.
+    /// Returns a number that is smaller the narrower the limits in the box are. It is infinite without limits.
     fn score(&self) -> f64;
 }
 
@@ -166,16 +166,16 @@ impl BoxScore for BoxError {
     }
 }
 
-/// Returns a number with its leading digits alone: two numbers that differ by less than a per cent are mostly the same.
+/// Returns a positive number without its low bits. Numbers that differ by less than a per cent mostly become equal.
 fn coarse(value: f64) -> f64 {
     const DROPPED_BITS: u32 = 46;
     f64::from_bits(value.to_bits() >> DROPPED_BITS << DROPPED_BITS)
 }
 
-/// Returns the two halves of a box, divided along the operand on which its score depends most; `None` for a single
-/// combination. A half for which `known` gives nothing is left out.
+/// Divides a box along the operand on which the box's score depends most, and returns the facts about both halves. Returns
+/// `None` for a single combination. A half for which `known` returns `None` is left out.
 ///
-/// The score depends most on an operand if it is smallest where the operand has its middle value alone.
+/// The score depends most on the operand that gives the smallest score when it has only its middle value.
 pub(super) fn best_halves<K: BoxScore>(
     limits: &OperandBox,
     known: &dyn Fn(&OperandBox) -> Option<K>,
@@ -190,7 +190,7 @@ pub(super) fn best_halves<K: BoxScore>(
         let mut slice = limits.clone();
         slice[operand] = (middle, middle);
         let score = known(&slice).map_or(f64::NEG_INFINITY, |slice| coarse(slice.score()));
-        // Of operands that are equally good, the one with the most values.
+        // Among equally good operands, the one with the most values is best.
         let rank = (score, u64::MAX - high.abs_diff(low), operand);
         if best.is_none_or(|other| rank < other) {
             best = Some(rank);
@@ -201,7 +201,7 @@ pub(super) fn best_halves<K: BoxScore>(
     Some(halves.iter().filter_map(known).collect())
 }
 
-/// Returns the two halves of a box along one operand; `None` if it has a single value of this operand.
+/// Returns the two halves of a box along one operand; `None` if the box has a single value of this operand.
 fn halves_along(limits: &OperandBox, operand: usize) -> Option<[OperandBox; 2]> {
     let (low, high) = limits[operand];
     if low == high {

@@ -1,8 +1,8 @@
 //! Estimates the area of a plan, so that the planner can choose among several plans for the same formulas.
 //!
-//! The unit is the look-up table of four inputs. An adder, a choice and a comparison take one for each bit. A table of polynomials
-//! takes one for 16 words of a bit, and the sums of Horner's rule. Products take multipliers, and look-up tables only for the bits
-//! that a multiplier of 18 by 18 bits does not have.
+//! The unit is the look-up table of four inputs. An adder, a choice and a comparison take one for each bit. A table of
+//! polynomials takes one for each 16 words of a bit, and more for the sums of Horner's rule. Products take multipliers, and
+//! look-up tables only for the bits that exceed a multiplier of 18 by 18 bits.
 
 use super::node::{NodeId, Operation, PlanNode, normalising_shifts};
 use super::plan::ExpressionPlan;
@@ -11,35 +11,36 @@ use std::sync::Arc;
 use glint_approximate::{Piecewise, TargetFunction};
 use glint_base::fixed::Rounding;
 
-/// The words of a bit that a look-up table holds.
+/// The number of words of one bit that a look-up table can store.
 const WORDS_OF_CELL: usize = 16;
 
-/// The bits of a multiplier's factor.
+/// The number of bits of a multiplier's input.
 const FACTOR_BITS: u32 = 18;
 
-/// The look-up tables that a degree more takes: the sum, and delays beside it.
+/// The look-up tables for each degree of a polynomial: the sum, and the delays of values that wait for it.
 const CELLS_OF_A_DEGREE: f64 = 50.0;
 
-/// The look-up tables of an octave that has segments of its own length: a row of the muxes that bring offsets into their place.
+/// The look-up tables for each octave that has its own length of segments: a row of muxes that select the bits of the offset.
 const CELLS_OF_AN_OCTAVE: f64 = 12.0;
 
-/// A table of more bits goes into a block memory on most families, from which a word arrives too late for 150 MHz.
+/// The largest table in bits that stays in look-up tables on most families. A larger one goes into a block memory, which
+/// delivers a word too late for 150 MHz.
 const MOST_BITS_OF_FAST_TABLE: u64 = 2048;
 
-/// The look-up tables that the planner rather takes than a block memory.
+/// The cost of a block memory in look-up tables. The planner prefers a plan with fewer look-up tables more than this.
 const CELLS_IN_PLACE_OF_BLOCK: f64 = 300.0;
 
-/// The look-up tables for each pair of bits that a multiplier does not have.
+/// The look-up tables for each pair of bits that exceeds the multiplier.
 const CELLS_OF_BIT_PAIR: f64 = 1.5;
 
 impl ExpressionPlan {
-    /// Returns an estimate of the look-up tables that the whole plan takes.
+    /// Returns an estimate of the number of look-up tables of four inputs that the whole plan takes.
     pub(super) fn total_cells(&self) -> f64 {
         (0..self.nodes.len()).map(|at| self.cells(NodeId(at))).sum()
     }
 
-    /// Returns an estimate of the look-up tables of four inputs that a node takes. It is 0 for an operand, a constant, and for an
-    /// operation that only selects bits.
+    /// Returns an estimate of the number of look-up tables of four inputs that a node takes. It is 0 for an operand, for a
+    /// constant, and for an operation that only selects bits.
     pub fn cells(&self, id: NodeId) -> f64 {
         let node = self.node(id);
         let width = f64::from(node.format.width());
@@ -60,10 +61,10 @@ impl ExpressionPlan {
             }
             Operation::Add(..) | Operation::Subtract(..) | Operation::Choose { .. } => width,
             Operation::Absolute(_) => 2.0 * width,
-            // The comparison of the same two values serves the other one as well.
+            // A maximum of the same two values uses the comparison of the minimum.
             Operation::Minimum(..) => width,
             Operation::Maximum(..) => 2.0 * width,
-            // A number below 0 shows its sign.
+            // The sign bit says whether a number is below 0.
             Operation::Less(_, b) if self.is_zero(*b) => 0.0,
             Operation::Less(a, b) => f64::from(width_of(a).max(width_of(b))),
             Operation::NonZero(a) => f64::from(width_of(a)) / 3.0,
@@ -88,7 +89,7 @@ impl ExpressionPlan {
         matches!(self.node(id).operation, Operation::Constant { raw: 0, .. })
     }
 
-    /// Returns the number of products that a node computes. A table of polynomials of degree 2 computes two.
+    /// Returns the number of products that a node computes. For example, a table of polynomials of degree 2 computes two.
     pub fn products(&self, id: NodeId) -> usize {
         match &self.node(id).operation {
             Operation::Multiply(..) => 1,
@@ -100,7 +101,7 @@ impl ExpressionPlan {
     }
 }
 
-/// Returns the look-up tables for the bits of two factors that a multiplier does not have.
+/// Returns the number of look-up tables for the bits of two factors that exceed a multiplier.
 fn cells_of_product(a: &PlanNode, b: &PlanNode) -> f64 {
     let signed_width = |node: &PlanNode| node.format.width() + u32::from(!node.format.signed);
     let [a, b] = [a, b].map(signed_width);
@@ -108,8 +109,8 @@ fn cells_of_product(a: &PlanNode, b: &PlanNode) -> f64 {
     CELLS_OF_BIT_PAIR * (excess(a, b) + excess(b, a))
 }
 
-/// Returns an estimate of the look-up tables that a function takes in a pipeline, with the operations of its range reduction. They are
-/// infinite if one of these operations has too many bits.
+/// Returns an estimate of the number of look-up tables that a function takes in a pipeline, including the operations of its
+/// range reduction. It is infinite if one of these operations has too many bits.
 pub(super) fn cells_of_function(function: &TargetFunction, found: &Arc<Piecewise>) -> f64 {
     if found.reduction.is_some() {
         let plan = ExpressionPlan::of_function(function, found);

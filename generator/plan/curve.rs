@@ -1,9 +1,10 @@
-//! Adds the nodes that compute a function of one number: a table of polynomials, with the range reduction before and behind it.
+//! Adds the nodes that compute a function of one number: a table of polynomials, with the range reduction before it and after
+//! it.
 //!
-//! A range reduction maps the operand to a number of a shorter domain, for which the table is made, and restores the result from the
-//! polynomial's value. For example, an odd function needs polynomials for x ≥ 0 only: the nodes before the table compute |x|, and
-//! the nodes behind it negate the value if x is negative. [`Reduction`] defines the mapping and the restoring in integers, and the
-//! proof of the polynomials relies on that definition.
+//! A range reduction maps the operand to a number in a shorter domain, for which the table is made, and restores the result
+//! from the polynomial's value. For example, an odd function needs polynomials for x ≥ 0 only. The nodes before the table
+//! compute |x|, and the nodes after it negate the value if x is negative. [`Reduction`] defines both steps in integers, and the
+//! proof of the polynomials relies on this definition.
 
 use std::sync::Arc;
 
@@ -14,18 +15,19 @@ use super::node::{Approximation, NodeId, Operation};
 use super::plan::ExpressionPlan;
 use super::refusal::PlanRefusal;
 
-/// The number of an operand in the shorter domain, and the nodes from which the result is restored. The steps are done in the
+/// The operand in the shorter domain, and the nodes from which the result is restored. The steps of the restoring have the
 /// order of the fields.
 struct ReducedOperand {
-    /// The number, as an integer.
+    /// The operand in the shorter domain, as an integer.
     number: NodeId,
-    /// A value that is added to the polynomial.
+    /// A value that is added to the polynomial's value, or `None` if the step is left out.
     addend: Option<NodeId>,
-    /// The number of bits by which the sum is shifted to the right.
+    /// The number of bits by which the sum is shifted to the right, or `None` if the step is left out.
     places: Option<NodeId>,
-    /// A bit that is 0 if the result must be 0.
+    /// A bit that is 0 if the result must be 0, or `None` if the result needs no such bit.
     is_nonzero: Option<NodeId>,
-    /// A bit and a raw value: if the bit is 1, the result is the raw value minus the result so far.
+    /// A bit and a raw value, or `None` if the step is left out. If the bit is 1, the result is the raw value minus the
+    /// result of the earlier steps.
     negative: Option<(NodeId, i64)>,
 }
 
@@ -36,7 +38,7 @@ impl ReducedOperand {
 }
 
 impl ExpressionPlan {
-    /// Returns the plan of a single function of the operand `x`. The only result is the value of the function.
+    /// Returns the plan of a single function of the operand `x`. Its only result is the value of the function.
     ///
     /// # Errors
     /// Fails if a node has too many bits.
@@ -57,8 +59,8 @@ impl ExpressionPlan {
         Ok(plan)
     }
 
-    /// Returns the plan with the nodes of its range reductions, and the new number of each node. While the planner looks for a plan,
-    /// a function with a range reduction is a single node, because its error is proved for the whole.
+    /// Returns the plan with the nodes of its range reductions, and the new index of each node. During the search for a plan, a
+    /// function with a range reduction is a single node, because its error is proved for the whole function.
     ///
     /// # Errors
     /// Fails if a node has too many bits.
@@ -86,7 +88,8 @@ impl ExpressionPlan {
         Ok((plan, renumbered))
     }
 
-    /// Adds a function of a node whose polynomials are known. The format of the node must be the operand format of the polynomials.
+    /// Adds a function of the node `x` with known polynomials, and returns the node of its result. The format of `x` must be
+    /// the operand format of the polynomials. Fails if a node has more than 64 bits.
     pub(super) fn curve(
         &mut self,
         name: &str,
@@ -122,7 +125,8 @@ impl ExpressionPlan {
         Ok(last)
     }
 
-    /// Adds the nodes before the table.
+    /// Adds the nodes that map the operand `x` to the shorter domain of the table, and returns them. Fails if a node has more
+    /// than 64 bits.
     fn reduced(
         &mut self,
         x: NodeId,
@@ -147,7 +151,8 @@ impl ExpressionPlan {
         }
     }
 
-    /// Adds the nodes of [`Rule::Size`]: |x|, but at most the largest number of `bits` bits.
+    /// Adds the nodes of [`Rule::Size`], and returns them: |x|, limited to `bits` bits. `centre` is the raw value from which
+    /// the result of a negative operand is subtracted, or `None` for an even function.
     fn size(
         &mut self,
         x: NodeId,
@@ -162,7 +167,8 @@ impl ExpressionPlan {
         Ok(ReducedOperand { negative, ..ReducedOperand::new(number) })
     }
 
-    /// Adds the nodes of [`Rule::Quadrants`]: the distance from the nearer zero of the sine, in quarter turns of 2^`bits` steps.
+    /// Adds the nodes of [`Rule::Quadrants`], and returns them: the distance from the nearest zero of the sine. A quarter turn
+    /// has 2^`bits` steps. `ahead` is the number of quarter turns that are added to the angle.
     fn angle_in_quadrant(
         &mut self,
         x: NodeId,
@@ -183,7 +189,8 @@ impl ExpressionPlan {
         Ok(ReducedOperand { negative: Some((is_negative, 0)), ..ReducedOperand::new(number) })
     }
 
-    /// Returns a number that is not negative and at most 2^`bits`, or 2^`bits` − 1 in place of 2^`bits`.
+    /// Returns the node of the integer `number`, limited to `bits` bits. The integer must be from 0 to 2^`bits`; the value
+    /// 2^`bits` becomes 2^`bits` − 1.
     fn limited_to_bits(
         &mut self,
         name: &str,
@@ -201,9 +208,9 @@ impl ExpressionPlan {
         self.narrow(name, limited, format, Rounding::Truncate)
     }
 
-    /// Adds the nodes of [`Rule::Octaves`]: the bits behind the leading 1 of x. If `has_pairs`, a bit above them tells the two
-    /// octaves of a pair apart. `restores` has the shift and the addend for each number of leading zeros; the addends have `frac`
-    /// fraction bits.
+    /// Adds the nodes of [`Rule::Octaves`], and returns them: the bits below the leading 1 of `x`. If `has_pairs`, one more bit
+    /// above them distinguishes the two octaves of a pair. `restores` has the shift and the addend for each number of leading
+    /// zeros. The addends have `frac` fraction bits. If `starts_at_0`, the operand may be 0.
     fn word_in_octave(
         &mut self,
         x: NodeId,
@@ -243,7 +250,8 @@ impl ExpressionPlan {
         Ok(reduced)
     }
 
-    /// Adds x times the factor of an exponent, without its low bits. `scale` has the factor and the number of these bits.
+    /// Adds the product of `x` and the factor of an exponent, and returns its node. `scale` has the factor and the number of
+    /// low bits that the product drops. Returns `x` itself if `scale` is `None`.
     fn exponent_of_two(
         &mut self,
         x: NodeId,
@@ -256,8 +264,9 @@ impl ExpressionPlan {
         self.shorten("exponent", product, 0, Rounding::Truncate)
     }
 
-    /// Adds the nodes of [`Rule::Exponent`]: the fraction of an exponent, and the places by which its integer is away from
-    /// `whole`. `exponent` counts in units of 2^−`bits`.
+    /// Adds the nodes of [`Rule::Exponent`], and returns them: the fraction of an exponent, and the number of bits of the
+    /// shift. This number is the distance of the exponent's integer part from `whole`, and at most `most_places`. `exponent` is
+    /// in units of 2^−`bits`.
     fn fraction_of_exponent(
         &mut self,
         exponent: NodeId,
@@ -282,7 +291,8 @@ impl ExpressionPlan {
         Ok(reduced)
     }
 
-    /// Adds the nodes behind the table: the result with the fraction bits of `format`, rounded to the nearest.
+    /// Adds the nodes that restore the result from the table's value `polynomial`, and returns the node of the result. The
+    /// result is rounded to the nearest value with the fraction bits of `format`.
     fn restored(
         &mut self,
         polynomial: NodeId,
@@ -294,7 +304,7 @@ impl ExpressionPlan {
             value = self.add("with_octave", value, addend)?;
         }
         if let Some(places) = reduced.places {
-            // The first of the bits that are shifted out decides the rounding.
+            // The first bit that is shifted out decides the rounding, so it is kept.
             let own = self.node(value).format;
             let finer = Format { frac: own.frac + 1, ..own };
             let longer = self.narrow("longer", value, finer, Rounding::Truncate)?;

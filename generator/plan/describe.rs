@@ -1,4 +1,4 @@
-//! Says in words what the parts of a plan compute, for pages that people read.
+//! Describes in words what the nodes of a plan compute, for pages that people read.
 
 use super::node::{Approximation, NodeId, Operation};
 use super::plan::ExpressionPlan;
@@ -6,8 +6,8 @@ use glint_approximate::Curve;
 use glint_base::fixed::Rounding;
 
 impl ExpressionPlan {
-    /// Returns what a node computes, in terms of the names of other nodes. For example, `the size of x`, `a · b`, or `1 / x
-    /// for x = mantissa, by 16 polynomials of degree 2, 39 bits each`.
+    /// Returns a phrase about the computation of a node, in terms of the names of other nodes. For example, `the size of x`, `a
+    /// · b`, or `1 / x for x = mantissa, by 16 polynomials of degree 2, 39 bits each`.
     pub fn words(&self, id: NodeId) -> String {
         let name = |id: &NodeId| self.reference(*id);
         match &self.node(id).operation {
@@ -45,7 +45,7 @@ impl ExpressionPlan {
         }
     }
 
-    /// Returns how other nodes name a node: a constant by its value, any other node by its name.
+    /// Returns the text by which other nodes refer to a node: the value of a constant, and the name of any other node.
     fn reference(&self, id: NodeId) -> String {
         let node = self.node(id);
         match node.operation {
@@ -55,7 +55,7 @@ impl ExpressionPlan {
     }
 }
 
-/// Returns the function of a table, and the size of the table. `operand` is the name of the function's operand.
+/// Returns a phrase with the function of a table and the size of the table. `operand` is the name of the function's operand.
 fn table_words(approximation: &Approximation, operand: &str) -> String {
     let function = match &approximation.function.curve {
         Curve::Formula(formula) => formula.python(),

@@ -5,11 +5,11 @@ use super::node::{NodeId, Operation, PlanNode, middle, normalising_shifts};
 use super::plan::ExpressionPlan;
 
 impl ExpressionPlan {
-    /// Returns the raw value of each node for raw operands. For example, the plan of `x * y` has a node with the value 6 for x =
-    /// 2 and y = 3.
+    /// Returns the raw value of each node, from the raw values of the operands in their order. For example, the plan of `x * y`
+    /// has a node with the value 6 for x = 2 and y = 3.
     ///
     /// # Panics
-    /// Panics if there are fewer values than operands, or if the polynomials of the plan are not known yet.
+    /// Panics if there are fewer values than operands, or if the plan has a function whose polynomials are not known yet.
     pub fn values(&self, operands: &[i64]) -> Vec<i128> {
         let mut values: Vec<i128> = Vec::with_capacity(self.nodes.len());
         for at in 0..self.nodes.len() {
@@ -19,7 +19,8 @@ impl ExpressionPlan {
         values
     }
 
-    /// Returns the raw value of one node for raw operands. `known` returns the values of the nodes that it reads.
+    /// Returns the raw value of one node, from the raw values of the operands. `known` returns the raw value of a node that
+    /// this node reads.
     ///
     /// # Panics
     /// Panics as [`ExpressionPlan::values`] does.
@@ -28,10 +29,10 @@ impl ExpressionPlan {
         wrapped(self.node(id), self.whole_value(id, operands, known))
     }
 
-    /// Returns the value of a node before the bits beyond its format are dropped.
+    /// Returns the raw value of a node, with bits beyond the node's format.
     fn whole_value(&self, id: NodeId, operands: &[i64], known: &dyn Fn(NodeId) -> i128) -> i128 {
         let node = self.node(id);
-        // The value of an input with as many fraction bits as the other input, or as the result, has.
+        // Returns the raw value of `input` with `frac` fraction bits, if it has fewer.
         let aligned =
             |input: NodeId, frac: i32| known(input) << (frac - self.node(input).format.frac).max(0);
         let finest = |a: NodeId, b: NodeId| self.node(a).format.frac.max(self.node(b).format.frac);
@@ -93,13 +94,13 @@ impl ExpressionPlan {
     }
 }
 
-/// Returns the value that is left of `raw` when the bits beyond the format of the node are dropped.
+/// Returns the raw value after the bits beyond the format of the node are dropped.
 fn wrapped(node: &PlanNode, raw: i128) -> i128 {
     node.format.raw(node.format.bits(raw))
 }
 
-/// Returns the bits of a word shifted left until the top one is 1, and the places, or pairs of places. For example, 22 in
-/// 8 bits gives 176 and 3 places, or 88 and one pair.
+/// Returns the bits of a word after it is shifted left until its top bit is 1, and the number of bits of the shift. By pairs,
+/// the shift is even, and the number counts pairs. For example, 22 in 8 bits gives 176 and 3, or by pairs 88 and 1.
 fn normalised(word: i128, width: u32, by_pairs: bool) -> (i128, i128) {
     let mut bits = word;
     let mut places = 0;

@@ -1,5 +1,5 @@
-//! Computes the results of a plan for every combination of operands, and compares them with the formulas. This proves the largest
-//! error if there are few combinations.
+//! Computes the results of a plan for every combination of operands, and compares them with the formulas. If there are few
+//! combinations, this proves the largest error.
 
 use glint_base::fixed::exp2;
 use glint_formula::Fault;
@@ -9,8 +9,8 @@ use super::plan::ExpressionPlan;
 use super::refusal::PlanRefusal;
 use super::statement::ExpressionStatement;
 
-/// Returns the largest error of each result, in units of its last place, over every combination of operands for which the
-/// result is promised.
+/// Returns the largest error of each result, in units of its last bit, over every combination of operands for which the result
+/// is promised. It is 0 for a result that is promised for none.
 ///
 /// # Errors
 /// Fails if a formula has no value for a combination.
@@ -33,7 +33,9 @@ pub(super) fn largest_errors(
         .try_reduce(none, larger)
 }
 
-/// Returns the largest errors over all combinations with one value of the first operand.
+/// Returns the largest error of each result over all combinations in which the first operand has the raw value `first`, in
+/// units of the result's last bit. `rest` has the domains of the other operands. Fails if a formula has no value for a
+/// combination.
 fn errors_at(
     statement: &ExpressionStatement,
     plan: &ExpressionPlan,
@@ -62,7 +64,8 @@ fn errors_at(
     }
 }
 
-/// Raises the largest errors to the errors of one combination, where these are larger.
+/// Raises the entries of `largest` to the errors for the raw operands `raw`, if these errors are larger. Fails if a formula has
+/// no value for these operands.
 fn add_errors(
     statement: &ExpressionStatement,
     plan: &ExpressionPlan,
@@ -83,14 +86,14 @@ fn add_errors(
         let values = values.get_or_insert_with(|| plan.values(raw));
         let hardware = values[plan.proved[number].0] as f64;
         let off = (hardware - exact.low * unit).abs().max((hardware - exact.high * unit).abs());
-        // A difference of 0 is exact. Any other may have been rounded down.
+        // A difference of 0 is exact. Any other difference may have been rounded down.
         let error = if off == 0.0 { 0.0 } else { off.next_up() };
         largest[number] = largest[number].max(error);
     }
     Ok(())
 }
 
-/// Returns the refusal of a result whose formula has no value for a combination of raw operands.
+/// Makes the refusal for a result whose formula has no value for the raw operands `raw`.
 fn without_value(
     statement: &ExpressionStatement,
     result: usize,

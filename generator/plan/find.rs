@@ -1,5 +1,4 @@
-//! Finds the plan for the formulas of a statement, and proves the error of each result. It remembers the plans that it found
-//! before.
+//! Finds the plan for the formulas of a statement, and proves the error of each result. It caches the plans that it has found.
 
 use std::collections::HashMap;
 use std::sync::{Arc, LazyLock, Mutex};
@@ -17,14 +16,14 @@ use super::plan::ExpressionPlan;
 use super::refusal::PlanRefusal;
 use super::statement::ExpressionStatement;
 
-/// The divisions of the domain for the last bound, at least.
+/// The smallest number of divisions of the domain for the final bound.
 pub(super) const DIVISIONS: usize = 4000;
 
-/// Every combination of operands is computed if there are at most 2 to this power.
+/// The plan is computed for every combination of operands if there are at most 2 to this power.
 const MOST_COMBINATIONS: u32 = 20;
 
-/// The styles that the planner tries. If a table may have a little less than a whole unit of error, a single table needs no further bit
-/// beside the rounding of the result by half a unit.
+/// The styles that the planner tries. The final rounding has an error of up to half a unit. If a table has an error a little
+/// below one unit, a result from a single table may keep its bound with one guard bit less.
 const STYLES: [PlanStyle; 6] = [
     PlanStyle { table_error: 1.0, centres_fractions: false, keeps_functions: false },
     PlanStyle { table_error: 0.96, centres_fractions: false, keeps_functions: false },
@@ -34,10 +33,10 @@ const STYLES: [PlanStyle; 6] = [
     PlanStyle { table_error: 0.96, centres_fractions: false, keeps_functions: true },
 ];
 
-/// A number that no source has.
+/// A number that no rounding operation has.
 const NO_SOURCE: usize = usize::MAX;
 
-/// The identities by which a table of a short domain serves a longer one.
+/// The identities by which a table for a short domain serves a longer domain.
 const IDENTITIES: [Identity; 5] =
     [Identity::Odd, Identity::Even, Identity::Quadrants, Identity::Octaves, Identity::Exponent];
 
@@ -51,7 +50,7 @@ pub enum ProofKind {
 }
 
 impl ProofKind {
-    /// Returns a description of the method.
+    /// Returns a phrase that describes the method.
     pub fn words(self) -> &'static str {
         match self {
             Self::EveryCombination => "every combination of operands was computed",
@@ -63,17 +62,18 @@ impl ProofKind {
 /// A plan for the formulas of a statement, with a proven error bound for each result.
 #[derive(Clone, Debug)]
 pub struct ProvedPlan {
-    /// The formulas that the plan computes.
+    /// The formulas, operands and allowed errors for which the plan was made.
     pub statement: ExpressionStatement,
     /// The operations that compute the formulas.
     pub plan: ExpressionPlan,
-    /// The same plan with a single node for each function that has a range reduction. The errors are proved for this plan.
+    /// The same plan with a single node for each function that has a range reduction. The errors are proved for this form of
+    /// the plan.
     pub whole_functions: ExpressionPlan,
-    /// The proven error bound of each result, in units of the result's last place.
+    /// The proven error bound of each result, in units of the result's last bit.
     pub bounds: Vec<f64>,
-    /// The share that each node has in the error of each result, in units of the result's last place, by result and node. It is what
-    /// the rounding of this node alone adds to the error, in the box of operands with the largest error; 0 for a node that is
-    /// exact.
+    /// For each result and each node of `plan`, the node's share in the error of the result, in units of the result's last bit.
+    /// The share is the error that the rounding of this node adds, in the box of operands with the largest error. It is 0 for
+    /// an exact node.
     pub shares: Vec<Vec<f64>>,
     /// The method by which the bounds were proved.
     pub proof: ProofKind,
@@ -81,11 +81,12 @@ pub struct ProvedPlan {
 
 type FindResult = Result<Arc<ProvedPlan>, PlanRefusal>;
 
-/// Returns the plan for a statement, with proven error bounds. If the same plan was found before, it is returned without a new
+/// Returns the plan for a statement, with proven error bounds. A plan that was found earlier comes from a cache, without a new
 /// search.
 ///
 /// # Errors
-/// Fails if a formula has no plan, or if the plan does not keep the errors. The refusal says why.
+/// Fails if a formula has no plan, or if no plan keeps the allowed errors. The refusal says why, and how to change the
+/// statement.
 pub fn find(statement: &ExpressionStatement) -> FindResult {
     static FOUND: LazyLock<Mutex<HashMap<String, FindResult>>> = LazyLock::new(Mutex::default);
     let key = format!("{statement:?}");
@@ -97,10 +98,10 @@ pub fn find(statement: &ExpressionStatement) -> FindResult {
     found
 }
 
-/// A plan with its polynomials.
+/// A plan whose functions have polynomials.
 struct PlanCandidate {
     plan: ExpressionPlan,
-    /// The divisions of the domain by which the errors are known.
+    /// The number of divisions of the domain with which the errors were computed.
     divisions: usize,
 }
 
@@ -131,8 +132,8 @@ fn searched(statement: &ExpressionStatement) -> Result<ProvedPlan, PlanRefusal> 
     Ok(ProvedPlan { statement, plan, whole_functions: whole, bounds, shares, proof })
 }
 
-/// Returns the node of the plan that has the rounding error of node number `at` before it got range reductions. It is the table of a
-/// function with a range reduction, and otherwise the node itself.
+/// Returns the node of `plan` that has the rounding error of node number `at` of the plan without range reductions. It is the
+/// table of a function with a range reduction, and otherwise the node itself. `renumbered` has the new index of each node.
 fn rounding_node(plan: &ExpressionPlan, renumbered: &[NodeId], at: usize) -> NodeId {
     let first = if at == 0 { 0 } else { renumbered[at - 1].0 + 1 };
     let is_table = |node: &usize| matches!(plan.nodes[*node].operation, Operation::Polynomial(..));
@@ -142,7 +143,7 @@ fn rounding_node(plan: &ExpressionPlan, renumbered: &[NodeId], at: usize) -> Nod
     }
 }
 
-/// Returns the plan that takes the fewest look-up tables by the estimate.
+/// Returns the plan with the fewest look-up tables by the estimate, among the plans of all styles.
 ///
 /// # Errors
 /// Fails if no style has a plan, with the refusal of the first style.
@@ -173,14 +174,15 @@ fn smallest_candidate(statement: &ExpressionStatement) -> Result<PlanCandidate, 
     }
 }
 
-/// Returns a plan of a style that keeps the errors.
+/// Returns a plan in the given style that keeps the allowed errors, as far as `divisions` divisions of the domain show. Fails
+/// if the style has no such plan.
 fn candidate_with(
     statement: &ExpressionStatement,
     style: PlanStyle,
 ) -> Result<PlanCandidate, PlanRefusal> {
     let Allocation { mut guards, plan: estimate, divisions } = allocated(statement, style)?;
     let mut plan = with_polynomials(statement, &guards, estimate)?;
-    // The polynomials can have other formats than was estimated, and then another error.
+    // The polynomials can have other formats than estimated, and then other errors.
     while let Some(excess) = largest_excess(statement, &plan, divisions) {
         let source = excess.source(statement, &plan, &guards)?;
         guards.add_bit(source);
@@ -190,10 +192,11 @@ fn candidate_with(
     Ok(PlanCandidate { plan, divisions })
 }
 
-/// Returns the plan with polynomials for all of its functions.
+/// Returns the plan with polynomials for all of its functions. Fails if a function has no polynomials, or if the plan cannot be
+/// rebuilt with the polynomials.
 ///
-/// Polynomials may have results of another width than was estimated, and then a function that reads them has another
-/// operand. So the plan is made anew until each function has the polynomials that were found for it.
+/// Polynomials may have results of another width than estimated. A function that reads them then has another operand. The plan
+/// is therefore rebuilt until each function has polynomials that were found for exactly this function.
 fn with_polynomials(
     statement: &ExpressionStatement,
     guards: &Guards,
@@ -218,8 +221,8 @@ fn with_polynomials(
     }
 }
 
-/// Returns the polynomials of a function with the least cost in a pipeline: each degree more needs a product, a sum, and
-/// registers for all that waits for them.
+/// Returns the polynomials of a function with the lowest estimated cost in a pipeline. Each degree needs a product, a sum, and
+/// registers for all values that wait for them. Fails if the function has no polynomials.
 fn cheapest_polynomials(function: &TargetFunction) -> Result<Arc<Piecewise>, PlanRefusal> {
     let mut wishes = Vec::new();
     for degree in [1, 2, 3] {
@@ -243,7 +246,8 @@ fn cheapest_polynomials(function: &TargetFunction) -> Result<Arc<Piecewise>, Pla
         .map_err(|refusal| PlanRefusal::new(refusal.message, refusal.remedy))
 }
 
-/// Returns the share that each node has in the error of each result.
+/// Returns the share that each node of `plan` has in the error of each result, by result and node, in units of the result's
+/// last bit.
 fn error_shares(
     statement: &ExpressionStatement,
     plan: &ExpressionPlan,
@@ -254,7 +258,7 @@ fn error_shares(
         let proof = ResultProof::new(statement, plan, result);
         let mut of_result = vec![0.0; plan.nodes.len()];
         if let Some(worst) = proof.worst(0.0, divisions) {
-            // The rounding of the result itself has no source, and is in every share.
+            // The rounding of the result itself has no source, and is a part of every share.
             let own = proof.share(&worst.limits, NO_SOURCE);
             for (node, share) in plan.nodes.iter().zip(&mut of_result) {
                 if let Some(source) = node.source {
@@ -268,7 +272,8 @@ fn error_shares(
     shares
 }
 
-/// Returns a proved bound of the error of each result, after so many divisions of the domain.
+/// Returns a proven error bound for each result, in units of its last bit, after `divisions` divisions of the domain. Fails if
+/// a bound is not below the allowed error.
 pub(super) fn enclosed_errors(
     statement: &ExpressionStatement,
     plan: &ExpressionPlan,
@@ -278,7 +283,7 @@ pub(super) fn enclosed_errors(
     for (result, stated) in statement.results.iter().enumerate() {
         let proof = ResultProof::new(statement, plan, result);
         let Some(worst) = proof.worst(0.0, divisions) else {
-            // Nothing is promised for any operand.
+            // The result is promised for no operands.
             bounds.push(0.0);
             continue;
         };

@@ -1,7 +1,8 @@
 //! Rewrites the formulas of a statement as a plan, with given numbers of fraction bits.
 //!
-//! If a part of a formula is a function of one number, it becomes a table of polynomials, wherever that number comes from. For
-//! example, `sqrt(x^2 + y^2)` is the square root of the one number `x^2 + y^2`. Sums and products become operations of their own.
+//! If a part of a formula is a function of one number, it becomes a table of polynomials, even if that number is the value of
+//! another part. For example, `sqrt(x^2 + y^2)` is the square root of the one number `x^2 + y^2`. Sums and products become
+//! separate operations.
 
 mod direction;
 mod exponential;
@@ -26,50 +27,51 @@ use super::statement::{ExpressionStatement, StatedOverflow, StatedResult, Stated
 /// The widest operand of a table of polynomials, in bits. A wider one is shortened first.
 const WIDEST_OPERAND: u32 = 20;
 
-/// The widest factor of a product. A wider one, which comes from a product itself, is shortened first.
+/// The widest factor of a product, in bits. A wider factor, which is the result of a product itself, is shortened first.
 const WIDEST_FACTOR: u32 = 18;
 
 /// The cost of a product of two numbers that vary, if a product with a constant costs 1.
 const PRODUCT: u32 = 2;
 
-/// The cost of products up to which a function of one number is computed by products, in place of a table.
+/// The largest cost of products at which a function of one number is computed by products instead of a table.
 const MOST_PRODUCTS: u32 = 3;
 
-/// The most fraction bits that a constant may need to count as exact.
+/// The largest number of fraction bits that a constant may have to count as exact.
 const MOST_CONSTANT_BITS: u32 = 18;
 
-/// The divisions of the domain for the error of a single node.
+/// The number of divisions of the domain in a proof of the error of a single node.
 const DIVISIONS_FOR_AN_ERROR: usize = 64;
 
-/// How exact the parts of a plan are.
+/// The numbers of fraction bits and the choices with which formulas are rewritten as a plan.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Guards {
-    /// The fraction bits of each place where the plan rounds, relative to the result with the most of them.
+    /// For each rounding operation of the plan, in order, its guard bits: the number of fraction bits that it has beyond the
+    /// finest result. The number may be negative.
     pub(super) bits: Vec<i32>,
-    /// The choices that hold for the whole plan.
+    /// The choices that apply to the whole plan.
     pub(super) style: PlanStyle,
 }
 
 /// Choices that the planner makes for a whole plan. It tries several, and takes the smallest plan.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct PlanStyle {
-    /// The error that a table of polynomials may have, in units of its result.
+    /// The error that a table of polynomials may have, in units of the last bit of its result.
     pub(super) table_error: f64,
-    /// Whether the fraction of a normalised word is shortened to the middle of the values with the same upper bits; otherwise its
+    /// Whether a shortened fraction of a normalised word is the middle of all values with the same upper bits. Otherwise the
     /// low bits are dropped.
     pub(super) centres_fractions: bool,
-    /// Whether a function of an operand is a single table, before and behind which a range reduction can be. Otherwise the function is
-    /// rewritten, for example a root by the octaves of its operand.
+    /// Whether a function of an operand is a single table, which may have a range reduction. Otherwise the function is
+    /// rewritten. For example, a square root is then computed from the octave of its operand.
     pub(super) keeps_functions: bool,
 }
 
 impl Guards {
-    /// Makes guards without bits.
+    /// Makes guards for this style, without bits for any operation.
     pub(super) fn new(style: PlanStyle) -> Self {
         Self { bits: Vec::new(), style }
     }
 
-    /// Gives the place of this number a bit more.
+    /// Gives the rounding operation number `place` one more fraction bit.
     pub(super) fn add_bit(&mut self, place: usize) {
         if place >= self.bits.len() {
             self.bits.resize(place + 1, 0);
@@ -78,7 +80,7 @@ impl Guards {
     }
 }
 
-/// The polynomials that were found so far, by the functions that they approximate.
+/// The polynomials that were found so far. The key is the function that they approximate.
 #[derive(Clone, Debug, Default)]
 pub(super) struct FoundPolynomials(HashMap<String, Arc<Piecewise>>);
 
@@ -88,7 +90,7 @@ impl FoundPolynomials {
         self.0.insert(format!("{function:?}"), polynomials);
     }
 
-    /// Returns the polynomials of exactly this function, with its domain and its formats.
+    /// Returns the polynomials for exactly this function, with its domain and its formats, or `None`.
     fn get(&self, function: &TargetFunction) -> Option<Arc<Piecewise>> {
         if self.0.is_empty() {
             return None;
@@ -97,28 +99,28 @@ impl FoundPolynomials {
     }
 }
 
-/// A plan in the making.
+/// The state of the rewriting of formulas as a plan.
 pub(super) struct Lowering<'s> {
     statement: &'s ExpressionStatement,
     guards: &'s Guards,
     first_guard: i32,
     found: &'s FoundPolynomials,
     plan: ExpressionPlan,
-    /// The parts of formulas that have a node already, with their nodes.
+    /// The parts of formulas that already have a node, with this node.
     known: Vec<(Expression, NodeId)>,
     /// The tables that sines and cosines of the same angle share.
     octants: Vec<wave::OctantWaves>,
-    /// The number of operations that round, so far.
+    /// The number of rounding operations so far.
     sources: usize,
     /// The largest number of fraction bits among the results.
     finest: i32,
 }
 
-/// Returns the plan of a statement, and the number of places where it rounds. A place beyond `guards` has the guard
-/// `first_guard`.
+/// Returns the plan of a statement, and the number of its rounding operations. Operation number i gets the guard bits
+/// `guards.bits[i]`, or `first_guard` if the list is shorter.
 ///
 /// # Errors
-/// Fails if a formula has a part that no rule computes, or a part with too many bits.
+/// Fails if no rule computes a part of a formula, or if a part has too many bits or no finite values.
 pub(super) fn lowered(
     statement: &ExpressionStatement,
     guards: &Guards,
@@ -153,7 +155,8 @@ pub(super) fn lowered(
 }
 
 impl<'s> Lowering<'s> {
-    /// Returns the node of a result, rounded to its fraction bits.
+    /// Returns the node of the result with the index `number`, rounded to the result's fraction bits. Fails if a part has too
+    /// many bits, no finite values, or no rule.
     fn result(&mut self, number: usize) -> Result<NodeId, PlanRefusal> {
         let result = &self.statement.results[number];
         let node = self.part(&result.formula)?;
@@ -166,7 +169,7 @@ impl<'s> Lowering<'s> {
             1.. => Rounding::Nearest.shift(raw, places),
             _ => raw << -places,
         };
-        // Neither the formula with its error nor the node has values beyond these.
+        // Neither the formula with its allowed error nor the node has values beyond these.
         let low = ((values.low * unit - result.error).ceil() as i128).max(rounded(range.0));
         let high = ((values.high * unit + result.error).floor() as i128).min(rounded(range.1));
         let format = Format::holding(low.min(high), high.max(low), frac);
@@ -178,7 +181,8 @@ impl<'s> Lowering<'s> {
         }
     }
 
-    /// Returns the node of a result in its stated width, if it has one.
+    /// Returns the node of the result with the index `number` in its stated width, or `node` itself if no width is stated.
+    /// Fails if the values of `node` exceed the width and the statement refuses such values.
     fn in_stated_width(&mut self, number: usize, node: NodeId) -> Result<NodeId, PlanRefusal> {
         let StatedResult { name, width, .. } = &self.statement.results[number];
         let Some(StatedWidth { format, overflow }) = width else { return Ok(node) };
@@ -197,7 +201,8 @@ impl<'s> Lowering<'s> {
         self.plan.narrow(&format!("{name}_in_width"), node, *format, Rounding::Truncate)
     }
 
-    /// Returns the node of a result that saturates, limited to its stated format; of any other result, the node itself.
+    /// Returns the node of the result with the index `number`, limited to its stated format if the result saturates. For any
+    /// other result, returns `node` itself.
     fn saturated(&mut self, number: usize, node: NodeId) -> Result<NodeId, PlanRefusal> {
         let StatedResult { name, width, .. } = &self.statement.results[number];
         let Some(StatedWidth { format, overflow: StatedOverflow::Saturate(_) }) = width else {
@@ -217,13 +222,15 @@ impl<'s> Lowering<'s> {
         Ok(limited)
     }
 
-    /// Returns limits of the values of a part where something is promised.
+    /// Returns an interval that contains the values of a part, for all operands for which a result with this part is promised.
+    /// Fails if the values have no finite limits.
     fn range(&self, part: &Expression) -> Result<Enclosure, PlanRefusal> {
         range_of(self.statement, part).map_err(|error| error.refusal(self.statement, part))
     }
 
-    /// Takes the next choice of fraction bits, beside `frac`, and gives its number to the node that `make` adds. The choice is
-    /// taken even where `make` finds that nothing need be rounded: the numbers of the later choices stay the same.
+    /// Chooses a number of fraction bits, and returns the node that `make` adds with this number. The number is `frac` plus the
+    /// guard bits of the next rounding operation. The operation is counted even if `make` rounds nothing, so that later
+    /// operations keep their numbers.
     fn rounding(
         &mut self,
         frac: i32,
@@ -240,7 +247,8 @@ impl<'s> Lowering<'s> {
         Ok(node)
     }
 
-    /// Returns the node of a part of a formula.
+    /// Returns the node of a part of a formula. Adds the node and all nodes that it reads if the part has no node. Fails if a
+    /// part has too many bits, no finite values, or no rule. The refusal has the location of the part.
     fn part(&mut self, part: &Expression) -> Result<NodeId, PlanRefusal> {
         if let Some((_, node)) = self.known.iter().find(|(known, _)| known == part) {
             return Ok(*node);
@@ -278,8 +286,9 @@ impl<'s> Lowering<'s> {
         self.function("curve", node, &function, range)
     }
 
-    /// Returns the node of a function for which there is a rewriting: a power, a sine or a cosine, a logarithm, an exponential
-    /// function. Returns `None` for any other function.
+    /// Returns the node of a function for which a rewriting exists: a scaled direction, a power, a sine or a cosine, a
+    /// logarithm, or an exponential function. `function` is the part `part` in which `x` replaces `core`. Returns `None` for
+    /// any other function. Fails if a part has too many bits, no finite values, or no rule.
     fn rewritten(
         &mut self,
         part: &Expression,
@@ -303,7 +312,8 @@ impl<'s> Lowering<'s> {
         self.exponential(core, function)
     }
 
-    /// Returns a number as a constant: exactly if it has few bits, otherwise rounded at a choice of fraction bits.
+    /// Returns the node of a constant. A constant with few bits is exact, and any other constant is rounded. Fails if the
+    /// constant is not a finite number.
     fn number(&mut self, part: &Expression) -> Result<NodeId, PlanRefusal> {
         if let Some((raw, frac)) = dyadic(part) {
             return self.plan.constant("constant", raw, frac);
@@ -319,7 +329,8 @@ impl<'s> Lowering<'s> {
         })
     }
 
-    /// Returns the node of an operation on parts.
+    /// Returns the node of an operation whose inputs are parts of the formula. Fails if a part has too many bits, no finite
+    /// values, or no rule.
     fn operation(&mut self, part: &Expression) -> Result<NodeId, PlanRefusal> {
         match &part.kind {
             Kind::Operand(name) => Err(PlanRefusal::new(
@@ -393,7 +404,8 @@ impl<'s> Lowering<'s> {
         }
     }
 
-    /// Returns the node of a factor, with fewer bits if it has more than a multiplier takes.
+    /// Returns the node of a factor of a product, shortened if it has more bits than a multiplier takes. Fails if a part has
+    /// too many bits, no finite values, or no rule.
     fn factor(&mut self, part: &Expression) -> Result<NodeId, PlanRefusal> {
         let node = self.part(part)?;
         let format = self.plan.node(node).format;
@@ -414,7 +426,7 @@ impl<'s> Lowering<'s> {
         let (first, second) = (&*comparison.left, &*comparison.right);
         let (left, right) = (self.part(first)?, self.part(second)?);
         if (yes, no) == (second, first) {
-            // Of two numbers that are nearly equal, rounding can make the other one the larger: the error is small all the same.
+            // If two numbers are nearly equal, rounding can make the other one larger, but the error stays small.
             return self.plan.minimum("smaller", left, right);
         }
         if (yes, no) == (first, second) {
@@ -422,7 +434,7 @@ impl<'s> Lowering<'s> {
         }
         let (yes, no) = (self.part(yes)?, self.part(no)?);
         if comparison.or_equal {
-            // left >= right, unless left < right.
+            // Equivalent to `left >= right`, because the cases are swapped.
             let is_less = self.plan.less("is_less", left, right)?;
             self.plan.choose("chosen", is_less, [yes, no])
         } else {
@@ -431,8 +443,9 @@ impl<'s> Lowering<'s> {
         }
     }
 
-    /// Returns a function of one node, by polynomials. `range` are limits of the values that the node has where something
-    /// is promised.
+    /// Returns the node of a function of `node`, computed by polynomials. `range` must contain the values of `node` for all
+    /// operands for which a result is promised. Fails if `node` has only one value, or if the function is not finite for some
+    /// value.
     fn function(
         &mut self,
         name: &str,
@@ -443,7 +456,7 @@ impl<'s> Lowering<'s> {
         let operand = self.plan.node(node).format;
         let unit = exp2(operand.frac);
         let (low, high) = self.plan.node(node).range;
-        // The node may be off by the roundings before it.
+        // The node may differ from its exact value by the roundings before it.
         let error = if self.is_exact(node) { 0.0 } else { self.largest_error(node) };
         let domain_with = |slack: f64| {
             let first = ((range.low * unit - slack).ceil() as i128).max(low);
@@ -452,7 +465,7 @@ impl<'s> Lowering<'s> {
         };
         let mut domain = domain_with((error * unit).ceil());
         if function_range(function, operand, domain).is_none() {
-            // As a root below 0: the proof shows whether the node can be there.
+            // For example, a root below 0. The proof decides whether the node can have such values.
             domain = domain_with(0.0);
         }
         let (first, last) = domain;
@@ -466,7 +479,8 @@ impl<'s> Lowering<'s> {
         self.rounding(finest + 2, |own, frac| own.approximation(name, node, function, domain, frac))
     }
 
-    /// Adds a function of one node with `frac` fraction bits, on a raw domain.
+    /// Adds a function of `node` with `frac` fraction bits, for the raw values of `node` in `domain`, and returns the new node.
+    /// Fails if the function is not finite on the domain.
     fn approximation(
         &mut self,
         name: &str,
@@ -503,7 +517,8 @@ impl<'s> Lowering<'s> {
         self.plan.polynomial(name, node, approximation, values)
     }
 
-    /// Returns a bound of the error of a node, over all operands for which something is promised.
+    /// Returns an upper bound of the error of a node as a real value, over all operands for which a result is promised. Returns
+    /// 1 if no bound was found.
     fn largest_error(&self, node: NodeId) -> f64 {
         let mut plan = self.plan.clone();
         plan.results = vec![node];
@@ -514,7 +529,7 @@ impl<'s> Lowering<'s> {
             statement.results = vec![StatedResult { fraction: 0, ..result.clone() }];
             let proof = ResultProof::new(&statement, &plan, 0);
             let worst = proof.worst(0.0, DIVISIONS_FOR_AN_ERROR);
-            // A result that does not read the node can be promised where the node has no value.
+            // The promise of a result that does not depend on the node can allow operands for which the node has no value.
             let units = worst.map_or(0.0, |worst| worst.units);
             if units.is_finite() {
                 largest = Some(largest.unwrap_or(0.0).max(units));
@@ -530,15 +545,15 @@ impl<'s> Lowering<'s> {
     }
 }
 
-/// Returns whether a part is an operand that is short enough for a table.
+/// Returns whether a part is an operand with few enough bits for a table.
 fn is_short_operand(statement: &ExpressionStatement, part: &Expression) -> bool {
     let Kind::Operand(name) = &part.kind else { return false };
     let mut operands = statement.operands.iter();
     operands.any(|operand| operand.name == *name && operand.format.width() <= WIDEST_OPERAND)
 }
 
-/// Returns whether a formula of the statement has a function of an operand alone that products do not compute. For example,
-/// `sqrt(x) * y` has one.
+/// Returns whether a formula of the statement has a function of a single operand that is not computed by a few products. For
+/// example, `sqrt(x) * y` has one.
 pub(super) fn has_functions_of_operands(statement: &ExpressionStatement) -> bool {
     let is_function = |part: &Expression| {
         let core = core_of(part);
@@ -549,8 +564,8 @@ pub(super) fn has_functions_of_operands(statement: &ExpressionStatement) -> bool
     statement.results.iter().any(|result| result.formula.count(&is_function) > 0)
 }
 
-/// Returns the smallest part on which a formula depends: the formula is a function of this part alone. It is the formula
-/// itself if it combines different parts. For example, the core of `1 / sqrt(x + y)` is `x + y`.
+/// Returns the smallest part on which a formula depends: the formula is a function of the value of this part alone. It is the
+/// formula itself if the formula combines different parts. For example, the core of `1 / sqrt(x + y)` is `x + y`.
 fn core_of(formula: &Expression) -> &Expression {
     let parts = formula.parts();
     let varying: Vec<&Expression> =
@@ -565,8 +580,9 @@ fn core_of(formula: &Expression) -> &Expression {
     core
 }
 
-/// Returns the cost of the multiplications by which sums, products and squares compute a formula from its core; `None` if these
-/// operations do not compute it. For example, `3 * x * (1 - x)` costs 3: a product with a constant, and one of two numbers.
+/// Returns the cost of the multiplications that compute a formula from its core by sums, products, squares, minima and absolute
+/// values. Returns `None` if these operations do not compute the formula. For example, `3 * x * (1 - x)` costs 3: 1 for the
+/// product with a constant, and 2 for the product of two numbers.
 fn products_of(formula: &Expression, core: &Expression) -> Option<u32> {
     if formula == core {
         return Some(0);
@@ -602,13 +618,13 @@ fn products_of(formula: &Expression, core: &Expression) -> Option<u32> {
     }
 }
 
-/// Returns a formula without operands, from a text that is known to be one.
+/// Parses a formula. The text must be valid.
 fn number(text: &str) -> Expression {
     glint_formula::parse(text).expect("a formula")
 }
 
-/// Returns a constant as a raw value and its fraction bits, if it is exact with few of them. For example, `3/4` gives
-/// (3, 2).
+/// Returns a constant as a raw value and its number of fraction bits, if it is exact with at most 18 fraction bits and 32 bits
+/// in all. For example, `3/4` gives (3, 2). Returns `None` otherwise.
 fn dyadic(part: &Expression) -> Option<(i128, i32)> {
     let value = part.rational()?;
     for frac in 0..=MOST_CONSTANT_BITS {
@@ -621,8 +637,8 @@ fn dyadic(part: &Expression) -> Option<(i128, i32)> {
     None
 }
 
-/// Returns the exponent k if multiplying by the constant, or dividing by it, is multiplying by 2^k. For example, dividing by
-/// 8 gives −3.
+/// Returns the exponent k if a multiplication by the constant `part`, or a division by it, equals a multiplication by 2^k. For
+/// example, a division by 8 gives −3. Returns `None` for any other constant.
 fn power_of_two(part: &Expression, operator: Operator) -> Option<i32> {
     let (raw, frac) = dyadic(part)?;
     let is_power = raw > 0 && raw.count_ones() == 1;
@@ -633,7 +649,7 @@ fn power_of_two(part: &Expression, operator: Operator) -> Option<i32> {
     Some(if operator == Operator::Div { -exponent } else { exponent })
 }
 
-/// Returns limits of a function of x over a raw domain; `None` if they are not finite.
+/// Returns limits of the values of a function of x over the raw domain. Returns `None` if the limits are not finite.
 fn function_range(function: &Expression, operand: Format, domain: (i64, i64)) -> Option<Enclosure> {
     const PIECES: i64 = 64;
     let (first, last) = domain;

@@ -1,5 +1,5 @@
-//! Defines the operations of a plan, and the format of each result. For example, a plan contains sums, products,
-//! shifts and tables of polynomials.
+//! Defines the operations of a plan, and the format of each result. For example, a plan contains sums, products, shifts and
+//! tables of polynomials.
 
 use std::mem::{Discriminant, discriminant};
 use std::sync::Arc;
@@ -22,23 +22,26 @@ pub struct PlanNode {
     pub operation: Operation,
     /// The format of the result.
     pub format: Format,
-    /// The smallest and the largest raw value that the node can have.
+    /// The smallest and the largest raw value that the node can have, for operands in their domains.
     pub range: Interval,
-    /// An interval that contains the node's value in real-number arithmetic, for all operands for which a result is promised. The
-    /// rewriting of the formula knows it; for example, the smaller of two numbers divided by the larger is at most 1.
+    /// An interval that contains the node's value in real-number arithmetic, for all operands for which a result is promised.
+    /// The rewriting of the formula supplies it, and it may be infinite. For example, the smaller of two numbers divided by the
+    /// larger is at most 1.
     pub limits: Enclosure,
-    /// An interval that contains the value that the hardware computes, for the same operands.
+    /// An interval that contains the value that the hardware computes, for the same operands. It may be infinite.
     pub actual_limits: Enclosure,
-    /// The index of the number of fraction bits on which the node's rounding depends; `None` for an exact operation.
+    /// The index of the rounding operation in the list of numbers of fraction bits that the planner chooses. `None` for an
+    /// exact operation.
     pub source: Option<usize>,
 }
 
-/// An operation on raw values. If two operands have different numbers of fraction bits, zeros are appended to the one with fewer.
+/// An operation on raw values. If two inputs have different numbers of fraction bits, zeros are appended to the input with
+/// fewer.
 #[derive(Clone, Debug)]
 pub enum Operation {
     /// The operand of the expression with this index.
     Operand(usize),
-    /// A constant, which rounds a real number to a raw value.
+    /// A constant: a real number, rounded to a raw value.
     Constant {
         /// The raw value.
         raw: i128,
@@ -51,58 +54,59 @@ pub enum Operation {
     Subtract(NodeId, NodeId),
     /// a · b, exact.
     Multiply(NodeId, NodeId),
-    /// |a|. The result has no sign.
+    /// The absolute value of a. The result has no sign.
     Absolute(NodeId),
     /// The smaller of two values.
     Minimum(NodeId, NodeId),
     /// The larger of two values.
     Maximum(NodeId, NodeId),
-    /// 1 where a < b, else 0.
+    /// 1 if a < b, else 0.
     Less(NodeId, NodeId),
-    /// 1 where a is not 0, else 0.
+    /// 1 if a is not 0, else 0.
     NonZero(NodeId),
-    /// The second of two cases if a condition is 1, otherwise the first.
+    /// One of two values. A condition decides which one.
     Choose {
         /// The condition, a node of one bit.
         condition: NodeId,
         /// The result if the condition is 0, and the result if it is 1.
         cases: [NodeId; 2],
     },
-    /// The same bits with another weight: the value times a power of two. The format of the result says which power.
+    /// The same bits with another weight: the value times a power of two. The difference between the fraction bits of input and
+    /// result is the exponent.
     Scale(NodeId),
     /// The value, converted to the format of the result: low bits are rounded off, and high bits are dropped. The proof shows
-    /// that the dropped high bits are copies of the sign.
+    /// that the dropped high bits are copies of the sign, except for a result that wraps.
     Narrow(NodeId, Rounding),
-    /// The value, with its low bits replaced by a single 1: the middle of all values with the same upper bits. High bits are dropped,
-    /// as by [`Operation::Narrow`]. For example, 0.1011 and 0.1001 become 0.101 if two bits are kept.
+    /// The value, with its low bits replaced by a single 1: the middle of all values with the same upper bits. High bits are
+    /// dropped, as by [`Operation::Narrow`]. For example, 0.1011 and 0.1001 become 0.101 if two bits are kept.
     Middle(NodeId),
-    /// One bit of an integer, by its number; bit 0 is the lowest.
+    /// One bit of an integer as 0 or 1. The number counts from the lowest bit, which is bit 0.
     Bit(NodeId, u32),
-    /// The greatest integer that is not above a.
+    /// The greatest integer that is not above the input.
     IntegerPart(NodeId),
-    /// a minus its integer part, from 0 to below 1. The second node is the integer part.
+    /// The input minus its integer part, from 0 to below 1. The second node is the integer part.
     FractionPart(NodeId, NodeId),
-    /// An unsigned word, shifted left until its top bit is 1, and read as a fraction from 1/2 to below 1. With `by_pairs` the
-    /// shift is even and the fraction goes from 1/4 to below 1. A word of zeros stays zero.
+    /// An unsigned word, shifted left until its top bit is 1, and read as a fraction from 1/2 to below 1. If `by_pairs` is
+    /// true, the shift is even and the fraction goes from 1/4 to below 1. A word of zeros stays zero.
     Normalise {
         /// The word to shift.
         word: NodeId,
         /// Whether the word is shifted by pairs of bits.
         by_pairs: bool,
     },
-    /// The number of bits, or of pairs of bits, by which an [`Operation::Normalise`] has shifted. For a word of zeros all bits of
-    /// it are 1.
+    /// The number of bits by which an [`Operation::Normalise`] node has shifted its word, or of pairs of bits if it shifts by
+    /// pairs. For a word of zeros, all bits of this number are 1.
     Places(NodeId),
-    /// a · 2^b, where b is the second node. High bits are dropped, as by [`Operation::Narrow`].
+    /// a · 2^b, where b is the value of the second node. High bits are dropped, as by [`Operation::Narrow`].
     ShiftLeft(NodeId, NodeId),
-    /// a / 2^b, where b is the second node, rounded down to the fraction bits of a.
+    /// a / 2^b, where b is the value of the second node, rounded down to the fraction bits of a.
     ShiftRight(NodeId, NodeId),
-    /// A constant for each value of an unsigned integer, beginning with the value 0. For example, the words 5, 7 give 7 for the
-    /// address 1. An address without a word gives any value.
+    /// A table of constants. The address, an unsigned integer, selects a word; address 0 selects the first. For example, the
+    /// words 5, 7 give 7 for the address 1. The value for an address without a word is not defined.
     Lookup {
-        /// The integer.
+        /// The node of the address.
         address: NodeId,
-        /// The raw constants.
+        /// The raw constants, for the addresses 0, 1, 2 and so on.
         words: Vec<i128>,
     },
     /// A function of one number, computed by a table of polynomials.
@@ -119,15 +123,15 @@ pub struct Approximation {
 }
 
 impl Approximation {
-    /// Returns the largest error of the result, as a value. It is the proven error if the polynomials are known, and the allowed
-    /// error otherwise.
+    /// Returns the largest error of the result as a real value, not in units. It is the proven error if the polynomials are
+    /// known, and otherwise the allowed error.
     pub fn error(&self) -> f64 {
         let units = self.polynomials.as_ref().map_or(self.function.error, |it| it.bound);
         units * glint_base::fixed::exp2(-(self.function.fraction as i32))
     }
 }
 
-/// Returns references to the nodes that an operation reads. They are mutable if the operation is borrowed mutably.
+/// Returns a list of references to the nodes that an operation reads. They are mutable if the operation is borrowed mutably.
 macro_rules! inputs_of {
     ($operation:expr) => {
         match $operation {
@@ -158,8 +162,8 @@ macro_rules! inputs_of {
 }
 
 impl Operation {
-    /// Returns everything that an exact operation is known by; `None` for an operation that may round, or that has more than its
-    /// inputs.
+    /// Returns a key that is equal for two operations that compute the same exact value: the kind of the operation, the nodes
+    /// that it reads, and a parameter. Returns `None` for an operation that may round, and for operands, constants and tables.
     pub(super) fn identity(&self) -> Option<(Discriminant<Self>, Vec<NodeId>, u32)> {
         let more = match self {
             Self::Operand(_) | Self::Constant { .. } => return None,
@@ -174,7 +178,7 @@ impl Operation {
         Some((discriminant(self), self.inputs(), more))
     }
 
-    /// Returns the operation with each node that it reads replaced by `of_node` of this node.
+    /// Returns a copy of the operation in which `of_node` has replaced each node that the operation reads.
     pub(super) fn with_inputs(&self, of_node: &dyn Fn(NodeId) -> NodeId) -> Self {
         let mut operation = self.clone();
         for input in inputs_of!(&mut operation) {
@@ -183,14 +187,15 @@ impl Operation {
         operation
     }
 
-    /// Returns the nodes that the operation reads.
+    /// Returns the nodes that the operation reads, in the order of the operation's fields.
     pub fn inputs(&self) -> Vec<NodeId> {
         inputs_of!(self).into_iter().copied().collect()
     }
 }
 
-/// Returns the shifts with which hardware normalises a word of `width` bits, from the largest to the smallest. For example, 8
-/// bits need the shifts 4, 2 and 1; by pairs, 4 and 2.
+/// Returns the shifts with which hardware normalises a word of `width` bits, from the largest to the smallest. They are
+/// powers of two below `width`. For example, 8 bits need the shifts 4, 2 and 1, and by pairs 4 and 2. A word of one bit needs
+/// none.
 pub fn normalising_shifts(width: u32, by_pairs: bool) -> Vec<u32> {
     let least = if by_pairs { 2 } else { 1 };
     let mut shifts = Vec::new();
@@ -204,8 +209,8 @@ pub fn normalising_shifts(width: u32, by_pairs: bool) -> Vec<u32> {
     shifts
 }
 
-/// Returns a raw value with its lowest `places` + 1 bits replaced by a 1, and `places` fraction bits fewer. For example, 0b10110 with
-/// 2 places gives 0b101.
+/// Returns a raw value without its lowest `places` bits, and with the lowest remaining bit set to 1. The result has `places`
+/// fraction bits fewer. For example, 0b10110 with 2 places gives 0b101.
 pub(super) fn middle(raw: i128, places: i32) -> i128 {
     raw >> places | 1
 }

@@ -1,4 +1,4 @@
-//! Defines the plan of an expression, and appends its nodes with the formats that their results need.
+//! Defines the plan of an expression. Its methods append nodes, and compute the formats of their results.
 
 use glint_base::fixed::{Format, MAX_WIDTH, Rounding};
 use glint_base::interval::{self, Interval};
@@ -7,7 +7,7 @@ use glint_formula::Enclosure;
 use super::node::{Approximation, NodeId, Operation, PlanNode, middle};
 use super::refusal::PlanRefusal;
 
-/// The limits of a value before the rewriting limits it.
+/// The limits of a node's value before the rewriting of the formula has stated any.
 const ANYTHING: Enclosure = Enclosure::between(f64::NEG_INFINITY, f64::INFINITY);
 
 /// The plan of an expression: a list of fixed-point operations that computes all results.
@@ -17,18 +17,18 @@ pub struct ExpressionPlan {
     pub nodes: Vec<PlanNode>,
     /// The node of each result, in the order of the statement.
     pub results: Vec<NodeId>,
-    /// The node of each result before its high bits are dropped: the node whose error is proved. It is the node of the result
-    /// itself unless that wraps.
+    /// For each result the node whose error is proved. It is the node in `results`, except for a result that wraps: then it is
+    /// the node before the high bits are dropped.
     pub proved: Vec<NodeId>,
 }
 
 impl ExpressionPlan {
-    /// Returns a node.
+    /// Returns the node with this index.
     pub fn node(&self, id: NodeId) -> &PlanNode {
         &self.nodes[id.0]
     }
 
-    /// Returns for each node whether the result number `result` depends on it.
+    /// Returns for each node whether the proved value of result number `result` depends on it.
     pub fn needed_for(&self, result: usize) -> Vec<bool> {
         let mut needed = vec![false; self.nodes.len()];
         needed[self.proved[result].0] = true;
@@ -42,8 +42,8 @@ impl ExpressionPlan {
         needed
     }
 
-    /// Returns the widths of the two inputs of one multiplier that can compute all products of the plan, with the products in
-    /// polynomials. Both inputs have a sign if any factor has one.
+    /// Returns the widths of the two inputs of one multiplier that can compute all products of the plan, including the products
+    /// in polynomials. If any factor has a sign, both widths have room for one.
     pub(super) fn multiplier_widths(&self) -> [u32; 2] {
         let mut factors: Vec<[Format; 2]> = Vec::new();
         for node in &self.nodes {
@@ -70,8 +70,8 @@ impl ExpressionPlan {
         widths
     }
 
-    /// Returns the prefix of the names of all nets of a node's table: the name of the node and an underscore, so that each table has
-    /// nets of its own. A plan of a single function of `x` needs no prefix.
+    /// Returns the prefix of the names of all nets that belong to a node's table: the name of the node and an underscore, so
+    /// that each table has nets of its own. The prefix is empty in a plan with the single operand `x` and a single table.
     pub fn table_prefix(&self, id: NodeId) -> String {
         let mut operands = Vec::new();
         for node in &self.nodes {
@@ -83,14 +83,15 @@ impl ExpressionPlan {
         if is_single { String::new() } else { format!("{}_", self.node(id).name) }
     }
 
-    /// Returns the names of the registers of a node's polynomial. The first register holds the polynomial, and the others hold the
-    /// partial sums of Horner's rule. For example, a node `curve` has `curve`, `curve_sum1` and `curve_sum2`.
+    /// Returns the names of the registers for a node's polynomial. The first register is for the polynomial itself, and the
+    /// others are for the partial sums of Horner's rule. For example, a node `curve` has `curve`, `curve_sum1` and
+    /// `curve_sum2`.
     pub fn sum_names(&self, id: NodeId) -> [String; 3] {
         let prefix = self.table_prefix(id);
         [self.node(id).name.clone(), format!("{prefix}sum1"), format!("{prefix}sum2")]
     }
 
-    /// Returns for each node the number of operations that read it.
+    /// Returns for each node how often operations read it. A square counts its input twice.
     pub fn readers(&self) -> Vec<usize> {
         let mut readers = vec![0; self.nodes.len()];
         for node in &self.nodes {
@@ -102,8 +103,9 @@ impl ExpressionPlan {
     }
 }
 
-/// Adds nodes to a plan. Each method returns the node of its result, whose format holds every value that the ranges of
-/// the inputs allow.
+/// Methods that add nodes to a plan. Each returns the node of its result, whose format can represent every value that the
+/// ranges of the inputs allow. If the plan already has the same exact operation, they return its node instead. They fail if the
+/// result needs more bits than a net can have.
 impl ExpressionPlan {
     fn insert(
         &mut self,
@@ -132,14 +134,15 @@ impl ExpressionPlan {
         Ok(NodeId(self.nodes.len() - 1))
     }
 
-    /// Adds a copy of a node of another plan, with an operation that reads nodes of this plan.
+    /// Adds a copy of a node of another plan, with the operation replaced by `operation`, which must read nodes of this plan.
     pub(super) fn push_copy(&mut self, node: &PlanNode, operation: Operation) -> NodeId {
         let name = self.unused_name(&node.name);
         self.nodes.push(PlanNode { name, operation, ..node.clone() });
         NodeId(self.nodes.len() - 1)
     }
 
-    /// Returns the node that already does an operation, if it is exact.
+    /// Returns the node that already computes `operation` in this format. Returns `None` without one, or if the operation may
+    /// round.
     fn same_node(&self, operation: &Operation, format: Format) -> Option<NodeId> {
         let wanted = operation.identity()?;
         let is_same = |node: &PlanNode| {
@@ -150,7 +153,7 @@ impl ExpressionPlan {
         self.nodes.iter().position(is_same).map(NodeId)
     }
 
-    /// Returns the name, or with a number behind it if a node already has it. For example, a second `product` is
+    /// Returns `name`, or `name` followed by a number if a node already has this name. For example, a second `product` is
     /// `product2`.
     fn unused_name(&self, name: &str) -> String {
         let is_used = |name: &str| self.nodes.iter().any(|node| node.name == name);
@@ -163,14 +166,15 @@ impl ExpressionPlan {
         unused
     }
 
-    /// Gives a node a name, with a number behind it if another node already has the name.
+    /// Gives a node the name `name`, followed by a number if another node already has this name.
     pub(super) fn rename(&mut self, id: NodeId, name: &str) {
         if self.node(id).name != name {
             self.nodes[id.0].name = self.unused_name(name);
         }
     }
 
-    /// Adds an exact result whose raw values lie in a range.
+    /// Adds an exact operation whose raw results lie in `range`, with `frac` fraction bits, and returns its node. Fails if the
+    /// node has more than 64 bits.
     fn exact(
         &mut self,
         name: &str,
@@ -192,7 +196,8 @@ impl ExpressionPlan {
         self.insert(name, Operation::Operand(number), format, range)
     }
 
-    /// Adds a constant that is exact.
+    /// Adds the exact constant with the raw value `raw` and `frac` fraction bits, and returns its node. For example, 3 and 1
+    /// give the constant 1.5. Fails if the node has more than 64 bits.
     pub(super) fn constant(
         &mut self,
         name: &str,
@@ -203,7 +208,8 @@ impl ExpressionPlan {
         self.rounded_constant(name, raw, frac, value)
     }
 
-    /// Adds a constant for a real number within limits.
+    /// Adds the raw constant `raw` with `frac` fraction bits for a real number that lies in the interval `value`, and returns
+    /// its node. Fails if the node has more than 64 bits.
     pub(super) fn rounded_constant(
         &mut self,
         name: &str,
@@ -223,7 +229,8 @@ impl ExpressionPlan {
         self.exact(name, Operation::Constant { raw, value }, (raw, raw), frac)
     }
 
-    /// Returns the ranges of two nodes in units of the finer one, and its fraction bits.
+    /// Returns the raw ranges of two nodes, converted to the same number of fraction bits, and this number. It is the larger
+    /// one of the two nodes. For example, the raw range 0 to 3 with one fraction bit becomes 0 to 6 if the other node has two.
     fn aligned(&self, a: NodeId, b: NodeId) -> (Interval, Interval, i32) {
         let (a, b) = (self.node(a), self.node(b));
         let frac = a.format.frac.max(b.format.frac);
@@ -329,7 +336,8 @@ impl ExpressionPlan {
         self.exact(name, Operation::Choose { condition, cases }, range, frac)
     }
 
-    /// Adds a · 2^`exponent`, which only reads the bits of a with another point.
+    /// Adds a · 2^`exponent`, and returns its node. It has the same bits as `a`, with another binary point. Returns `a` itself
+    /// if `exponent` is 0.
     pub(super) fn scale(
         &mut self,
         name: &str,
@@ -346,14 +354,16 @@ impl ExpressionPlan {
         self.insert(name, Operation::Scale(a), format, range)
     }
 
-    /// Adds a node with the value of another. A result that is an operand itself needs one, because its register has a name of
-    /// its own.
+    /// Adds a node with the value of the node `a`, and returns the new node. A result that is an operand itself needs a copy,
+    /// because its register has its own name.
     pub(super) fn copy(&mut self, name: &str, a: NodeId) -> Result<NodeId, PlanRefusal> {
         let PlanNode { format, range, .. } = *self.node(a);
         self.insert(name, Operation::Scale(a), format, range)
     }
 
-    /// Adds a in a format. The caller must prove that no value leaves the format.
+    /// Adds the node `a` converted to `format` with the given rounding, and returns the new node. Returns `a` itself if it
+    /// already has this format. The caller must prove that no value exceeds the format. Fails if the node has more than 64
+    /// bits.
     pub(super) fn narrow(
         &mut self,
         name: &str,
@@ -374,7 +384,8 @@ impl ExpressionPlan {
         self.insert(name, Operation::Narrow(a, rounding), format, range)
     }
 
-    /// Adds a with fewer fraction bits, and with as many integer bits as its values need.
+    /// Adds the node `a` rounded to `frac` fraction bits, with as many integer bits as its values need, and returns the new
+    /// node. Returns `a` itself if it does not have more fraction bits. Fails if the node has more than 64 bits.
     pub(super) fn shorten(
         &mut self,
         name: &str,
@@ -391,8 +402,9 @@ impl ExpressionPlan {
         self.narrow(name, a, Format::holding(range.0, range.1, frac), rounding)
     }
 
-    /// Adds a with its low bits replaced by a single 1, in a format that has at least one fraction bit less than a. The caller must
-    /// prove that no value leaves the format.
+    /// Adds the node `a` with its low bits replaced by a single 1, and returns the new node. `format` must have fewer fraction
+    /// bits than `a`, and its last bit is this 1. For example, 0.1011 with a format of two fraction bits becomes 0.11. The
+    /// caller must prove that no value exceeds the format.
     pub(super) fn middle(
         &mut self,
         name: &str,
@@ -406,8 +418,9 @@ impl ExpressionPlan {
         self.insert(name, Operation::Middle(a), format, range)
     }
 
-    /// Adds a for a function that reads it alone: if a has more than `frac` fraction bits, all beyond them are replaced by a single 1. A
-    /// table absorbs this bit, so that it costs no logic, and the error is as small as with rounding.
+    /// Adds the node `a` as the operand of a table, and returns the new node. If `a` has more than `frac` fraction bits, all
+    /// bits beyond `frac` are replaced by a single 1; otherwise returns `a` itself. The table absorbs this bit, so that it
+    /// costs no logic, and the error is as small as with rounding.
     pub(super) fn shorten_for_table(
         &mut self,
         name: &str,
@@ -423,7 +436,7 @@ impl ExpressionPlan {
         self.middle(name, a, Format::holding(range.0, range.1, frac + 1))
     }
 
-    /// Adds a bit of an integer.
+    /// Adds the bit `number` of the integer `a`, and returns its node. Bit 0 is the lowest.
     pub(super) fn bit(
         &mut self,
         name: &str,
@@ -433,14 +446,16 @@ impl ExpressionPlan {
         self.insert(name, Operation::Bit(a, number), Format::BIT, (0, 1))
     }
 
-    /// Adds the greatest integer that is not above a, which must have fraction bits.
+    /// Adds the greatest integer that is not above `a`, and returns its node. `a` must have fraction bits. For example, −1.5
+    /// gives −2.
     pub(super) fn integer_part(&mut self, name: &str, a: NodeId) -> Result<NodeId, PlanRefusal> {
         let node = self.node(a);
         let (frac, range) = (node.format.frac, node.range);
         self.exact(name, Operation::IntegerPart(a), (range.0 >> frac, range.1 >> frac), 0)
     }
 
-    /// Adds the integer part and the fraction part of a, which must have fraction bits.
+    /// Adds the integer part and the fraction part of `a`, and returns the two nodes in this order. `a` must have fraction
+    /// bits. For example, −1.25 gives −2 and 0.75.
     pub(super) fn split(&mut self, name: &str, a: NodeId) -> Result<[NodeId; 2], PlanRefusal> {
         let integer = self.integer_part(&format!("{name}_integer"), a)?;
         let frac = self.node(a).format.frac;
@@ -454,7 +469,8 @@ impl ExpressionPlan {
         Ok([integer, fraction])
     }
 
-    /// Adds the word that [`Operation::Normalise`] gives, and its places.
+    /// Adds the normalised word of [`Operation::Normalise`] and the number of bits, or of pairs of bits, by which the word is
+    /// shifted. Returns the two nodes in this order. Fails if the node has more than 64 bits.
     pub(super) fn normalise(
         &mut self,
         name: &str,
@@ -472,7 +488,8 @@ impl ExpressionPlan {
         Ok([normalised, places])
     }
 
-    /// Adds a · 2^places in a format. The caller must prove that no value leaves the format.
+    /// Adds a · 2^`places` in `format`, and returns its node. The caller must prove that no value exceeds the format. Fails if
+    /// the node has more than 64 bits.
     pub(super) fn shift_left(
         &mut self,
         name: &str,
@@ -494,7 +511,8 @@ impl ExpressionPlan {
         self.insert(name, Operation::ShiftRight(a, places), format, range)
     }
 
-    /// Adds a constant for each value of an address, with `frac` fraction bits.
+    /// Adds a table of raw constants with `frac` fraction bits, and returns the node of the constant that `address` selects.
+    /// Address 0 selects the first constant. Fails if the node has more than 64 bits.
     pub(super) fn lookup(
         &mut self,
         name: &str,
@@ -507,7 +525,9 @@ impl ExpressionPlan {
         self.exact(name, Operation::Lookup { address, words }, (low, high), frac)
     }
 
-    /// Adds a function of one number. `values` are limits of its raw values, within the allowed error.
+    /// Adds a function of the node `a`, computed by polynomials, and returns its node. `values` are limits of the function's
+    /// raw values, widened by the allowed error; they give the format if no polynomials are known yet. Fails if the node has
+    /// more than 64 bits.
     pub(super) fn polynomial(
         &mut self,
         name: &str,

@@ -1,5 +1,5 @@
 //! Computes an interval that contains the values of a part of a formula, for all operands for which a result with this part is
-//! promised. It divides the operands' domain to make the interval narrower.
+//! promised. The module divides the operands' domain into boxes, which have narrower intervals.
 
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
@@ -10,17 +10,17 @@ use super::boxes::{BoxScore, OperandBox, best_halves};
 use super::refusal::PlanRefusal;
 use super::statement::{ExpressionStatement, StatedResult};
 
-/// The divisions of the domain, at most, until the values have limits.
+/// The largest number of divisions of the domain in the search for boxes with finite values.
 const DIVISIONS_TO_LIMITS: usize = 1 << 12;
 
-/// The divisions of the domain that bring each limit nearer to the true one.
+/// The number of divisions of the domain that bring each end of the interval nearer to the true end.
 const DIVISIONS_OF_AN_END: usize = 300;
 
-/// The remedy where a formula has no finite value.
+/// The remedy for a formula that has no finite value.
 pub(super) const LIMIT_THE_OPERANDS: &str =
     "limit the operands by `where`, for example where = \"y > 0\", or by `from` and `to`";
 
-/// Why a part has no limits of its values.
+/// The reason why no interval for the values of a part was found.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum NoRange {
     /// The part is not finite, or has no value, for operands in this box.
@@ -30,7 +30,7 @@ pub(super) enum NoRange {
 }
 
 impl NoRange {
-    /// Returns the refusal of a part of a formula for this reason.
+    /// Returns the refusal of `part` for this reason.
     pub(super) fn refusal(self, statement: &ExpressionStatement, part: &Expression) -> PlanRefusal {
         match self {
             Self::NotFinite(limits) => {
@@ -46,7 +46,7 @@ impl NoRange {
     }
 }
 
-/// A box with the limits of the values in it.
+/// A box of operands with an interval that contains the values of the part in this box.
 #[derive(Clone)]
 struct BoxValues {
     limits: OperandBox,
@@ -59,7 +59,7 @@ impl BoxScore for BoxValues {
     }
 }
 
-/// A box with a limit of the values in it. The box with the largest limit comes first.
+/// A box of operands with an upper limit of the values in this box. The box with the largest limit comes first in a heap.
 struct BoxEnd {
     limits: OperandBox,
     end: f64,
@@ -91,17 +91,19 @@ impl Ord for BoxEnd {
     }
 }
 
-/// Returns limits of the values of a part of the formulas, where a result that has the part is promised.
+/// Returns an interval that contains the values of `formula`, for all operands for which a result that contains this part is
+/// promised.
 ///
-/// The domain is divided where the formula has no finite limits, and then where its largest and its smallest values are.
+/// The domain is divided where the part has no finite limits, and then where its largest and its smallest values are.
 ///
 /// # Errors
-/// Fails if the values have no finite limits, as near a pole. The error is a box of operands where that is so.
+/// Fails if the values have no finite limits, for example near a pole, or if no operands satisfy the condition of the promise.
+/// In the first case, the error has a box of operands without finite limits.
 pub(super) fn range_of(
     statement: &ExpressionStatement,
     formula: &Expression,
 ) -> Result<Enclosure, NoRange> {
-    // A part that is made of others, as a size, is in no formula: it counts for every result.
+    // A part that the planner has composed, such as an absolute value, is in no formula. It counts as a part of every result.
     let reads = |result: &&StatedResult| result.formula.count(&|part| part == formula) > 0;
     let mut readers: Vec<&StatedResult> = statement.results.iter().filter(reads).collect();
     if readers.is_empty() {
@@ -144,11 +146,11 @@ pub(super) fn range_of(
     Ok(Enclosure::between(-low, high))
 }
 
-/// Returns a number that no promised value of a result comes nearer to 0 than. For example, it is 0.5 or a little less for `1 / x`
-/// with x from 1 to 2.
+/// Returns a lower limit of the absolute values of a result, for all operands for which it is promised. It is at least 0. For
+/// example, it is 0.5 or a little less for `1 / x` with x from 1 to 2.
 ///
 /// # Errors
-/// Fails if the values have no finite limits, or if nothing is promised.
+/// Fails if the values have no finite limits, or if the result is promised for no operands.
 pub fn least_size(statement: &ExpressionStatement, result: usize) -> Result<f64, PlanRefusal> {
     let stated = &statement.results[result];
     let target = stated.target();
@@ -163,7 +165,7 @@ pub fn least_size(statement: &ExpressionStatement, result: usize) -> Result<f64,
     values.map(|values| values.low.max(0.0)).map_err(|refusal| refusal.of_result(result))
 }
 
-/// Returns a limit of the largest value in any of the boxes. `end_in` gives a limit within a box, or nothing if nothing is
+/// Returns an upper limit of the values in all of the boxes. `end_in` returns the upper limit in a box, or `None` if nothing is
 /// promised there.
 fn largest(
     boxes: impl Iterator<Item = BoxEnd>,

@@ -4,12 +4,12 @@ use std::ops::Range;
 
 use glint_base::fixed::MAX_WIDTH;
 
-/// The reason why there is no plan for an expression, with a remedy.
+/// The reason why an expression has no plan, with a remedy.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PlanRefusal {
-    /// The index of the result that it concerns, if it concerns one result.
+    /// The index of the result that the refusal concerns; `None` if it concerns the whole expression.
     pub result: Option<usize>,
-    /// The range of bytes in the formula of that result, if it concerns a part of the formula.
+    /// The range of bytes in the formula of that result; `None` if the refusal concerns no part of the formula.
     pub place: Option<Range<usize>>,
     /// The reason, as a message.
     pub message: String,
@@ -18,24 +18,24 @@ pub struct PlanRefusal {
 }
 
 impl PlanRefusal {
-    /// Makes a refusal that concerns the whole expression.
+    /// Makes a refusal that concerns the whole expression, from the reason and the remedy.
     pub fn new(message: impl Into<String>, remedy: impl Into<String>) -> Self {
         let (message, remedy) = (message.into(), remedy.into());
         Self { result: None, place: None, message, remedy }
     }
 
-    /// Makes the refusal of a node with more bits than a net can have.
+    /// Makes the refusal of a node `name` of `width` bits, which is more than a net can have.
     pub(super) fn too_wide(name: &str, width: i32) -> Self {
         let message = format!("the part `{name}` would have {width} bits, more than {MAX_WIDTH}");
         Self::new(message, "give the operands fewer bits, or the results fewer fraction bits")
     }
 
-    /// Returns the refusal, said of a result.
+    /// Returns the refusal for result number `result`, unless it already concerns a result.
     pub(super) fn of_result(self, result: usize) -> Self {
         Self { result: self.result.or(Some(result)), ..self }
     }
 
-    /// Returns the refusal, said of a place in a formula.
+    /// Returns the refusal for the bytes `place` of a formula, unless it already concerns a part.
     pub(super) fn at(self, place: &Range<usize>) -> Self {
         Self { place: self.place.or(Some(place.clone())), ..self }
     }

@@ -1,6 +1,6 @@
 //! Turns a plan into a microprogram for one multiplier, with registers for the values that later microinstructions read.
 //!
-//! Each product, each step of Horner's rule and each normalised word has its own microinstruction, and a register that keeps its
+//! Each product, each step of Horner's rule and each normalised word has its own microinstruction, and a register for its
 //! value. All other operations are combinational logic between these registers.
 
 use super::node::{NodeId, Operation};
@@ -9,22 +9,22 @@ use super::plan::ExpressionPlan;
 /// One microinstruction of a plan's microprogram.
 #[derive(Clone, Debug, PartialEq)]
 pub enum PlanStep {
-    /// The multiplier computes a product, and a register loads it or a value that follows from it.
+    /// The multiplier computes a product, and a register loads the product or a value that follows from it.
     Product {
         /// The node of the product.
         product: NodeId,
-        /// The node whose register is loaded: the product itself, or the product with fewer bits.
+        /// The node whose register is loaded: the product itself, or the product after it was scaled or shortened.
         held: NodeId,
     },
-    /// The registers of these nodes are loaded.
+    /// The registers of these nodes load their values.
     Hold(Vec<NodeId>),
-    /// The table of this node's polynomial gets its address; no register is loaded.
+    /// The table of this node's polynomial gets its address. No register is loaded.
     Address(NodeId),
-    /// One partial sum of Horner's rule is computed.
+    /// The multiplier and an adder compute one partial sum of Horner's rule.
     Sum {
         /// The node of the polynomial.
         polynomial: NodeId,
-        /// The index of the coefficient that is added, 0 for the constant.
+        /// The index of the coefficient that is added; 0 is the constant coefficient.
         coefficient: usize,
     },
 }
@@ -32,17 +32,17 @@ pub enum PlanStep {
 /// The microprogram of a plan, with the nodes that have registers.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PlanSchedule {
-    /// Whether each node has a register.
+    /// For each node, whether it has a register.
     pub held: Vec<bool>,
     /// The microinstructions in the order of execution.
     pub steps: Vec<PlanStep>,
 }
 
 impl ExpressionPlan {
-    /// Returns the microprogram of the plan.
+    /// Returns the microprogram of the plan, with the nodes that have registers.
     ///
     /// # Panics
-    /// Panics if the polynomials of the plan are not known yet.
+    /// Panics if the plan has a function whose polynomials are not known yet.
     pub fn schedule(&self) -> PlanSchedule {
         let mut schedule = PlanSchedule { held: vec![false; self.nodes.len()], steps: Vec::new() };
         for at in 0..self.nodes.len() {
@@ -64,7 +64,7 @@ impl ExpressionPlan {
                     let polynomials = approximation.polynomials.as_ref();
                     let degree = polynomials.expect("a plan whose polynomials are known").degree();
                     schedule.held[at] = true;
-                    // In the first clock the operands are there already, and address the tables.
+                    // In the first clock, the operands already address the tables.
                     if !schedule.steps.is_empty() {
                         schedule.steps.push(PlanStep::Address(node));
                     }
@@ -88,8 +88,8 @@ impl ExpressionPlan {
         schedule
     }
 
-    /// Returns the node in whose register the value of `node` is held: `node`, or the node that alone reads it and gives it
-    /// fewer bits.
+    /// Returns the node whose register stores the value of `node`. It is `node` itself, or the only node that reads `node`, if
+    /// this node scales or shortens the value.
     fn held_for(&self, node: NodeId) -> NodeId {
         let mut held = node;
         loop {

@@ -6,7 +6,7 @@ use glint_base::fixed::{Format, exp2};
 use glint_base::interval;
 use glint_formula::{Comparison, Enclosure, Expression, Fault, RBig};
 
-/// The formulas that a user asks for, as formulas of operands, each with its allowed error.
+/// The formulas that a user wants to compute, with their operands and their allowed errors.
 #[derive(Clone, Debug)]
 pub struct ExpressionStatement {
     /// The operands, in the order of the ports.
@@ -15,7 +15,7 @@ pub struct ExpressionStatement {
     pub results: Vec<StatedResult>,
 }
 
-/// An operand, with the values for which results are promised.
+/// An operand of the formulas, with the values for which results are promised.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StatedOperand {
     /// The name of the port.
@@ -24,7 +24,7 @@ pub struct StatedOperand {
     pub format: Format,
     /// The smallest and the largest raw operand for which results are promised.
     pub domain: (i64, i64),
-    /// The results that operands outside the domain get.
+    /// The treatment of operands outside the domain.
     pub outside: Outside,
 }
 
@@ -33,41 +33,41 @@ pub struct StatedOperand {
 pub struct StatedResult {
     /// The name of the port, without `_out`.
     pub name: String,
-    /// The formula, in terms of operands alone.
+    /// The formula, in which only operands occur.
     pub formula: Expression,
     /// The number of fraction bits of the result.
     pub fraction: u32,
-    /// The largest error that is allowed, in units of the last place of the result.
+    /// The largest error that is allowed, in units of the last bit of the result.
     pub error: f64,
     /// The condition on the operands under which the error is promised; `None` if it is promised for the whole domain.
     pub promise: Option<Comparison>,
-    /// The width, if it is stated; otherwise the integer bits follow from the values of the formula.
+    /// The width that the user states for the result. `None` if the integer bits follow from the values of the formula.
     pub width: Option<StatedWidth>,
 }
 
-/// The whole format of a result, with what happens to values beyond it.
+/// The whole format of a result, and the treatment of values beyond this format.
 #[derive(Clone, Debug)]
 pub struct StatedWidth {
     /// The format.
     pub format: Format,
-    /// What happens to a value beyond the format.
+    /// The treatment of a value beyond the format.
     pub overflow: StatedOverflow,
 }
 
-/// What happens to a value beyond the stated format of a result.
+/// The treatment of a value beyond the stated format of a result.
 #[derive(Clone, Debug)]
 pub enum StatedOverflow {
-    /// A formula with such values is refused.
+    /// The planner refuses a formula that has such values.
     Refuse,
-    /// The nearest value of the format. The formula here is the one of the result, limited to the format.
+    /// The result is the nearest value of the format. The formula here is the result's formula, limited to the format.
     Saturate(Expression),
-    /// The high bits are dropped, so that the value is right modulo the range of the format. For example, an angle of 1 half turn
-    /// is −1.
+    /// The high bits are dropped, so that the value is right modulo the range of the format. For example, an angle of 1 half
+    /// turn becomes −1.
     Wrap,
 }
 
 impl ExpressionStatement {
-    /// Returns the exact value of each operand with its name, from the raw values.
+    /// Returns the name of each operand with its exact value, from raw values in the order of the operands.
     pub fn exact_operands(&self, raw: &[i64]) -> Vec<(&str, RBig)> {
         let mut values = Vec::with_capacity(raw.len());
         for (operand, &raw) in self.operands.iter().zip(raw) {
@@ -77,7 +77,8 @@ impl ExpressionStatement {
         values
     }
 
-    /// Returns an interval of values for each operand with its name, from intervals of raw values.
+    /// Returns the name of each operand with an interval of values, from intervals of raw values in the order of the operands.
+    /// Both ends are included.
     pub fn enclosed_operands(&self, limits: &[(i64, i64)]) -> Vec<(&str, Enclosure)> {
         let mut values = Vec::with_capacity(limits.len());
         for (operand, (low, high)) in self.operands.iter().zip(limits) {
@@ -101,20 +102,20 @@ impl ExpressionStatement {
         place.join(" and ")
     }
 
-    /// Returns the smallest and the largest raw value of each operand.
+    /// Returns the smallest and the largest raw value of each operand, in the order of the operands.
     pub fn domain(&self) -> Vec<(i64, i64)> {
         self.operands.iter().map(|operand| operand.domain).collect()
     }
 
-    /// Returns the number of combinations of operands in the domain.
+    /// Returns the number of combinations of raw operands in their domains.
     pub fn combinations(&self) -> u128 {
         interval::combinations(self.domain())
     }
 }
 
 impl StatedOperand {
-    /// Returns the value with which results are computed for an operand. It is the nearer end of the domain if the operand is outside
-    /// a domain that clamps. For example, 0.9 becomes 0.5 if the domain ends at 0.5.
+    /// Returns the value with which results are computed for an operand. It is the nearer end of the domain if the operand is
+    /// outside a domain that clamps. For example, 0.9 becomes 0.5 if the domain ends at 0.5.
     pub fn computed(&self, value: f64) -> f64 {
         match self.outside {
             Outside::Clamp => {
@@ -147,11 +148,12 @@ impl StatedResult {
         }
     }
 
-    /// Returns limits of the value that the result approximates. The formula is evaluated in f64 for `operands`, and again with more
-    /// bits, for the operands that `exactly` returns, if f64 does not give it within a millionth of a unit.
+    /// Returns an interval that contains the value that the result approximates. The formula is evaluated in f64 for
+    /// `operands`. If the interval is then wider than a millionth of a unit, the formula is evaluated again with more bits, for
+    /// the exact operands that `exactly` returns.
     ///
     /// # Errors
-    /// Fails at the part of the formula that has no value.
+    /// Fails if a part of the formula has no value. The error names the part.
     pub fn value<'o>(
         &self,
         operands: &[(&str, Enclosure)],
@@ -165,8 +167,8 @@ impl StatedResult {
         }
     }
 
-    /// Returns whether the error is promised for all operands within intervals. Returns `None` if it is promised for some of
-    /// them, or if that is undecided.
+    /// Returns whether the error is promised for all operands in the intervals. Returns `None` if the error is promised for
+    /// some of them only, or if the intervals do not decide this.
     pub fn is_promised(&self, operands: &[(&str, Enclosure)]) -> Option<bool> {
         let Some(promise) = &self.promise else { return Some(true) };
         promise.holds(operands).unwrap_or(None)

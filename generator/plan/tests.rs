@@ -11,7 +11,7 @@ use super::{
     StatedResult, StatedWidth, find, least_size,
 };
 
-/// Returns an operand with a whole format as its domain.
+/// Returns an operand whose domain is its whole format.
 fn operand(name: &str, format: Format) -> StatedOperand {
     let (low, high) = format.range();
     StatedOperand {
@@ -33,7 +33,7 @@ fn result(name: &str, formula: &str, fraction: u32) -> StatedResult {
     }
 }
 
-/// Returns the comparison that a text states, for example `x < y`.
+/// Returns the comparison in a text, for example `x < y`.
 fn comparison(text: &str) -> Comparison {
     let choice: Expression = parse(&format!("if({text}, 1, 0)")).expect("a comparison");
     match choice.kind {
@@ -42,10 +42,11 @@ fn comparison(text: &str) -> Comparison {
     }
 }
 
-/// The largest error of a combination is computed in f64, with a margin: it may be larger than the bound by this.
+/// The margin of the comparison: the largest error of a combination is computed in f64, and may exceed the bound by this.
 const ROUNDING: f64 = 1e-9;
 
-/// The statements of the tests: formulas of x and y, the format of both, and where the errors are promised.
+/// Returns the statements of the tests: formulas of x and y with operands of `bits` bits, and the conditions under which the
+/// errors are promised.
 fn statements(bits: i32) -> Vec<ExpressionStatement> {
     let signed = Format::signed(0, bits - 1);
     let unsigned = Format::unsigned(0, bits);
@@ -62,7 +63,7 @@ fn statements(bits: i32) -> Vec<ExpressionStatement> {
         (&["sqrt(x^2 + y^2)", "atan2(y, x) / pi"], signed, not_origin),
         (&["-sqrt(x^2 + y^2)", "-2 / sqrt(x + y)"], unsigned, Some("x + y > 0.25")),
         (&["tanh(4 * x) * y", "1 / (1.5 + sigmoid(8 * y))"], signed, None),
-        // Divisors and coordinates that are rounded themselves.
+        // Divisors and coordinates that are themselves rounded.
         (&["x / sqrt(y)"], unsigned, Some("x < sqrt(y)")),
         (&["x / (0.3 + sin(y))", "atan2(sin(x), 1 + exp(y))"], unsigned, Some("y > 0.375")),
         (&["x ^ y"], unsigned, Some("x > 0")),
@@ -82,7 +83,7 @@ fn statements(bits: i32) -> Vec<ExpressionStatement> {
     statements
 }
 
-/// The enclosed error holds for every combination, and neither is beyond the error that is asked for.
+/// The enclosed error holds for every combination of operands, and is below the allowed error.
 #[test]
 fn enclosed_errors_hold_for_every_combination() {
     for bits in [5, 8] {
@@ -96,14 +97,14 @@ fn enclosed_errors_hold_for_every_combination() {
             {
                 assert!(*largest <= enclosed + ROUNDING);
                 assert!(*enclosed < result.error, "{statement:?}");
-                // A bound of several times the error would be useless.
+                // A bound of several times the actual error would be useless.
                 assert!(*enclosed < 4.0 * largest + 0.1, "{enclosed} for {largest}: {statement:?}");
             }
         }
     }
 }
 
-/// Returns the rotation of a point by an angle in turns.
+/// Returns the statement of the rotation of a point by an angle in turns.
 fn rotation(bits: i32) -> ExpressionStatement {
     let signed = Format::signed(0, bits - 1);
     let turn = Format::unsigned(0, bits);
@@ -189,8 +190,8 @@ fn refusals_name_the_part_and_a_remedy() {
     }
 }
 
-/// Formulas that were refused once although there is a plan: a square of a rounded value is not below 0, the larger of two
-/// rounded values is not far off, a divisor can be negative, and directions of rounded coordinates need bits in several parts.
+/// Formulas with rounded parts have plans. The square of a rounded value is not below 0, and the larger of two rounded values
+/// has a small error. A divisor can be negative, and directions of rounded coordinates need bits in several operations.
 #[test]
 fn formulas_with_rounded_parts_are_proved() {
     for formula in [
@@ -214,7 +215,7 @@ fn formulas_with_rounded_parts_are_proved() {
     }
 }
 
-/// Formulas of x and y by their definitions in whole numbers: values that need no rounding.
+/// Results that need no rounding equal the formulas, computed in integers.
 #[test]
 fn exact_plans_have_exact_values() {
     let statement = ExpressionStatement {
@@ -284,7 +285,7 @@ impl Draws {
     }
 }
 
-/// Random formulas are proved, and the bound then holds for every combination; or they are refused.
+/// Random formulas are refused, or they are proved and the bound holds for every combination.
 #[test]
 fn random_formulas_are_proved_or_refused() {
     let seed = 0x9e37_79b9_7f4a_7c15;
@@ -328,7 +329,7 @@ fn random_formulas_are_proved_or_refused() {
     assert!(proved > 3 * refused, "{proved} proved, {refused} refused");
 }
 
-/// Outside the domain of the operands every node still has a value of its format, as a net of the hardware has.
+/// For operands outside their domains, every node still has a value of its format, like a net of the hardware.
 #[test]
 fn values_outside_the_domain_are_of_the_formats() {
     for statement in statements(5) {
@@ -353,7 +354,7 @@ fn values_outside_the_domain_are_of_the_formats() {
     }
 }
 
-/// A result with a stated width is refused, limited, or right modulo the range of its format.
+/// A value beyond the stated width is refused, limited, or right modulo the range of the format.
 #[test]
 fn stated_widths_refuse_saturate_or_wrap() {
     let nibble = Format::signed(0, 3);
@@ -382,7 +383,7 @@ fn stated_widths_refuse_saturate_or_wrap() {
     assert_eq!(found.plan.node(found.plan.results[0]).format, Format::signed(4, 3));
 }
 
-/// The rounding of a result has at most half a unit of its error, an exact operation nothing, and a table something.
+/// The rounding of a result has a share of at most half a unit, an exact operation has none, and a table has some.
 #[test]
 fn shares_are_of_the_parts_that_round() {
     for statement in statements(6) {
@@ -423,8 +424,8 @@ fn least_sizes_by_hand() {
     assert_eq!(sizes[2], 0.0);
 }
 
-/// Functions with a range reduction: the formula, the raw domain, the fraction bits of the operand and of the result, and the
-/// identity.
+/// A function with a range reduction: the formula, the raw domain, the numbers of fraction bits of the operand and of the
+/// result, and the identity.
 type ReducedFunction = (&'static str, (i64, i64), i32, u32, Identity);
 
 const REDUCED: [ReducedFunction; 16] = [
@@ -446,7 +447,8 @@ const REDUCED: [ReducedFunction; 16] = [
     ("exp(-x^2)", (-512, 511), 8, 12, Identity::Even),
 ];
 
-/// The proof of a range reduction relies on its definition in `glint_approximate`; the hardware and the golden model rely on the plan.
+/// The proof of a range reduction relies on its definition in `glint_approximate`. The hardware and the golden model rely on
+/// the plan.
 #[test]
 fn plans_of_reduced_functions_compute_the_proved_results() {
     for (formula, domain, frac, fraction, identity) in REDUCED {
@@ -469,7 +471,8 @@ fn plans_of_reduced_functions_compute_the_proved_results() {
     }
 }
 
-/// A function that is odd about a point needs polynomials for one side of it only. The hardware mirrors the operand and the result.
+/// A function that is odd about a point needs polynomials for one side of this point only. The hardware mirrors the operand and
+/// the result.
 #[test]
 fn an_odd_function_has_a_table_for_one_side() {
     let x = Format::signed(3, 12);

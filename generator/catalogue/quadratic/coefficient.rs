@@ -10,16 +10,17 @@ pub fn taylor(n: u32) -> f64 {
     f64::from(n.max(1) - 1)
 }
 
-/// Returns the coefficient a(n) with the smallest maximum error over 0 ≤ c ≤ 1. Its largest errors above and below cⁿ are equal.
+/// Returns the coefficient a(n) with the smallest maximum error over 0 ≤ c ≤ 1. Its largest errors above and below cⁿ are
+/// equal.
 ///
-/// Every place x at which the slopes agree belongs to one a, so the function bisects x until the two errors are equal.
+/// For each x there is one coefficient with which the slopes agree at x. The function bisects x until the two errors are equal.
 pub fn minimax(n: u32) -> f64 {
     // The parabola is cⁿ itself for n = 1 and n = 2.
     if n <= 2 {
         return taylor(n);
     }
     let exponent = f64::from(n);
-    // At x = 0 a is n − 1; here it is 0.
+    // At x = 0 the coefficient is n − 1. At the upper end of x it is 0.
     let (mut low, mut high) = (0.0, -libm::expm1(-libm::log(exponent) / (exponent - 1.0)));
     loop {
         let x = (low + high) / 2.0;
@@ -36,13 +37,14 @@ pub fn minimax(n: u32) -> f64 {
     }
 }
 
-/// Returns the a whose parabola has the slope of cⁿ at 1 − x.
+/// Returns the coefficient whose parabola has the same slope as cⁿ at c = 1 − x.
 fn touching(n: f64, x: f64) -> f64 {
     (n * libm::exp((n - 1.0) * libm::log1p(-x)) - 1.0) / (1.0 - 2.0 * x)
 }
 
-/// Returns the error of the parabola at its zero. It is the largest error below cⁿ, and for the coefficients of [`taylor`] and
-/// [`minimax`] the largest of all. It is 0 for n ≤ 2 and for a ≤ 1, because the zero is then not within 0 < c < 1.
+/// Returns the error of the parabola at its zero, which is the value of cⁿ there. It is the largest error below cⁿ, and for the
+/// coefficients of [`taylor`] and [`minimax`] the largest error of all. It is 0 for n ≤ 2 and for a ≤ 1, because the zero is
+/// then not within 0 < c < 1.
 pub fn error(a: f64, n: u32) -> f64 {
     if n <= 2 || a <= 1.0 { 0.0 } else { libm::exp(f64::from(n) * libm::log1p(-1.0 / a)) }
 }
@@ -51,7 +53,7 @@ pub fn error(a: f64, n: u32) -> f64 {
 mod tests {
     use super::*;
 
-    /// Returns the largest error on a grid that is fine where the highlight is.
+    /// Returns the largest error on a grid of x that is fine where cⁿ is large.
     fn on_a_grid(a: f64, n: u32) -> f64 {
         (1..20_000)
             .map(|step| {

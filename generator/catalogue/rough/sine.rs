@@ -9,7 +9,7 @@ use glint_keys::rough::{Keys, RomLayout};
 use glint_rtl::blocks::segmented::{self, Segment, Segmentation, SegmentedFormats};
 use glint_rtl::dsl::{Designer, Signal};
 
-/// Makes ROM 18: sin = √(1 − cos²).
+/// Builds ROM 18, which returns the sine √(1 − x²) of the angle whose cosine is x.
 pub(super) fn sine_rom<'d>(
     d: &'d Designer,
     keys: &Keys,
@@ -38,7 +38,7 @@ pub(super) fn sine_rom<'d>(
         .doc("sine of the addressed cosine")
 }
 
-/// Returns the patent's own: one entry for each bucket of the cosine, the sine at its middle.
+/// Builds the table of the patent: one entry for each bucket of cosines, with the sine at the middle of the bucket.
 fn direct_sine<'d>(
     d: &'d Designer,
     keys: &Keys,
@@ -49,7 +49,7 @@ fn direct_sine<'d>(
     let bits = keys.address;
     let mut address = cosine.bits(fraction - bits, Format::unsigned(bits as i32, 0));
     if !formats.patent {
-        // 1.0 has no bucket of its own: it reads the last one.
+        // 1.0 has no bucket of its own, so it reads the last bucket.
         let last = d.raw_constant("last_bucket", (1 << bits) - 1, address.format());
         address = d.choose("sine_address", cosine.bit(fraction), [address, last]);
     }

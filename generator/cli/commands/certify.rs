@@ -51,17 +51,17 @@ pub struct Arguments {
     time_limit: u64,
 }
 
-/// The first words of a script that Glint wrote: nothing else is overwritten.
+/// The first words of a script that Glint wrote. Glint overwrites no other file.
 const MARKER: &str = "# Certificate by Glint: ";
 
-/// The text before the digest of a script, in the line after the marker's line.
+/// The text before the digest of a script, in the second line of the file.
 const DIGEST: &str = "# SHA-256 of the script below: ";
 
-/// The text before a point at which the hypotheses hold, in the next line.
+/// The text before a point at which the hypotheses of the statement hold, in the third line of the file.
 const WITNESS: &str = "# The hypotheses hold at ";
 
-/// Prints the terms of a bound that the contract states. If a device is made of parts, the bounds of the parts are
-/// among the terms.
+/// Prints the contract's bound and its terms, as a help for the reader of a failed proof. If a device consists of parts, the
+/// bounds of the parts are among the terms.
 fn tell_terms(bound: &Bound) {
     if bound.is_stated() {
         say!("  the contract states {} units, which nothing here has checked:", bound.words());
@@ -71,8 +71,12 @@ fn tell_terms(bound: &Bound) {
     }
 }
 
-/// Runs `glint certify`, which proves the error bound of a configuration's contract with the prover Gappa, from the netlist and the
-/// microprogram. Returns whether every bound is proved.
+/// Runs `glint certify`, which proves the error bound of a configuration's contract with the prover Gappa, from the netlist and
+/// the microprogram. Returns whether every bound is proved.
+///
+/// # Errors
+/// Fails if a configuration has problems or is a named pipeline, if Gappa or Coq is missing, or if a file was edited or cannot
+/// be written.
 pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) -> Result<bool> {
     let loaded = load_sequential(registry, &arguments.configs.paths, "certify")?;
     let limit = Duration::from_secs(arguments.time_limit);
@@ -102,7 +106,7 @@ pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) ->
             Ok(stated) => stated,
             Err(step) => {
                 whole = false;
-                // Scripts of an earlier run with other keys would still say that they are accepted.
+                // Scripts of an earlier run with other keys would still say that they were accepted, so they are removed.
                 if let Some(directory) = out
                     && directory.exists()
                 {
@@ -145,7 +149,8 @@ pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) ->
     Ok(whole)
 }
 
-/// Returns the record of a configuration whose statements were proved, or not.
+/// Returns the record of a proof. `certified` says whether all statements in `stated` were proved, and `bound` is in output
+/// units.
 fn certificate(one: &Loaded, bound: f64, certified: bool, stated: &[Statement]) -> Certificate {
     Certificate {
         glint: env!("CARGO_PKG_VERSION").to_owned(),
@@ -158,10 +163,10 @@ fn certificate(one: &Loaded, bound: f64, certified: bool, stated: &[Statement]) 
     }
 }
 
-/// A configuration for which no statements can be made.
+/// A configuration for which no statements can be made, for the report.
 struct WithoutStatements<'a> {
     one: &'a Loaded,
-    /// The step of the formula that has no statement, in words.
+    /// The step of the computation that cannot be a part of a statement, as a phrase.
     step: String,
     /// The bound of the contract, which is not proved.
     bound: Bound,
@@ -184,20 +189,20 @@ impl CommandReport for WithoutStatements<'_> {
     }
 }
 
-/// The outcome of all statements of a configuration.
+/// The outcome of all statements of a configuration, for the report.
 struct Certification<'a> {
     one: &'a Loaded,
-    /// In output units.
+    /// The error bound in the statements, in output units.
     bound: f64,
-    /// The contract states the bound. Gappa finds any other.
+    /// Whether the contract states the bound. Otherwise Gappa has found it.
     is_stated: bool,
-    /// Coq checks the proofs.
+    /// Whether Coq has checked the proofs.
     with_coq: bool,
     /// The number of statements.
     statements: usize,
-    /// The number of statements whose hypotheses contradict each other.
+    /// The number of proved statements whose hypotheses contradict each other, so that they say nothing.
     contradictory: usize,
-    /// The number of proved statements without a witness.
+    /// The number of proved statements for which no point was found at which the hypotheses hold.
     without_witness: usize,
     /// The statements that are not proved, each with the reason.
     open: Vec<(&'a Statement, &'a str)>,
@@ -289,7 +294,9 @@ impl CommandReport for Certification<'_> {
     }
 }
 
-/// Returns the statements of a contract without a bound, with the one that Gappa finds.
+/// Lets Gappa find an error bound for a contract that states none. Returns the statements with this bound, and the bound in
+/// output units. The inner error is a phrase about a step that cannot be a part of a statement, or about a bound that was not
+/// found.
 fn found(
     design: &Design,
     contract: &dyn Contract,
@@ -304,11 +311,11 @@ fn found(
     Ok(bound.map(|bound| (asked.iter().map(|one| one.within(bound)).collect(), bound)))
 }
 
-/// Writes the scripts, each in a file: the accepted script of a proved statement, or the first script of an open one.
-/// For example, `red_out_3.g` has statement 3 of the output `red_out`.
+/// Writes each script into a file: the accepted script of a proved statement, or the first script of a statement that was not
+/// proved. For example, `red_out_3.g` has statement 3 of the output `red_out`.
 ///
-/// It deletes scripts of an earlier run with more statements, if they have the name that is in their first line. A copy
-/// under another name, or an edited script, belongs to the user and stays.
+/// It deletes scripts of an earlier run with more statements, if they still have the name in their first line. A copy under
+/// another name, or an edited script, belongs to the user and stays.
 fn write(
     directory: &Path,
     config: &str,
@@ -337,7 +344,7 @@ fn write(
         let script = &scripts[chosen];
         let digest = digest(script.as_bytes());
         let text = format!("{head} To check: gappa {name}\n{DIGEST}{digest}\n{witness}\n{script}");
-        // All files are opened before the first is written. If Glint did not write one of them, the command fails and
+        // All files are opened before the first is written. If one of them was not written by Glint, the command fails and
         // changes nothing.
         let file = OwnFile::new(directory, &name, MARKER)?;
         let path = directory.join(&name);
@@ -374,8 +381,8 @@ fn write(
     Ok(())
 }
 
-/// Returns whether a file that Glint wrote has the script that it was written with. For example, it returns false if
-/// somebody changed a number in the script, because the digest in the head differs then.
+/// Returns whether a script file is as Glint wrote it. For example, it returns false if a number in the script was changed,
+/// because the digest in the head then differs.
 fn is_unedited(text: &str) -> bool {
     let Some((head, script)) = text.split_once("\n\n") else { return false };
     head.lines().nth(1).and_then(|line| line.strip_prefix(DIGEST))

@@ -73,22 +73,26 @@ struct ComparisonEntry {
     label: String,
     core: Core,
     figures: ModelFigures,
-    /// By family; empty if nothing is known.
+    /// The resources for each family in `COMPARED`, or the message of a failed synthesis. Empty if neither a record nor Yosys
+    /// states them.
     usage: Vec<Result<Usage, String>>,
-    /// The record of `synth`.
+    /// The record of `glint synth` for this core, if there is one.
     record: Option<SynthesisRecord>,
 }
 
-/// The figures of a configuration that need no tool.
+/// The figures of a configuration that need no outside tool.
 struct ModelFigures {
-    /// `None` when the exponent is outside the domain.
+    /// The errors against cosⁿγ. `None` if the exponent is outside the device's domain.
     accuracy: Option<Accuracy>,
     clocks_per_point: f64,
     multipliers: Vec<MultiplierSize>,
 }
 
-/// Runs `glint compare`, which compares all highlight devices at one exponent n: their errors against cosⁿγ, cells, frequencies and
-/// points a second. Returns whether every synthesis run succeeded.
+/// Runs `glint compare`, which compares all highlight devices at one exponent n: their errors against cosⁿγ, cells, frequencies
+/// and points a second. Returns whether every synthesis run succeeded.
+///
+/// # Errors
+/// Fails if a configuration has problems, if the exponent is outside the domains of all devices, or if a record cannot be read.
 pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) -> Result<bool> {
     if arguments.csv && !output.is_for_people() {
         wrong_usage!("--csv and --json are two ways to print the same: give one");
@@ -103,7 +107,7 @@ pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) ->
     for device in registry.devices() {
         let config = with_widths(device, &widths, &mut notes);
         let core = Core::new(*device, config)?;
-        // A function has no colour to multiply, and no exponent.
+        // A device that is no highlight has no colour to multiply, and no exponent.
         if core.contract.highlight().is_some() {
             cores.push((device.name.to_owned(), core));
         }
@@ -179,8 +183,8 @@ pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) ->
     Ok(failures.is_empty())
 }
 
-/// Returns the device's defaults with these keys replaced, if the device has them and accepts the value. For example,
-/// `--bits 10` sets `colour.bits` to 10; a device that refuses the value keeps its default, and a note says so.
+/// Returns the device's defaults, in which the values in `widths` replace the defaults of keys that the device has. For
+/// example, `--bits 10` sets `colour.bits` to 10. If the device refuses a value, it keeps its default, and a note says so.
 fn with_widths(device: &Device, widths: &[(&str, Option<i64>)], notes: &mut Vec<String>) -> Config {
     let schema: Schema = (device.schema)();
     let name = schema.module();
@@ -222,7 +226,8 @@ fn figures(core: &Core, n: f64) -> Result<ModelFigures> {
     })
 }
 
-/// Returns a record's usage of every family; empty if the record leaves one out.
+/// Returns the resources in a record for every family in `COMPARED`. Returns an empty list without a record, or if the record
+/// lacks a family.
 fn recorded(record: Option<&SynthesisRecord>) -> Vec<Result<Usage, String>> {
     let Some(record) = record else { return Vec::new() };
     let mut usage = Vec::new();
@@ -233,14 +238,15 @@ fn recorded(record: Option<&SynthesisRecord>) -> Vec<Result<Usage, String>> {
     usage
 }
 
-/// Returns a record's usage of one family, if the record has it.
+/// Returns the resources in a record for one family. Returns `None` if the record lacks the family.
 fn usage_of_family(record: &SynthesisRecord, family: &Family) -> Option<Usage> {
     let mut targets = record.targets.iter();
     let figures = targets.find(|figures| figures.target.name() == family.name())?;
     figures.area.usage()
 }
 
-/// Synthesises every core for every family: a usage, or the error.
+/// Synthesises every core for every family in `COMPARED`. Returns, for each core and family, the resources or the message of
+/// the failure. Calls `done` after each run. Fails if a core cannot be written as Verilog.
 fn synthesise(
     cores: &[&(String, Core)],
     yosys: &Tool,
@@ -264,8 +270,8 @@ fn synthesise(
     Ok(runs.chunks(COMPARED.len()).map(<[_]>::to_vec).collect())
 }
 
-/// Returns why a configuration has no errors to show. For example, `my_core.toml: n = 300 is not in its domain, n = 1
-/// to 255`.
+/// Returns a sentence that says why no errors are shown for a configuration. For example, `my_core.toml: n = 300 is not in its
+/// domain, n = 1 to 255`.
 fn outside(entry: &ComparisonEntry, n: u32) -> String {
     let label = &entry.label;
     match domain(&entry.core) {
@@ -276,7 +282,7 @@ fn outside(entry: &ComparisonEntry, n: u32) -> String {
     }
 }
 
-/// Returns the least and the largest exponent of a device that has one for an operand.
+/// Returns the smallest and the largest exponent of a device. Returns `None` if the device has no operand for the exponent.
 fn domain(core: &Core) -> Option<(f64, f64)> {
     let operands = core.contract.operands();
     let exponent = operands.iter().find(|operand| operand.name == contract::EXPONENT)?;

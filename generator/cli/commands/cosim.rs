@@ -82,7 +82,10 @@ pub struct SweepValues {
 }
 
 impl SweepValues {
-    /// Returns the sweep of a configuration's contract, with the user's operand values in it.
+    /// Returns the sweep of a configuration's contract, in which the user's values replace the values of some operands.
+    ///
+    /// # Errors
+    /// Fails with wrong usage as [`axis::sweep`] does.
     pub fn of(&self, one: &Loaded) -> Result<Sweep> {
         let sweep = axis::sweep(one.core.contract.as_ref(), &self.others);
         sweep.map_err(|error| {
@@ -103,6 +106,10 @@ pub enum SimulatorChoice {
 
 /// Runs `glint cosim`, which compares the golden model of a configuration with the simulated hardware, every register at every
 /// clock. Returns whether golden model and hardware agree and every error is within its bound.
+///
+/// # Errors
+/// Fails if a configuration has problems, if options contradict each other, if a tool is missing, or if a file cannot be
+/// written.
 pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) -> Result<bool> {
     if arguments.exhaustive {
         return exhaustive::run(registry, output, arguments);
@@ -150,11 +157,11 @@ fn built_in(output: OutputOptions, loaded: &[Loaded], arguments: &Arguments) -> 
     list.conclude(holds)
 }
 
-/// A run of golden model and built-in simulator.
+/// The outcome of a comparison of golden model and built-in simulator, for the report.
 struct CheckedRun<'a> {
     one: &'a Loaded,
     outcome: &'a Outcome,
-    /// The bound of the contract.
+    /// The error bound in the contract.
     bound: Bound,
     failures: Vec<String>,
 }
@@ -166,7 +173,7 @@ impl CommandReport for CheckedRun<'_> {
 
     fn print(&self) -> Result<()> {
         let Self { one, outcome, bound, failures } = self;
-        // A difference from the golden model ends the run; other failures do not.
+        // A difference from the golden model ends the run. Other failures do not end it.
         let compared = if outcome.mismatch.is_none() { "equal" } else { "compared with" };
         say!(
             "{}: {} points, {} clocks; {} registers and {} outputs {compared} the golden model on each: {}",
@@ -213,7 +220,8 @@ fn outcome(
     mismatch::traced(one, &lockstep, destination, points, 0)
 }
 
-/// Returns the operands of the largest error, as values. For example, `red_out for cos_gamma=0.99 exponent=20`.
+/// Returns the output with the largest error and its operands as real values. For example, `red_out for cos_gamma=0.99
+/// exponent=20`.
 pub fn worst_operands(one: &Loaded, worst: &Worst) -> String {
     let operands = one.core.contract.operands();
     let values: Vec<String> = worst
@@ -227,13 +235,17 @@ pub fn worst_operands(one: &Loaded, worst: &Worst) -> String {
     format!("{} for {}", worst.output, values.join(" "))
 }
 
-/// Returns the terms of a bound for scripts.
+/// Returns the terms of a bound as JSON objects with the keys `key`, `what` and `units`.
 pub(super) fn terms(bound: &Bound) -> Vec<Value> {
     let one = |term: &Term| json!({ "key": term.key, "what": term.what, "units": term.units });
     bound.terms.iter().map(one).collect()
 }
 
-/// Returns the outcome of a co-simulation as JSON for scripts. If model and hardware differ, it also writes a waveform.
+/// Returns the outcome of a co-simulation as JSON for scripts. If model and hardware differ, it also writes a waveform into the
+/// working directory. `failed` has the messages about requirements that the outcome does not meet.
+///
+/// # Errors
+/// Fails if the waveform cannot be recorded or written.
 pub fn as_json(one: &Loaded, outcome: &Outcome, bound: &Bound, failed: &[String]) -> Result<Value> {
     let mismatch = outcome.mismatch.as_ref().map(|mismatch| {
         let reproducer = Reproducer::of_run(one, mismatch)?;

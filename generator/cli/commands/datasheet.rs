@@ -58,8 +58,11 @@ pub struct Arguments {
     time_limit: TimeLimit,
 }
 
-/// Runs `glint datasheet`, which writes the datasheet of a configuration, one HTML page that needs no other file and no network.
-/// Returns true, because the command checks nothing.
+/// Runs `glint datasheet`, which writes the datasheet of a configuration, one HTML page that needs no other file and no
+/// network. Returns true, because the command checks nothing.
+///
+/// # Errors
+/// Fails if a configuration has problems, if a record cannot be read, or if a file was edited or cannot be written.
 pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) -> Result<bool> {
     let loaded = load(registry, &arguments.configs.paths)?;
     let single = arguments.out.extension().is_some_and(|it| it.eq_ignore_ascii_case("html"));
@@ -70,7 +73,7 @@ pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) ->
             loaded.len()
         );
     }
-    // Before the work: whether everything can be written, and which records there are.
+    // Before the long work, this checks whether the pages can be written, and searches for records.
     let mut records = Vec::new();
     for one in &loaded {
         let (core, contract) = (&one.core, one.core.contract.as_ref());
@@ -117,7 +120,8 @@ pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) ->
     Ok(true)
 }
 
-/// Returns the path of a configuration's page, for example `datasheets/rough.html`.
+/// Returns the path of a configuration's page, for example `datasheets/rough.html`. With `single`, the path is the file that
+/// the user named.
 fn path(arguments: &Arguments, one: &Loaded, single: bool) -> PathBuf {
     if single {
         arguments.out.clone()
@@ -126,7 +130,7 @@ fn path(arguments: &Arguments, one: &Loaded, single: bool) -> PathBuf {
     }
 }
 
-/// The files of the datasheets.
+/// The files of the datasheets, for the report.
 struct DatasheetFiles<'a> {
     /// The configuration and the path of each file, and whether the file has changed.
     files: Vec<(&'a Loaded, String, Written)>,

@@ -36,8 +36,11 @@ pub struct Arguments {
     force: bool,
 }
 
-/// Runs `glint describe`, which prints or writes the documentation page of a configuration, in Markdown. Returns true, because the
-/// command checks nothing.
+/// Runs `glint describe`, which prints or writes the documentation page of a configuration, in Markdown. Returns true, because
+/// the command checks nothing.
+///
+/// # Errors
+/// Fails if a configuration has problems, if a page cannot be made, or if a page on disk was edited or cannot be written.
 pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) -> Result<bool> {
     let loaded = load(registry, &arguments.configs.paths)?;
     let mut list = output.list();
@@ -63,11 +66,11 @@ pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) ->
     Ok(true)
 }
 
-/// The page of a configuration.
+/// The page of a configuration, for the report.
 struct DescribedPage<'a> {
     one: &'a Loaded,
     page: String,
-    /// Whether the file has changed, if the page is written into a file.
+    /// Whether the file on disk has changed; `None` if the page is printed.
     written: Option<Written>,
     is_first: bool,
 }

@@ -27,17 +27,20 @@ pub struct Arguments {
     configs: Configs,
 }
 
-/// The estimate of a core on one family.
+/// The estimate for a core on one FPGA family.
 struct EstimateRow {
     target: Target,
     cost: Cost,
-    /// The resources that the smallest chip of the family lacks, in words; empty if the core fits. For example, `it
-    /// does not fit the LFE5U-25F: it takes 30 of 28 DSP blocks`.
+    /// A phrase about the resources that the smallest chip of the family lacks; empty if the core fits. For example, `it does
+    /// not fit the LFE5U-25F: it takes 30 of 28 DSP blocks`.
     excess: String,
 }
 
-/// Runs `glint estimate`, which estimates area and clock frequency of a core on each FPGA family, without outside tools. Returns
-/// true, because the command checks nothing.
+/// Runs `glint estimate`, which estimates area and clock frequency of a core on each FPGA family, without outside tools.
+/// Returns true, because the command checks nothing.
+///
+/// # Errors
+/// Fails if a configuration has problems.
 pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) -> Result<bool> {
     let loaded = load(registry, &arguments.configs.paths)?;
     let mut estimates = Vec::new();

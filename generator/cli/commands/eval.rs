@@ -47,10 +47,14 @@ pub struct Arguments {
     typical: bool,
 }
 
-/// More clocks than any device takes.
+/// The number of clocks after which a computation counts as one that gives no result.
 const LIMIT: u64 = 1 << 16;
 
-/// Runs `glint eval`: computes one point, or all points of a CSV file.
+/// Runs `glint eval`: computes one point, or all points of a CSV file, and compares the outputs with the formula. Returns true,
+/// because the command checks nothing.
+///
+/// # Errors
+/// Fails if the configuration has problems, if an operand is unknown or has no valid value, or if the CSV file cannot be read.
 pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) -> Result<bool> {
     let one = load_one(registry, &registry.schemas(), &arguments.config)?;
     let given = operands::given(one.core.contract.operands(), &arguments.operands)
@@ -64,8 +68,8 @@ pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) ->
     }
 }
 
-/// Returns the operands that are outside the domain for which the contract is stated, in words. For example, `exponent
-/// = 300 is not in 1 to 255`.
+/// Returns a phrase for each operand that is outside the domain for which the contract is stated. For example, `exponent = 300
+/// is not in 1 to 255`.
 fn outside(operands: &[Operand], raw: &[i64]) -> Vec<String> {
     let mut outside = Vec::new();
     for (operand, &raw) in operands.iter().zip(raw) {
@@ -79,7 +83,8 @@ fn outside(operands: &[Operand], raw: &[i64]) -> Vec<String> {
     outside
 }
 
-/// Returns one point, with every signal of the golden model.
+/// Computes one point, and reports it with every signal of the golden model. `given` has the raw operands that the user gave,
+/// in the order of the contract. Returns true.
 fn point(
     output: OutputOptions,
     one: &Loaded,
@@ -110,13 +115,13 @@ fn point(
     Ok(true)
 }
 
-/// A point with the values of all signals in the clock of its result.
+/// A point with the values of all signals in the clock of its first result, for the report.
 struct EvaluatedPoint<'a> {
     one: &'a Loaded,
     operands: Vec<SignalValue>,
-    /// The operands that were not given, with the values that they have then.
+    /// The operands that were not given, with the values that the command chose, as text.
     missing: Vec<String>,
-    /// The operands outside the domain, in words.
+    /// A phrase for each operand outside the domain.
     outside: Vec<String>,
     signals: Vec<SignalValue>,
     results: Vec<ResultComparison>,
@@ -158,8 +163,9 @@ impl CommandReport for EvaluatedPoint<'_> {
     }
 }
 
-/// Returns the signals of the golden model with their values. The golden model of a pipeline is the model of its
-/// sequential core. Formats are the formats of the core's nets. The list cannot have signals that only the core has.
+/// Returns the signals of the golden model with their values in the clock of the first result. The golden model of a pipeline
+/// is the model of its sequential core; only its checkpoints, and the signals that the pipeline has too, are returned. The
+/// formats come from the nets of the sequential core.
 fn signal_values(one: &Loaded, operands: &[Operand], raw: &[i64]) -> Result<Vec<SignalValue>> {
     let core = &one.core;
     let mut signals = signals(core.device.golden(&core.config), operands, raw)?;
@@ -189,17 +195,17 @@ fn signal_values(one: &Loaded, operands: &[Operand], raw: &[i64]) -> Result<Vec<
     Ok(values)
 }
 
-/// The results of a point, beside the formula: f of a highlight, and each output.
+/// A result of a point together with the value of the formula: `f` of a highlight, or an output.
 struct ResultComparison {
     name: String,
     value: f64,
     exact: f64,
-    /// The error in last places of the result. At a jump of the formula, it is measured from the nearer side. For
+    /// The absolute error in units of the result's last bit. At a jump of the formula, it is measured from the nearer side. For
     /// example, an output of 200 for a formula of 200.3 has the error 0.3, in an output without fraction bits.
     error: f64,
 }
 
-/// The name of f among the results.
+/// The name of the reflectance `f` among the results.
 const F: &str = "f";
 
 fn results(contract: &dyn Contract, raw: &[i64]) -> Vec<ResultComparison> {
@@ -219,7 +225,8 @@ fn results(contract: &dyn Contract, raw: &[i64]) -> Vec<ResultComparison> {
 }
 
 impl ResultComparison {
-    /// Compares a raw result with the value of the formula, on both sides of a jump.
+    /// Makes the comparison of a raw result with the formula's value. `exact` has the values on the two sides of a jump of the
+    /// formula; without a jump, the two values are equal.
     fn new(name: &str, format: Format, raw: i64, exact: [f64; 2]) -> Self {
         let unit = format.to_f64(1);
         Self {
@@ -250,13 +257,13 @@ fn as_json(results: &[ResultComparison]) -> Value {
     }
 }
 
-/// A number of a device.
+/// The value of a signal or an operand.
 #[derive(Serialize)]
 struct SignalValue {
     name: String,
     raw: i128,
     value: f64,
-    /// Nothing of a signal that is no net.
+    /// The format as text. Empty for a signal that is no net of the design.
     format: String,
 }
 
@@ -274,7 +281,8 @@ fn print_values(what: &str, values: &[SignalValue]) {
     tables::print(&format!("{what} | format | raw: | value:"), rows);
 }
 
-/// Returns all signals in the clock in which `valid` is high.
+/// Returns the names and bit patterns of all signals of a model in the first clock in which `valid` is high. `raw` has the raw
+/// operands, in the order of `operands`. Fails if `valid` is not high within 65536 clocks.
 fn signals(model: Box<dyn Model>, operands: &[Operand], raw: &[i64]) -> Result<Vec<(String, u64)>> {
     let mut model = Driven::new(model, operands.iter().map(|operand| operand.name.as_str()))?;
     let pairs = operands.iter().zip(raw);

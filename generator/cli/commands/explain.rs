@@ -21,8 +21,11 @@ pub struct Arguments {
     code: Option<String>,
 }
 
-/// Runs `glint explain`, which explains the code of an error in a device's description, or lists all codes. Returns true, because
-/// the command checks nothing.
+/// Runs `glint explain`, which explains the code of an error in a device's description, or lists all codes. Returns true,
+/// because the command checks nothing.
+///
+/// # Errors
+/// Fails if the code does not exist.
 pub fn run(_: &Registry, output: OutputOptions, arguments: &Arguments) -> Result<bool> {
     let wanted =
         |code: &str| arguments.code.as_ref().is_none_or(|it| it.eq_ignore_ascii_case(code));
@@ -35,11 +38,11 @@ pub fn run(_: &Registry, output: OutputOptions, arguments: &Arguments) -> Result
     Ok(true)
 }
 
-/// The pages about codes: of one code, or of all.
+/// The pages about error codes: one page, or all pages.
 struct Explanation {
     /// The code of each page, its title and its text.
     pages: Vec<(&'static str, &'static str, &'static str)>,
-    /// The user names the code.
+    /// Whether the user named a code.
     single: bool,
 }
 

@@ -47,7 +47,11 @@ pub struct Arguments {
 }
 
 /// Runs `glint generate`, which writes the files of each configuration: Verilog, ROM contents, manifest, FuseSoC core and test
-/// bench. With `--check` it writes nothing, and returns whether the files on disk are the generated ones.
+/// bench. With `--check` it writes nothing, and returns whether the files on disk equal the generated files. Otherwise it
+/// returns true.
+///
+/// # Errors
+/// Fails if a configuration has problems, or if a file was edited or cannot be written.
 pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) -> Result<bool> {
     let loaded = load(registry, &arguments.configs.paths)?;
     for one in &loaded {
@@ -82,11 +86,11 @@ pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) ->
     Ok(true)
 }
 
-/// The files of a configuration, after they are written.
+/// The files of a configuration after they were written, for the report.
 struct GeneratedFiles<'a> {
     one: &'a Loaded,
     files: &'a OutputFiles,
-    /// Whether a file has changed.
+    /// Whether a file on disk has changed.
     written: Written,
 }
 
@@ -107,7 +111,7 @@ impl CommandReport for GeneratedFiles<'_> {
     }
 }
 
-/// Prints how the generated files are simulated, with their benches if there are any.
+/// Prints how to simulate the generated files. `with_bench` says whether test benches were generated.
 fn print_next_step(out: &Path, loaded: &[Loaded], with_bench: bool) {
     let (config, name) = match loaded {
         [only] => (only.path.as_str(), only.core.config.name.as_str()),
@@ -130,8 +134,8 @@ fn print_next_step(out: &Path, loaded: &[Loaded], with_bench: bool) {
     );
 }
 
-/// Returns the resources that a pipeline's chip lacks, in words. Returns `None` if the core fits, or has no target. For
-/// example, `it does not fit the iCE40 UP5K: it takes 9 of 8 DSP blocks`.
+/// Returns a phrase about the resources that the smallest chip of a pipeline's target lacks. Returns `None` if the core fits,
+/// or is no pipeline for a known target. For example, `it does not fit the iCE40 UP5K: it takes 9 of 8 DSP blocks`.
 fn misfit(one: &Loaded) -> Option<String> {
     let pipeline = one.core.design.pipeline.as_ref()?;
     let target = TARGETS.into_iter().find(|target| target.name() == pipeline.target)?;
@@ -139,16 +143,20 @@ fn misfit(one: &Loaded) -> Option<String> {
     (!excess.is_empty()).then_some(excess)
 }
 
-/// The generated files of a configuration, with the configuration they belong to.
+/// The generated files of a configuration.
 pub struct Made {
     /// The files that `generate` writes or checks.
     pub files: OutputFiles,
-    /// The bench notices a fault in every word of the memories if this is 1. For example, 4 means that the bench checks
-    /// one of four words.
+    /// The distance between two ROM words that the bench checks, in words. For example, 4 means that the bench checks every
+    /// fourth word, and 1 that it checks all words.
     word_stride: usize,
 }
 
-/// Makes every file of each configuration, in parallel; the test benches too if `with_bench`.
+/// Makes every file of each configuration, in parallel, and with test benches if `with_bench` is true. Returns the files in the
+/// order of `loaded`.
+///
+/// # Errors
+/// Fails if the files of a configuration cannot be made, or if two configurations have modules of the same name.
 pub fn all_files(output: OutputOptions, loaded: &[Loaded], with_bench: bool) -> Result<Vec<Made>> {
     let bar = progress::bar(output, loaded.len() as u64, "generating");
     let known = ComputationCache::default();
@@ -168,7 +176,7 @@ pub fn all_files(output: OutputOptions, loaded: &[Loaded], with_bench: bool) -> 
     Ok(made)
 }
 
-/// Makes every file of a configuration, with its bench if `with_bench`.
+/// Makes every file of a configuration, with its test bench if `with_bench` is true. `known` is a cache of chosen computations.
 fn files(one: &Loaded, known: &ComputationCache, with_bench: bool) -> Result<Made> {
     let vectors = with_bench.then(|| one.core.shipped_vectors_of(known)).transpose();
     let vectors = vectors.with_context(|| format!("`{}`", one.path))?;
@@ -176,11 +184,15 @@ fn files(one: &Loaded, known: &ComputationCache, with_bench: bool) -> Result<Mad
     Ok(Made { files: one.files(vectors)?, word_stride })
 }
 
-/// Writes the files of a configuration, and the driver that its bench in Python shares with others.
+/// Writes the files of a configuration into `out`, and the Python driver that its bench shares with other benches. Without
+/// `force`, it refuses to replace edited files. Returns whether a file has changed.
+///
+/// # Errors
+/// Fails if a file was edited, or cannot be written.
 pub fn write(out: &Path, one: &Loaded, files: &OutputFiles, force: bool) -> Result<Written> {
     let driver = package::driver();
     let path = out.join(&driver.path);
-    // This comes before anything is written. Other obstacles show in writing.
+    // The driver is checked before anything is written. Other obstacles are found while files are written.
     if path.is_file() {
         store::may_write(&path, Seal::Python, force)?;
     }
@@ -190,7 +202,7 @@ pub fn write(out: &Path, one: &Loaded, files: &OutputFiles, force: bool) -> Resu
     Ok(written)
 }
 
-/// Runs `--check`: returns whether the files that are there equal the files that `generate` would write.
+/// Runs `--check`: reports the files on disk that differ from the generated files, and returns whether all are equal.
 fn compare(output: OutputOptions, out: &Path, loaded: &[Loaded], made: &[Made]) -> Result<bool> {
     let mut all = Vec::new();
     let driver = package::driver();
@@ -205,7 +217,7 @@ fn compare(output: OutputOptions, out: &Path, loaded: &[Loaded], made: &[Made]) 
     Ok(is_equal)
 }
 
-/// The paths of the files that are not as `generate` would write them.
+/// The paths of the files that differ from the generated files.
 struct Differences(Vec<String>);
 
 impl CommandReport for Differences {

@@ -25,6 +25,9 @@ pub struct Arguments;
 
 /// Runs `glint list`, which lists the devices, and the configurations in `configs/`. Returns true, because the command checks
 /// nothing.
+///
+/// # Errors
+/// Never fails.
 pub fn run(registry: &Registry, output: OutputOptions, _: &Arguments) -> Result<bool> {
     let configs: Vec<String> = if Path::new(CONFIGS).is_dir() {
         paths(&[]).unwrap_or_default().iter().map(|path| path.display().to_string()).collect()
@@ -42,8 +45,8 @@ struct Inventory<'a> {
 }
 
 impl Inventory<'_> {
-    /// Prints the devices whose pipeline with the longest interval dominates their sequential core: the estimate for ECP5 gives it
-    /// no more DSP blocks, no lower rate, and an advantage in one of both.
+    /// Prints the devices whose pipeline with the longest interval dominates their sequential core. It dominates if the
+    /// estimate for ECP5 gives it no more DSP blocks and no lower rate, and an advantage in at least one of both.
     fn print_longest_intervals(&self) {
         let rows: Vec<Option<Vec<String>>> =
             self.devices.par_iter().map(longest_interval).collect();
@@ -61,8 +64,8 @@ impl Inventory<'_> {
     }
 }
 
-/// Returns a device with the DSP blocks and rates of its sequential core and of its pipeline with the longest interval, if the
-/// pipeline dominates.
+/// Returns a row of the table: a device with the DSP blocks and rates, in million points per second, of its sequential core and
+/// of its pipeline with the longest interval. Returns `None` if the pipeline does not dominate.
 fn longest_interval(device: &Device) -> Option<Vec<String>> {
     let schema = (device.schema)();
     let config = Config::defaults(&schema, &schema.module());

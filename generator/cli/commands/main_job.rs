@@ -23,12 +23,15 @@ struct MainJobResult {
     timing: HandshakeTiming,
     bound: Bound,
     outcome: Outcome,
-    /// The failures.
+    /// A sentence for each failure; empty if everything holds.
     failures: Vec<String>,
 }
 
-/// Runs the main job. With `details` it says for each configuration where the largest error is, and prints the
-/// remarks on its formula.
+/// Runs the main job, and returns whether every configuration has passed. With `details` it also prints where the largest
+/// error of each configuration is, and the remarks on its formula.
+///
+/// # Errors
+/// Fails if a configuration has problems, if files cannot be written, or if a simulation cannot be run.
 pub fn run(registry: &Registry, output: OutputOptions, details: bool) -> Result<bool> {
     let loaded = load(registry, &[])?;
     for one in &loaded {
@@ -50,7 +53,7 @@ pub fn run(registry: &Registry, output: OutputOptions, details: bool) -> Result<
 struct MainJobReport<'a> {
     loaded: &'a [Loaded],
     findings: &'a [MainJobResult],
-    /// People are told more than the table.
+    /// Whether people get more than the table.
     details: bool,
     holds: bool,
 }
@@ -77,7 +80,7 @@ fn finding(one: &Loaded, bar: &indicatif::ProgressBar) -> Result<MainJobResult> 
     Ok(MainJobResult { timing: one.core.timing()?, bound, outcome, failures })
 }
 
-/// The columns of the table, which is the last thing on the screen except for the line that counts.
+/// The columns of the table. On the screen, only the line with the counts follows the table.
 const COLUMNS: &str = "configuration | device;6 | clocks/point:2 | points:4 | clocks:7 | registers, outputs:8 | ROM bits:3 | \
                        bound:1 | largest error: | verdict";
 
@@ -134,14 +137,15 @@ fn print(loaded: &[Loaded], findings: &[MainJobResult], details: bool) -> Result
     Ok(())
 }
 
-/// Returns the name that tells a configuration in `configs/` from the others there. For example, `configs/rough.toml`
+/// Returns the short name of a configuration in `configs/`, and the whole path of any other. For example, `configs/rough.toml`
 /// is `rough`.
 fn short(path: &str) -> &str {
     let name = path.strip_prefix(CONFIGS).and_then(|name| name.strip_prefix('/'));
     name.and_then(|name| name.strip_suffix(".toml")).unwrap_or(path)
 }
 
-/// Returns how many hold, how many are outside the contract, how many fail. For example, `19 of 21 hold; 2 FAIL.`
+/// Returns a sentence with the numbers of configurations that hold, that are outside the contract and that fail. For example,
+/// `19 of 21 hold; 2 FAIL.`
 fn counts(findings: &[MainJobResult]) -> String {
     let (mut hold, mut outside, mut fail) = (0, 0, 0);
     for finding in findings {

@@ -29,8 +29,11 @@ pub struct Arguments {
     sweep: SweepValues,
 }
 
-/// Runs `glint merge`, which joins the results of an exhaustive check that was divided among machines by `glint cosim --exhaustive
-/// --shard`. Returns whether the joined check holds.
+/// Runs `glint merge`, which joins the results of an exhaustive check that was divided among machines by `glint cosim
+/// --exhaustive --shard`. Returns whether the joined check holds.
+///
+/// # Errors
+/// Fails if a file cannot be read, or if the files are not the complete shards of this configuration and build.
 pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) -> Result<bool> {
     let Arguments { config, files, .. } = arguments;
     let loaded = load(registry, std::slice::from_ref(config))?;

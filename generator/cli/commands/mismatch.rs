@@ -1,6 +1,6 @@
 //! Reports the first difference between golden model and hardware, for people and for scripts.
 //!
-//! The report comes with a waveform file and a command, with which the user can reproduce the difference.
+//! The report comes with a waveform file and a command that reproduces the difference.
 
 use std::fs::{self, File};
 use std::io::BufWriter;
@@ -17,24 +17,25 @@ use glint_core::cosim::exhaustive::{Clocks, Difference};
 use glint_core::cosim::{Lockstep, Mismatch, Outcome};
 use glint_rtl::sim::views;
 
-/// Clocks in the waveform that ends with a difference.
+/// The number of clocks in the waveform that ends with a difference.
 const WINDOW: u64 = 64;
 
-/// A waveform file and a command, with which the user can reproduce a difference.
+/// A waveform file and a command that reproduces a difference.
 pub struct Reproducer {
-    /// The waveform of the clocks before it.
+    /// The file with the waveform of the clocks before the difference.
     vcd: PathBuf,
-    /// The first of them.
+    /// The first clock in the file.
     from: u64,
-    /// The command that shows all of them.
+    /// The command that records all clocks.
     command: String,
 }
 
 impl Reproducer {
-    /// Writes the waveform of the clocks before a difference into the working directory.
+    /// Runs the stream with a difference again, and writes the waveform of its last clocks into the working directory, as
+    /// [`waveform_of`] names the file.
     ///
     /// # Errors
-    /// Fails if the waveform cannot be written.
+    /// Fails if the run fails, or if the waveform cannot be written.
     pub fn of_run(one: &Loaded, mismatch: &Mismatch) -> Result<Self> {
         let (vcd, from) = window(one, mismatch);
         let lockstep = one.core.lockstep(mismatch.seed)?;
@@ -51,10 +52,11 @@ impl Reproducer {
         })
     }
 
-    /// Writes the waveform of the clocks before a difference of a combination of operands.
+    /// Runs a combination of operands with a difference again, and writes the waveform of its last clocks into the working
+    /// directory, as [`waveform_of`] names the file.
     ///
     /// # Errors
-    /// Fails if the waveform cannot be written.
+    /// Fails if the run fails, or if the waveform cannot be written.
     pub fn of_combination(
         one: &Loaded,
         clocks: &Clocks<'_>,
@@ -65,7 +67,7 @@ impl Reproducer {
         Ok(Self { vcd, from, command: format!("{Program} cosim {} --exhaustive", one.path) })
     }
 
-    /// Returns text that tells the user where the difference is, and how to reproduce it.
+    /// Returns a phrase that tells the user in which clocks the difference is recorded, and how to record all clocks.
     pub fn text(&self, mismatch: &Mismatch) -> String {
         format!(
             "`{}` shows clocks {} to {}; all of them: {}",
@@ -76,7 +78,8 @@ impl Reproducer {
         )
     }
 
-    /// Returns JSON that tells a script where the difference is, and how to reproduce it.
+    /// Returns the difference as JSON, with the keys of [`as_json`], and with the waveform file as `vcd` and the command as
+    /// `reproduce`.
     pub fn json(&self, mismatch: &Mismatch) -> Value {
         let mut value = as_json(mismatch);
         value["vcd"] = json!(self.vcd.display().to_string());
@@ -85,8 +88,8 @@ impl Reproducer {
     }
 }
 
-/// Returns a difference as JSON for scripts. Bit patterns are written as text, because they may have 64 bits, and many JSON readers
-/// lose digits of such numbers. For example, the key `golden` has the text `0x1f`.
+/// Returns a difference as JSON for scripts. Bit patterns are written as text, because they may have 64 bits, and many JSON
+/// readers lose digits of such numbers. For example, the key `golden` has the text `0x1f`.
 pub fn as_json(mismatch: &Mismatch) -> Value {
     json!({
         "seed": mismatch.seed,
@@ -98,24 +101,24 @@ pub fn as_json(mismatch: &Mismatch) -> Value {
     })
 }
 
-/// Returns the file for the waveform of a difference, and the clock at which it begins.
+/// Returns the path of the waveform file for a difference, and the clock at which the waveform begins.
 fn window(one: &Loaded, mismatch: &Mismatch) -> (PathBuf, u64) {
     (waveform_of(one), first_clock(mismatch.clock))
 }
 
-/// Returns the file for the waveform of a difference, in the working directory. For example, `rough_mismatch.vcd`.
+/// Returns the path of the waveform file for a difference, in the working directory. For example, `rough_mismatch.vcd`.
 pub fn waveform_of(one: &Loaded) -> PathBuf {
     PathBuf::from(format!("{}_mismatch.vcd", one.core.config.name))
 }
 
-/// Returns the clock at which a waveform begins whose last clock is `clock`. For example, the waveform of a difference at clock 100
-/// begins with clock 36.
+/// Returns the first clock of a waveform that ends with clock `clock`: 64 clocks earlier, but at least 0. For example, the
+/// waveform of a difference at clock 100 begins with clock 36.
 pub fn first_clock(clock: u64) -> u64 {
     clock.saturating_sub(WINDOW)
 }
 
-/// Runs the co-simulation again and writes the waveform from clock `from` on. The file is written under another name, and moved to
-/// its place when it is complete.
+/// Runs the co-simulation again, for `points` results or up to a difference, and writes the waveform from clock `from` on. The
+/// file is written under a temporary name, and renamed when it is complete. Returns the outcome of the run.
 ///
 /// # Errors
 /// Fails if [`Lockstep::trace`] fails, or if the file cannot be written.
@@ -129,8 +132,8 @@ pub fn traced(
     write(one, destination, |file| lockstep.trace(points, from, file))
 }
 
-/// Lets `trace` write a waveform beside its place, and moves it there when it is whole. Files for viewers are written
-/// with it if they are not there yet; files that are there may be the user's.
+/// Lets `trace` write a waveform under a temporary name, and renames the file when it is complete. Also writes a view for each
+/// waveform viewer. It leaves an existing view unchanged, because the view may be the user's.
 fn write<T>(
     one: &Loaded,
     destination: Destination,
@@ -153,7 +156,7 @@ fn write<T>(
                     ));
                 }
             } else if let Err(error) = Destination::open(&view).and_then(|it| it.write(text)) {
-                // The waveform was asked for, and it is there.
+                // The waveform itself is written, so this is only a warning.
                 failure::warn(&format!("{error:#}"));
             }
         }

@@ -1,6 +1,8 @@
-//! Defines the commands of `glint`, one in each module, and the code that they share, for example loading configuration files.
+//! Defines the commands of `glint`, one in each module, and the code that they share, for example the loading of configuration
+//! files.
 //!
-//! The function `run` of a command returns whether everything that the command checks holds.
+//! The function `run` of a command returns whether everything that the command checks holds. A command that checks nothing
+//! returns true.
 
 pub mod certify;
 
@@ -49,19 +51,20 @@ use glint_golden::Bound;
 use glint_show::evidence::advice;
 use glint_tools::Tool;
 
-/// The directory of the configurations if none are named.
+/// The directory of the configurations that are used if the user names none.
 const CONFIGS: &str = "configs";
 
 /// A configuration file, and the core that it describes.
 pub struct Loaded {
-    /// The path as the command line names it, with `/`: for example, `configs/rough.toml`.
+    /// The path on the command line, with `/` as the separator. For example, `configs/rough.toml`.
     path: String,
     core: Core,
-    /// No problems, but the locations of the keys in the file.
+    /// The locations of the keys in the file, in the form of an empty list of problems.
     locations: Problems,
 }
 
-/// Returns the configurations named, or all in `configs/`, sorted.
+/// Returns the configuration files in `named`. If `named` is empty, returns all TOML files in `configs/`, sorted. Fails if this
+/// directory cannot be read or has no TOML file.
 fn paths(named: &[PathBuf]) -> Result<Vec<PathBuf>> {
     if !named.is_empty() {
         return Ok(named.to_vec());
@@ -83,10 +86,10 @@ fn paths(named: &[PathBuf]) -> Result<Vec<PathBuf>> {
     Ok(paths)
 }
 
-/// Reads configurations and builds their designs.
+/// Reads the configurations `named`, or all in `configs/` if it is empty, and builds their designs.
 ///
-/// It reports the problems of all files, not only the problems of the first file. It fails if two files name the same
-/// module, for example `rough`.
+/// It fails if a file has problems or a design cannot be built, and reports the problems of all files. It also fails if two
+/// files name the same module, for example `rough`.
 fn load(registry: &Registry, named: &[PathBuf]) -> Result<Vec<Loaded>> {
     if named.iter().filter(|path| path.as_path() == Path::new(input::STDIN)).count() > 1 {
         wrong_usage!("standard input, `-`, is read once: name it once");
@@ -115,8 +118,8 @@ fn load(registry: &Registry, named: &[PathBuf]) -> Result<Vec<Loaded>> {
     if failed.is_empty() { Ok(loaded) } else { Err(Failure::Several(failed).into()) }
 }
 
-/// Does the same as [`load`], for a command about microprograms. Without names, it leaves the pipelines of `configs/`
-/// out. If `named` has a pipeline, it fails.
+/// Does the same as [`load`], for a command that works only on cores with a microprogram. If `named` is empty, the pipelines in
+/// `configs/` are left out. If `named` has a pipeline, the function fails.
 fn load_sequential(registry: &Registry, named: &[PathBuf], command: &str) -> Result<Vec<Loaded>> {
     let (pipelines, loaded): (Vec<Loaded>, Vec<Loaded>) =
         load(registry, named)?.into_iter().partition(|one| one.core.design.pipeline.is_some());
@@ -141,7 +144,7 @@ fn load_one(registry: &Registry, schemas: &[config::Schema], path: &Path) -> Res
     let device = registry
         .device(&config.device)
         .with_context(|| format!("no device `{}`", config.device))?;
-    // A clock that the file leaves out may be lowered.
+    // If the file does not state a clock, Glint may choose a lower one.
     let core = if locations.gives(CLOCK_MHZ) {
         Core::new(*device, config)
     } else {
@@ -155,8 +158,8 @@ fn load_one(registry: &Registry, schemas: &[config::Schema], path: &Path) -> Res
     Ok(Loaded { path: name, core, locations })
 }
 
-/// Returns an error with its location: the place of the key in the file for a key error, and else the name of the file.
-/// `locations` has the places of the keys.
+/// Returns an error with a location: for an error of a key, the location of the key in the file, and otherwise the name of the
+/// file. `locations` has the locations of the keys.
 fn located(error: anyhow::Error, file: &str, locations: &Problems) -> anyhow::Error {
     match error.downcast::<KeyError>() {
         Ok(key_error) => {
@@ -168,15 +171,17 @@ fn located(error: anyhow::Error, file: &str, locations: &Problems) -> anyhow::Er
     }
 }
 
-/// Returns a text about a name that is none of `names`: the nearest name, and all of them. `what` is the word for such
-/// names. For example, the text for `exponnt` begins with "; did you mean `exponent`?".
+/// Returns a text for a message about a name that is not in `names`: the most similar name, if one is similar, and a list of
+/// all names. `what` is the plural noun for such names. For example, the text for `exponnt` begins with "; did you mean
+/// `exponent`?".
 fn none_of(name: &str, what: &str, names: &[&str]) -> String {
     let near = config::nearest(name, names.iter().copied())
         .map_or_else(|| ".".to_owned(), |near| format!("; did you mean `{near}`?"));
     format!("{near} The {what} are: {}", names.join(", "))
 }
 
-/// Finds Yosys. If it is missing, a note says so; `without` says what remains without it.
+/// Finds the tool Yosys. Returns `None` if it is missing, and adds a note with the text `without`, which must describe the
+/// command without Yosys.
 fn yosys(without: &str, notes: &mut Vec<String>) -> Option<Tool> {
     Tool::find("yosys").map_err(|missing| notes.push(format!("{missing}: {without}"))).ok()
 }
@@ -184,16 +189,16 @@ fn yosys(without: &str, notes: &mut Vec<String>) -> Option<Tool> {
 /// The verdict on a configuration whose outputs are right, within a bound that keeps the accuracy contract.
 const HOLDS: &str = "holds";
 
-/// The verdict on one whose outputs are right, within a bound that does not.
+/// The verdict on a configuration whose outputs are right, within a bound that does not keep the accuracy contract.
 const OUTSIDE: &str = "outside the contract";
 
-/// The verdict on one whose outputs are right, and held against no bound.
+/// The verdict on a configuration whose outputs are right, but were compared with no bound.
 const UNSTATED: &str = "no bound is stated";
 
-/// The verdict on one with failures.
+/// The verdict on a configuration with failures.
 const FAILS: &str = "FAILS";
 
-/// Returns the verdict on a configuration with this bound, and these failures.
+/// Returns the verdict on a configuration from its error bound and its failures.
 fn verdict(bound: &Bound, failures: &[String]) -> &'static str {
     match (failures.is_empty(), bound.keeps()) {
         (true, _) if !bound.is_stated() => UNSTATED,
@@ -204,16 +209,16 @@ fn verdict(bound: &Bound, failures: &[String]) -> &'static str {
 }
 
 impl Loaded {
-    /// Returns every file of the configuration. If a key asks for something that the core cannot have, the error
-    /// shows the place of the key in the file.
+    /// Returns every file of the configuration. If a key asks for something that the core cannot have, the error has the
+    /// location of the key in the file.
     fn files(&self, vectors: impl Into<Option<Vectors>>) -> Result<OutputFiles> {
         let files = self.core.files(&self.path, vectors);
         files.map_err(|error| located(error, &self.path, &self.locations))
     }
 
-    /// Does what [`Loaded::bound`] does, and warns of a module name with `__`. It also warns with the contract's
-    /// remarks on the formula, unless the device's own keys have their defaults: for these, the page of the catalogue
-    /// has the remarks.
+    /// Does the same as [`Loaded::bound`], and warns about a module name with `__`. If the device's own keys are not all at
+    /// their defaults, it also prints the contract's remarks on the formula as warnings. For the defaults, the page of the
+    /// catalogue has the remarks.
     fn contract(&self) -> Result<()> {
         self.bound()?;
         let config = &self.core.config;
@@ -233,7 +238,8 @@ impl Loaded {
         Ok(())
     }
 
-    /// Warns when the configuration misses the accuracy contract; refuses it when it is strict.
+    /// Warns if the configuration does not keep the accuracy contract, or if the contract states no bound. Fails instead if the
+    /// configuration sets `strict = true`.
     fn bound(&self) -> Result<()> {
         let bound = self.core.contract.bound();
         if !bound.is_stated() {

@@ -58,18 +58,18 @@ pub struct Arguments {
 /// The score of one configuration.
 #[derive(Serialize)]
 struct Scored {
-    /// The version; a record begins with it.
+    /// The version of Glint. A record begins with it.
     glint: &'static str,
     config: String,
     device: &'static str,
     netlist: Score,
-    /// The score of the emitted text, if it was asked for.
+    /// The score of faults in the emitted Verilog, if the user asked for it with `--full`.
     #[serde(skip_serializing_if = "Option::is_none")]
     verilog: Option<TextScore>,
 }
 
 impl Scored {
-    /// Returns the share of undecided faults among all faults of the netlist and of the Verilog.
+    /// Returns the share of undecided faults among all planted faults, of the netlist and of the Verilog, from 0 to 1.
     fn share_undecided(&self) -> f64 {
         let (mut planted, mut undecided) = (self.netlist.all.planted, self.netlist.all.undecided);
         if let Some(text) = &self.verilog {
@@ -84,8 +84,12 @@ impl Scored {
     }
 }
 
-/// Runs `glint mutate`, which plants faults in a configuration's hardware, one at a time, and shows which of them the tests notice.
-/// Returns whether few enough faults remain undecided.
+/// Runs `glint mutate`, which plants faults in a configuration's hardware, one at a time, and shows which of them the tests
+/// notice. Returns whether at most 1 % of the faults of each configuration are undecided.
+///
+/// # Errors
+/// Fails if a configuration has problems, if the named fault does not exist, if a tool is missing, or if a record cannot be
+/// written.
 pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) -> Result<bool> {
     let loaded = load(registry, &arguments.configs.paths)?;
     if let Some(id) = &arguments.only {
@@ -160,7 +164,7 @@ impl CommandReport for Scored {
     }
 }
 
-/// Prints the names of all faults, which always succeeds.
+/// Prints the names of all faults, and returns true.
 fn list(output: OutputOptions, loaded: &[Loaded], faults: &[Faults]) -> Result<bool> {
     let mut list = output.list();
     for (one, faults) in loaded.iter().zip(faults) {
@@ -169,7 +173,7 @@ fn list(output: OutputOptions, loaded: &[Loaded], faults: &[Faults]) -> Result<b
     list.conclude(true)
 }
 
-/// The names of all faults of a configuration.
+/// The names of all faults of a configuration, for the report.
 struct FaultNames<'a> {
     one: &'a Loaded,
     faults: &'a Faults,
@@ -193,7 +197,8 @@ impl CommandReport for FaultNames<'_> {
     }
 }
 
-/// Plants one fault, and prints its verdict with the means to reproduce it.
+/// Plants the fault `id`, and prints its verdict. If the fault is caught, also writes a waveform that ends with the first
+/// difference. Returns whether the fault is decided. Fails with wrong usage if the fault does not exist.
 fn only(output: OutputOptions, one: &Loaded, id: &str) -> Result<bool> {
     let faults = Faults::of(&one.core.design);
     let Some(fault) = faults.find(id) else {
@@ -219,11 +224,11 @@ fn only(output: OutputOptions, one: &Loaded, id: &str) -> Result<bool> {
     Ok(*verdict != MutantVerdict::Undecided)
 }
 
-/// A fault with its verdict.
+/// A fault with its verdict, for the report.
 struct PlantedFault<'a> {
     one: &'a Loaded,
     found: &'a FaultResult,
-    /// The waveform of a fault that is caught, its first clock and its last.
+    /// The file with the waveform of a fault that is caught, and its first and last clock. `None` if no waveform was written.
     waveform: Option<(PathBuf, u64, u64)>,
 }
 
@@ -255,8 +260,8 @@ impl CommandReport for PlantedFault<'_> {
     }
 }
 
-/// Describes where and how a mutant differs. For example, the text begins with `seed 3, with exponent=#5, after clock
-/// 120`.
+/// Returns a phrase about where and how a mutant differs. For example, the phrase begins with `seed 3, with exponent=#5, after
+/// clock 120`.
 fn shown_by(SignalDifference { held, mismatch }: &SignalDifference) -> String {
     let mut holding = String::new();
     for (name, raw) in held {
@@ -331,7 +336,7 @@ fn print(scored: &Scored) {
     );
 }
 
-/// Returns the row of one kind of faults.
+/// Returns the row of the table for one kind of faults, which has the name `name`.
 fn row(name: String, tally: &Tally) -> Vec<String> {
     let caught_by = |check| tally.caught.get(&check).copied().unwrap_or(0).to_string();
     vec![
@@ -351,8 +356,8 @@ fn print_undecided(ids: &[String]) {
     }
 }
 
-/// Prints the shipped bench's share of the faults that anything notices, beside its goal. For example, 96 of 100 upper
-/// bits of words in ROMs reach the goal of 95 %.
+/// Prints how many of the faults that any test notices the shipped bench notices too, and whether this reaches the goal. For
+/// example, 96 of 100 upper bits of words in ROMs reach the goal of 95 %.
 fn print_shipped(faults: &str, share: Share, goal: Option<f64>) {
     let verdict = match goal {
         Some(goal) => {

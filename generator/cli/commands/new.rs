@@ -56,12 +56,15 @@ pub struct Arguments {
     target: Option<String>,
 }
 
-/// The line by which editors find the schema, and how it comes there.
+/// The comment by which editors find the JSON Schema of the keys, and the command that makes the file with the schema.
 const SCHEMA: &str =
     "#:schema glint.schema.json\n# Editors check keys by it: glint schema > glint.schema.json\n\n";
 
-/// Runs `glint new`, which prints a configuration file for a device, or for a function that is given by its name, such as `rsqrt`.
-/// Returns true, because the command checks nothing.
+/// Runs `glint new`, which prints a configuration file for a device, or for a function that is given by its name, such as
+/// `rsqrt`. Returns true, because the command checks nothing.
+///
+/// # Errors
+/// Fails if no device or function has the name, or if an option has a value that a configuration cannot have.
 pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) -> Result<bool> {
     let device = &arguments.device;
     let preset = presets::find(device);
@@ -96,9 +99,9 @@ pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) ->
     Ok(true)
 }
 
-/// Returns a comment about the pipeline with the longest interval, if by the estimate it has no more DSP blocks and no lower rate
-/// than the sequential core, and an advantage in one of both. Returns `None` if it has not, or if the user has chosen an
-/// architecture.
+/// Returns a comment about the pipeline with the longest interval, if it dominates the sequential core. It dominates if by the
+/// estimate it has no more DSP blocks and no lower rate, and an advantage in at least one of both. Returns `None` if it does
+/// not dominate, or if the user has chosen an architecture.
 fn hint(device: &Device, config: &Config, given: &[String]) -> Option<String> {
     if given.iter().any(|key| key == "architecture") {
         return None;
@@ -117,9 +120,9 @@ fn hint(device: &Device, config: &Config, given: &[String]) -> Option<String> {
     ))
 }
 
-/// A new configuration, as TOML.
+/// A new configuration, with its text in TOML.
 struct NewConfiguration<'a> {
-    /// The device or the preset, as the user names it.
+    /// The name of the device or of the function, as the user gave it.
     device: &'a str,
     name: String,
     text: String,
@@ -138,8 +141,9 @@ impl CommandReport for NewConfiguration<'_> {
 }
 
 impl Arguments {
-    /// Returns the keys that the options set. For example, `--pipelined --clock 100` sets `architecture` and
-    /// `pipeline.clock_mhz`; `--clock 100` alone sets `package.constraints` and `package.clock_mhz`.
+    /// Returns the keys that the options set, with their values. For example, `--pipelined --clock 100` sets `architecture` and
+    /// `pipeline.clock_mhz`. `--clock 100` alone sets `package.constraints` and `package.clock_mhz`. Fails if a `--set` has no
+    /// `=` or no valid key.
     fn settings(&self) -> Result<Vec<KeyAssignment>> {
         let mut settings = Vec::new();
         if self.pipelined {
@@ -169,7 +173,7 @@ impl Arguments {
     }
 }
 
-/// Returns the configuration that has these settings.
+/// Returns the configuration with these settings and the module name `name`.
 ///
 /// # Errors
 /// Fails if the reader would refuse a file with the name and the settings.

@@ -34,7 +34,7 @@ pub struct Arguments {
     glint: String,
 }
 
-/// The files of the crate of the device `parabola`, by their paths.
+/// The files of the template, the crate of the device `parabola`: their paths in the crate, and their contents.
 const FILES: [(&str, &str); 6] = [
     ("Cargo.toml", include_str!("../new_device/manifest.toml")),
     ("src/lib.rs", include_str!("../new_device/lib.rs")),
@@ -44,8 +44,11 @@ const FILES: [(&str, &str); 6] = [
     ("tests/device.rs", include_str!("../new_device/test.rs")),
 ];
 
-/// Runs `glint new-device`, which writes a Rust crate that defines a device of the user's own, as a starting point. Returns true,
+/// Runs `glint new-device`, which writes a Rust crate with a device of the user's own, as a starting point. Returns true,
 /// because the command checks nothing.
+///
+/// # Errors
+/// Fails if the name cannot be the name of a new device, or if the crate cannot be written.
 pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) -> Result<bool> {
     let name = &arguments.name;
     check_name(registry, name)?;
@@ -56,7 +59,7 @@ pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) ->
     Ok(true)
 }
 
-/// A new crate with a device.
+/// A new crate with a device, for the report.
 struct NewCrate<'a> {
     /// The name of the device.
     name: &'a str,
@@ -80,7 +83,7 @@ impl CommandReport for NewCrate<'_> {
     }
 }
 
-/// Writes the files below a directory that is not there yet: all of them, or nothing.
+/// Writes all files below a new directory, or nothing. Fails if the directory exists.
 fn write(directory: &Path, files: &[(&str, String)]) -> Result<()> {
     if directory.symlink_metadata().is_ok() {
         bail!(
@@ -106,7 +109,8 @@ fn write(directory: &Path, files: &[(&str, String)]) -> Result<()> {
 /// Checks the name of a new device. For example, `sine-wave` can be a name, and `Sine`, `2x` and `sine--wave` cannot.
 ///
 /// # Errors
-/// Fails if the name is no name of a crate, a word of Rust or Verilog, or the name of a device that `registry` has.
+/// Fails if the name does not consist of lower-case letters, digits and single `-`, if it is a reserved word of Verilog, or if
+/// a crate or a device in `registry` already has it.
 fn check_name(registry: &Registry, name: &str) -> Result<()> {
     let is_letter = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '-';
     let begins = name.starts_with(|c: char| c.is_ascii_lowercase());
@@ -127,8 +131,8 @@ fn check_name(registry: &Registry, name: &str) -> Result<()> {
     Ok(())
 }
 
-/// Returns a file of the template for another device. For example, the name `sine-wave` makes the crate
-/// `sine_wave_device` of `parabola_device`.
+/// Returns the text of a template file, changed to the device `name`. `glint` is the path of Glint's checkout. For example,
+/// `sine-wave` changes `parabola_device` to `sine_wave_device`.
 fn text_for(text: &str, name: &str, glint: &str) -> String {
     let module = name.replace('-', "_");
     let glint = toml::Value::from(glint.replace('\\', "/")).to_string();

@@ -24,7 +24,7 @@ use glint_show::render::{
 };
 use glint_tools::VerilogSimulator;
 
-/// The largest file that is read, in bytes: about the OBJ file of the largest mesh.
+/// The largest file that is read, in bytes. The OBJ file of the largest mesh is about as large.
 const LARGEST_FILE: u64 = 4 << 30;
 
 /// Draw a picture whose highlights are bit-accurate results of the device
@@ -134,8 +134,12 @@ enum Through {
     Verilator,
 }
 
-/// Runs `glint render`, which draws a picture whose highlights are bit-exact results of a device. Returns true, because the command
-/// checks nothing.
+/// Runs `glint render`, which draws a picture whose highlights are bit-exact results of a device. Returns true, because the
+/// command checks nothing.
+///
+/// # Errors
+/// Fails if the configuration has problems, if an option or an input file is not valid, if Verilator is missing, or if the
+/// picture cannot be written.
 pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) -> Result<bool> {
     let (name, core) = core(registry, arguments.config.as_deref())?;
     let settings = settings(&core, arguments)?;
@@ -171,7 +175,8 @@ pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) ->
     Ok(true)
 }
 
-/// Returns the core of the configuration, with its name for people.
+/// Returns the core of the configuration, and a name for messages. Without a configuration, uses the first device with its
+/// defaults. Fails if the configuration has problems.
 fn core(registry: &Registry, config: Option<&Path>) -> Result<(String, Core)> {
     if let Some(path) = config {
         let one = load_one(registry, &registry.schemas(), path)?;
@@ -206,7 +211,8 @@ fn settings(core: &Core, arguments: &Arguments) -> Result<Settings> {
     })
 }
 
-/// Returns the scene; `coarse`: in triangles that one can see.
+/// Returns the scene that the options describe. If `coarse` is true, built-in shapes have triangles that are large enough to be
+/// visible. Fails if a mesh or a height map cannot be used.
 fn scene(arguments: &Arguments, coarse: bool) -> Result<Scene> {
     let objects = match &arguments.mesh {
         Some(path) => {
@@ -237,7 +243,7 @@ fn scene(arguments: &Arguments, coarse: bool) -> Result<Scene> {
             ("--height-depth", arguments.height_depth),
             ("--height-repeat", arguments.height_repeat),
         ] {
-            // Far beyond anything visible, and far from an overflow.
+            // This limit is far larger than anything visible, and far below an overflow.
             if !(-1e6..=1e6).contains(&value) {
                 wrong_usage!("{option} {value}: not beyond a million");
             }
@@ -251,7 +257,7 @@ fn scene(arguments: &Arguments, coarse: bool) -> Result<Scene> {
     Ok(scene)
 }
 
-/// Returns a whole file, within reason.
+/// Returns the contents of a file. Fails if the file cannot be read, or is larger than [`LARGEST_FILE`].
 fn read(path: &Path) -> Result<Vec<u8>> {
     let mut bytes = Vec::new();
     input::open(path)?.take(LARGEST_FILE + 1).read_to_end(&mut bytes)?;
@@ -261,10 +267,10 @@ fn read(path: &Path) -> Result<Vec<u8>> {
     Ok(bytes)
 }
 
-/// The picture that is written.
+/// The picture that was written, for the report.
 struct RenderedPicture<'a> {
     arguments: &'a Arguments,
-    /// The configuration, for people.
+    /// The name of the configuration in messages.
     name: &'a str,
     core: &'a Core,
     settings: &'a Settings,
@@ -298,7 +304,7 @@ impl<'a> RenderedPicture<'a> {
         self.arguments.out.display().to_string()
     }
 
-    /// Returns the engine that computed the points, as the command line names it.
+    /// Returns the name of the engine that computed the points, as on the command line. For example, `golden`.
     fn through(&self) -> String {
         let through = self.arguments.through.to_possible_value();
         through.map_or_else(String::new, |value| value.get_name().to_owned())
@@ -379,14 +385,16 @@ impl CommandReport for RenderedPicture<'_> {
     }
 }
 
-/// Parses a size in pixels. For example, `640x480` is 640 wide and 480 high.
+/// Parses a size in pixels. For example, `640x480` gives a width of 640 and a height of 480. Fails if the text has another
+/// form.
 fn size(text: &str) -> Result<(u32, u32), String> {
     let sides = text.split_once(['x', 'X']);
     let sides = sides.and_then(|(width, height)| Some((width.parse().ok()?, height.parse().ok()?)));
     sides.ok_or_else(|| "a size is WxH in pixels, as in 640x480".to_owned())
 }
 
-/// Parses finite numbers with commas between. For example, `1, 2.5` is 1 and 2.5; `inf` is an error.
+/// Parses finite numbers that are separated by commas. For example, `1, 2.5` gives 1 and 2.5. Fails if a part is no finite
+/// number, such as `inf`.
 fn numbers(text: &str) -> Result<Vec<f64>, String> {
     text.split(',')
         .map(|word| match word.trim().parse::<f64>() {
@@ -396,7 +404,8 @@ fn numbers(text: &str) -> Result<Vec<f64>, String> {
         .collect()
 }
 
-/// Parses `NAME=VALUE`, where the value is one finite number. For example, `alpha2=0.04`.
+/// Parses `NAME=VALUE`, in which the value must be one finite number. For example, `alpha2=0.04`. Fails if the text has another
+/// form.
 fn operand(text: &str) -> Result<(String, f64), String> {
     let (name, value) = text.split_once('=').ok_or("it takes NAME=VALUE, as in alpha2=0.04")?;
     match numbers(value)?.as_slice() {
@@ -416,7 +425,7 @@ fn colour(text: &str) -> Result<Vector, String> {
     of_light(vector(text)?)
 }
 
-/// Returns a colour, once its parts are found to be shares of full light.
+/// Returns the colour if its three components are from 0 to 1, and fails otherwise.
 fn of_light(colour: Vector) -> Result<Vector, String> {
     let is_colour = colour.0.iter().all(|part| (0.0..=1.0).contains(part));
     is_colour.then_some(colour).ok_or_else(|| "a colour is three numbers from 0 to 1".to_owned())
@@ -434,7 +443,7 @@ fn light(text: &str) -> Result<Light, String> {
     Ok(Light { direction: direction.ok_or("0,0,0 is no direction")?, colour })
 }
 
-/// Parses a number from `low` to `high`; `wanted` says so.
+/// Parses a number from `low` to `high`, both included. Fails with the message `wanted` for anything else.
 fn between(text: &str, low: f64, high: f64, wanted: &str) -> Result<f64, String> {
     let number = text.parse().ok().filter(|number| (low..=high).contains(number));
     number.ok_or_else(|| wanted.to_owned())

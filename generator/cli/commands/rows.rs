@@ -1,4 +1,4 @@
-//! Reads the rows of a CSV file. An error message names the line of the row that is wrong.
+//! Reads the rows of a CSV file. An error message has the number of the wrong line.
 
 use std::io;
 use std::path::Path;
@@ -8,11 +8,12 @@ use csv::{ReaderBuilder, StringRecord, Trim};
 
 use glint_base::input;
 
-/// Reads the rows of a CSV file, or of standard input if the path is `-`. `columns` interprets the headings; `of_row` converts each
-/// row.
+/// Reads the rows of a CSV file, or of standard input if the path is `-`. `columns` interprets the headings, and `of_row`
+/// converts each row. Returns the converted rows in the order of the file.
 ///
 /// # Errors
-/// Fails if the file cannot be read, or has no row below the headings. Fails with the line number if `columns` or `of_row` fails.
+/// Fails if the file cannot be read, has a quote that is not closed, or has no row below the headings. Fails also if `columns`
+/// or `of_row` fails; the error then names the row.
 pub fn read<C, T>(
     path: &Path,
     columns: impl FnOnce(&StringRecord) -> Result<C>,
@@ -22,7 +23,7 @@ pub fn read<C, T>(
     let cannot = || format!("cannot read `{shown}`");
     let file = input::open(path).with_context(cannot)?;
     let text = io::read_to_string(file).with_context(cannot)?;
-    // The reader takes one that is never closed for all that follows.
+    // The CSV reader takes a quote that is never closed as the beginning of a field with the rest of the file.
     if text.matches('"').count() % 2 == 1
         && let Some(last) = text.rfind('"')
     {
@@ -47,8 +48,8 @@ pub fn read<C, T>(
     Ok(rows)
 }
 
-/// Returns the line of a record that begins at `start`. Empty lines before the record count as a part of it. For
-/// example, 2 is the first row below the headings.
+/// Returns the line number of a record that begins at byte `start`, counted from 1. Empty lines before the record are skipped.
+/// For example, the first row below the headings is in line 2.
 fn line(text: &str, start: usize) -> usize {
     let record = text[start..].trim_start_matches(['\r', '\n']);
     1 + text[..text.len() - record.len()].matches('\n').count()

@@ -48,6 +48,9 @@ pub struct Arguments {
 
 /// Runs `glint schedule`, which shows the stages of a pipeline, and the operations in each. Returns true, because the command
 /// checks nothing.
+///
+/// # Errors
+/// Fails if a named configuration is sequential, if no configuration is a pipeline, or if a drawing cannot be written.
 pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) -> Result<bool> {
     let named = paths(&arguments.configs.paths)?;
     let mut list = output.list();
@@ -159,7 +162,7 @@ impl CommandReport for PassText<'_> {
     }
 }
 
-/// A configuration with its pipeline.
+/// A configuration with its pipeline, for the report.
 struct PipelineSchedule<'a> {
     one: &'a Loaded,
     pipeline: &'a Pipeline,
@@ -229,8 +232,7 @@ fn print(one: &Loaded, pipeline: &Pipeline) {
     tables::print(&headings, multipliers);
 }
 
-/// Returns the names of the values that a stage computes. For example, a stage with one multiplier may have only
-/// `product`.
+/// Returns the names of the values that a stage computes. For example, a stage with only a multiplier may compute `product`.
 fn computed<'a>(design: &'a Design, pipeline: &'a Pipeline, stage: usize) -> Vec<&'a str> {
     pipeline.computed(design, stage).map(|(value, _)| value).collect()
 }

@@ -1,23 +1,23 @@
-//! Parses the option `--set KEY=VALUE`, by which a user changes a key of a configuration on the command line.
+//! Parses the option `--set KEY=VALUE`, which sets a key of a configuration on the command line.
 
 use anyhow::Result;
 
 use crate::wrong_usage;
 
-/// A key with the value that a user gave it.
+/// A key with the value that the user gives it.
 pub struct KeyAssignment {
-    /// The dotted name of the key. For example, `cosine.fraction`.
+    /// The dotted name of the key, for example `cosine.fraction`.
     pub key: String,
-    /// The value of the key, as TOML.
+    /// The value of the key, in TOML syntax.
     pub value: String,
 }
 
 impl KeyAssignment {
-    /// Parses `KEY=VALUE`. A word needs no quotes: for example, `architecture=pipelined` sets `architecture =
-    /// "pipelined"`.
+    /// Parses `KEY=VALUE`. A text needs no quotes: for example, `architecture=pipelined` sets `architecture = "pipelined"`.
     ///
     /// # Errors
-    /// Fails if there is no `=`, or if the key has other characters than letters, digits, `_`, `-` and `.`.
+    /// Fails if there is no `=`, if the key is empty, or if it has other characters than ASCII letters, digits, `_`, `-` and
+    /// `.`.
     pub fn parse(given: &str) -> Result<KeyAssignment> {
         let Some((key, value)) = given.split_once('=') else {
             wrong_usage!("--set {given}: a key and a value are wanted, as cosine.fraction=16");
@@ -34,12 +34,12 @@ impl KeyAssignment {
         Ok(KeyAssignment { key: key.to_owned(), value })
     }
 
-    /// Makes the setting of a key to a text, which needs no quotes.
+    /// Returns the assignment of the text `word` to a key. The word is given without quotes.
     pub fn word(key: &str, word: &str) -> KeyAssignment {
         KeyAssignment { key: key.to_owned(), value: quoted(word) }
     }
 
-    /// Returns the line of TOML that sets the key. For example, `cosine.fraction = 16`.
+    /// Returns the line of TOML that sets the key, with a newline. For example, `cosine.fraction = 16`.
     pub fn line(&self) -> String {
         format!("{} = {}\n", self.key, self.value)
     }

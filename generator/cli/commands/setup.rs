@@ -16,7 +16,7 @@ use glint_core::registry::Registry;
 use glint_show::render::setup::{Arc, direction, half};
 use glint_show::render::{self, Feed, Point, Vector};
 
-/// The prefix of the columns in which `setup` writes real values. `eval` ignores these columns.
+/// The prefix of the columns in which `setup` writes real values. `eval` ignores columns with this prefix.
 pub const REAL: &str = "real_";
 
 /// Compute a device's operands from vectors or angles, as a host does before it starts
@@ -77,14 +77,15 @@ pub struct Arguments {
 
 const AXES: [&str; 3] = ["x", "y", "z"];
 
-/// An input: a vector, or a number.
+/// An input of the command: a vector, or a number.
 #[derive(Clone, Copy)]
 struct Input {
     name: &'static str,
     vector: bool,
 }
 
-/// The inputs of a line: vectors, and numbers.
+/// The names of the inputs of a device that computes lines: first the vectors, then the numbers, separated by blanks.
+/// `OF_POINT` has the names for a device that computes single points.
 const OF_LINE: [&str; 2] = [
     "normal_1 half_1 light_1 view_1 normal_2 half_2 light_2 view_2",
     "theta_1 theta_2 gamma points exponent intensity",
@@ -93,27 +94,32 @@ const OF_LINE: [&str; 2] = [
 const OF_POINT: [&str; 2] =
     ["normal perturbed half light view", "gamma dgamma exponent red green blue"];
 
-/// The inputs of a device, and the operands that they determine.
+/// The inputs of a device, and the code that computes operands from them.
 struct HostInputs<'a> {
     one: &'a Loaded,
     feed: Feed,
     line: bool,
-    /// Some may not concern it.
+    /// All inputs for a line or for a point. The device may ignore some of them.
     inputs: Vec<Input>,
 }
 
-/// The values of each input of a [`HostInputs`].
+/// For each input, its components; a number has only the first. `None` if the user did not give it.
 type Given = Vec<[Option<f64>; 3]>;
 
-/// The operands that come out.
+/// The operands that the command has computed.
 struct SetUp {
-    /// Quantities of the formulas, in their order: a name, its origin, the number, its unit.
+    /// Intermediate quantities of the formulas: the name, the origin, the value and its unit.
     quantities: Vec<(&'static str, &'static str, f64, &'static str)>,
     raw: Vec<i64>,
     real: Vec<f64>,
 }
 
-/// Runs `glint setup`: computes the operands of one line or point, or of all rows of a CSV file.
+/// Runs `glint setup`: computes the operands of one line or point, or of all rows of a CSV file. Returns true, because the
+/// command checks nothing.
+///
+/// # Errors
+/// Fails if the configuration has problems, if an input is unknown, missing or not valid, if an operand would exceed its
+/// domain, or if the CSV file cannot be read.
 pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) -> Result<bool> {
     let one = load_one(registry, &registry.schemas(), &arguments.config)?;
     let host = HostInputs::new(&one)?;
@@ -147,7 +153,7 @@ pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) ->
     Ok(true)
 }
 
-/// One line or point.
+/// The operands of one line or point, for the report.
 struct SingleSetUp<'a> {
     host: &'a HostInputs<'a>,
     set_up: SetUp,
@@ -164,7 +170,7 @@ impl CommandReport for SingleSetUp<'_> {
     }
 }
 
-/// A line or point for each row of a CSV file.
+/// The operands of a line or point for each row of a CSV file, for the report.
 struct BatchSetUp<'a> {
     host: &'a HostInputs<'a>,
     set_ups: Vec<SetUp>,
@@ -213,8 +219,8 @@ impl<'a> HostInputs<'a> {
         }
     }
 
-    /// Returns the index of an input. If `name` is the name of a vector's component, it returns the index of the
-    /// component too. For example, `normal_1_y` gives the index of `normal_1`, and 1.
+    /// Returns the index of an input. If `name` names a component of a vector, also returns the index of the component. For
+    /// example, `normal_1_y` gives the index of `normal_1`, and 1. Fails if the device has no such input.
     fn place(&self, name: &str) -> Result<(usize, Option<usize>), String> {
         if let Some(index) = self.index(name)
             && self.concerns(name)
@@ -239,18 +245,18 @@ impl<'a> HostInputs<'a> {
         Err(format!("there is no input `{name}` of `{device}`{}", none_of(name, "inputs", &names)))
     }
 
-    /// Returns the inputs that the columns of a CSV file give, in the form of [`Self::place`].
+    /// Returns the input that each column of a CSV file gives, in the form of [`Self::place`].
     fn places(&self, headings: &StringRecord) -> Result<Vec<(usize, Option<usize>)>, String> {
         headings.iter().map(|heading| self.place(heading)).collect()
     }
 
-    /// Returns the index of an input, whether or not it concerns the device.
+    /// Returns the index of an input, even if the device ignores it. Returns `None` if no input has this name.
     fn index(&self, name: &str) -> Option<usize> {
         self.inputs.iter().position(|input| input.name == name)
     }
 
-    /// Stores the numbers that a text gives to an input, which must not have any yet. For example, a vector may be
-    /// `0,0,1` or `0 0 1`.
+    /// Parses the numbers for an input, and stores them in `given`. For example, a vector may be `0,0,1` or `0 0 1`. Fails if a
+    /// text is no finite number, if a vector has not three numbers, or if the input already has a value.
     fn put(
         &self,
         given: &mut Given,
@@ -280,7 +286,7 @@ impl<'a> HostInputs<'a> {
         given[self.index(name)?][0]
     }
 
-    /// Returns the number of an input, which the user must give. For example, without `points` a line fails.
+    /// Returns the number of an input. Fails if the user did not give the input. For example, a line needs `points`.
     fn needed(&self, given: &Given, name: &str) -> Result<f64, String> {
         match self.number(given, name) {
             Some(number) => Ok(number),
@@ -288,7 +294,8 @@ impl<'a> HostInputs<'a> {
         }
     }
 
-    /// Returns the whole number of an input, which the user must give and which cannot be below `least`.
+    /// Returns the number of an input, which must be a whole number of at least `least`. Fails if it is missing, or not such a
+    /// number.
     fn whole(&self, given: &Given, name: &str, least: u32) -> Result<u32, String> {
         let value = self.needed(given, name)?;
         if value.fract() != 0.0 || !(f64::from(least)..=f64::from(u32::MAX)).contains(&value) {
@@ -297,7 +304,8 @@ impl<'a> HostInputs<'a> {
         Ok(value as u32)
     }
 
-    /// Returns a share of the light, which must be from 0 to 1. An input that is not given is 1.
+    /// Returns a share of the light from 0 to 1. An input that is not given has the share 1. Fails if the share is outside 0 to
+    /// 1.
     fn share(&self, given: &Given, name: &str) -> Result<f64, String> {
         let value = self.number(given, name).unwrap_or(1.0);
         if !(0.0..=1.0).contains(&value) {
@@ -308,7 +316,8 @@ impl<'a> HostInputs<'a> {
         Ok(value)
     }
 
-    /// Returns the angle of an input in radians. The user must give it in degrees: for example, 180 is π.
+    /// Returns the angle of an input in radians. The user gives it in degrees: for example, 180 gives π. Fails if the angle is
+    /// missing, or not between the two limits in degrees.
     fn angle(&self, given: &Given, name: &str, (low, high): (f64, f64)) -> Result<f64, String> {
         let degrees = self.needed(given, name)?;
         if !(low..=high).contains(&degrees) {
@@ -332,8 +341,9 @@ impl<'a> HostInputs<'a> {
         }
     }
 
-    /// Returns the normal and the half vector, of any length. The names are the names of these two vectors, and of
-    /// the directions toward light and viewer.
+    /// Returns the normal and the half vector, which may have any length. The array has the names of four inputs: the normal,
+    /// the half vector, and the directions toward light and viewer. Fails if a vector is missing, or if both the half vector
+    /// and the light are given.
     fn pair(
         &self,
         given: &Given,
@@ -354,13 +364,13 @@ impl<'a> HostInputs<'a> {
         Ok((self.needed_vector(given, normal)?, half_vector))
     }
 
-    /// Returns the vector of an input, which the user must give.
+    /// Returns the vector of an input. Fails if the user did not give the input, or not all of its components.
     fn needed_vector(&self, given: &Given, name: &str) -> Result<Vector, String> {
         let vector = self.vector(given, name)?;
         vector.ok_or_else(|| missing_vector(name, ""))
     }
 
-    /// Returns whether angles are given. Fails if vectors are given too.
+    /// Returns whether any of the inputs `angles` is given. Fails if a vector is given too.
     fn by_angles(&self, given: &Given, angles: &[&str]) -> Result<bool, String> {
         let angle = angles.iter().find(|name| self.number(given, name).is_some());
         let mut vectors = self.inputs.iter().zip(given).filter(|(input, _)| input.vector);
@@ -374,7 +384,8 @@ impl<'a> HostInputs<'a> {
         }
     }
 
-    /// Computes the operands of one row of a CSV file. Its cells are added to the inputs `given` on the command line.
+    /// Computes the operands for one row of a CSV file. The cells of the row are added to the inputs `given` on the command
+    /// line; an empty cell gives no value.
     fn set_up_row(
         &self,
         given: &Given,
@@ -438,7 +449,7 @@ impl<'a> HostInputs<'a> {
         if !self.feed.takes_exponent() {
             quantities.push(("a", "(11) with k = 2", line.stretch(), ""));
         }
-        // A value that fits no format is reported by its name before it saturates.
+        // A value that exceeds every format is reported with its name before it is saturated.
         let real: Vec<f64> = self.feed.line_values(&line).collect();
         let raw = self.feed.line(&line).map_err(|error| error.to_string())?;
         Ok(SetUp { quantities, raw, real })
@@ -495,7 +506,7 @@ impl<'a> HostInputs<'a> {
     fn print(&self, set_up: &SetUp) {
         let mut quantities = Vec::new();
         for (name, formula, value, unit) in &set_up.quantities {
-            // Digits that a person reads.
+            // The number is rounded to nine decimals, for people.
             let rounded = (value * 1e9).round() / 1e9;
             quantities.push(vec![
                 (*name).to_owned(),
@@ -556,23 +567,24 @@ impl<'a> HostInputs<'a> {
     }
 }
 
-/// Splits the text of a vector into its components. For example, `0,0,1` and `0 0 1` both give `0`, `0` and `1`.
+/// Splits the text of a vector into its components, at commas, semicolons and blanks. For example, `0,0,1` and `0 0 1` both
+/// give `0`, `0` and `1`.
 fn components(text: &str) -> Vec<&str> {
     let separated = text.split(|c: char| c == ',' || c == ';' || c.is_whitespace());
     separated.filter(|part| !part.is_empty()).collect()
 }
 
-/// Says that a vector is missing. `or` names other inputs that may take its place.
+/// Returns a message about a missing vector. `or` names other inputs that may replace it.
 fn missing_vector(name: &str, or: &str) -> String {
     format!("input `{name}` is missing; give it{or}, or angles in place of vectors")
 }
 
-/// Returns the unit vector of an input's direction. Fails if the vector has no length.
+/// Returns the unit vector in the direction of an input. Fails if the vector has the length 0.
 fn unit_vector(name: &'static str, vector: Vector) -> Result<Vector, String> {
     direction(name, vector).map_err(|error| error.to_string())
 }
 
-/// Returns the unit vector at an angle from the z axis toward the x axis.
+/// Returns the unit vector at an angle, in radians, from the z axis toward the x axis.
 fn from_z(angle: f64) -> Vector {
     Vector::new(libm::sin(angle), 0.0, libm::cos(angle))
 }

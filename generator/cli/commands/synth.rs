@@ -82,25 +82,28 @@ pub struct Arguments {
     time_limit: TimeLimit<3600>,
 }
 
-/// A configuration with all that was measured of it.
+/// A configuration with its measurements on all targets.
 struct Measurement<'a> {
     one: &'a Loaded,
     clocks_per_point: f64,
     figures: Vec<Figures>,
 }
 
-/// Figures, and the features of the netlist to which the estimates of `tune` are fitted.
+/// The measurement on a target, and the features of the netlist to which the estimates of `glint tune` are fitted.
 #[derive(Serialize)]
 struct FigureRecord<'a> {
     #[serde(flatten)]
     figures: &'a Figures,
     netlist: Features,
-    /// The clock by the estimate, in MHz.
+    /// The estimated clock frequency, in MHz.
     estimated_mhz: f64,
 }
 
-/// Runs `glint synth`, which measures area and frequency of a core by synthesis, placement and routing. Returns true, because the
-/// command checks nothing.
+/// Runs `glint synth`, which measures area and frequency of a core by synthesis, placement and routing. Returns true, because
+/// the command checks nothing.
+///
+/// # Errors
+/// Fails if a configuration has problems, if the tools are missing or fail, or if a record cannot be written.
 pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) -> Result<bool> {
     let loaded = load(registry, &arguments.configs.paths)?;
     if arguments.front {
@@ -138,8 +141,8 @@ pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) ->
     Ok(true)
 }
 
-/// Returns the targets that pipelines are scheduled for, if every configuration is a pipeline with such a target; else
-/// nothing. For example, one pipeline for ECP5 gives ECP5; a pipeline and a sequential core give nothing.
+/// Returns the targets for which the pipelines are scheduled, if every configuration is a pipeline with a known target. Returns
+/// an empty list otherwise. For example, one pipeline for ECP5 gives ECP5; a pipeline and a sequential core give an empty list.
 fn targets_of_pipelines(loaded: &[Loaded]) -> Vec<Target> {
     let mut targets = Vec::new();
     for one in loaded {
@@ -152,8 +155,8 @@ fn targets_of_pipelines(loaded: &[Loaded]) -> Vec<Target> {
     targets
 }
 
-/// Returns the tools for each target, and a note about each target whose tools are missing. A target that the user
-/// names must have its tools.
+/// Returns the tools for each target that is measured, and a note about each target whose tools are missing. Fails if the
+/// tools of a target that the user names are missing, if no target can be measured, or if a record would lack a target.
 fn flows(arguments: &Arguments, loaded: &[Loaded]) -> Result<(Vec<Flow>, Vec<String>)> {
     let search = std::env::var_os("PATH").unwrap_or_default();
     let find = |target: Target| {
@@ -161,7 +164,7 @@ fn flows(arguments: &Arguments, loaded: &[Loaded]) -> Result<(Vec<Flow>, Vec<Str
         flow.with_context(|| format!("nothing can be measured for {}", target.title()))
     };
     let mut wanted = arguments.targets.clone();
-    // A record is of all targets.
+    // A record must have all targets.
     if wanted.is_empty() && arguments.out.is_none() {
         wanted = targets_of_pipelines(loaded);
     }
@@ -185,7 +188,8 @@ fn flows(arguments: &Arguments, loaded: &[Loaded]) -> Result<(Vec<Flow>, Vec<Str
     Ok((flows, notes))
 }
 
-/// Measures a configuration for all targets; `done` is called after each step, and `tell` with the figures of each target.
+/// Measures a configuration on all targets. Calls `done` with the number of finished steps, and `tell` with the figures of each
+/// target. Fails if a tool fails.
 fn measure<'a>(
     one: &'a Loaded,
     flows: &[Flow],
@@ -205,7 +209,8 @@ fn measure<'a>(
     Ok(Measurement { one, clocks_per_point, figures: figures.collect::<Result<_>>()? })
 }
 
-/// Measures a core, or takes its figures from the cache beside the configuration `path`, where they are under `name`.
+/// Measures a core on the target of `flow`. If the cache next to the configuration `path` has the figures under `name` and for
+/// the same Verilog and tools, returns them instead.
 fn figures(
     core: &Core,
     name: &str,
@@ -239,7 +244,8 @@ fn figures(
 }
 
 impl Arguments {
-    /// Returns as many threads as `--jobs` asks for.
+    /// Returns a pool with as many threads as `--jobs` states, or as many as Glint uses. Fails if the threads cannot be
+    /// started.
     fn threads(&self) -> Result<ThreadPool> {
         let threads = match self.jobs {
             Some(jobs) => usize::from(jobs),

@@ -85,6 +85,9 @@ pub struct Arguments {
 
 /// Runs `glint tune`, which finds the smallest configuration of a device whose error stays below a given limit. Returns true,
 /// because the command checks nothing.
+///
+/// # Errors
+/// Fails if an option is not valid, if no configuration reaches the goal, or if a file cannot be written.
 pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) -> Result<bool> {
     if arguments.csv && !output.is_for_people() {
         wrong_usage!("--json and --csv are two forms of the same: give one");
@@ -145,12 +148,12 @@ pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) ->
     Ok(true)
 }
 
-/// The result of a search.
+/// The result of a search, for the report.
 struct TunedConfiguration<'a> {
     device: &'a Device,
     answer: &'a Answer,
     arguments: &'a Arguments,
-    /// The best configuration, as TOML.
+    /// The best configuration, as the text of a TOML file.
     text: String,
 }
 
@@ -168,7 +171,8 @@ impl CommandReport for TunedConfiguration<'_> {
     }
 }
 
-/// Opens the new file that an option names, if it names one.
+/// Opens the new file that an option names. Returns `None` without the option. Fails if the file exists and `--force` is not
+/// given.
 fn fresh_file(path: Option<&Path>, force: Force) -> Result<Option<Destination>> {
     match path {
         Some(path) => Ok(Some(Destination::fresh(path, force.force)?)),
@@ -176,7 +180,8 @@ fn fresh_file(path: Option<&Path>, force: Force) -> Result<Option<Destination>> 
     }
 }
 
-/// Returns the device, the configuration to start from, and the keys that are part of the goal.
+/// Returns the device, the configuration from which the search starts, and the keys that the user has set and the search must
+/// not change. Fails if there is no such device, or if a setting is not valid.
 fn base(registry: &Registry, arguments: &Arguments) -> Result<(Device, Config, Vec<String>)> {
     let Some(device) = registry.device(&arguments.device) else {
         let names: Vec<&str> = registry.devices().iter().map(|device| device.name).collect();
@@ -187,7 +192,7 @@ fn base(registry: &Registry, arguments: &Arguments) -> Result<(Device, Config, V
         bail!("there is no device `{}`; {hint}devices: {}", arguments.device, names.join(", "));
     };
     let name = arguments.name.clone().unwrap_or_else(|| (device.schema)().module());
-    // The same reader as a file's, so that messages are the same.
+    // This uses the reader of configuration files, so that the messages are the same.
     let mut given_text = format!("device = \"{}\"\nname = \"{name}\"\n", device.name);
     let mut fixed = Vec::new();
     for given in &arguments.set {
@@ -200,12 +205,13 @@ fn base(registry: &Registry, arguments: &Arguments) -> Result<(Device, Config, V
     Ok((*device, config, fixed))
 }
 
-/// Returns the origin of the bounds, for people: for example, `proved`.
+/// Returns a phrase about the origin of the error bounds, for example `proved`.
 fn origin(device: &Device) -> &'static str {
     if device.proved { "proved" } else { "stated by its author" }
 }
 
-/// Returns the configuration as a file, with the search's result in its head.
+/// Returns the text of a configuration file with the best configuration. Comments at the beginning state the result of the
+/// search.
 fn toml(device: &Device, best: &Candidate, arguments: &Arguments) -> String {
     let cost = &best.cost;
     let clocks = match best.clocks {
@@ -236,7 +242,8 @@ fn toml(device: &Device, best: &Candidate, arguments: &Arguments) -> String {
     head + &best.config.to_toml(&(device.schema)())
 }
 
-/// Returns the free keys of a candidate with their values. For example, `cosine.fraction = 16, exponent.bits = 8`.
+/// Returns the keys that the search varied, with their values in a candidate, as text. For example, `cosine.fraction = 16,
+/// exponent.bits = 8`.
 fn widths(answer: &Answer, candidate: &Candidate) -> String {
     let mut shown = Vec::new();
     for key in &answer.free {

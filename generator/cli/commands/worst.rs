@@ -43,28 +43,28 @@ pub struct Arguments {
     out: Option<PathBuf>,
 }
 
-/// The largest known error of a configuration: the contents of a record.
+/// The largest error of a configuration that a search has found: the contents of a record.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 struct LargestError {
-    /// The version; a record begins with it.
+    /// The version of Glint. A record begins with it.
     glint: String,
     config: String,
-    /// A digest of everything that the contract depends on.
+    /// A digest of everything on which the contract depends.
     contract: String,
-    /// The starts of the search that found it.
+    /// The number of starts of the search that found the error.
     starts: u64,
     seed: u64,
-    /// In output units.
+    /// The error in output units.
     units: f64,
     output: String,
-    /// Raw operands.
+    /// The raw operands, by name.
     operands: BTreeMap<String, i64>,
-    /// The output, and the value of the formula, in the output's units.
+    /// The raw output, and the value of the formula in the output's units.
     raw: i64,
     exact: f64,
 }
 
-/// The report on a configuration.
+/// The report on one configuration.
 #[derive(Serialize)]
 struct WorstReport<'a> {
     #[serde(skip)]
@@ -74,12 +74,15 @@ struct WorstReport<'a> {
     /// The error that the contract states, in output units.
     bound: f64,
     holds: bool,
-    /// The record, if it stays because its error is no less.
+    /// The record on disk, if it stays because its error is at least as large.
     recorded: Option<LargestError>,
 }
 
-/// Runs `glint worst`, which searches for the operands with the largest error of an output. Returns whether every error is within
-/// its bound.
+/// Runs `glint worst`, which searches for the operands with the largest error of an output. Returns whether the errors of all
+/// configurations are within their bounds.
+///
+/// # Errors
+/// Fails if a configuration has problems or no output, or if a record cannot be read or written.
 pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) -> Result<bool> {
     let loaded = load(registry, &arguments.configs.paths)?;
     let records = loaded.iter().map(|one| record(one, arguments)).collect::<Result<Vec<_>>>()?;
@@ -169,7 +172,7 @@ fn climbs(starts: u64) -> String {
     format!("{} climb{}", text::grouped(starts), if starts == 1 { "" } else { "s" })
 }
 
-/// Returns the file of the record, and the record that it holds if that is of the same contract; `None` without
+/// Returns the file of the record, and the record in this file if it belongs to the same contract. Returns `None` without
 /// `--out`. For example, the record of `configs/rough.toml` is `rough.json` in the directory.
 fn record(one: &Loaded, arguments: &Arguments) -> Result<Option<(OwnFile, Option<LargestError>)>> {
     let Some(directory) = &arguments.out else { return Ok(None) };

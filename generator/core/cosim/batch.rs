@@ -1,8 +1,8 @@
 //! Defines the interface of the engines that compute many points (sets of operands) at once.
 //!
 //! An [`Engine`] takes the operands of many computations as [`Points`], and returns their results. There are three engines: the
-//! golden model ([`Golden`]), the built-in simulator (`RustHdl`) and the emitted Verilog under an outside simulator. All three
-//! return the same results, so a caller such as `glint render` may take any of them.
+//! golden model ([`Golden`]), the built-in simulator ([`RustHdl`]), and the emitted Verilog under an outside simulator. All
+//! three return the same results, so a caller such as `glint render` may take any of them.
 
 mod lanes;
 
@@ -13,18 +13,19 @@ pub use lanes::RustHdl;
 
 use glint_golden::Contract;
 
-/// Instances that one thread clocks together.
+/// The number of instances that one thread simulates together.
 const LANES: usize = 32;
 
-/// Points that are computed as one piece of work.
+/// The number of points that a thread computes as one piece of work.
 const PIECE: usize = 4096;
 
-/// The operands of many computations, and the number of results of each.
+/// The raw operands of many computations, and the number of results that each computation gives. A device that computes a line
+/// gives several results for one `start`; all others give one.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Points {
     operands: usize,
     values: Vec<i64>,
-    /// For each computation the number of results before it; one entry more than there are computations.
+    /// Entry i is the number of results of all computations before computation i. The last entry is the number of all results.
     results: Vec<usize>,
 }
 
@@ -34,17 +35,18 @@ impl Points {
         Self { operands, values: Vec::new(), results: vec![0] }
     }
 
-    /// Adds a computation: its raw operands, and the number of results that it gives.
+    /// Adds a computation: its raw operands, in the order of the [`Contract`], and the number of results that it gives.
     ///
     /// # Panics
-    /// Panics unless there are as many operands as [`Points::new`] said.
+    /// Panics if the number of operands is not the number that was given to [`Points::new`].
     pub fn push(&mut self, operands: impl IntoIterator<Item = i64>, results: usize) {
         self.values.extend(operands);
         self.results.push(self.result_count() + results);
         assert_eq!(self.values.len(), self.operands * self.len(), "operands");
     }
 
-    /// Adds the computations of another list, which must have the same number of operands per computation.
+    /// Adds the computations of another list after the computations of this list. Both lists must have the same number of
+    /// operands per computation.
     pub fn append(&mut self, other: &Self) {
         let before = self.result_count();
         self.values.extend(&other.values);
@@ -61,39 +63,42 @@ impl Points {
         self.len() == 0
     }
 
-    /// Returns the number of results of all computations.
+    /// Returns the total number of results of all computations.
     pub fn result_count(&self) -> usize {
         self.results.last().copied().unwrap_or(0)
     }
 
-    /// Returns the raw operands of computation number `at`.
+    /// Returns the raw operands of computation `at`, counted from 0, in the order of the [`Contract`].
     pub fn operands(&self, at: usize) -> &[i64] {
         &self.values[at * self.operands..(at + 1) * self.operands]
     }
 
-    /// Returns the index of the first result of computation number `at`, in a list of the results of all computations.
+    /// Returns the index of the first result of computation `at` in a list of the results of all computations. For example, if
+    /// computation 0 gives 3 results, computation 1 begins at index 3.
     pub fn results_before(&self, at: usize) -> usize {
         self.results[at]
     }
 
-    /// Returns the number of results of computation number `at`.
+    /// Returns the number of results of computation `at`, counted from 0.
     pub fn results(&self, at: usize) -> usize {
         self.results[at + 1] - self.results[at]
     }
 }
 
-/// An engine that computes the results of many points (sets of operands). There are three: the golden model, the built-in simulator
-/// and the emitted Verilog.
+/// An engine that computes the results of many points (sets of operands). There are three engines: the golden model, the
+/// built-in simulator and the emitted Verilog.
 pub trait Engine {
-    /// Returns the raw outputs, in the order of the [`Contract`], result after result.
+    /// Returns the raw outputs of all computations, one after another. Each result has one value for each output, in the
+    /// order of the [`Contract`]. A computation with several results has them in the order of their index.
     ///
     /// # Errors
-    /// Fails if the device does not finish a computation, if it shows more or fewer results than expected, or if an outside tool
-    /// fails.
+    /// Fails if a device does not finish a computation, if it gives more or fewer results than `points` expects, or if an
+    /// outside tool fails. Fails if the number of operands per computation is wrong for the golden model.
     fn compute(&mut self, points: &Points) -> Result<Vec<i64>>;
 }
 
-/// An [`Engine`] that evaluates the golden model's arithmetic through the contract, without clocks.
+/// An [`Engine`] that computes the results with the arithmetic of the golden model, through its contract. It simulates no
+/// clocks.
 pub struct Golden<'a>(pub &'a dyn Contract);
 
 impl Engine for Golden<'_> {

@@ -23,7 +23,8 @@ pub(super) enum Host {
     Pipe(Pipe),
 }
 
-/// A design and its golden model, whose signals are matched by the names of ports and registers.
+/// A design and its golden model. Each signal of the model is matched with the port or register of the design that has its
+/// name.
 pub(super) struct Binding<'a> {
     pub(super) design: &'a Design,
     pub(super) measure: Measure<'a>,
@@ -33,9 +34,9 @@ pub(super) struct Binding<'a> {
     pub(super) outputs: Vec<NetId>,
     /// The nets whose values the model predicts, in the order of the predictions.
     pub(super) compared: Vec<NetId>,
-    /// The number of these nets that are registers, or for a pipeline checkpoints.
+    /// The number of nets in `compared` that are registers. For a pipeline, the number of its checkpoints.
     pub(super) registers: usize,
-    /// The register with the address of the current microinstruction. A pipeline has none.
+    /// The register with the address of the current microinstruction. It is `None` for a pipeline.
     pub(super) address: Option<NetId>,
     pub(super) space: Arc<Space>,
     pub(super) points: PointSource<'a>,
@@ -45,7 +46,8 @@ impl<'a> Binding<'a> {
     /// Matches the signals of a golden model with the ports and registers of a design.
     ///
     /// # Errors
-    /// Fails if one side has a name that the other does not have.
+    /// Fails if the model predicts a signal that the design does not have, or if the design has an architectural register or an
+    /// output that the model does not predict. Fails also if design and contract do not have the same operands and outputs.
     pub(super) fn new(
         design: &'a Design,
         model: Box<dyn Model>,
@@ -84,8 +86,8 @@ impl<'a> Binding<'a> {
         self.address.is_none()
     }
 
-    /// Holds operands at the given raw values. Combinations then cover only the other operands, and random inputs seldom have
-    /// other values.
+    /// Fixes operands at the given raw values. Combinations then cover only the other operands. Random inputs seldom have other
+    /// values for a fixed operand.
     pub(super) fn holding(mut self, held: &[(String, i64)]) -> Self {
         for (name, raw) in held {
             self.points.hold(name, *raw);
@@ -94,16 +96,16 @@ impl<'a> Binding<'a> {
         self
     }
 
-    /// Limits the lines that are drawn at random to at most `results` results.
+    /// Limits the lines that are drawn at random to at most `results` results. A device without lines does not change.
     pub(super) fn shorten(&mut self, results: i64) {
         self.points.shorten(results - 1);
     }
 
-    /// Returns an upper bound of the number of results of one computation.
+    /// Returns an upper bound of the number of results of one computation. It is 1 for a device without lines.
     pub(super) fn longest(&self) -> u64 {
         let Some(length) = self.points.length() else { return 1 };
         let (_, longest) = self.measure.contract.operands()[length].domain;
-        // A length of 0 is a result too.
+        // A line with the length operand 0 has one result.
         longest.unsigned_abs() + 1
     }
 }

@@ -1,42 +1,42 @@
 //! Drives a device with every combination of the bit patterns of its operands, one computation after another.
 //!
-//! A combination is a number: the bits of all operands side by side. For example, two operands of 8 bits have 2^16 combinations.
-//! The combinations are shuffled: computation number p has the combination p·k mod 2^bits, for an odd constant k. Consecutive
-//! computations thus have little in common, and a register that failed to load seldom holds the right value by chance. Operands
-//! that the caller holds at a fixed value are not part of the combination.
+//! A combination is a number: the bits of all operands side by side, without operands that the caller fixed at a value. For
+//! example, two operands of 8 bits have 2^16 combinations. The combinations are shuffled: computation number p has the
+//! combination p·k mod 2^bits, for an odd constant k. Consecutive computations thus have little in common, and a register that
+//! failed to load seldom contains the right value by chance.
 
 use std::sync::Arc;
 
 use super::ports::{OperandPort, Ports};
 use glint_base::fixed::mask;
 
-/// Odd, and without a pattern in its bits: 2^64 by the golden ratio.
+/// The constant k of the shuffling: odd, and with bits that look random. It is 2^64 divided by the golden ratio.
 const SCATTER: u64 = 0x9e37_79b9_7f4a_7c15;
 
-/// The combinations of operands, each with a number, its *place*.
+/// The combinations of operands. Each combination has a number, its *place*.
 #[derive(Clone)]
 pub(super) struct Space {
     ports: Arc<Ports>,
-    /// For each port the bit pattern of its operand, where it is the same in all combinations.
+    /// For each operand port, the bit pattern at which the caller fixed the operand; `None` if the operand varies.
     held: Vec<Option<u64>>,
-    /// The raw operands at the first places, where they are listed. At all other places the operands are computed from the
-    /// place.
+    /// The raw operands at the first places. For every later place, the operands are computed from the place. May be empty.
     listed: Vec<Vec<i64>>,
 }
 
 impl Space {
-    /// Makes the space of all combinations.
+    /// Makes the space of all combinations, in which every operand varies.
     pub(super) fn new(ports: &Arc<Ports>) -> Self {
         Self { held: vec![None; ports.operands.len()], listed: Vec::new(), ports: ports.clone() }
     }
 
-    /// Makes the space of all combinations, but with the raw operands of `list` at the first places. Each list has the order of
-    /// the contract.
+    /// Makes the space of all combinations, but place i has the raw operands `list[i]` as long as the list reaches. Each entry
+    /// has one value for each operand, in the order of the contract.
     pub(super) fn listed(ports: &Arc<Ports>, list: &[Vec<i64>]) -> Self {
         Self { listed: list.to_vec(), ..Self::new(ports) }
     }
 
-    /// Holds operands at raw values, so that the combinations cover only the other operands.
+    /// Fixes operands at raw values, given by name, so that the combinations cover only the other operands. It ignores a name
+    /// that no operand has.
     pub(super) fn hold(&mut self, held: &[(String, i64)]) {
         for (name, raw) in held {
             let operands = self.ports.operands.iter().zip(&mut self.held);
@@ -46,16 +46,17 @@ impl Space {
         }
     }
 
-    /// Returns the total number of bits of the operands that are not held. For example, three operands of 8 bits give 16 if one
-    /// is held.
+    /// Returns the total number of bits of the operands that vary. For example, three operands of 8 bits give 16 if one of them
+    /// is fixed.
     pub(super) fn bits(&self) -> u32 {
         let operands = self.ports.operands.iter().zip(&self.held);
         let free = operands.filter(|(_, held)| held.is_none());
         free.map(|(port, _)| port.format.width()).sum()
     }
 
-    /// Returns the operand ports in their order, each with its bit pattern at a place. The pattern is the listed value for
-    /// the place, or else the value at which the operand is held, or the operand's bits of the combination.
+    /// Returns the operand ports in their order, each with its bit pattern at a place. The pattern comes from the list for the
+    /// first places. Otherwise the pattern is the value at which the operand is fixed, or the operand's bits of the
+    /// combination.
     fn at(&self, place: u64) -> impl Iterator<Item = (&OperandPort, u64)> {
         let mut bits = place.wrapping_mul(SCATTER);
         let listed = usize::try_from(place).ok().and_then(|place| self.listed.get(place));
@@ -73,16 +74,16 @@ impl Space {
         })
     }
 
-    /// Returns the bit patterns of the operands at a place, by name.
+    /// Returns the name and the bit pattern of each operand at a place.
     pub(super) fn named(&self, place: u64) -> Vec<(String, u64)> {
         let operands = self.at(place);
         operands.map(|(port, pattern)| (port.name.clone(), pattern)).collect()
     }
 }
 
-/// The inputs of a device that goes through combinations, clock by clock. After one clock of reset, all operands are written
-/// in the clock of `start`. The next computation starts in the first clock in which the device is not busy, or a pipeline is
-/// ready. Until then, the data ports show the complement of the written values.
+/// The inputs of a device that computes one combination after another, clock by clock. After one clock of reset, all operands
+/// are written in the clock of `start`. The next computation starts in the first clock in which the device can take it. Until
+/// then, the data ports have the complement of the written values.
 pub(super) struct Combinations {
     space: Arc<Space>,
     first: u64,
@@ -94,29 +95,30 @@ pub(super) struct Combinations {
 }
 
 impl Combinations {
-    /// Makes the stimulus of the combinations at `count` places, from place `first` on.
+    /// Makes the inputs for the combinations at `count` places. `first` is the first of these places.
     pub(super) fn new(space: Arc<Space>, first: u64, count: u64) -> Self {
         let mut inputs = vec![0; space.ports.inputs];
         space.ports.out_ready.into_iter().for_each(|at| inputs[at] = 1);
         Self { space, first, count, started: 0, since_start: 0, reset: false, inputs }
     }
 
-    /// Returns whether all computations have been started.
+    /// Returns whether all computations have started. The last of them may still run.
     pub(super) fn all_started(&self) -> bool {
         self.started == self.count
     }
 
-    /// Returns the place of the computation that runs, or ran last.
+    /// Returns the place of the computation that runs, or that ran last.
     pub(super) fn place(&self) -> u64 {
         self.first + self.started.saturating_sub(1)
     }
 
-    /// Returns the number of clocks since `start`, which is 0 in the clock that takes `start`.
+    /// Returns the number of clocks since the latest `start`. It is 0 in the clock that takes `start`.
     pub(super) fn since_start(&self) -> u64 {
         self.since_start
     }
 
-    /// Returns the inputs of the next clock. If `ready`, the device takes the next computation in this clock.
+    /// Returns the bit patterns of all inputs in the next clock, in the order of the design's input ports. If `ready` is true,
+    /// the device takes the next computation in this clock.
     pub(super) fn next(&mut self, ready: bool) -> &[u64] {
         let ports = &*self.space.ports;
         let starting = ready && self.reset && self.started < self.count;
@@ -146,7 +148,7 @@ impl Combinations {
         &self.inputs
     }
 
-    /// Returns the inputs of the latest clock.
+    /// Returns the bit patterns of all inputs in the latest clock.
     pub(super) fn inputs(&self) -> &[u64] {
         &self.inputs
     }

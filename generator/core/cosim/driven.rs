@@ -6,24 +6,25 @@ use anyhow::{Context, Result};
 
 use glint_golden::Model;
 
-/// A golden model together with the values of its inputs, which the caller drives.
+/// A golden model together with the bit patterns of its inputs, which the caller sets through [`Driven::start`].
 #[derive(Clone)]
 pub struct Driven {
     model: Box<dyn Model>,
     inputs: Vec<u64>,
     reset: usize,
     start: usize,
-    /// Data and strobe of each operand.
+    /// For each operand, the indices of its data and of its strobe among the inputs.
     operands: Vec<(usize, usize)>,
     pub(super) busy: usize,
     pub(super) valid: usize,
 }
 
 impl Driven {
-    /// Takes a model at power-up, and finds its inputs by the names of the handshake and of the operands.
+    /// Takes a model at power-up, and finds its inputs by the names of the handshake and of the `operands`.
     ///
     /// # Errors
-    /// Fails if the model does not have one of the names.
+    /// Fails if the model has no input `rst_n` or `start`, no input `<operand>` or `<operand>_write` for an operand, or does
+    /// not predict `busy` or `valid`.
     pub fn new<'n>(model: Box<dyn Model>, operands: impl Iterator<Item = &'n str>) -> Result<Self> {
         let input = |name: &str| {
             let at = model.inputs().iter().position(|other| other == name);
@@ -44,7 +45,8 @@ impl Driven {
         })
     }
 
-    /// Starts a computation: for one clock, drives `start` and the bit patterns of the operands.
+    /// Starts a computation: for one clock, drives `start`, the strobes and the bit patterns of the operands, in the order of
+    /// the operands in [`Driven::new`]. In later clocks, all inputs but `rst_n` are 0.
     pub fn start(&mut self, patterns: impl Iterator<Item = u64>) {
         for (bits, &(data, strobe)) in patterns.zip(&self.operands) {
             self.inputs[data] = bits;
@@ -62,12 +64,12 @@ impl Driven {
         self.model.clock(&self.inputs);
     }
 
-    /// Returns whether the model shows a result in this clock.
+    /// Returns whether the output `valid` is high, so that the model shows a result in this clock.
     pub fn is_valid(&self) -> bool {
         self.values()[self.valid] == 1
     }
 
-    /// Returns the values of all signals of the model, in the order of [`Driven::names`].
+    /// Returns the bit patterns of all signals of the model, in the order of [`Driven::names`].
     pub fn values(&self) -> &[u64] {
         self.model.values()
     }
@@ -78,7 +80,7 @@ impl Driven {
     }
 }
 
-/// Returns the index of the signal `name` among the signals of a model.
+/// Returns the index of the signal `name` among the signals of a model. Fails if the model does not predict it.
 pub(super) fn signal(model: &dyn Model, name: &str) -> Result<usize> {
     let at = model.signals().iter().position(|other| other == name);
     at.with_context(|| format!("the golden model does not predict `{name}`"))

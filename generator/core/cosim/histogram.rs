@@ -1,12 +1,13 @@
 //! Counts the results of a co-simulation by the value of their reflectance `f`, in nine classes.
 //!
-//! The counts show whether the random operands reached all values of `f`. For example, the class `<0.1` has the results with f from
-//! 0.01 to below 0.1.
+//! The counts show whether the random operands reached all values of `f`. For example, the class `<0.1` has the results with
+//! `f` from 0.01 to below 0.1.
 
 use glint_base::fixed::Format;
 
 /// The names of the classes into which [`Histogram`] sorts results by `f`, in the order of [`Histogram::counts`]. The class `1`
-/// has the results with the largest `f` below 1.0, or 1.0. The class `outside` has the results with operands outside the domain.
+/// has the results with `f` equal to the largest word below 1.0, or above. The class `outside` has the results whose operands
+/// are outside the domain.
 pub const CLASSES: [&str; 9] =
     ["0", "<0.001", "<0.01", "<0.1", "<0.5", "<0.9", "<1", "1", "outside"];
 
@@ -20,9 +21,9 @@ pub struct Histogram {
 }
 
 impl Histogram {
-    /// Adds a result with this word `f`.
+    /// Adds a result with the raw word `f` in the format `format`.
     pub(super) fn add(&mut self, format: Format, f: i64) {
-        // Just below 1.0 is as much as a fraction can be.
+        // The largest word below 1.0 is as much as a fraction without integer bits can be.
         let class = if f <= 0 {
             0
         } else if i128::from(f) + 1 >= 1 << format.frac {
@@ -49,7 +50,8 @@ impl Histogram {
         self.counts
     }
 
-    /// Returns the share of results whose `f` is neither 0 nor the largest: `0 < f < 1 − ulp`.
+    /// Returns the share of results whose `f` is neither 0 nor in the class `1`, as a number from 0 to 1. Results outside the
+    /// domain count in the total. It is 0 if there are no results.
     pub fn share_inside(&self) -> f64 {
         let inside: u64 = self.counts[1..CLASSES.len() - 2].iter().sum();
         inside as f64 / self.counts.iter().sum::<u64>().max(1) as f64

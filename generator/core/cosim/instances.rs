@@ -9,7 +9,8 @@ use glint_golden::Contract;
 use glint_rtl::netlist::Design;
 use glint_rtl::sim::Simulator;
 
-/// A simulator with an instance of the design in each lane, after reset. Results of a pipeline are always accepted.
+/// A simulator with an instance of the design in each lane, after reset. `out_ready` of a pipeline is always high, so that
+/// results never wait.
 pub(super) struct Instances<const LANES: usize> {
     pub(super) simulator: Simulator<LANES>,
     pub(super) ports: Ports,
@@ -30,7 +31,8 @@ impl<const LANES: usize> Instances<LANES> {
         Ok(Self { simulator, ports })
     }
 
-    /// Offers a computation to some lanes in the next clock. The raw operands of a lane are in the order of `Contract::operands`.
+    /// Starts a computation in some lanes in the next clock. Entry i of `computations` has the raw operands for lane i, in the
+    /// order of `Contract::operands`, or `None`.
     pub(super) fn offer(&mut self, computations: [Option<&[i64]>; LANES]) {
         let taking = computations.map(|raw| u64::from(raw.is_some()));
         for port in &self.ports.operands {
@@ -49,7 +51,7 @@ impl<const LANES: usize> Instances<LANES> {
         }
     }
 
-    /// Returns the raw results in a lane, in the order of `Contract::outputs`.
+    /// Returns the raw results that the instance in `lane` shows in this clock, in the order of `Contract::outputs`.
     pub(super) fn results(&self, lane: usize) -> impl Iterator<Item = i64> {
         let results = self.ports.results.iter();
         results.map(move |&(net, format)| format.raw(self.simulator.lane(net, lane)) as i64)

@@ -1,10 +1,10 @@
 //! Simulates a design and its golden model side by side, and compares every predicted signal at every clock.
 //!
-//! A run compares a given number of points, which are results of the device. The run is divided into *streams*. Each stream starts
-//! at power-up, and has its own seed for random inputs and its share of the points. The number of streams, their seeds and their
-//! shares depend only on the design, the seed of the run and its number of points.
+//! A run compares a given number of results of the device. The run is divided into *streams*. Each stream starts at power-up,
+//! and has its own seed for random inputs and its share of the results. The number of streams, their seeds and their shares
+//! depend only on the design, the seed of the run and the number of results.
 //!
-//! Up to [`LANES`] streams share a simulator, and the threads work on different simulators. The number of threads does not change
+//! Up to [`LANES`] streams share a simulator, and each thread works on other simulators. The number of threads does not change
 //! the outcome. The outcome joins the streams in order, up to the first stream in which model and hardware differ.
 
 use std::io::Write;
@@ -23,42 +23,46 @@ use glint_golden::{Contract, Model};
 use glint_rtl::netlist::Design;
 use glint_rtl::sim::Simulator;
 
-/// The number of streams that share a simulator.
+/// The largest number of streams that share a simulator.
 pub(super) const LANES: usize = 32;
 
-/// The number of streams that keeps two threads busy. A longer run has a multiple of it.
+/// The number of streams of a run of middle length, enough for two threads. A longer run has a multiple of this number.
 const STREAMS: u64 = 2 * LANES as u64;
 
-/// The fewest points of a stream.
+/// The smallest number of results in a stream of a core with a microprogram.
 const FEWEST_POINTS: u64 = 64;
 
-/// A stream has at least as many points as this number of the longest computations has results.
+/// The smallest length of a stream, in computations with the largest number of results. For example, a stream has at least 2000
+/// results if a line has up to 1000 points.
 const COMPUTATIONS: u64 = 2;
 
-/// The fewest points of a stream where there are more than [`STREAMS`].
+/// The smallest number of results in a stream, in a run with more than [`STREAMS`] streams.
 const MANY_POINTS: u64 = 1024;
 
-/// A run of fewer streams is not divided.
+/// The smallest number of streams of a divided run. A run with too few results for this number has only one stream.
 const FEWEST_STREAMS: u64 = 8;
 
-/// The points of a stream of a pipeline, and the fewest streams into which a run is divided there.
+/// The largest number of results in a stream of a pipeline. The next constant is the smallest number of streams into which a
+/// run of a pipeline is divided.
 const PIPELINE_POINTS: u64 = 2048;
 const FEWEST_PIPELINES: u64 = 4;
 
-/// The number of points after which the progress is reported.
+/// The number of results after which the progress is reported.
 const TOLD: u64 = 1024;
 
-/// A golden model and a simulator of the same design, which run side by side.
+/// The comparison of a design with its golden model, which run side by side on the same inputs.
 pub struct Lockstep<'a> {
     binding: Binding<'a>,
     seed: u64,
 }
 
 impl<'a> Lockstep<'a> {
-    /// Matches the golden model with the ports and registers of a design by name.
+    /// Matches the signals of the golden model with the ports and registers of `design` by name. `seed` determines the random
+    /// inputs of all runs.
     ///
     /// # Errors
-    /// Fails if one side has a name that the other does not have.
+    /// Fails if the model predicts a signal that the design does not have, or if the design has an architectural register or an
+    /// output that the model does not predict. Fails also if design and contract do not have the same operands and outputs.
     pub fn new(
         design: &'a Design,
         model: Box<dyn Model>,
@@ -68,28 +72,31 @@ impl<'a> Lockstep<'a> {
         Ok(Self { binding: Binding::new(design, model, contract)?, seed })
     }
 
-    /// Fixes some operands at raw values. A few of the random inputs may still have other values for them.
+    /// Fixes operands at raw values, given as pairs of a name and a value. Random inputs still have other values for these
+    /// operands now and then.
     #[must_use]
     pub fn holding(self, held: &[(String, i64)]) -> Self {
         Self { binding: self.binding.holding(held), ..self }
     }
 
-    /// Limits the length of the randomly drawn lines to at most `results` results for one `start`.
+    /// Limits the randomly drawn lines to at most `results` results for one `start`. A device without lines does not change.
     #[must_use]
     pub fn with_lines_of(mut self, results: i64) -> Self {
         self.binding.shorten(results);
         self
     }
 
-    /// Runs until `points` results were compared, or until model and hardware differ, on all threads of rayon's pool.
+    /// Compares random computations until `points` results were compared, or until model and hardware differ. It uses all
+    /// threads of rayon's pool, and returns the outcome of all streams.
     ///
-    /// It calls `progress` now and then with the number of points since the last call.
+    /// It calls `progress` now and then with the number of results since the last call.
     ///
     /// # Errors
-    /// Fails if the design cannot be simulated, or does not settle.
+    /// Fails if the design cannot be simulated, or if its signals do not settle in a clock. A difference between model and
+    /// hardware is part of the outcome, not an error.
     pub fn run(&self, points: u64, progress: &(dyn Fn(u64) + Sync)) -> Result<Outcome> {
         let streams = self.streams(points);
-        // The first stream known to differ: those after it are of no interest.
+        // The number of the first stream that is known to differ. Streams after it are not needed.
         let differs = AtomicU64::new(u64::MAX);
         if streams == 1 {
             let course = self.course(points, 1, 0);
@@ -106,7 +113,8 @@ impl<'a> Lockstep<'a> {
         Ok(self.outcome(records.into_iter().flatten()))
     }
 
-    /// Runs streams from number `first` on in one simulator; they are cut short when one before them differs.
+    /// Runs streams in one simulator; the first of them has number `first` in the run. It stops early if an earlier stream
+    /// differs, and then returns the streams as far as they ran.
     fn group<const L: usize>(
         &self,
         courses: impl IntoIterator<Item = Course>,
@@ -132,7 +140,7 @@ impl<'a> Lockstep<'a> {
         group.into_seen()
     }
 
-    /// Runs the same comparison as [`Lockstep::run`], but in one stream, from a single power-up.
+    /// Makes the same comparison as [`Lockstep::run`], but in one stream with all results, from a single power-up.
     ///
     /// # Errors
     /// Fails as [`Lockstep::run`] does.
@@ -142,12 +150,12 @@ impl<'a> Lockstep<'a> {
         Ok(self.outcome(alone.into_seen()?))
     }
 
-    /// Runs the streams of a run of `points` results one by one, and lets the caller observe the simulator. `begin` makes an
-    /// observer from the seed of a stream. After each clock, `note` gets the observer, the number of results so far and the
-    /// simulator. Returns the observers in the order of the streams.
+    /// Runs the streams of a run of `points` results in simulators of their own, and lets the caller observe each simulator.
+    /// `begin` makes an observer from the seed of a stream. After each clock, `note` gets the observer, the number of
+    /// results of the stream so far, and the simulator. Returns the observers in the order of the streams.
     ///
     /// # Errors
-    /// Fails as [`Lockstep::run`] does.
+    /// Fails as [`Lockstep::run`] does. A difference between model and hardware is not reported.
     pub fn watch<W: Send>(
         &self,
         points: u64,
@@ -171,17 +179,18 @@ impl<'a> Lockstep<'a> {
             .collect()
     }
 
-    /// Records the vectors of a test bench: the inputs of every clock, and the outputs just before the clock's edge. First come
-    /// random computations with `points` results in all, and then the given `computations`. Each of these is a list of raw
-    /// operands, in the order of `Contract::operands`.
+    /// Records the vectors of a test bench: the inputs of every clock, and the outputs just before the clock's edge. The record
+    /// begins with random computations that have `points` results in all. The given `computations` follow; each is a list of
+    /// raw operands, in the order of `Contract::operands`.
     ///
     /// # Errors
-    /// Fails if golden model and simulation differ, or if the design cannot be simulated or does not settle.
+    /// Fails if golden model and simulation differ, if the design cannot be simulated, or if its signals do not settle in a
+    /// clock.
     pub fn record(&self, points: u64, computations: &[Vec<i64>]) -> Result<Vectors> {
         let mut alone = self.alone(points)?;
         let mut vectors = Vectors::default();
         self.add(&mut vectors, &mut alone)?;
-        // A pipeline goes on until no point is on its way.
+        // A pipeline runs on until no point is inside it.
         if self.binding.is_pipeline() || !computations.is_empty() {
             alone.first().follow(&self.binding, computations);
             self.add(&mut vectors, &mut alone)?;
@@ -189,7 +198,7 @@ impl<'a> Lockstep<'a> {
         Ok(vectors)
     }
 
-    /// Adds the clocks of a stream up to its end to the vectors.
+    /// Runs a stream to its end, and adds its clocks to the vectors.
     fn add(&self, vectors: &mut Vectors, alone: &mut Runner<'_, 1>) -> Result<()> {
         let valid = self.binding.ports.valid;
         while !alone.ended() {
@@ -200,7 +209,8 @@ impl<'a> Lockstep<'a> {
             vectors.expected.push(outputs.map(|&net| alone.simulator.value(net)).collect());
             vectors.inputs.push(alone.first().inputs().to_vec());
             alone.simulate()?;
-            // Nothing is left of the power-up: in a core from the first result on, in a pipeline from the clock after it.
+            // From here on, the outputs do not depend on the state at power-up. In a core this holds from the first result on,
+            // and in a pipeline from the clock after it.
             let after = alone.simulator.value(valid) == 1;
             let shown = if self.binding.is_pipeline() { before } else { after };
             if vectors.known_from == 0 && shown {
@@ -217,10 +227,10 @@ impl<'a> Lockstep<'a> {
         Ok(())
     }
 
-    /// Runs golden model and simulation from power-up on under recorded inputs, for example the inputs of [`Lockstep::record`].
-    /// `streams` has the inputs by stream, then by clock, then by input port. Each stream runs for `clocks` clocks, and begins
-    /// again after its end. Results are compared with the golden model, and not with the formula. Every stream must have at least
-    /// one clock.
+    /// Runs golden model and simulation from power-up on with recorded inputs, for example the inputs from
+    /// [`Lockstep::record`]. `streams` has the inputs by stream, then by clock, then by input port. Each stream runs for
+    /// `clocks` clocks, and begins again with its first clock after its last one. The run compares the hardware with the golden
+    /// model, and does not compare results with the formula.
     ///
     /// # Errors
     /// Fails as [`Lockstep::run`] does. Fails also if a stream has no clock, or if a clock has more or fewer inputs than the
@@ -249,8 +259,8 @@ impl<'a> Lockstep<'a> {
         Ok(self.outcome(records.into_iter().flatten()))
     }
 
-    /// Runs the same as [`Lockstep::run`], but in one stream. `file` receives the waveform of the stream from clock `from`
-    /// on.
+    /// Makes the same comparison as [`Lockstep::run`] in one stream, and writes its waveform to `file`, in the VCD format, from
+    /// clock `from` on.
     ///
     /// # Errors
     /// Fails as [`Lockstep::run`] does, or if the file cannot be written.
@@ -265,12 +275,12 @@ impl<'a> Lockstep<'a> {
         Ok(self.outcome(alone.into_seen()?))
     }
 
-    /// Returns one stream of `points` points under the seed of the run.
+    /// Makes a runner for one stream with `points` results, under the seed of the run.
     fn alone(&self, points: u64) -> Result<Runner<'_, 1>> {
         Runner::new(&self.binding, [self.course(points, 1, 0)])
     }
 
-    /// Returns the course of stream `number` of a run: its seed, and its share of the points.
+    /// Returns the course of stream `number` in a run of `streams` streams: the stream's seed, and its share of the results.
     fn course(&self, points: u64, streams: u64, number: u64) -> Course {
         Course::Random {
             seed: stream_seed(self.seed, number),
@@ -282,8 +292,8 @@ impl<'a> Lockstep<'a> {
         Outcome::of(self.binding.registers, self.binding.outputs.len(), streams)
     }
 
-    /// Returns the number of streams into which a run is divided. For example, the default test of 100 000 results has 64
-    /// streams for `rough`, and 49 for `rough_pipelined`.
+    /// Returns the number of streams into which a run of `points` results is divided. For example, the default test of 100 000
+    /// results has 64 streams for `rough`, and 49 for `rough_pipelined`.
     fn streams(&self, points: u64) -> u64 {
         if self.binding.is_pipeline() {
             let streams = points.div_ceil(PIPELINE_POINTS);

@@ -7,23 +7,23 @@ use glint_base::fixed::{Format, MAX_WIDTH, exp2};
 use glint_golden::{Contract, Output, nearer};
 use glint_rtl::netlist::{Design, NetId};
 
-/// Measures the errors of a contract's outputs in the values that a run compares.
+/// Measures the errors of a contract's outputs, in the signal values that a run of the co-simulation compares.
 pub(super) struct Measure<'a> {
     pub(super) contract: &'a dyn Contract,
-    /// In the order of the contract.
+    /// The outputs, in the order of the contract.
     outputs: Vec<OutputQuantity>,
 }
 
-/// A value that carries a number.
+/// An output of the contract among the compared signals.
 struct OutputQuantity {
-    /// Its position.
+    /// Its index among the compared signals.
     at: usize,
     format: Format,
-    /// The weight of its last place, and its inverse.
+    /// The weight of its last bit, and the inverse of the weight.
     unit: f64,
     per_unit: f64,
-    /// The largest bound of any output, divided by the bound of this one: errors of outputs with bounds of their own are
-    /// compared by it.
+    /// The largest bound of any output, divided by the bound of this output. The errors of outputs with different bounds are
+    /// multiplied by it before they are compared.
     weight: f64,
 }
 
@@ -42,12 +42,12 @@ impl<'a> Measure<'a> {
     /// Finds the outputs of the contract among the compared `nets`.
     ///
     /// # Errors
-    /// Fails if an output is missing in the design, or has another format there.
+    /// Fails if an output is not among `nets`, or has another format in the design.
     pub(super) fn new(design: &Design, contract: &'a dyn Contract, nets: &[NetId]) -> Result<Self> {
         let largest = contract.bound().units;
         let weight = |number: usize| {
             let own = contract.output_bound(number);
-            // A bound of 0 would give no weight.
+            // A bound of 0 would make the weight infinite.
             if own == largest { 1.0 } else { largest / own.max(ROUNDING_OF_F64) }
         };
         let quantity = |(number, Output { name, format }): (usize, &Output)| {
@@ -68,14 +68,15 @@ impl<'a> Measure<'a> {
         Ok(Self { contract, outputs })
     }
 
-    /// Returns whether raw operands are inside the domain of the contract.
+    /// Returns whether all raw operands, in the order of `Contract::operands`, are inside the domain of the contract.
     pub(super) fn inside(&self, operands: &[i64]) -> bool {
         let mut pairs = self.contract.operands().iter().zip(operands);
         pairs.all(|(operand, raw)| (operand.domain.0..=operand.domain.1).contains(raw))
     }
 
-    /// Takes note of one result: counts its word `f`, and updates the largest error. The result is in `values`, and is number
-    /// `index` of the computation with these `operands` of the domain.
+    /// Measures one result: counts its word `f`, and updates the largest error in `seen`. `values` has the compared signals
+    /// with the result, and `index` is the number of the result in its computation, from 0. The raw `operands` must be inside
+    /// the domain.
     #[inline]
     pub(super) fn note(
         &self,

@@ -9,31 +9,33 @@ use super::random::Random;
 use super::recorded::Recording;
 use glint_golden::Bound;
 
-/// The rounding of the formulas' evaluation in f64, in units of the result's last place. A measured error may exceed a proven
-/// bound by this.
+/// The rounding of the formulas' evaluation in f64, in units of the result's last bit. A measured error may exceed a proven
+/// bound by this amount.
 pub(super) const ROUNDING_OF_F64: f64 = 1e-6;
 
 /// The outcome of a co-simulation run.
 #[derive(Clone, Debug, Default)]
 pub struct Outcome {
-    /// The number of results.
+    /// The number of results that were compared.
     pub points: u64,
-    /// The number of clocks. All predicted signals are compared in each.
+    /// The number of clocks. All predicted signals are compared in each clock.
     pub clocks: u64,
-    /// The number of registers that are compared in every clock.
+    /// The number of registers that are compared in every clock. For a pipeline, the number of its checkpoints.
     pub registers: usize,
     /// The number of outputs that are compared in every clock.
     pub outputs: usize,
-    /// The largest error of an output against the formula in f64.
+    /// The largest error of an output against the formula in f64. `None` if no error was measured, for example because inputs
+    /// were recorded.
     pub worst: Option<Worst>,
-    /// How the results are spread over the values of `f`.
+    /// The number of results by the value of `f`. Empty for a device that is no highlight.
     pub histogram: Histogram,
-    /// The first difference, at which the run ended.
+    /// The first difference between model and hardware, at which the run ended. `None` if they agree.
     pub mismatch: Option<Mismatch>,
 }
 
 impl Outcome {
-    /// Joins the records of streams, up to the first that differs; registers and outputs are counts.
+    /// Joins the records of streams, up to and including the first that differs. `registers` and `outputs` are the numbers of
+    /// compared signals.
     pub(super) fn of(
         registers: usize,
         outputs: usize,
@@ -57,7 +59,8 @@ impl Outcome {
         outcome
     }
 
-    /// Returns sentences about the failures of the run: a difference between model and hardware, or an error above `bound`.
+    /// Returns a sentence for each failure of the run: a difference between model and hardware, or an error above `bound`.
+    /// Returns an empty list if the run passed.
     pub fn failures(&self, bound: &Bound) -> Vec<String> {
         let mut failures = Vec::new();
         if let Some(mismatch) = &self.mismatch {
@@ -76,7 +79,7 @@ impl Outcome {
         } else if let Some(worst) = &self.worst
             && worst.weighted > bound.units + ROUNDING_OF_F64
         {
-            // The bound of the output itself.
+            // The bound of this output.
             let own = bound.units * worst.units / worst.weighted;
             failures.push(format!(
                 "`{}` is off by {:.6} units, beyond the stated bound of {own:.6}",
@@ -90,31 +93,33 @@ impl Outcome {
 /// The largest error of an output against the formula, and its operands.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Worst {
-    /// The error in output units. It is infinite if the formula has no value there.
+    /// The error in output units. It is infinite if the formula has no value at the operands.
     pub units: f64,
-    /// The error in units, times the largest bound of any output and divided by the bound of this output.
+    /// The error in units, multiplied by the largest bound of any output and divided by the bound of this output. Errors of
+    /// different outputs are compared by it.
     pub weighted: f64,
     /// The name of the output.
     pub output: String,
-    /// Raw operands, by name.
+    /// The raw operands, each with its name.
     pub operands: Vec<(String, i64)>,
 }
 
 /// A signal on which golden model and hardware differ.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mismatch {
-    /// The seed of the stream: a run with it that is not divided, [`Lockstep::trace`](super::Lockstep::trace)
-    /// say, goes the same way from the first clock on. Where combinations are gone through, the place of the one that runs.
+    /// The seed of the stream. An undivided run with this seed, such as [`Lockstep::trace`](super::Lockstep::trace), has the
+    /// same inputs from the first clock on. In a run of all combinations, the number of the combination instead.
     pub seed: u64,
-    /// The number of rising edges of the stream up to the difference.
+    /// The number of rising clock edges of the stream, from power-up to the difference.
     pub clock: u64,
     /// The name of the signal.
     pub signal: String,
     /// The golden model's value, a bit pattern.
     pub golden: u64,
-    /// The simulated hardware's value.
+    /// The simulated hardware's value, a bit pattern.
     pub simulated: u64,
-    /// The microinstruction that was executed at the edge, ``microinstruction `count` ``, or the signal's stage of a pipeline, `stage 3`.
+    /// For a core, the microinstruction that was executed at the edge: ``microinstruction `count` ``. For a pipeline, the
+    /// stage of the signal: `stage 3`.
     pub during: String,
 }
 
@@ -136,17 +141,17 @@ pub(super) struct StreamRecord {
     pub(super) worst: Option<Worst>,
     pub(super) histogram: Histogram,
     pub(super) mismatch: Option<Mismatch>,
-    /// The control operands of the latest result. `exact` has the formula's values there.
+    /// The control operands of the latest result, and the formula's values for it. They are kept here to avoid new allocations.
     pub(super) point: Vec<i64>,
     pub(super) exact: Vec<[f64; 2]>,
 }
 
-/// Returns the seed of a stream. The first stream has the seed of the run.
+/// Returns the seed of stream `number` in a run with the seed `seed`. Stream 0 has the seed of the run.
 pub(super) fn stream_seed(seed: u64, number: u64) -> u64 {
     if number == 0 {
         seed
     } else {
-        // Drawn, so that the streams are at distant places of the generator's cycle.
+        // The seeds are drawn, so that the streams are at distant positions in the generator's cycle.
         Random::new(seed ^ number.wrapping_mul(0xd134_2543_de82_ef95)).bits()
     }
 }
@@ -157,12 +162,12 @@ pub(super) fn share(points: u64, streams: u64, number: u64) -> u64 {
     points / streams + u64::from(number < points % streams)
 }
 
-/// The course of a stream.
+/// The inputs of a stream, and its end.
 #[derive(Clone, Debug)]
 pub(super) enum Course {
-    /// `points` results under the stimulus of a seed.
+    /// Random inputs with the given seed, until `points` results were compared.
     Random { seed: u64, points: u64 },
-    /// The combinations of operands at `count` places, from the first on.
+    /// The combinations of operands at `count` places, from place `first` on.
     Combinations { first: u64, count: u64 },
     /// Recorded inputs, again and again, for `clocks` clocks.
     Recorded { recording: Arc<Recording>, clocks: u64 },

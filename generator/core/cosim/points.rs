@@ -1,7 +1,7 @@
 //! Draws the operands of computations at random, and prefers operands at which an error would show.
 //!
 //! A highlight device multiplies colours by a reflectance `f`, from 0 to 1. Over most of the domain `f` is 0, so evenly drawn
-//! operands test little. Three of four points (sets of operands) are therefore drawn *by the value of the formula* for `f`:
+//! operands test little. Three of four points (sets of operands) are therefore drawn by the value of the formula for `f`:
 //!
 //! 1. [`PointSource`] draws operands in the domain, and a target value for `f`. It draws half of the targets evenly, and half
 //!    with an evenly drawn logarithm.
@@ -22,55 +22,59 @@ use glint_golden::{Contract, Highlight, Operand};
 
 use super::random::Random;
 
-/// The number of kinds of points: 0 has any bits, 1 and 2 are corners of the domain, 3 is drawn evenly; the
-/// others are drawn by the value of the formula.
+/// The number of kinds of points. Kind 0 has arbitrary bit patterns, kinds 1 and 2 are mostly at the ends of the domain, and
+/// kind 3 is drawn evenly. The other kinds are drawn by the value of the formula.
 const KINDS: i64 = 16;
 
-/// A kind above this is a hint of the contract, if the device is no highlight.
+/// If the device is no highlight, kinds above this take the operands that [`Contract::hint`] suggests.
 const HINTED: i64 = 7;
 
-/// A line that is not drawn by the value of the formula has at most `SHORT` intervals, but for one in `LONG`: long
-/// lines would crowd out all other points.
+/// A line that is not drawn by the value of the formula has a length operand at most `SHORT` above its lowest value, except for
+/// one line in `LONG`. With many long lines, few other points would be tested.
 const SHORT: i64 = 12;
 const LONG: u64 = 64;
 
-/// Halvings of the way from the peak by which a value is met: within some hundredths.
+/// The number of halvings of the way from the peak in the search for a value of the formula. They give the value within some
+/// hundredths.
 const HALVINGS: u32 = 10;
 const _: () = assert!(HALVINGS.is_multiple_of(2), "they come in pairs");
 
-/// Parts of an octave, as many as the halvings can tell apart, and the powers of two that they make.
+/// The number of parts of an octave that this number of halvings can distinguish, and two to the power of minus each part.
 const PARTS: usize = 1 << HALVINGS;
 static POWERS: LazyLock<[f64; PARTS]> =
     LazyLock::new(|| std::array::from_fn(|part| libm::exp2(-(part as f64) / PARTS as f64)));
 
-/// A value of the formula that shows, and neither of its ends.
+/// A value of the formula between its ends 0 and 1, at which errors show.
 const MIDDLE: f64 = 0.6;
 
-/// Halvings of the way at most to where the formula is below its peak at all.
+/// The largest number of halvings of the way in the search for operands at which the formula is below its peak.
 const OCTAVES: u32 = 32;
 
-/// Settings of the other operands by which the peak is looked for, and the most operands that are moved for it.
+/// The number of random values of the other operands with which the peak is searched, and the largest number of operands that
+/// are moved in the search.
 const SETTINGS: u32 = 8;
 const MOVED: usize = 6;
 
-/// Draws the operands of random points for a contract.
+/// Draws the operands of random points for a contract. Raw values are always in the order of `Contract::operands`.
 pub struct PointSource<'a> {
     contract: &'a dyn Contract,
-    /// The highlight, if the device multiplies by an f. Without a highlight there is no value by which to draw points.
+    /// The highlight, if the device multiplies colours by a reflectance `f`. `None` for other devices, whose points are not
+    /// drawn by a value.
     highlight: Option<&'a Highlight>,
-    /// The operands with the domains from which they are drawn: the contract's domains, except for operands that are held.
+    /// The operands with the domains from which they are drawn: the contract's domains, except for operands that the caller
+    /// fixed.
     operands: Vec<Operand>,
-    /// The number of the first operands, which determine `f`.
+    /// The number of control operands, which determine `f`. They come first.
     control: usize,
-    /// The operand that says how many results a computation has.
+    /// The index of the operand that gives the number of results of a computation, or `None` if a computation has one result.
     length: Option<usize>,
-    /// The place where `f` is largest, for the control operands that lead there. It is used if the contract does not say the
-    /// peak.
+    /// For each control operand, its value at the largest `f`, or `None` if the operand need not move. It is used if the
+    /// contract does not state the peak. All are `None` if the device is no highlight.
     peak: Vec<Option<i64>>,
 }
 
 impl<'a> PointSource<'a> {
-    /// Prepares to draw points for a contract. If the device is a highlight, it finds the operands with the largest `f`.
+    /// Prepares to draw points for a contract. For a highlight, it searches for the operands with the largest `f`.
     pub fn new(contract: &'a dyn Contract) -> Self {
         let highlight = contract.highlight();
         let operands = contract.operands().to_vec();
@@ -84,14 +88,15 @@ impl<'a> PointSource<'a> {
         points
     }
 
-    /// Sets the domain of an operand to one raw value. Nearly all points then have this value; a point of arbitrary bit patterns
-    /// may have another.
+    /// Restricts the operand `name` to one raw value. Nearly all points then have this value; a point of arbitrary bit patterns
+    /// may have another. It does nothing if no operand has this name.
     pub fn hold(&mut self, name: &str, raw: i64) {
         let held = self.operands.iter_mut().filter(|operand| operand.name == name);
         held.for_each(|operand| operand.domain = (raw, raw));
     }
 
-    /// Limits the randomly drawn length of a line to `most`. A line is a row of points that the device computes after one `start`.
+    /// Limits the length operand of randomly drawn lines to `most`. A line is a row of points that the device computes after
+    /// one `start`. It does nothing if the device computes no lines.
     pub fn shorten(&mut self, most: i64) {
         if let Some(at) = self.length {
             let (low, high) = self.operands[at].domain;
@@ -99,7 +104,7 @@ impl<'a> PointSource<'a> {
         }
     }
 
-    /// Clamps values to the domains from which the operands are drawn.
+    /// Clamps raw values, in the order of the operands, to the domains from which the operands are drawn.
     pub fn clamped(&self, mut values: Vec<i64>) -> Vec<i64> {
         values.truncate(self.operands.len());
         for (raw, operand) in values.iter_mut().zip(&self.operands) {
@@ -108,19 +113,20 @@ impl<'a> PointSource<'a> {
         values
     }
 
-    /// Returns the operands of the contract. Raw values are passed in this order.
+    /// Returns the operands of the contract, with the domains from which they are drawn.
     pub fn operands(&self) -> &[Operand] {
         &self.operands
     }
 
-    /// Draws new raw values for the operands whose bit is set in `free`. Other operands may change too if the search toward the
-    /// largest `f` moves them.
+    /// Draws new raw values for the operands whose bit is set in `free`; bit i belongs to operand i. Other operands may change
+    /// too, because the search toward the largest `f` can move them.
     pub fn draw(&self, random: &mut Random, values: &mut [i64], free: u64) {
         let kind = random.within(0, KINDS - 1);
         self.draw_kind(random, values, free, kind);
     }
 
-    /// Draws new raw values for all operands, within the domain.
+    /// Draws new raw values for all operands, within the domain. They are drawn in the same ways as by [`PointSource::draw`],
+    /// except for arbitrary bit patterns.
     pub fn of_domain(&self, random: &mut Random) -> Vec<i64> {
         let mut values = vec![0; self.operands.len()];
         let kind = random.within(1, KINDS - 1);
@@ -133,7 +139,8 @@ impl<'a> PointSource<'a> {
         self.operands.iter().map(|it| random.within(it.domain.0, it.domain.1)).collect()
     }
 
-    /// Draws operands with [`Contract::hint`], and clamps them to their domains. Returns `None` if the contract has no hints.
+    /// Returns operands that [`Contract::hint`] suggests, clamped to their domains. Returns `None` if the contract has no
+    /// hints.
     pub fn hint(&self, random: &mut Random) -> Option<Vec<i64>> {
         self.contract.hint(&mut || random.unit()).map(|hint| self.clamped(hint))
     }
@@ -151,7 +158,7 @@ impl<'a> PointSource<'a> {
                 0 => self.any(random, at),
                 1 | 2 => self.one(random, at),
                 3 => random.within(domain.0, domain.1),
-                // A large colour shows f best.
+                // A large colour shows errors of `f` best.
                 _ if at >= self.control && random.once_in(2) => {
                     domain.1 - random.within(0, (domain.1 - domain.0) / 8)
                 }
@@ -173,8 +180,8 @@ impl<'a> PointSource<'a> {
         }
     }
 
-    /// Returns a random raw value for operand number `at`, often an end of the domain or close to one. A length is usually short,
-    /// so that long computations do not take most of the time.
+    /// Returns a random raw value for operand number `at`, within its domain and often at an end of it or close to one. A
+    /// length is usually short, so that long computations do not take most of the time.
     pub fn one(&self, random: &mut Random, at: usize) -> i64 {
         let (low, high) = self.operands[at].domain;
         if self.length != Some(at) || random.once_in(16) {
@@ -185,8 +192,9 @@ impl<'a> PointSource<'a> {
         low.wrapping_add(lengths[0].min(lengths[1]) as i64)
     }
 
-    /// Returns a raw value for one operand. Half of the values are any bit pattern of its format, and the others are drawn on
-    /// their own. If the device is no highlight, a value is often just outside the domain, where a core may saturate.
+    /// Returns a random raw value for operand number `at`. Half of the values are arbitrary bit patterns of the operand's
+    /// format, and the others are drawn by [`PointSource::one`]. If the device is no highlight, a quarter of the values lie
+    /// outside the domain, mostly just outside, where a core may saturate.
     pub fn any(&self, random: &mut Random, at: usize) -> i64 {
         let Operand { format, domain: (low, high), .. } = self.operands[at];
         let (least, most) = (format.min_raw() as i64, format.max_raw() as i64);
@@ -202,7 +210,7 @@ impl<'a> PointSource<'a> {
         }
     }
 
-    /// Moves control operands to where the formula has a value. For a line, it moves both ends of the line.
+    /// Moves control operands to where the formula has a random value. For a line, it moves both ends of the line.
     fn spread(&self, random: &mut Random, control: &mut [i64]) {
         let Some((length, highlight)) = self.length.zip(self.highlight) else {
             self.aim(random, control);
@@ -222,7 +230,8 @@ impl<'a> PointSource<'a> {
         }
     }
 
-    /// Moves control operands toward the peak, to where the formula has a value that is drawn.
+    /// Moves control operands toward the peak, to where the formula has a random value. It does nothing if the formula is
+    /// nowhere below its peak on the way.
     fn aim(&self, random: &mut Random, far: &mut [i64]) {
         let Some((way, highlight)) = self.way(far).zip(self.highlight) else { return };
         let (top, bottom) = (way.top, way.bottom);
@@ -240,8 +249,9 @@ impl<'a> PointSource<'a> {
         way.go(scale, far);
     }
 
-    /// Finds the edge of the highlight on the straight line from the operands with the largest `f` to `control`. Returns the last
-    /// operands at which the formula is above its value at the far end, for example 0, and the first at which it is not.
+    /// Finds the edge of the highlight on the straight line from the control operands with the largest `f` to `control`.
+    /// Returns the last operands at which the formula is above its value at the far end, for example 0, and the first operands
+    /// at which it is not. Returns `None` if the device is no highlight, or if the formula does not fall on the line.
     pub fn edge(&self, control: &[i64]) -> Option<[Vec<i64>; 2]> {
         let (way, highlight) = self.way(control).zip(self.highlight)?;
         let target = way.bottom + f64::MIN_POSITIVE;
@@ -252,8 +262,8 @@ impl<'a> PointSource<'a> {
         }))
     }
 
-    /// Moves the operands that determine `f` on a straight line toward the operands with the largest `f`, until the formula has
-    /// about the given `value`.
+    /// Moves control operands on a straight line toward the operands with the largest `f`, until the formula has about the
+    /// given `value`. It does nothing if the device is no highlight, or if the formula does not fall on the line.
     pub fn to_value(&self, control: &mut [i64], value: f64) {
         if let Some((way, highlight)) = self.way(control).zip(self.highlight) {
             let [inner, _] = way.crossing(highlight, value, false, control);
@@ -261,8 +271,9 @@ impl<'a> PointSource<'a> {
         }
     }
 
-    /// Moves some operands so that errors show: each goes to an end of its domain if the formula is then nearer to the middle of
-    /// its range. The operands that lead to the largest `f`, such as `cos_gamma`, stay.
+    /// Moves control operands so that errors show. Each goes to an end of its domain if the formula is then nearer to the
+    /// middle of its range. The operands that lead to the largest `f`, such as `cos_gamma`, and the length of a line stay. It
+    /// does nothing if the device is no highlight.
     pub fn show(&self, control: &mut [i64]) {
         let Some(highlight) = self.highlight else { return };
         for at in 0..self.control {
@@ -282,7 +293,8 @@ impl<'a> PointSource<'a> {
         }
     }
 
-    /// Returns the way from the peak to control operands, or to a place on it that is below the peak.
+    /// Returns the way from the peak to the control operands `far`. If the formula is as large there as at the peak, the way
+    /// ends earlier, at a point where the formula is smaller. Returns `None` without such a point.
     fn way(&self, far: &[i64]) -> Option<Way> {
         let highlight = self.highlight?;
         let peak = self.peak(highlight, far);
@@ -293,7 +305,7 @@ impl<'a> PointSource<'a> {
             if bottom < top {
                 return Some(Way { peak, far: end, top, bottom });
             }
-            // As large as at the peak: it is nearer that the formula falls, if anywhere.
+            // The formula is as large here as at the peak. If it falls at all, it falls nearer to the peak.
             for (far, &peak) in end.iter_mut().zip(&peak) {
                 *far = between(peak, *far, 0.5);
             }
@@ -301,7 +313,8 @@ impl<'a> PointSource<'a> {
         None
     }
 
-    /// Returns the peak to which operands are moved; operands that are held stay.
+    /// Returns the peak toward which control operands are moved: as the contract states it, or as the search found it. An
+    /// operand that the caller fixed keeps its value.
     fn peak(&self, highlight: &Highlight, control: &[i64]) -> Vec<i64> {
         let said = highlight.peak(control).unwrap_or_else(|| {
             let found = self.peak.iter().zip(control);
@@ -310,8 +323,9 @@ impl<'a> PointSource<'a> {
         self.clamped(said)
     }
 
-    /// Looks for the peak among the ends of the domain and 0. It varies the first operands with a fraction (a cosine, an
-    /// angle, the components of a vector), or the first operands if none has a fraction.
+    /// Searches for the control operands with the largest `f`, and returns the value of each operand that leads there. It tries
+    /// the ends of the domain and 0. It varies the first operands with fraction bits (a cosine, an angle, the components of a
+    /// vector), or the first operands if none has fraction bits.
     fn search(&self, highlight: &Highlight) -> Vec<Option<i64>> {
         let control = &self.operands[..self.control];
         let mut moved: Vec<usize> =
@@ -354,23 +368,24 @@ impl<'a> PointSource<'a> {
     }
 }
 
-/// Returns the index of the operand that gives the number of results of a computation.
+/// Returns the index of the operand that gives the number of results of a computation, or `None` if a computation has one
+/// result.
 pub(super) fn length(contract: &dyn Contract) -> Option<usize> {
     let length = contract.length();
     contract.operands().iter().position(|operand| Some(operand.name.as_str()) == length)
 }
 
-/// A straight way along which the formula falls.
+/// A straight way in the space of control operands, from the peak to a point where the formula is smaller.
 struct Way {
     peak: Vec<i64>,
     far: Vec<i64>,
-    /// The formula at its ends.
+    /// The values of the formula at both ends.
     top: f64,
     bottom: f64,
 }
 
 impl Way {
-    /// Takes operands there.
+    /// Sets `operands` to the point on the way at `scale`: 0 is the peak, and 1 is the far end.
     #[inline]
     fn go(&self, scale: f64, operands: &mut [i64]) {
         let ends = self.peak.iter().zip(&self.far);
@@ -379,8 +394,8 @@ impl Way {
         }
     }
 
-    /// Returns where the formula crosses a value: just above it, and below; to the very step if that is wanted. `at` takes the
-    /// control operands that are tried.
+    /// Returns the two scales between which the formula crosses the value `target`: just above it, and just below it. If
+    /// `exact` is true, they lie at neighbouring operands. `at` is overwritten with the operands that are tried.
     fn crossing(
         &self,
         highlight: &Highlight,
@@ -392,12 +407,12 @@ impl Way {
             self.go(scale, at);
             value(highlight, at) >= target
         };
-        // The formula falls within a narrow part of the way: by octaves.
+        // The formula often falls within a small part of the way, so the way is divided by octaves from the peak.
         let spans = self.peak.iter().zip(&self.far).map(|(peak, far)| peak.abs_diff(*far));
         let span = spans.max().unwrap_or(1);
         let octaves = (64 - span.leading_zeros()) as usize + 1;
         let (mut inner, mut outer) = (PARTS, 0);
-        // Two halvings at once: the three places are independent, so none waits for the result of another.
+        // This loop makes two halvings at once. Its three points are independent, so none waits for the result of another.
         while inner - outer > 1 {
             let middle = usize::midpoint(inner, outer);
             let [near, far] = [inner, outer].map(|end| usize::midpoint(end, middle));
@@ -419,19 +434,19 @@ impl Way {
     }
 }
 
-/// Returns 2 to the power of minus `parts` parts of an octave, exactly as [`libm::exp2`] computes it.
+/// Returns 2 to the power of −`parts`/1024, exactly as [`libm::exp2`] computes it.
 #[inline]
 fn power(parts: usize) -> f64 {
     POWERS[parts % PARTS] * exp2(-((parts / PARTS) as i32))
 }
 
-/// Returns the formula at control operands.
+/// Returns the value of the formula at control operands, for the first result of a computation.
 #[inline]
 fn value(highlight: &Highlight, control: &[i64]) -> f64 {
     highlight.reference(&highlight.point(control, 0))
 }
 
-/// Returns the value that is the part `scale` of the way from `peak` to `far`.
+/// Returns the value at the fraction `scale` of the way from `peak` to `far`. For example, 0.5 gives the middle.
 fn between(peak: i64, far: i64, scale: f64) -> i64 {
     peak.saturating_add(((far as f64 - peak as f64) * scale) as i64)
 }
@@ -443,10 +458,10 @@ pub(super) mod tests {
     use glint_golden::contract::{ErrorShare, control};
     use glint_golden::highlight::{Products, Reflectance};
 
-    /// A highlight without an angle or an exponent, for tests: `f` is 1 if `x` equals `at`, and 0 if `x` is 4 or more away from
-    /// `at`.
+    /// A highlight without an angle or an exponent, for tests: `f` is 1 if `x` equals `at`, falls linearly, and is 0 if `x` is
+    /// 4 or more away from `at`.
     pub struct Pulse {
-        /// Whether it says where it is largest.
+        /// Whether the contract states where `f` is largest.
         says: bool,
         length: Option<&'static str>,
     }
@@ -454,7 +469,7 @@ pub(super) mod tests {
     impl Pulse {
         const HALF: f64 = 4.0;
 
-        /// Makes a contract with operands of these bits and largest values.
+        /// Makes a contract with operands of these names, widths in bits and largest values.
         fn contract(self, operands: &[(&str, i32, i64)]) -> Highlight {
             let mut controls = Vec::new();
             for &(name, bits, high) in operands {
@@ -467,7 +482,7 @@ pub(super) mod tests {
             Self { says, length: None }.contract(&[("x", 20, 1 << 20), ("at", 20, 1000)])
         }
 
-        /// Makes a contract with one operand `x` of 12 bits, for tests. If `length` is set, `x` gives the number of results of a
+        /// Makes a contract with one operand `x` of 12 bits. If `length` is true, `x` gives the number of results of a
         /// computation.
         pub fn single(length: bool) -> Highlight {
             Self { says: false, length: length.then_some("x") }.contract(&[("x", 12, 4095)])
@@ -497,7 +512,7 @@ pub(super) mod tests {
         }
     }
 
-    /// Returns the share of points with `f` between 0 and 1.
+    /// Returns the share of random points with `f` between 0 and 1, ends excluded.
     fn share(pulse: &Highlight) -> f64 {
         let points = PointSource::new(pulse);
         let mut random = Random::new(7);
@@ -520,7 +535,7 @@ pub(super) mod tests {
         }
     }
 
-    /// Single halvings: each step compares the formula in the middle.
+    /// Compares with a search by single halvings. A halving evaluates the formula in the middle.
     #[test]
     fn a_crossing_is_where_single_halvings_lead() {
         let pulse = Pulse::pair(true);
@@ -541,9 +556,9 @@ pub(super) mod tests {
 
     #[test]
     fn a_device_of_any_formula_says_where_it_is_largest() {
-        // If the operands were drawn on their own, one in 130 000 would be within the pulse, except for operands near 0.
+        // If the operands were drawn independently, one point in 130 000 would be within the pulse, except for operands near 0.
         assert!(share(&Pulse::pair(true)) > 0.6);
-        // Moved to where both are 0, x passes through the pulse there.
+        // The operands move to where both are 0. On the way, `x` passes through the pulse.
         assert!(share(&Pulse::pair(false)) > 0.4);
     }
 

@@ -7,7 +7,8 @@ use glint_base::fixed::{Format, mask};
 use glint_golden::Contract;
 use glint_rtl::netlist::{Design, NetId, Role};
 
-/// The ports of a design by their roles. An input is the index among the design's inputs.
+/// The ports of a design by their roles. An input port is given by its index among the design's inputs, an output port by its
+/// net.
 #[derive(Clone, Debug)]
 pub(super) struct Ports {
     /// The number of inputs.
@@ -16,12 +17,12 @@ pub(super) struct Ports {
     /// The port `start`, or `in_valid` if the design is a pipeline.
     pub(super) start: usize,
     pub(super) out_ready: Option<usize>,
-    /// With the mask of its bits.
+    /// The input `side_in` of a pipeline, with a mask of its bits. It is `None` if the design has no such port.
     pub(super) side_in: Option<(usize, u64)>,
     /// The operands of the contract, in the order of the design.
     pub(super) operands: Vec<OperandPort>,
     pub(super) valid: NetId,
-    /// The outputs `busy` and `done`, which a core with a microprogram has.
+    /// The output `busy`. The outputs `busy` and `done` are `None` if the core is a pipeline.
     pub(super) busy: Option<NetId>,
     pub(super) done: Option<NetId>,
     /// Whether the core takes a `start` in the clock in which `done` is high.
@@ -31,12 +32,13 @@ pub(super) struct Ports {
     pub(super) results: Vec<(NetId, Format)>,
 }
 
-/// The port of an operand.
+/// The input port of one operand.
 #[derive(Clone, Debug)]
 pub(super) struct OperandPort {
     pub(super) name: String,
     pub(super) data: usize,
-    /// The strobe of the operand. A pipeline takes all operands at once, so this is `in_valid` there.
+    /// The index of the operand's strobe among the inputs. A pipeline takes all operands at once, so the index is of `in_valid`
+    /// there.
     pub(super) strobe: usize,
     pub(super) format: Format,
     /// The index of the operand in the contract.
@@ -44,13 +46,13 @@ pub(super) struct OperandPort {
 }
 
 impl OperandPort {
-    /// Returns the bit pattern for this port from raw operands in the order of `Contract::operands`.
+    /// Returns the bit pattern for this port. `raw` has the raw values of all operands, in the order of `Contract::operands`.
     #[inline]
     pub(super) fn pattern(&self, raw: &[i64]) -> u64 {
         raw[self.at] as u64 & mask(self.format.width())
     }
 
-    /// Returns the raw value of this port from the values of all inputs.
+    /// Returns the raw value of this operand. `inputs` has the bit patterns of all inputs of the design.
     #[inline]
     pub(super) fn raw(&self, inputs: &[u64]) -> i64 {
         self.format.raw(inputs[self.data]) as i64
@@ -61,8 +63,8 @@ impl Ports {
     /// Finds the ports of a design by their roles.
     ///
     /// # Errors
-    /// Fails if the design lacks a port of the handshake or an output, or has a strobe that is no input. Fails also if design
-    /// and contract do not have the same operands.
+    /// Fails if the design lacks a port of the handshake or an output of the contract, or if the strobe of an operand is not an
+    /// input. Fails also if design and contract do not have the same operands.
     pub(super) fn new(design: &Design, contract: &dyn Contract) -> Result<Self> {
         let pipelined = design.pipeline.is_some();
         let find = |role: Role| design.port(|other| other == role).map(|port| port.net);

@@ -8,28 +8,28 @@ use glint_golden::Operand;
 #[derive(Clone, Debug)]
 pub struct Random(u64);
 
-/// The difference between the states of consecutive numbers.
+/// The constant that is added to the state for each number.
 const STEP: u64 = 0x9e37_79b9_7f4a_7c15;
 
-/// [`Random::of_domain`] makes a list of values, and chooses one by an entry of these tables. The first table is for a domain
-/// on both sides of 0, the second for any other domain.
+/// [`Random::of_domain`] makes a list of seven values. It draws one of the 16 entries of a table, which is the index of the
+/// value that it returns. The first table is for a domain on both sides of 0, the second for any other domain.
 const AROUND_ZERO: [usize; 16] = [0, 1, 2, 3, 3, 6, 5, 6, 5, 6, 5, 6, 5, 6, 2, 2];
 const TO_ONE_SIDE: [usize; 16] = [0, 1, 2, 3, 3, 4, 4, 4, 4, 2, 2, 2, 2, 2, 2, 2];
 
-/// Returns an integer from 0 to `below - 1` of random bits.
+/// Converts 64 random bits to an integer from 0 to `below` − 1.
 #[inline]
 fn scaled(bits: u64, below: u64) -> u64 {
     ((u128::from(bits) * u128::from(below)) >> 64) as u64
 }
 
-/// Returns an integer from `low` to `high` of random bits.
+/// Converts 64 random bits to an integer from `low` to `high`, both included.
 #[inline]
 fn within(bits: u64, low: i64, high: i64) -> i64 {
     let span = high.wrapping_sub(low).wrapping_add(1) as u64;
     if span == 0 { bits as i64 } else { low.wrapping_add(scaled(bits, span) as i64) }
 }
 
-/// Makes an integer from 0 to `most` of random bits, of each magnitude as often as of any other.
+/// Converts random bits to an integer from 0 to `most`. Every number of binary digits is equally likely.
 #[inline]
 fn magnitude([first, second]: [u64; 2], most: u64) -> u64 {
     let bits = scaled(first, u64::from(64 - most.max(1).leading_zeros()) + 1);
@@ -49,7 +49,7 @@ impl Random {
         bits
     }
 
-    /// Returns the bits of the number that comes after `draws` draws, 1 for the next.
+    /// Returns the bits of the number that comes `draws` draws from here. For 1, these are the bits of the next number.
     #[inline]
     fn ahead(&self, draws: u64) -> u64 {
         let mut z = self.0.wrapping_add(STEP.wrapping_mul(draws));
@@ -63,7 +63,7 @@ impl Random {
         self.0 = self.0.wrapping_add(STEP.wrapping_mul(draws));
     }
 
-    /// Returns an integer from 0 to `below - 1`.
+    /// Returns a random integer from 0 to `below` − 1.
     pub fn below(&mut self, below: u64) -> u64 {
         scaled(self.bits(), below)
     }
@@ -73,16 +73,16 @@ impl Random {
         self.below(times) == 0
     }
 
-    /// Returns an integer from `low` to `high`.
+    /// Returns a random integer from `low` to `high`, both included.
     pub fn within(&mut self, low: i64, high: i64) -> i64 {
         within(self.bits(), low, high)
     }
 
-    /// Returns a random raw value from `low` to `high`. It is often one of these ends, or close to an end or to 0, because errors
-    /// often show there.
+    /// Returns a random raw value from `low` to `high`, both included. It is often one of these ends, or close to an end or to
+    /// 0, because errors often show there.
     ///
-    /// The function computes all candidates and takes one without a branch, because the processor could not predict the branch. The
-    /// generator advances only by the draws that this value needs.
+    /// The function computes all seven candidates and takes one without a branch, because the processor could not predict the
+    /// branch. The generator advances only by the draws that the taken value needs.
     #[inline]
     pub fn of_domain(&mut self, (low, high): (i64, i64)) -> i64 {
         let [choice, first, second] = [1, 2, 3].map(|draws| self.ahead(draws));
@@ -91,8 +91,8 @@ impl Random {
             low,
             high,
             within(first, low, high),
-            // Off by a random power of two: from the upper end, from the lower, from 0 where that is between
-            // (an angle, the component of a vector).
+            // Off by a random magnitude: below the upper end, above the lower end, and on both sides of 0. Only a domain on
+            // both sides of 0 uses the last two (an angle, the component of a vector).
             high.wrapping_sub(off),
             low.wrapping_add(off),
             off.min(high),
@@ -104,21 +104,21 @@ impl Random {
         values[place]
     }
 
-    /// Returns a random bit pattern for an operand: usually a value of its domain, drawn by [`Random::of_domain`], and sometimes
-    /// any bits.
+    /// Returns a random bit pattern for an operand. It is usually a value from the operand's domain, drawn by
+    /// [`Random::of_domain`], and in one of 16 cases arbitrary bits.
     pub fn pattern(&mut self, operand: &Operand) -> u64 {
         let raw =
             if self.once_in(16) { self.bits() as i64 } else { self.of_domain(operand.domain) };
         raw as u64 & mask(operand.format.width())
     }
 
-    /// Returns a random integer from 0 to `most`. Small and large numbers are equally likely, since the number of its digits is
-    /// drawn first.
+    /// Returns a random integer from 0 to `most`, both included. The number of binary digits is drawn first, so that small and
+    /// large magnitudes are equally likely.
     pub fn magnitude(&mut self, most: u64) -> u64 {
         magnitude([self.bits(), self.bits()], most)
     }
 
-    /// Returns a number from 0 to just below 1.
+    /// Returns a random number from 0 to just below 1, a multiple of 2^−53.
     pub fn unit(&mut self) -> f64 {
         (self.bits() >> 11) as f64 * exp2(-53)
     }
@@ -141,7 +141,7 @@ mod tests {
             assert_eq!(ends, [true; 2], "{low}..={high}");
         }
     }
-    /// Draws numbers of a domain one after the other, and no more of them than are needed.
+    /// Draws a number from a domain in separate steps, with only the draws that it needs.
     fn one_by_one(random: &mut Random, (low, high): (i64, i64)) -> i64 {
         let choice = random.below(16);
         match choice {

@@ -6,12 +6,13 @@ use std::sync::Arc;
 #[derive(Debug)]
 pub(super) struct Recording {
     words: Vec<u64>,
-    /// How many there are in a clock.
+    /// The number of inputs in a clock.
     inputs: usize,
 }
 
 impl Recording {
-    /// Makes the recording of the inputs of each clock, as many in each. There must be at least one clock.
+    /// Makes the recording from the bit patterns of the inputs in each clock. There must be at least one clock, and all clocks
+    /// must have the same number of inputs.
     pub(super) fn new(clocks: &[Vec<u64>]) -> Self {
         Self { words: clocks.concat(), inputs: clocks[0].len() }
     }
@@ -20,7 +21,7 @@ impl Recording {
 /// Replays a recording from its first clock on.
 pub(super) struct RecordedInputs {
     recording: Arc<Recording>,
-    /// The position at which the inputs of the next clock begin.
+    /// The index in `words` at which the inputs of the next clock begin.
     next: usize,
 }
 
@@ -38,7 +39,7 @@ impl RecordedInputs {
         &words[first..self.next]
     }
 
-    /// Returns the inputs of the latest clock.
+    /// Returns the inputs of the latest clock. [`RecordedInputs::next`] must have been called.
     #[inline]
     pub(super) fn inputs(&self) -> &[u64] {
         &self.recording.words[self.next - self.recording.inputs..self.next]
@@ -52,7 +53,7 @@ mod tests {
     use crate::registry::Registry;
     use glint_config::{Config, Value};
 
-    /// Each stream begins at power-up. When it begins again, the registers hold the values that a computation left.
+    /// Each stream begins at power-up. When it begins again, the registers have the values that a computation left.
     #[test]
     fn replayed_inputs_show_what_drawn_ones_do() {
         ["sequential", "pipelined"].into_iter().for_each(replayed);
@@ -67,7 +68,7 @@ mod tests {
             Config::from_values(&(device.schema)(), "device", keys.into()).expect("its keys")
         };
         let core = Core::new(device, config("nearest")).unwrap();
-        // More than there are lanes.
+        // More streams than lanes.
         let streams: Vec<_> = (0..40).map(|seed| core.vectors(5, seed).unwrap().inputs).collect();
         let most = streams.iter().map(Vec::len).max().unwrap_or_default() as u64;
         let outcome = core.lockstep(1).unwrap().replay(&streams, 3 * most).unwrap();

@@ -1,5 +1,5 @@
-//! Runs several streams in the lanes of one simulator, and compares every signal that the golden model predicts with the simulated
-//! one at every clock. A stream is a sequence of random inputs from power-up on.
+//! Runs several streams in the lanes of one simulator. It compares every signal that the golden model predicts with the
+//! simulated signal at every clock. A stream is a sequence of inputs from power-up on.
 
 use std::io::Write;
 use std::mem;
@@ -11,42 +11,45 @@ use super::outcome::{Course, StreamRecord};
 use super::stream::Stream;
 use glint_rtl::sim::Simulator;
 
-/// The number of clocks by which each of many streams of a core, in turn, is ahead of the simulator. The model and stimulus
-/// of one stream then stay in the processor's cache, and their branches are predicted. The clocks that wait for the simulator
-/// still fit in the cache.
+/// The number of clocks that are computed for each stream of a core before the simulator runs them. The model and the random
+/// inputs of one stream then stay in the processor's cache, and their branches are predicted. The inputs and predictions of
+/// these clocks still fit in the cache.
 const AHEAD: usize = 4;
 
 /// Runs as many streams as there are lanes, or fewer.
 ///
-/// A stream reacts to the `busy` that its model predicts. The simulation has the same `busy`, unless they differ. A stream
-/// that is ahead of the simulator, and in which anything differs, is run once more, alone.
+/// The random inputs of a stream react to the `busy` that its model predicts. The simulated `busy` is the same, unless model
+/// and hardware differ. If a stream whose clocks were computed ahead differs, it runs once more, alone, to find the first
+/// difference.
 pub(super) struct Runner<'a, const LANES: usize> {
     binding: &'a Binding<'a>,
     pub(super) simulator: Simulator<LANES>,
-    /// The first are in the first lanes.
+    /// The streams, in the order of the lanes.
     streams: Vec<Stream>,
-    /// The streams that were ahead of the simulator when something differed.
+    /// For each lane, whether something differed in a stream whose clocks were computed ahead.
     differ: [bool; LANES],
-    /// The clocks to come.
+    /// The clocks whose inputs and predictions are computed together: one or [`AHEAD`].
     ahead: Vec<PredictedClock<LANES>>,
 }
 
-/// The inputs of a clock and the values predicted after it, for each lane.
+/// The inputs of a clock and the values predicted after it, for each signal and lane.
 #[derive(Clone)]
 struct PredictedClock<const LANES: usize> {
-    /// The inputs. If only a single clock is prepared, they are the simulator's own, and this list is empty.
+    /// The inputs. The list is empty if only a single clock is prepared, because its inputs are written to the simulator
+    /// directly.
     inputs: Vec<[u64; LANES]>,
-    /// The lanes whose inputs drive nothing in this clock.
+    /// The lanes whose inputs are all 0 in this clock, except for `rst_n`.
     idle: [bool; LANES],
     predicted: Vec<[u64; LANES]>,
-    /// All ones where something is predicted; nothing of a core, where everything is.
+    /// A mask for each signal and lane: all ones if the value is predicted, otherwise 0. The list is empty for a core, where
+    /// every value is predicted.
     known: Vec<[u64; LANES]>,
-    /// Streams that have ended before are not compared: all ones where one has not.
+    /// A mask for each lane: all ones if its stream is compared in this clock, 0 if it has ended.
     compared: [u64; LANES],
 }
 
 impl<'a, const LANES: usize> Runner<'a, LANES> {
-    /// Makes a stream for each course, beginning at power-up.
+    /// Makes a stream for each course, beginning at power-up. Courses after the first `LANES` are ignored.
     ///
     /// # Errors
     /// Fails if the design cannot be simulated.
@@ -77,7 +80,7 @@ impl<'a, const LANES: usize> Runner<'a, LANES> {
         })
     }
 
-    /// Returns whether the run is over: every stream before the first that differs has ended.
+    /// Returns whether the run is over: all streams have ended, or all streams up to the first that differs.
     pub(super) fn ended(&self) -> bool {
         for (stream, differs) in self.streams.iter().zip(self.differ) {
             if differs || !stream.ended() || stream.seen.mismatch.is_some() {
@@ -87,7 +90,7 @@ impl<'a, const LANES: usize> Runner<'a, LANES> {
         true
     }
 
-    /// Returns the first stream in which model and hardware differ.
+    /// Returns the index of the first stream in which model and hardware differ, or `None`.
     pub(super) fn first_that_differs(&self) -> Option<usize> {
         let mut streams = self.streams.iter().zip(self.differ);
         streams.position(|(stream, differs)| differs || stream.seen.mismatch.is_some())
@@ -98,10 +101,11 @@ impl<'a, const LANES: usize> Runner<'a, LANES> {
         &mut self.streams[0]
     }
 
-    /// Runs some clocks of all streams that have not ended, and returns the number of results in these clocks.
+    /// Runs the next clock, or the next few, of all streams that have not ended. Returns the number of results in these clocks.
     ///
     /// # Errors
-    /// Fails if the simulation does not settle, if the VCD cannot be written, or if a golden model does not finish a computation.
+    /// Fails if the simulated signals do not settle in a clock, if the waveform cannot be written, or if a golden model does
+    /// not finish a computation.
     pub(super) fn run(&mut self) -> Result<u64> {
         let before = self.points();
         self.prepare()?;
@@ -109,7 +113,7 @@ impl<'a, const LANES: usize> Runner<'a, LANES> {
         Ok(self.points() - before)
     }
 
-    /// Returns the number of results that all streams have seen.
+    /// Returns the number of results of all streams so far.
     fn points(&self) -> u64 {
         self.streams.iter().map(|stream| stream.seen.points).sum()
     }
@@ -129,7 +133,7 @@ impl<'a, const LANES: usize> Runner<'a, LANES> {
                 clock.compared[lane] = u64::MAX;
                 stream.clock(self.binding)?;
                 let was_idle = mem::replace(&mut clock.idle[lane], stream.is_idle());
-                // Most of the time nothing is driven, and the inputs are already in place.
+                // Most of the time the inputs are all 0 except for `rst_n`, and are already in place.
                 if !(was_idle && clock.idle[lane]) {
                     let inputs =
                         if single { self.simulator.inputs_mut() } else { &mut clock.inputs[..] };
@@ -146,10 +150,10 @@ impl<'a, const LANES: usize> Runner<'a, LANES> {
         Ok(())
     }
 
-    /// Simulates the prepared clocks, and compares every predicted signal after each.
+    /// Simulates the prepared clocks, and compares every predicted signal after each clock.
     ///
     /// # Errors
-    /// Fails if the simulation does not settle, or if the VCD cannot be written.
+    /// Fails if the simulated signals do not settle in a clock, or if the waveform cannot be written.
     pub(super) fn simulate(&mut self) -> Result<()> {
         let single = self.ahead.len() == 1;
         let address = match self.binding.address {
@@ -180,7 +184,7 @@ impl<'a, const LANES: usize> Runner<'a, LANES> {
         Ok(())
     }
 
-    /// Returns the outcomes of the streams, up to the first that differs.
+    /// Returns the records of the streams, up to and including the first that differs.
     ///
     /// # Errors
     /// Fails as [`Runner::run`] does.
@@ -200,7 +204,7 @@ impl<'a, const LANES: usize> Runner<'a, LANES> {
 }
 
 impl Runner<'_, 1> {
-    /// Runs until all streams have ended or the given number of clocks is done.
+    /// Runs until the stream has ended, or until it has run `clocks` clocks since power-up.
     ///
     /// # Errors
     /// Fails as [`Runner::run`] does.
@@ -211,7 +215,7 @@ impl Runner<'_, 1> {
         Ok(())
     }
 
-    /// Runs to the end, and writes the waveform from clock `from` on into `file`.
+    /// Runs to the end, and writes the waveform from clock `from` on into `file`, in the VCD format.
     ///
     /// # Errors
     /// Fails as [`Runner::run`] does.

@@ -2,9 +2,9 @@
 //!
 //! At a random point (one set of operands), the roundings rarely all err in the same direction. The search starts from random
 //! points and changes one operand, or a pair of operands with fraction bits, by powers of two while the error grows. For a
-//! highlight it first climbs the error of `f`, and then the error of an output, with the worst colour. Around the highest places
-//! it tries every value of each pair of operands, since rounding makes the last steps too rough to climb. Its result is a lower
-//! bound of the true maximum, not a proof.
+//! highlight it first climbs the error of `f`, and then the error of an output, with the worst colour. Around the points with
+//! the largest errors it tries every value of each pair of operands, since rounding makes the last steps too irregular to
+//! climb. Its result is a lower bound of the true maximum, not a proof.
 
 use rayon::prelude::*;
 
@@ -13,39 +13,42 @@ use super::random::Random;
 use glint_base::fixed::exp2;
 use glint_golden::{Contract, Highlight, nearer};
 
-/// Colours of more bits than this are tried at their upper end alone.
+/// The number of colours that are tried, counted down from the largest.
 const MOST_COLOURS: i64 = 256;
 
-/// Operands are moved by powers of two below this.
+/// Operands are moved by powers of two below 2 to this power.
 const MOST_BITS: u32 = 24;
 
-/// How many of the highest places are looked around, and at how many values around each.
+/// How many of the points with the largest errors are searched around, and about how many combinations of operands are tried
+/// around each.
 const HIGHEST: usize = 16;
 const AROUND: u64 = 1 << 18;
 
-/// How many values are looked at around a place, all pairs together, where each goes through a model clock by clock: a device
-/// without a highlight, mostly one of many operands.
+/// The number of combinations that are tried around a point of a device without a highlight, for all pairs of operands
+/// together. Each runs the model clock by clock.
 const MOST_AROUND: u64 = 1 << 16;
 
-/// How many starts are climbed from before only the highest places are kept: memory does not grow with the starts.
+/// The number of starts after which only the points with the largest errors are kept, so that memory does not grow with the
+/// number of starts.
 const BATCH: u64 = 1 << 10;
 
 /// An error that the search has found, with its operands and its output.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Reached {
-    /// The error in output units. It is infinite if the formula has no value there.
+    /// The absolute error in output units. It is infinite if the formula has no value at the operands.
     pub units: f64,
     /// The raw operands, in the order of `Contract::operands`.
     pub operands: Vec<i64>,
-    /// The index of the output in the contract.
+    /// The index of the output in `Contract::outputs`.
     pub output: usize,
-    /// The computed output, in its units, and the value of the formula.
+    /// The computed output as a raw value, and the value of the formula in the same units.
     pub raw: i64,
     pub exact: f64,
 }
 
 impl Reached {
-    /// Returns the largest error of an output at raw operands, or `None` if the contract has no output.
+    /// Returns the largest error of an output at raw operands, in the order of `Contract::operands`. Returns `None` if the
+    /// contract has no output.
     pub fn at(contract: &dyn Contract, operands: Vec<i64>) -> Option<Self> {
         let (mut raw, mut exact) = (Vec::new(), Vec::new());
         contract.results(&operands, 0, &mut raw);
@@ -68,20 +71,20 @@ impl Reached {
     }
 }
 
-/// Returns the first of two, unless the error of the second is larger.
+/// Returns `a` or `b`: the one with the larger error, or `a` if the errors are equal.
 fn larger(a: Reached, b: Reached) -> Reached {
     if b.units > a.units { b } else { a }
 }
 
-/// Returns the number of times that [`worst`] calls `progress` if it searches from `starts` points, so that a caller can show
-/// progress.
+/// Returns the number of times that [`worst`] calls `progress` if it searches from `starts` points.
 pub fn steps(starts: u64) -> u64 {
     starts.saturating_add(starts.min(HIGHEST as u64))
 }
 
-/// Searches from `starts` random points and returns the largest error that it finds, or `None` if `starts` is 0. The result depends
-/// on the seed but not on the number of threads. It calls `progress` after each start. It then tries the neighbours of the operands
-/// with the largest errors, and calls `progress` after each of these searches.
+/// Searches from `starts` random points and returns the largest error that it finds. Returns `None` if `starts` is 0, or if the
+/// contract has no output. The result depends on `seed` but not on the number of threads. The function calls `progress` after
+/// each start. It then tries the neighbours of the operands with the largest errors, and calls `progress` after each of these
+/// searches.
 pub fn worst(
     contract: &dyn Contract,
     starts: u64,
@@ -101,7 +104,7 @@ pub fn worst(
             end
         });
         let ends: Vec<ClimbResult> = climbs.collect();
-        // If errors are equal, the error of the first start wins, whatever the order in which the errors come.
+        // If errors are equal, the first start wins, whatever the order in which the threads end.
         let outputs = ends.iter().filter_map(|end| Reached::at(contract, end.operands.clone()));
         climbed = climbed.into_iter().chain(outputs).reduce(larger);
         highest.extend(ends);
@@ -119,22 +122,24 @@ pub fn worst(
     Some(found.fold(climbed?, larger))
 }
 
-/// Where a climb ends.
+/// The end of a climb from one start.
 struct ClimbResult {
-    /// The largest error of f of a highlight, else of an output, and the moved operands where it is.
+    /// The largest error that the climb reached: of `f` for a highlight, in absolute terms, and otherwise of an output, in
+    /// units. `highest` has the control operands with this error.
     height: f64,
     highest: Vec<i64>,
-    /// The operands at the end of the climb. A highlight's operands have the colour with the largest error of an output.
+    /// The operands, with colours, at the end of the climb. For a highlight they have the largest error of an output that the
+    /// climb reached.
     operands: Vec<i64>,
 }
 
 struct Climber<'a> {
     contract: &'a dyn Contract,
-    /// The domains of the operands that are moved.
+    /// The domains of the control operands, which are moved.
     domains: Vec<(i64, i64)>,
-    /// Operands that are moved together, with their signs.
+    /// The moves: each has the indices of the operands that move together, and the sign of their steps.
     moves: Vec<Vec<(usize, i64)>>,
-    /// The colours of a highlight.
+    /// The colours that are tried for a highlight. For other devices, the single value 1.
     colours: std::ops::RangeInclusive<i64>,
 }
 
@@ -161,7 +166,7 @@ impl<'a> Climber<'a> {
         }
     }
 
-    /// Returns the end of the climb from some operands.
+    /// Climbs from the given operands, and returns the end of the climb.
     fn from(&self, operands: Vec<i64>) -> ClimbResult {
         // Control operands come first.
         let mut highest = operands;
@@ -176,21 +181,22 @@ impl<'a> Climber<'a> {
         ClimbResult { height, highest, operands: self.with_colours(highlight, control) }
     }
 
-    /// Returns the control operands with the colour that makes the largest error.
+    /// Returns the given control operands, followed by the colour with the largest error in the place of every colour operand.
     fn with_colours(&self, highlight: &Highlight, mut control: Vec<i64>) -> Vec<i64> {
         let (_, colour) = self.of_output(highlight, &control);
         control.resize(highlight.operands().len(), colour);
         control
     }
 
-    /// Tries all values of each pair of operands around the given ones, moves to the largest error, and looks around there
-    /// again. Returns the operands of the largest error.
+    /// Tries all values of each pair of operands around the given control operands, moves to the largest error, and repeats
+    /// this there until the error no longer grows. Returns all operands of the largest error.
     fn look_around(&self, mut operands: Vec<i64>) -> Vec<i64> {
         let highlight = self.contract.highlight();
         let terms = self.contract.bound().terms;
         let rounding = terms.iter().find(|term| term.key == "output.rounding");
         let (rounding, colour) = (rounding.map_or(1.0, |it| it.units), *self.colours.end() as f64);
-        // An output is no further off than f and its own rounding allow.
+        // The error of an output is at most the error of `f` for the largest colour, plus the output's own rounding. If that is
+        // no more than the known error, the colours need not be tried.
         let error = |operands: &[i64], known: f64| match highlight {
             Some(it) if of_f(it, operands) * colour + rounding <= known => 0.0,
             Some(it) => self.of_output(it, operands).0,
@@ -230,7 +236,7 @@ impl<'a> Climber<'a> {
         }
     }
 
-    /// Moves operands as long as that makes `of` larger; returns how large.
+    /// Moves operands as long as that makes the value of `of` larger. Returns the largest value.
     fn climb(&self, operands: &mut Vec<i64>, of: impl Fn(&[i64]) -> f64) -> f64 {
         let mut height = of(operands);
         loop {
@@ -257,7 +263,7 @@ impl<'a> Climber<'a> {
         }
     }
 
-    /// Returns the largest error of an output, in units, and its colour.
+    /// Returns the largest error of an output for the given control operands, in units, and the colour that has it.
     fn of_output(&self, highlight: &Highlight, control: &[i64]) -> (f64, i64) {
         let point = highlight.point(control, 0);
         let (f, right) = (highlight.f(&point), highlight.references(&point));
@@ -269,7 +275,7 @@ impl<'a> Climber<'a> {
     }
 }
 
-/// Returns the error of `f`.
+/// Returns the absolute error of `f` for the given control operands.
 fn of_f(highlight: &Highlight, control: &[i64]) -> f64 {
     let point = highlight.point(control, 0);
     let f = highlight.f_format().to_f64(i128::from(highlight.f(&point)));

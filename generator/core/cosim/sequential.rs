@@ -14,19 +14,20 @@ use glint_rtl::netlist::{Design, NetId, RegisterKind};
 #[derive(Clone)]
 pub(super) struct SequentialModel {
     model: Box<dyn Model>,
-    /// For each input of the model its position among the design's; none if the orders are the same.
+    /// For each input of the model, its index among the design's inputs. `None` if the order is the same.
     order: Option<Vec<usize>>,
-    /// The model's inputs, where it has an order of its own.
+    /// The model's inputs in the model's order, if that is different from the design's.
     reordered: Vec<u64>,
-    /// Positions among the signals: of `busy`, of `valid`, and of `done` where `start` is heard while it is high.
+    /// The indices of `busy` and `valid` among the model's signals. `overlaps` has the index of `done` if the core accepts
+    /// `start` while `done` is high.
     busy: usize,
     valid: usize,
     overlaps: Option<usize>,
     /// Whether the core ignores `start` in the next clock.
     pub(super) deaf: bool,
-    /// Results since the latest start.
+    /// The number of results since the latest `start`.
     index: u64,
-    /// The operands of the computation that shows results, and whether they are in the domain.
+    /// The raw operands of the computation that shows results, and whether they are inside the domain.
     operands: Vec<i64>,
     inside: bool,
 }
@@ -35,7 +36,8 @@ impl SequentialModel {
     /// Returns the model of a core, and the nets that it predicts, in the order of the predictions.
     ///
     /// # Errors
-    /// Fails if one side has a name that the other does not have.
+    /// Fails if the model has an input or a signal that the design does not have, or if it does not predict an output or an
+    /// architectural register of the design.
     pub(super) fn new(
         design: &Design,
         model: Box<dyn Model>,
@@ -62,7 +64,7 @@ impl SequentialModel {
             let name = &design.net(id).name;
             ensure!(compared.contains(&id), "the golden model does not predict `{name}`");
         }
-        // The outputs of the handshake are among them.
+        // The outputs of the handshake are among `compared`.
         let position = |net: NetId| compared.iter().position(|&it| it == net);
         let core = Self {
             order: (!order.iter().copied().eq(0..inputs.len())).then_some(order),
@@ -79,7 +81,7 @@ impl SequentialModel {
         Ok((core, compared))
     }
 
-    /// Advances the model by one clock.
+    /// Advances the model by one clock. `inputs` has the bit patterns of the design's inputs, in the design's order.
     #[inline]
     pub(super) fn clock(&mut self, inputs: &[u64]) {
         match &self.order {
@@ -92,14 +94,14 @@ impl SequentialModel {
         }
     }
 
-    /// Returns the predicted values after the latest clock.
+    /// Returns the predicted bit patterns after the latest clock, in the order of the predictions.
     #[inline]
     pub(super) fn predicted(&self) -> &[u64] {
         self.model.values()
     }
 
-    /// Takes note of a result, if there is one, as predicted; `accepted` are the operands of the computation that was
-    /// started last, if they are known.
+    /// Counts a result in `seen`, if the model predicts one in this clock, and measures its error. `accepted` has the raw
+    /// operands of the computation that started last. It is `None` if they are not known, and then no error is measured.
     #[inline]
     pub(super) fn note(
         &mut self,
@@ -117,8 +119,8 @@ impl SequentialModel {
             return;
         }
         seen.points += 1;
-        // All combinations against the formula: that is the proof of the contract. Of recorded inputs nobody says which
-        // operands a result is of.
+        // Without operands, the result is only counted. An exhaustive check measures the errors elsewhere, and recorded inputs
+        // do not tell to which operands a result belongs.
         let Some(accepted) = accepted else {
             return;
         };
@@ -136,7 +138,7 @@ impl SequentialModel {
     }
 }
 
-/// Returns the registers of a design that its golden model must predict.
+/// Returns the architectural registers of a design, which its golden model must predict.
 pub(super) fn registers(design: &Design) -> impl Iterator<Item = NetId> {
     let predicted =
         design.registers.iter().filter(|register| register.kind != RegisterKind::Internal);

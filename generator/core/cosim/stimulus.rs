@@ -1,8 +1,9 @@
-//! Draws the inputs of a core with a microprogram, clock by clock.
+//! Draws random inputs for a core with a microprogram, clock by clock.
 //!
-//! The inputs cover all that a host may do: computations with idle gaps or back to back; operands written one after another, all
-//! at once or together with `start`; operands left from the previous computation; writes and starts while the core is busy; and
-//! resets in the middle of a computation. The stimulus reacts to `busy`, as a host does. The same seed gives the same inputs.
+//! The inputs cover everything that a host may do. Computations follow each other with idle gaps or back to back. Operands are
+//! written one after another, all at once or together with `start`, or they stay from the previous computation. Writes, starts
+//! and resets also come while the core is busy. The stimulus reacts to `busy`, as a host does, and the same seed gives the same
+//! inputs.
 //!
 //! At the start of a computation, the stimulus draws whether and after how many clocks it is reset. Short and long delays are
 //! equally likely on a logarithmic scale. Resets therefore often hit a computation of ten clocks, and most computations of
@@ -15,41 +16,42 @@ use super::ports::Ports;
 use super::random::Random;
 use glint_base::fixed::mask;
 
-/// Resets come within 2⁰, 2¹, … clocks after a start, in equal parts up to this many powers: as long as
-/// the longest line.
+/// The number of magnitudes of the delay from `start` to a reset. The delay is drawn below 2^m clocks, with m equally likely
+/// from 0 to 12. The largest delay, 4095 clocks, reaches the end of the longest line.
 const RESET_MAGNITUDES: u64 = 13;
 
 #[derive(Clone, Copy, PartialEq)]
 enum Phase {
-    /// The clocks for which `rst_n` stays low.
+    /// The clocks for which `rst_n` still stays low after the clock that comes next.
     Reset(u32),
-    /// Writing; the operands still to be written, as a mask.
+    /// Operands are being written. Bit i of the mask is 1 if operand port i must still be written.
     Writing(u64),
     /// The idle clocks until `start` is due.
     Starting(u32),
-    /// A computation runs; the clocks to its reset, when one is due.
+    /// A computation runs. The number is the clocks until a reset interrupts it; `None` if it may finish.
     Running(Option<u64>),
 }
 
-/// The random inputs of a core with a microprogram, clock by clock.
+/// The random inputs of a core with a microprogram. Each call of [`Stimulus::next`] gives the inputs of one clock.
 pub(super) struct Stimulus {
     ports: Arc<Ports>,
     random: Random,
     phase: Phase,
     inputs: Vec<u64>,
-    /// Nothing is driven but `rst_n`, high.
+    /// Whether the latest inputs hold `rst_n` high and everything else at 0.
     idle: bool,
-    /// The raw operands of the next point, in the order of the points.
+    /// The raw operands of the next point, in the order of `Contract::operands`.
     next: Vec<i64>,
-    /// The raw values that were last written where the device could take them.
+    /// The raw values that the device's operand registers or buffers hold: the last ones written when the device could accept
+    /// them.
     written: Vec<i64>,
-    /// The operands that the latest `start` took of buffers.
+    /// The raw operands that the latest `start` copied from the buffers. `None` if the core has no operand buffers.
     taken: Option<Vec<i64>>,
     first: bool,
 }
 
 impl Stimulus {
-    /// Makes the stimulus of a seed, beginning at power-up.
+    /// Makes the stimulus for a seed. Its first three clocks are the reset after power-up.
     pub(super) fn new(ports: &Arc<Ports>, seed: u64) -> Self {
         let nothing = vec![0; ports.operands.len()];
         Self {
@@ -70,7 +72,8 @@ impl Stimulus {
         self.taken.as_ref().unwrap_or(&self.written)
     }
 
-    /// Returns the inputs of the next clock. `busy` must say whether the device ignores a `start` at the next edge.
+    /// Returns the bit patterns of all inputs in the next clock, in the order of the design's input ports. `busy` must say
+    /// whether the device ignores a `start` at the next edge. `points` gives the operands.
     pub(super) fn next(&mut self, busy: bool, points: &PointSource) -> &[u64] {
         if !self.idle {
             self.inputs.fill(0);
@@ -101,7 +104,8 @@ impl Stimulus {
         &self.inputs
     }
 
-    /// Returns whether the latest inputs neither start, write nor reset anything.
+    /// Returns whether the latest inputs hold `rst_n` high and everything else at 0, so that they neither start, write nor
+    /// reset anything.
     #[inline]
     pub(super) fn is_idle(&self) -> bool {
         self.idle
@@ -124,8 +128,8 @@ impl Stimulus {
         self.phase = Phase::Running(reset);
     }
 
-    /// Drives a clock after `start`: until the device has ended, now and then something that it must ignore, or a
-    /// reset.
+    /// Drives one clock after `start`. While the device is busy, this clock may have random writes and starts, which the device
+    /// must ignore, or the reset. Once the device is free, the next point begins in the same clock.
     fn run(&mut self, busy: bool, reset: Option<u64>, points: &PointSource) {
         if busy {
             if self.random.once_in(6) {
@@ -139,7 +143,7 @@ impl Stimulus {
             }
             return;
         }
-        // Ended, and the device takes operands again in this very clock.
+        // The computation has ended, and the device takes operands again in this very clock.
         self.phase = self.next_point(points);
         match self.phase {
             Phase::Writing(left) => self.write(left),
@@ -149,7 +153,8 @@ impl Stimulus {
         }
     }
 
-    /// Returns the first phase of the next point.
+    /// Draws the operands of the next point, and returns the phase that writes them. One point in eight starts with the
+    /// operands of the previous point instead.
     fn next_point(&mut self, points: &PointSource) -> Phase {
         let all = (1u64 << self.ports.operands.len()) - 1;
         let written = if self.first {
@@ -158,7 +163,7 @@ impl Stimulus {
             match self.random.below(8) {
                 // The same operands once more.
                 0 => return Phase::Starting(self.random.below(4) as u32),
-                // Some of them.
+                // Some of the operands.
                 1 | 2 => self.random.bits() & all,
                 _ => all,
             }
@@ -171,7 +176,8 @@ impl Stimulus {
         }
         self.next.copy_from_slice(&self.written);
         points.draw(&mut self.random, &mut self.next, free);
-        // Operands that moved toward the peak are written too.
+        // `draw` may also have changed an operand outside `free`, to reach the peak of the function; that operand is written
+        // too.
         let mut changed = written;
         for (at, port) in self.ports.operands.iter().enumerate() {
             if self.next[port.at] != self.written[port.at] {
@@ -181,7 +187,8 @@ impl Stimulus {
         Phase::Writing(changed)
     }
 
-    /// Writes of the operands in `left`: one, or all at once, perhaps together with `start`.
+    /// Writes some of the operands in the mask `left`: one, a random selection, or all. After the last write, `start` follows
+    /// in the same clock or later.
     fn write(&mut self, left: u64) {
         self.idle = false;
         let now = match self.random.below(4) {
@@ -210,7 +217,7 @@ impl Stimulus {
         }
     }
 
-    /// Drives strobes and data at random, and while busy `start` too: the device ignores them then.
+    /// Drives random strobes and data, which the device must ignore. If `busy` is true, `start` is random too.
     fn noise(&mut self, busy: bool, points: &PointSource) {
         self.idle = false;
         let random = &mut self.random;
@@ -225,7 +232,7 @@ impl Stimulus {
         }
     }
 
-    /// Notes the values that registers or buffers take at this edge.
+    /// Records the operand values that registers or buffers take at this clock edge.
     fn accept(&mut self, busy: bool) {
         if self.idle || busy && self.taken.is_none() {
             return;
@@ -252,7 +259,7 @@ mod tests {
     use glint_rtl::dsl::{Designer, end, step, valid};
     use glint_rtl::netlist::{Design, Role};
 
-    /// Returns a design with one operand; how long a computation takes is for the tests to say.
+    /// Returns a design with one operand `x` of 12 bits. The tests decide how long a computation takes.
     fn design() -> Design {
         let d = Designer::new("device");
         let x = d.operand("x", Format::unsigned(12, 0));
@@ -264,7 +271,7 @@ mod tests {
         d.finish().unwrap()
     }
 
-    /// The events in computations of some length.
+    /// The number of events of each kind in a run of computations.
     #[derive(Debug, Default)]
     struct Events {
         complete: u32,
@@ -318,7 +325,7 @@ mod tests {
     fn short_computations_meet_everything() {
         let events = events(10, 100_000);
         assert!(events.complete > 5_000, "{events:?}");
-        // One in some forty.
+        // About one computation in forty is reset.
         assert!(events.reset > 100 && events.reset < 500, "{events:?}");
         assert!(events.written > 2_000, "{events:?}");
         assert!(events.started_again > 2_000, "{events:?}");

@@ -1,7 +1,7 @@
 //! Makes the inputs of one simulated instance, clock by clock from power-up on, and predicts its signals with the golden model.
 //!
-//! The inputs are random, or count through operand combinations, or come from a recording. The module does not simulate: its
-//! caller gives the inputs to the simulator, and then calls `compare`, which notes the first signal that differs from the
+//! The inputs are random, or go through combinations of operands, or come from a recording. The module does not simulate. Its
+//! caller gives the inputs to the simulator, and then calls `compare`, which records the first signal that differs from the
 //! prediction.
 
 use anyhow::Result;
@@ -14,18 +14,18 @@ use super::recorded::RecordedInputs;
 use super::stimulus::Stimulus;
 use glint_rtl::netlist::NetId;
 
-/// Where the inputs come from.
+/// The source of a stream's inputs.
 enum Source {
-    /// At random, for a core.
+    /// Random inputs for a core.
     Stimulus(Stimulus),
-    /// At random, for a pipeline.
+    /// Random inputs for a pipeline.
     Offers(Offers),
     Combinations(Combinations),
     Recorded(RecordedInputs),
 }
 
 impl Source {
-    /// Returns the latest inputs.
+    /// Returns the inputs of the latest clock, in the order of the design's input ports.
     #[inline]
     fn inputs(&self) -> &[u64] {
         match self {
@@ -36,7 +36,7 @@ impl Source {
         }
     }
 
-    /// Returns whether no computation is left to start.
+    /// Returns whether the source will start no further computation. Random and recorded inputs never end.
     fn is_over(&self) -> bool {
         match self {
             Self::Combinations(combinations) => combinations.all_started(),
@@ -45,7 +45,7 @@ impl Source {
         }
     }
 
-    /// Returns the place of the combination that was started last.
+    /// Returns the place of the combination that started last, or `None` if the source does not go through combinations.
     fn place(&self) -> Option<u64> {
         match self {
             Self::Combinations(combinations) => Some(combinations.place()),
@@ -57,16 +57,17 @@ impl Source {
 /// A stream: the inputs of one simulated instance, and the predictions of its signals.
 pub(super) struct Stream {
     pub(super) seen: StreamRecord,
-    /// The kind of inputs and their seed or number, from which the same stream can be made again.
+    /// The kind of the inputs, and their seed or number, from which the same stream can be made again.
     pub(super) course: Course,
     source: Source,
     host: Host,
-    /// For combinations, the number of clocks from the `start` of the combination that differs to the difference.
+    /// In a stream of combinations with a difference: the number of clocks from the `start` of the computation that differs to
+    /// the difference.
     pub(super) since_start: u64,
 }
 
 impl Stream {
-    /// Begins a stream at power-up. `busy` is the value of the device's output at power-up.
+    /// Begins a stream at power-up. `busy` is the value of the device's output `busy` at power-up.
     pub(super) fn new(binding: &Binding, course: Course, busy: bool) -> Self {
         let mut host = binding.host.clone();
         if let Host::Core(core) = &mut host {
@@ -85,8 +86,8 @@ impl Stream {
         Self { seen: StreamRecord::default(), course, source, host, since_start: 0 }
     }
 
-    /// Returns whether the stream has ended, because its inputs are at an end or because a signal differs. In a pipeline,
-    /// combinations that were taken before the one that differs are still finished.
+    /// Returns whether the stream has ended: because its course is complete, or because a signal differs. A pipeline goes on
+    /// after a difference until the combinations that it took earlier are finished, because an earlier one may differ too.
     pub(super) fn ended(&self) -> bool {
         match (&self.course, &self.seen.mismatch) {
             (Course::Combinations { .. }, Some(found)) => {
@@ -105,8 +106,8 @@ impl Stream {
         }
     }
 
-    /// Continues the stream from the present state of the device with some computations, whose raw operands are in the order of
-    /// the contract.
+    /// Continues the stream, from the present state of the device, with the given computations. Each is a list of raw operands
+    /// in the order of the contract.
     pub(super) fn follow(&mut self, binding: &Binding, computations: &[Vec<i64>]) {
         let count = computations.len() as u64;
         self.course = Course::Combinations { first: 0, count };
@@ -118,7 +119,8 @@ impl Stream {
         }
     }
 
-    /// Advances the model by one clock, with the next inputs.
+    /// Computes the inputs of the next clock, and advances the model by this clock. Fails if a golden model does not finish a
+    /// computation.
     #[inline]
     pub(super) fn clock(&mut self, binding: &Binding) -> Result<()> {
         let (deaf, taken) = match &self.host {
@@ -148,20 +150,22 @@ impl Stream {
         Ok(())
     }
 
-    /// Returns the inputs of the latest clock.
+    /// Returns the inputs of the latest clock, in the order of the design's input ports.
     #[inline]
     pub(super) fn inputs(&self) -> &[u64] {
         self.source.inputs()
     }
 
-    /// Returns whether the latest inputs neither start, write nor reset anything.
+    /// Returns whether the latest inputs neither start, write nor reset anything. It is known only for the random inputs of a
+    /// core, and false for all others.
     #[inline]
     pub(super) fn is_idle(&self) -> bool {
         matches!(&self.source, Source::Stimulus(stimulus) if stimulus.is_idle())
     }
 
-    /// Writes the predictions after the latest clock into a lane of `expected`, and all ones into `known` if a signal is
-    /// predicted at all. Every signal of a core is predicted.
+    /// Writes the predictions after the latest clock into lane `lane` of `expected`, in the order of the compared signals. For
+    /// a pipeline it also writes into `known`: all ones for a signal that is predicted, and otherwise 0. Every signal of a core
+    /// is predicted.
     #[inline]
     pub(super) fn predict<const L: usize>(
         &self,
@@ -185,8 +189,9 @@ impl Stream {
         }
     }
 
-    /// Takes note of the first signal on which simulation and model differ after the latest clock, if they do. The
-    /// microinstruction at `address` was executed at the edge.
+    /// Records the first signal on which simulation and model differ after the latest clock, if there is a difference.
+    /// `simulated` returns the simulated bit pattern of a net. The microinstruction at `address` was executed at the clock
+    /// edge.
     pub(super) fn compare(
         &mut self,
         binding: &Binding,
@@ -217,7 +222,7 @@ impl Stream {
             };
             Some((at, golden, start))
         });
-        // If several points in a pipeline differ, the first is reported.
+        // If several points in a pipeline differ, the point that was taken first is reported.
         let Some((at, golden, (seed, since))) = differences.min_by_key(|(.., (seed, _))| *seed)
         else {
             return;
@@ -245,7 +250,8 @@ impl Stream {
         });
     }
 
-    /// Counts and measures the predicted result of a core, if the core shows one after the latest clock.
+    /// Counts the result that the model of a core predicts after the latest clock, if there is one, and measures its error. It
+    /// does nothing for a pipeline.
     #[inline]
     pub(super) fn note(&mut self, binding: &Binding) {
         if let Host::Core(core) = &mut self.host {

@@ -7,12 +7,13 @@ use super::instances::Instances;
 use glint_golden::Contract;
 use glint_rtl::netlist::{Design, NetId, Role};
 
-/// Simulates points in a pipeline, and returns the values of `nets` in each clock, just before its rising edge. One point is
-/// offered every clock, except for a bubble before the last point. The first result waits for `pause` clocks, if the pipeline
-/// can wait. The recording ends with the last result.
+/// Simulates the given points in a pipeline, and returns the bit patterns of `nets` in each clock, just before its rising edge.
+/// Points are raw operands in the order of `Contract::operands`. One point is offered in every clock, except for one clock
+/// without a point before the last. The first result waits for `pause` clocks, if the pipeline has an `out_ready`. The
+/// recording ends with the clock of the last result.
 ///
 /// # Errors
-/// Fails if the design cannot be simulated, or if it shows no result within `limit` clocks.
+/// Fails if the design cannot be simulated, or if not all results appear within `limit` clocks.
 pub(super) fn record(
     design: &Design,
     contract: &dyn Contract,

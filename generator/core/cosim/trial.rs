@@ -15,39 +15,39 @@ use glint_golden::{Contract, Highlight, Operand};
 use glint_rtl::netlist::{self, Design, HandshakeTiming, NetId};
 use glint_rtl::sim::Simulator;
 
-/// The number of clocks that a computation may take.
+/// The number of clocks after which a computation counts as one that never ends.
 const LIMIT: u32 = 1 << 16;
 
-/// Computations in a list, the first of them the corners of the domain.
+/// The number of sample computations in [`computations`]. The first of them are corners of the domain.
 const COMPUTATIONS: usize = 40;
 
-/// The number of intervals that a line of a computation in a list may have.
+/// The largest length operand of a line among the sample computations.
 const SHORT: i64 = 9;
 
-/// The longest line whose clocks are measured, in intervals beyond the shortest.
+/// The length of the longest line whose clocks are measured, counted from the shortest line.
 const LONG: i64 = 1000;
 
-/// Points of a recording of a pipeline.
+/// The number of points in a recording of a pipeline.
 const POINTS: usize = 3;
 
-/// Clocks for which the first result of such a recording waits.
+/// The number of clocks for which the first result of such a recording waits.
 const PAUSE: usize = 2;
 
-/// Hints of a contract that are tried for a worked example.
+/// The number of operands from [`Contract::hint`] that are tried for a worked example.
 const TRIES: u32 = 256;
 
-/// The record of one computation.
+/// The record of one simulated computation.
 struct ComputationTrial {
     timing: HandshakeTiming,
-    /// The raw results whenever `valid` is high.
+    /// The raw results of every clock in which `valid` is high, with the number of the clock.
     results: Vec<(u32, Vec<i64>)>,
-    /// The first clock with a microinstruction whose successor an operand decides.
+    /// The first clock of a microinstruction whose successor depends on an operand; `None` if the computation has none.
     decision: Option<u32>,
 }
 
 impl ComputationTrial {
-    /// Returns the clocks from each result to the next. It leaves out a number that equals the one before. For example, results
-    /// in the clocks 5, 6, 7 and 9 give 1 and 2.
+    /// Returns the numbers of clocks from each result to the next, without a number that equals the one before it. For example,
+    /// results in the clocks 5, 6, 7 and 9 give 1 and 2. A single result gives an empty list.
     fn distances(&self) -> Vec<u32> {
         let pairs = self.results.windows(2);
         let mut distances: Vec<u32> = pairs.map(|pair| pair[1].0 - pair[0].0).collect();
@@ -56,19 +56,20 @@ impl ComputationTrial {
     }
 }
 
-/// Measures the clocks between the events of the handshake, such as `start` and `done`. It states a number only if the microprogram
-/// makes it the same for all bit patterns of the operand ports. The clocks from result to result are measured with the smallest and
-/// largest operands.
+/// Measures the numbers of clocks between the events of the handshake, such as `start` and `done`. A number is stated only if
+/// the microprogram makes it the same for all bit patterns of the operand ports, and is otherwise `None`. The clocks from
+/// result to result are measured with the smallest, the middle and the largest operands.
 ///
 /// # Errors
-/// Fails if the device never ends, or never raises `valid`.
+/// Fails if the design cannot be simulated or does not belong to the contract, if a computation does not end within 65536
+/// clocks, or if it never raises `valid`.
 pub fn timing(design: &Design, contract: &dyn Contract) -> Result<HandshakeTiming> {
     let mut trials: Vec<ComputationTrial> = Vec::new();
     for operands in corners(contract, |it| (it.format.min_raw(), it.format.max_raw())) {
         trials.push(run(design, contract, &operands, &mut |_| Ok(()))?);
     }
     let seen = &trials[0].timing;
-    // Up to the clock `decision`, no operand influences the control word or its effects.
+    // Up to the clock `decision`, no operand influences the microinstruction or its effects.
     let decision = trials[0].decision;
     let valid = match (netlist::delay_of_valid(design), seen.start_to_valid) {
         (Some(delay), Some(clock)) if decision.is_none_or(|at| clock - delay <= at) => Some(clock),
@@ -89,7 +90,7 @@ pub fn timing(design: &Design, contract: &dyn Contract) -> Result<HandshakeTimin
     })
 }
 
-/// Returns the lowest operands within these ends, the highest, and those in the middle.
+/// Returns three sets of raw operands: all at their lowest value within `ends`, all at their highest, and all in the middle.
 fn corners(contract: &dyn Contract, ends: fn(&Operand) -> (i128, i128)) -> [Vec<i64>; 3] {
     let mut corners = [Vec::new(), Vec::new(), Vec::new()];
     for operand in contract.operands() {
@@ -101,11 +102,11 @@ fn corners(contract: &dyn Contract, ends: fn(&Operand) -> (i128, i128)) -> [Vec<
     corners
 }
 
-/// Returns sample computations with their results and clocks: the corners of the domain, and random points. Users check the device
-/// with them, without a golden model. The golden model of Glint computes the same results.
+/// Returns 40 sample computations with their results and clocks: corners of the domain, and random points. Users check the
+/// device with them, without a golden model. The contract computes the same results.
 ///
 /// # Errors
-/// Fails as [`timing`] does, or if golden model and simulation do not agree.
+/// Fails as [`timing`] does, or if the contract's results and the simulated results differ.
 pub fn computations(design: &Design, contract: &dyn Contract) -> Result<Vec<Computation>> {
     let mut random = Random::new(1);
     let mut points = PointSource::new(contract);
@@ -143,13 +144,14 @@ fn computation(
     })
 }
 
-/// Lists raw values with their names, as `red=#255 green=#0`.
+/// Returns raw values with their names as text. For example, `red=#255 green=#0`.
 fn listed<'a>(names: impl Iterator<Item = &'a str>, raw: &[i64]) -> String {
     let each: Vec<String> = names.zip(raw).map(|(name, raw)| format!("{name}=#{raw}")).collect();
     each.join(" ")
 }
 
-/// Returns the number of clocks of one computation, from `start` to the earliest next `start`, and the number of its results.
+/// Runs one computation with the given raw operands. Returns the number of clocks from `start` to the earliest next `start`,
+/// and the number of results.
 ///
 /// # Errors
 /// Fails as [`timing`] does.
@@ -163,9 +165,9 @@ pub fn throughput(
     Ok((clocks, trial.results.len() as u32))
 }
 
-/// Returns the clock numbers of a line, the points that a device computes after one `start`, as functions of the line's length. The
-/// function measures the shortest lines and a long one. Returns `None` for a device that computes single points, or if the numbers
-/// of clocks are no linear functions of the length.
+/// Measures the clock numbers of a line (the points that a device computes after one `start`) as linear functions of the line's
+/// length. The function simulates the four shortest lines and a long one. Returns `None` for a device that computes single
+/// points, or if the numbers are no linear functions of the length.
 ///
 /// # Errors
 /// Fails as [`timing`] does.
@@ -194,8 +196,8 @@ pub fn line(design: &Design, contract: &dyn Contract) -> Result<Option<LineClock
     Ok(Some(LineClocks { length: name, last_valid, done, next_start }))
 }
 
-/// Returns a worked example: a computation with the values of all its ports. Its operands lie in the domain, and f is neither 0 nor
-/// 1 if the device is a highlight. If the computation has several results, the example shows the first.
+/// Returns a worked example: a computation with the values of all operands and outputs. Its operands are the ones from
+/// [`typical`]. If the computation has several results, `outputs` are the first, and `results` has all.
 ///
 /// # Errors
 /// Fails as [`timing`] does.
@@ -218,14 +220,16 @@ pub fn example(design: &Design, contract: &dyn Contract) -> Result<WorkedExample
     Ok(WorkedExample { operands: given, outputs, results })
 }
 
-/// Returns a number with its name and its value.
+/// Returns a quantity with this name, raw value and format.
 fn quantity(name: &str, format: Format, raw: i64) -> Quantity {
     let raw = i128::from(raw);
     Quantity { name: name.to_owned(), raw, value: format.to_f64(raw) }
 }
 
-/// Returns typical operands of a contract, for a worked example; operands in `given` keep their values. The function lowers the
-/// first control operand with fraction bits that can change f, such as a cosine or an angle, until f is well inside 0 … 1.
+/// Returns typical raw operands of a contract, for a worked example. An operand with a value in `given` keeps this value;
+/// `given` may be shorter than the operands. For a highlight, the function lowers the first control operand with fraction bits
+/// that can change `f`, such as a cosine or an angle, until `f` is between 0.4 and 0.8. For other devices it prefers operands
+/// from [`Contract::hint`].
 pub fn typical(contract: &dyn Contract, given: &[Option<i64>]) -> Vec<i64> {
     let given = |at: usize| given.get(at).copied().flatten();
     let mut colour = 0;
@@ -238,7 +242,7 @@ pub fn typical(contract: &dyn Contract, given: &[Option<i64>]) -> Vec<i64> {
             colour += 1;
             high - high * (colour - 1) / 3
         } else if operand.format.frac > 0 {
-            // Close to 1.0 for a cosine, close to 0 for an operand with a sign.
+            // Close to 1.0 for a cosine, and close to 0 for an operand with a sign.
             if low < 0 { high / 64 } else { high - (high - low) / 64 }
         } else {
             20.clamp(low, high) * i64::from(high > 1)
@@ -255,7 +259,7 @@ pub fn typical(contract: &dyn Contract, given: &[Option<i64>]) -> Vec<i64> {
         let typical = values[at];
         for step in 0..256 {
             values[at] = if low < 0 {
-                // An operand with a sign goes toward 0 by twentieths, because its scale may be any.
+                // An operand with a sign goes toward 0 in steps of a twentieth of its value, because its scale is unknown.
                 (high as f64 * libm::pow(0.95, step as f64)) as i64
             } else {
                 high - (high - low) / 256 * step
@@ -271,7 +275,9 @@ pub fn typical(contract: &dyn Contract, given: &[Option<i64>]) -> Vec<i64> {
     values
 }
 
-/// Lowers the operands of a line that f does not depend on at its first point, until f at its middle is a quarter of that.
+/// Lowers the operands of a line that change `f` only after the first point, such as a step, until `f` in the middle of the
+/// line is large enough. It must be at least a quarter of `f` at the first point. The function does nothing if the device
+/// computes no lines.
 fn slow_down(
     contract: &dyn Contract,
     highlight: &Highlight,
@@ -295,7 +301,8 @@ fn slow_down(
     }
 }
 
-/// Returns the first operands that the contract hints at for which no output is 0 or at an end of its format.
+/// Returns the first operands from [`Contract::hint`] for which no output is 0 or at an end of its format. Returns `None`
+/// without hints, or after 256 attempts.
 fn hinted(contract: &dyn Contract) -> Option<Vec<i64>> {
     let (mut random, points) = (Random::new(1), PointSource::new(contract));
     for _ in 0..TRIES {
@@ -313,9 +320,9 @@ fn hinted(contract: &dyn Contract) -> Option<Vec<i64>> {
     None
 }
 
-/// Returns the values of nets in each clock of the computation of [`example`]. Clock 0 is the clock in which `start` is high,
-/// and the last clock is the first in which the device is idle again. A value is the bit pattern just before the clock's
-/// rising edge, in the order of `nets`. All of these nets must have names.
+/// Simulates the computation of [`example`], and returns the bit patterns of `nets` in each clock, just before the clock's
+/// rising edge. Clock 0 is the clock in which `start` is high, and the last clock is the first in which the device is idle
+/// again. All of these nets must have names.
 ///
 /// # Errors
 /// Fails as [`timing`] does.
@@ -329,8 +336,9 @@ pub fn record(design: &Design, contract: &dyn Contract, nets: &[NetId]) -> Resul
     Ok(clocks)
 }
 
-/// Returns the values of nets in each clock while three points go through a pipeline. The first point is the point of
-/// [`example`]. One clock has no point, and the first result waits for two clocks if the pipeline can wait.
+/// Simulates three points in a pipeline, and returns the bit patterns of `nets` in each clock, just before the clock's rising
+/// edge. The first point has the operands of [`example`]. One clock has no point, and the first result waits for two clocks if
+/// the pipeline has an `out_ready`.
 ///
 /// # Errors
 /// Fails as [`timing`] does.
@@ -345,10 +353,10 @@ pub fn record_points(
     through::record(design, contract, (&list, PAUSE), nets, LIMIT)
 }
 
-/// Sees the simulator in each clock, before its rising edge.
+/// A function that observes the simulator in each clock, before the clock's rising edge.
 type Watch<'a> = &'a mut dyn FnMut(&mut Simulator) -> Result<()>;
 
-/// Runs one computation: resets, writes the operands, starts, and waits for the end. In a pipeline it waits for the results.
+/// Runs one computation with the given raw operands from reset to its end. For a pipeline, the end is the clock of the result.
 fn run(
     design: &Design,
     contract: &dyn Contract,
@@ -370,7 +378,7 @@ fn run(
         results: Vec::new(),
         decision: None,
     };
-    // Clock 0 was the one that took `start`.
+    // The clock that took `start` was clock 0.
     for clock in 1..LIMIT {
         watch(&mut instance.simulator)?;
         let high = |net| instance.simulator.value(net) == 1;

@@ -8,9 +8,9 @@ use glint_base::key_error::KeyError;
 /// The reason why no netlist can be built from a configuration.
 #[derive(Clone, Debug)]
 pub enum DesignError {
-    /// The hardware description has mistakes, which a pipeline and a sequential core share.
+    /// The hardware description has mistakes. Every architecture of the device has them.
     Description(Diagnostics),
-    /// A configuration key asks for a pipeline that cannot be made.
+    /// A pipeline with the values of the configuration cannot be made. The error names the key to change.
     Key(KeyError),
 }
 

@@ -1,5 +1,5 @@
-//! Converts the configuration keys of a pipeline to options of the pipeline builder. If the builder fails, it names the key that
-//! the user should change.
+//! Converts the configuration keys of a pipeline to options of the pipeline builder. If the builder fails, the module names the
+//! key that the user should change.
 
 use glint_base::diagnostic::Diagnostic;
 use glint_base::key_error::KeyError;
@@ -8,10 +8,11 @@ use glint_config::{Config, Shared};
 use glint_rtl::netlist::Design;
 use glint_rtl::pipeline::{self, PassResult, PipelineError, PipelineErrorKind};
 
-/// The key with the clock frequency for which a pipeline is scheduled.
+/// The key with the clock frequency in MHz for which a pipeline is scheduled.
 pub const CLOCK_MHZ: &str = "pipeline.clock_mhz";
 
-/// Makes a pipeline from a sequential netlist. Returns `None` if the configuration has a sequential architecture.
+/// Makes a pipeline from a sequential netlist, with the options in `config`. Returns `None` if the configuration has a
+/// sequential architecture.
 ///
 /// # Errors
 /// Fails if the pipeline cannot be made. The error names the key that the user should change.
@@ -43,7 +44,7 @@ pub fn pass_results(
     results.map(Some).map_err(|error| key_error(&error, &keys, &config.name))
 }
 
-/// Returns the options of a pipeline.
+/// Returns the options of a pipeline that the configuration keys state.
 fn options(keys: &Shared) -> pipeline::Options {
     pipeline::Options {
         target: target::Timing::named(&keys.target).unwrap_or(&target::TIMINGS[0]),
@@ -66,8 +67,9 @@ fn options(keys: &Shared) -> pipeline::Options {
     }
 }
 
-/// Returns the error of the key that is best changed. For example, a clock that is too fast is an error of
-/// `pipeline.clock_mhz`, with the fastest clock as the nearest value. `name` is the name of the module.
+/// Converts an error of the pipeline builder to an error of the key that the user should change. For example, a clock that is
+/// too fast is an error of `pipeline.clock_mhz`, with the fastest possible clock as the nearest value. `name` is the name of
+/// the module.
 fn key_error(error: &PipelineError, keys: &Shared, name: &str) -> KeyError {
     let diagnostic = &error.diagnostic;
     let of_key = |key: &str, remedy: String| {
@@ -100,7 +102,7 @@ fn key_error(error: &PipelineError, keys: &Shared, name: &str) -> KeyError {
             of_key("pipeline.interval", remedy).with_nearest(most as f64)
         }
         PipelineErrorKind::RateWithoutClock => {
-            // The user knows the number of stages by its key.
+            // The user knows the number of stages as `pipeline.stages`.
             let words =
                 format!("pipeline.stages leaves the clock of `{name}` open, and with it the rate");
             let remedy = format!("set {CLOCK_MHZ} in place of pipeline.stages");
@@ -123,7 +125,7 @@ fn key_error(error: &PipelineError, keys: &Shared, name: &str) -> KeyError {
     }
 }
 
-/// Returns a message followed by the code of a diagnostic and the line of the Rust source.
+/// Returns the message, followed in brackets by the code of the diagnostic and the location in the Rust source.
 fn with_location(message: &str, diagnostic: &Diagnostic) -> String {
     format!("{message} ({}, {})", diagnostic.code, diagnostic.location)
 }

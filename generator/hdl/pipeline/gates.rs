@@ -110,7 +110,7 @@ fn known(graph: &Graph, id: NodeId) -> Vec<Option<bool>> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::pipeline::text::{computed, parsed};
+    use crate::pipeline::parse_text::{computed, parsed};
 
     /// A mux with every kind of bit pair: both bits constant, only one bit constant, no bit constant.
     const MUX: &str = "

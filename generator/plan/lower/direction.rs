@@ -1,7 +1,8 @@
 //! Rewrites `atan2(y, x)`, the direction of a point as an angle, as operations of a plan.
 //!
-//! One table covers an octant: there the angle is the arc tangent of the smaller coordinate divided by the larger one, a number
-//! from 0 to 1. The other octants are mirror images of this octant, at the diagonal, the y axis and the x axis.
+//! A table covers one octant of the circle. In this octant, the angle is the arc tangent of the smaller coordinate divided by
+//! the larger one, a number from 0 to 1. The other octants are mirror images of this octant, at the diagonal, the y axis and
+//! the x axis.
 
 use glint_base::fixed::{Format, exp2};
 use glint_formula::{Enclosure, Expression, Function, Kind, Operator};
@@ -18,12 +19,12 @@ pub(super) struct Scaling {
 }
 
 impl Scaling {
-    /// Makes the scaling that changes nothing.
+    /// Makes the scaling by 1.
     pub(super) fn none() -> Self {
         Self { operator: Operator::Mul, constant: number("1") }
     }
 
-    /// Returns a formula, multiplied or divided by the constant.
+    /// Returns the formula, multiplied or divided by the constant.
     fn of(&self, formula: Expression) -> Expression {
         let (formula, constant) = (Box::new(formula), Box::new(self.constant.clone()));
         Expression::new(Kind::Binary(self.operator, formula, constant), 0..0)
@@ -31,8 +32,9 @@ impl Scaling {
 }
 
 impl Lowering<'_> {
-    /// Returns the node of a constant times a direction. `core` is the direction, and `function` the formula with x in its place;
-    /// `None` for any other formula. The constant then is a part of the table.
+    /// Returns the node of a direction times a constant. `core` must be the direction, and `function` the whole formula in
+    /// which x replaces `core`. The constant then becomes a part of the table. Returns `None` for any other formula. Fails if a
+    /// part has too many bits, no finite values, or no rule.
     pub(super) fn scaled_direction(
         &mut self,
         core: &Expression,
@@ -56,7 +58,8 @@ impl Lowering<'_> {
         self.direction(y, x, &scaling).map(Some)
     }
 
-    /// Returns the node of the direction of the point (x, y), scaled.
+    /// Returns the node of the direction of the point (x, y), an angle in radians times the constant in `scaling`. Fails if a
+    /// part has too many bits, no finite values, or no rule.
     pub(super) fn direction(
         &mut self,
         y: &Expression,
@@ -71,11 +74,11 @@ impl Lowering<'_> {
         let sizes = self.plan.node(larger);
         let most = sizes.format.to_f64(sizes.range.1);
         let octave = self.octave(larger, Enclosure::between(0.0, most), false)?;
-        // The smaller coordinate comes behind the octave of the larger, which limits both in the proof.
+        // The smaller coordinate is added after the normalising of the larger one, because this limits both in the proof.
         let smaller = self.plan.minimum("smaller", x_size, y_size)?;
         let ratio = self.ratio_in_octave(smaller, &octave, 1.0, true)?;
         let finest = self.finest;
-        // A tangent is at most 1, and shortened at most half a unit above it.
+        // A tangent is at most 1. After it is shortened, it is at most half a unit larger.
         let tangent = self.rounding(finest + 2, |own, frac| {
             if own.plan.node(ratio).format.frac <= frac {
                 return Ok(ratio);
@@ -99,8 +102,9 @@ impl Lowering<'_> {
         Ok(whole)
     }
 
-    /// Returns an angle, mirrored where a coordinate is negative: half a turn less the angle if its `scaling` is given,
-    /// otherwise the angle with the other sign.
+    /// Returns the node of an angle that is mirrored if `coordinate` is negative. With `scaling`, the mirrored angle is half a
+    /// turn minus the angle. Without `scaling`, it is the negative angle. Returns `angle` itself if `coordinate` is never
+    /// negative.
     fn mirrored_where_negative(
         &mut self,
         name: &str,
@@ -121,7 +125,7 @@ impl Lowering<'_> {
             }
             None => self.plan.negate(&format!("{name}_mirrored"), angle)?,
         };
-        // At the negative x axis the direction jumps, so that a wrong sign would do harm.
+        // At the negative x axis, the direction jumps, so a wrong sign would cause a large error.
         self.plan.choose(name, is_negative, [angle, mirrored])
     }
 }

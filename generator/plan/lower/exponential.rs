@@ -1,11 +1,11 @@
-//! Lowers logarithms and exponential functions over several octaves, so that a table for a single octave serves all octaves.
+//! Rewrites logarithms and exponential functions over several octaves, so that a table for a single octave serves all octaves.
 //!
-//! A logarithm is lowered in this way if the largest value of its operand is at least 4 times the smallest. For example, log₂ of
-//! operands from 1 to 1000. The operand v is m · 2^k with m from 1/2 to below 1. Because log₂ v = log₂ m + k, a table of
-//! log₂ m and an addition compute the logarithm.
+//! A logarithm is rewritten if the largest value of its operand is at least 4 times the smallest, for example from 1 to 1000.
+//! The operand v is m · 2^k with m from 1/2 to below 1. Because log₂ v = log₂ m + k, a table of log₂ m and an addition compute
+//! the logarithm.
 //!
-//! An exponential function 2^u is lowered in this way if its exponent u extends over at least 3, for example from 0 to 10. With
-//! the integer part i and the fraction part f of u, 2^u = 2^f · 2^i. A table of 2^f and a shift compute it.
+//! An exponential function 2^u is rewritten if its exponent u extends over at least 3, for example from 0 to 10. With the
+//! integer part i and the fraction part f of u, 2^u = 2^f · 2^i. A table of 2^f and a shift compute the function.
 
 use std::ops::Range;
 
@@ -20,7 +20,7 @@ use crate::refusal::PlanRefusal;
 /// If the largest exponent exceeds the smallest by less than this, one table computes the whole exponential function.
 const SHORT_EXPONENTS: f64 = 3.0;
 
-/// Returns a^b as 2^(b · log₂ a), with one place in the text for all of its parts.
+/// Returns the formula 2^(b · log₂ a), which equals a^b. All of its parts have the location `place` in the text.
 pub(super) fn written_with_logarithm(
     a: &Expression,
     b: &Expression,
@@ -32,7 +32,8 @@ pub(super) fn written_with_logarithm(
     part(Kind::Unary(Function::Exp2, Box::new(exponent)))
 }
 
-/// Returns the base of an exponential function of x: the number, or nothing for 2. Any other formula gives `None`.
+/// Returns the base of an exponential function of x: `Some(None)` for the base 2, and `Some(Some(base))` for any other. Returns
+/// `None` if the formula is no exponential function of x.
 fn base_of(function: &Expression) -> Option<Option<Expression>> {
     let operand = Expression::operand("x");
     match &function.kind {
@@ -47,8 +48,9 @@ fn base_of(function: &Expression) -> Option<Option<Expression>> {
 }
 
 impl Lowering<'_> {
-    /// Returns the node of the logarithm `function`, whose operand is the expression `core`. Returns `None` if `function` is no
-    /// logarithm, if its operand may be 0 or less, or if the largest operand is less than `FEW_OCTAVES` times the smallest.
+    /// Returns the node of a logarithm. `function` must be the formula with `x` in the place of its operand, the expression
+    /// `core`. Returns `None` if `function` is no logarithm of `x`, if its operand may be 0 or less, or if the largest operand
+    /// is less than `FEW_OCTAVES` times the smallest.
     pub(super) fn logarithm(
         &mut self,
         core: &Expression,
@@ -80,8 +82,9 @@ impl Lowering<'_> {
         self.plan.multiply("natural_logarithm", logarithm, factor).map(Some)
     }
 
-    /// Returns the node of the exponential function `function`, whose operand is the expression `core`. Returns `None` if
-    /// `function` is no exponential function, if its exponent extends over less than `SHORT_EXPONENTS`, or has no fraction bits.
+    /// Returns the node of an exponential function. `function` must be the formula with `x` in the place of its operand, the
+    /// expression `core`. Returns `None` if `function` is no exponential function, if its exponent extends over less than
+    /// `SHORT_EXPONENTS`, or if the exponent has no fraction bits.
     pub(super) fn exponential(
         &mut self,
         core: &Expression,
@@ -112,7 +115,7 @@ impl Lowering<'_> {
         }
         let [integer, fraction] = self.plan.split("exponent", exponent)?;
         let bits = self.plan.node(fraction).format.frac;
-        // The error of the exponent can carry it to the next integer.
+        // The error of the exponent can make it reach the next integer.
         let largest = (range.high.floor() as i32 + 1).min(self.plan.node(integer).range.1 as i32);
         let domain = (0, (1i64 << bits) - 1);
         let frac = (finest + 2 + largest).max(0);
@@ -133,5 +136,5 @@ impl Lowering<'_> {
     }
 }
 
-/// The most places of a shift. Beyond them nothing is left of any word.
+/// The largest number of bits of a shift. A larger shift would remove all bits of any word.
 const MOST_PLACES: i128 = 63;

@@ -1,9 +1,8 @@
-//! Rewrites a quotient a / b as a product with a reciprocal from a table, so that no divider is needed. The operations are added
-//! to the plan: the list of integer operations from which the hardware, the golden model and the proof are made.
+//! Rewrites a quotient a / b as a product with a reciprocal from a table, so that no divider is needed.
 //!
-//! A divisor with few bits whose largest size is less than four times its smallest has a table of 1/b itself. Any other divisor is
-//! normalised: b = m · 2^−k with m from 1/2 to below 1. A table gives 1/m, and the dividend is shifted by the same k bits, so that
-//! a / b = (a · 2^k) · (1/m).
+//! If the divisor has few bits, and its largest absolute value is less than four times its smallest, a table has the values of
+//! 1/b. Any other divisor is normalised: b = m · 2^−k with m from 1/2 to below 1. A table has the values of 1/m, and the
+//! dividend is shifted by the same k bits, so that a / b = (a · 2^k) · (1/m).
 
 use glint_base::fixed::{Format, Rounding, exp2};
 use glint_formula::{Enclosure, Expression};
@@ -15,7 +14,8 @@ use crate::refusal::PlanRefusal;
 use crate::statement::StatedResult;
 
 impl Lowering<'_> {
-    /// Returns the node of a / b, which is the formula `part`.
+    /// Returns the node of the quotient a / b. `part` must be this quotient as a formula. Fails if a part has too many bits, no
+    /// finite values, or no rule. For example, a divisor that may be 0 gives no finite values.
     pub(super) fn quotient(
         &mut self,
         a: &Expression,
@@ -51,7 +51,8 @@ impl Lowering<'_> {
         self.plan.choose("quotient", is_negative, [quotient, negated])
     }
 
-    /// Returns whether every result that has the quotient a / b is promised only where a < b, and a is never below 0.
+    /// Returns whether every result of the statement is promised only for a < b, and a is never below 0. The quotient a / b is
+    /// then at most 1.
     fn is_proper(&self, a: &Expression, b: &Expression) -> bool {
         let is_not_negative = self.range(a).is_ok_and(|values| values.low >= 0.0);
         let promises_it = |result: &StatedResult| {
@@ -61,8 +62,9 @@ impl Lowering<'_> {
         is_not_negative && self.statement.results.iter().all(promises_it)
     }
 
-    /// Returns dividend / divisor, for a divisor that is known as a fraction within one octave. `largest` is the largest size of
-    /// the quotient. `is_never_larger` says that the hardware's dividend is never larger than its divisor.
+    /// Returns the node of a dividend divided by a divisor, which is given as a normalised word in `octave`. `largest` must be
+    /// the largest absolute value of the quotient. `is_never_larger` must say whether the hardware's dividend is never larger
+    /// than its divisor.
     pub(super) fn ratio_in_octave(
         &mut self,
         dividend: NodeId,
@@ -80,12 +82,12 @@ impl Lowering<'_> {
         let is_exact = self.is_exact(dividend) && self.is_exact(octave.word);
         let fits_below = is_never_larger || is_exact && largest <= 1.0;
         let format = if fits_below {
-            // The shifted divisor is below 2^exponent, and the shifted dividend not above it.
+            // The shifted divisor is below 2^exponent, and the shifted dividend is not larger than it.
             let above = exp2(octave.exponent + frac) as i128;
             Format::holding(if is_signed { 1 - above } else { 0 }, above - 1, frac)
         } else {
-            // The dividend is at most the largest quotient times the divisor. A divisor that was rounded can have been larger: the
-            // proof then shows that a bit more is enough.
+            // The dividend is at most the largest quotient times the divisor. If a value was rounded, the divisor may have been
+            // larger; the proof then shows that one more bit is enough.
             let most = largest * exp2(octave.exponent) * if is_exact { 1.0 } else { 2.0 };
             holding(Enclosure::between(if is_signed { -most } else { 0.0 }, most), frac)
         };
@@ -114,7 +116,8 @@ impl Lowering<'_> {
     }
 }
 
-/// Returns limits of the sizes of values, without their signs. For example, values from −3 to −1 have sizes from 1 to 3.
+/// Returns limits of the absolute values of values within limits. For example, values from −3 to −1 have absolute values from 1
+/// to 3.
 fn sizes_of(values: Enclosure) -> Enclosure {
     let (low, high) = (values.low.abs(), values.high.abs());
     let has_both_signs = values.low < 0.0 && values.high > 0.0;

@@ -11,17 +11,18 @@ use super::{Lowering, WIDEST_OPERAND};
 use crate::node::NodeId;
 use crate::refusal::PlanRefusal;
 
-/// Domains below this ratio of largest to smallest value are one table.
+/// If the largest value of a domain is less than this times the smallest, one table covers the domain.
 pub(super) const FEW_OCTAVES: f64 = 4.0;
 
-/// A word that is never below 2 to minus this power is shortened before it is normalised.
+/// If a word is always at least 2 to the power of minus this, it is shortened before it is normalised.
 const MOST_OCTAVES_BELOW_1: i32 = 12;
 
-/// The exponent of a power, doubled: −1 is the exponent −1/2.
+/// Twice the exponent of a power. For example, −1 denotes the exponent −1/2.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct DoubledExponent(i32);
 
-/// Returns the exponent p if a formula is a constant times x^p and 2p is an integer. For example, `3 / sqrt(x)` gives −1/2.
+/// Returns twice the exponent p of a formula that is a constant times x^p. Returns `None` for any other formula, if 2p is no
+/// integer from −8 to 8, or if p is 0 or 1. For example, `3 / sqrt(x)` gives −1.
 pub(super) fn power_of(formula: &Expression) -> Option<DoubledExponent> {
     let doubled = doubled_exponent(formula)?;
     let value = i32::try_from(doubled.numerator().clone()).ok()?;
@@ -46,22 +47,24 @@ fn doubled_exponent(formula: &Expression) -> Option<RBig> {
     }
 }
 
-/// A word as a fraction within one octave, and the places by which it was shifted.
+/// A normalised word: a fraction within one octave, and the number of bits by which the word was shifted.
 pub(super) struct Octave {
-    /// The word, without a sign.
+    /// The word before the shift, without a sign.
     pub(super) word: NodeId,
-    /// The fraction, shortened to the bits that the table takes.
+    /// The fraction after the shift, shortened to the bits that the table takes.
     pub(super) mantissa: NodeId,
-    /// The places, or pairs of places.
+    /// The number of bits of the shift, or of pairs of bits.
     pub(super) places: NodeId,
-    /// The word is the fraction times 2 to this power, less the places.
+    /// The word is the fraction times 2 to the power of `exponent` minus the bits of the shift.
     pub(super) exponent: i32,
-    /// The smallest and the largest raw fraction.
+    /// The smallest and the largest raw fraction that is not 0.
     pub(super) domain: (i64, i64),
 }
 
 impl Lowering<'_> {
-    /// Returns the node of a power, if its part has many octaves.
+    /// Returns the node of a power. `part` must be the formula of the power, `core` its operand, and `function` the formula in
+    /// which x replaces `core`. Returns `None` if the operand may be negative. Also returns `None` if a single table is better,
+    /// because the operand has few bits and few octaves. Fails if a part has too many bits, no finite values, or no rule.
     pub(super) fn power(
         &mut self,
         part: &Expression,
@@ -89,7 +92,7 @@ impl Lowering<'_> {
         }
         let by_pairs = doubled % 2 != 0;
         let octave = self.octave(node, range, by_pairs)?;
-        // The shift by which the word was enlarged is undone, times the exponent.
+        // The result is multiplied by the power of the factor by which the word exceeds its fraction.
         let scale = doubled * octave.exponent / 2;
         let frac = self.finest + 2 + if doubled > 0 { scale } else { 0 };
         let fewest = fewest_fraction_bits(function);
@@ -116,7 +119,9 @@ impl Lowering<'_> {
         self.plan.choose("power_or_zero", is_some, [zero, shifted]).map(Some)
     }
 
-    /// Returns a word that is not below 0 as a fraction within one octave.
+    /// Normalises a node whose values are not below 0, apart from rounding errors. The word is shifted to the left, so that a
+    /// fraction from 1/2 to below 1 remains; returns this fraction and the shift. If `by_pairs` is true, the shift has an even
+    /// number of bits, and the fraction is from 1/4. `range` must contain the exact values of the node.
     pub(super) fn octave(
         &mut self,
         node: NodeId,
@@ -124,7 +129,7 @@ impl Lowering<'_> {
         by_pairs: bool,
     ) -> Result<Octave, PlanRefusal> {
         let node = self.without_negative_rounding(node)?;
-        // Far from 0, a word has more bits than any result needs.
+        // If the word is far from 0, it has more bits than any result needs.
         let octaves_below_1 = -floor_of_log2(range.low);
         let is_far = octaves_below_1 < MOST_OCTAVES_BELOW_1;
         let node = self.rounding(self.finest + 3 + octaves_below_1, |own, frac| {
@@ -135,7 +140,7 @@ impl Lowering<'_> {
             own.plan.shorten("word_shortened", node, frac, Rounding::Nearest)
         })?;
         let format = self.plan.node(node).format;
-        // Without a sign, without integer bits that are never used, and by pairs with an even number of integer bits.
+        // The word has no sign, and no integer bits that are never used. By pairs, it has an even number of integer bits.
         let most = self.plan.node(node).range.1;
         let limited = match self.is_exact(node) {
             true => most.min((range.high * exp2(format.frac)).floor() as i128),
@@ -160,7 +165,8 @@ impl Lowering<'_> {
         Ok(Octave { word, mantissa, places, exponent: word_format.int, domain })
     }
 
-    /// Returns a node that is not below 0 but for its rounding, with 0 in place of the negative values.
+    /// Returns the node with 0 in place of its negative values, which come only from rounding. Returns the node itself if it is
+    /// exact or never negative.
     fn without_negative_rounding(&mut self, node: NodeId) -> Result<NodeId, PlanRefusal> {
         let is_negative = self.plan.node(node).range.0 < 0;
         if !is_negative || self.is_exact(node) {
@@ -171,7 +177,7 @@ impl Lowering<'_> {
         self.plan.maximum("not_negative", node, zero)
     }
 
-    /// Returns a number of places times a small constant.
+    /// Returns the node of `places` times the constant `factor`, or `places` itself if the factor is 1.
     fn multiple(&mut self, places: NodeId, factor: i32) -> Result<NodeId, PlanRefusal> {
         if factor == 1 {
             return Ok(places);
@@ -181,8 +187,9 @@ impl Lowering<'_> {
     }
 }
 
-/// Returns the fewest fraction bits with which a positive power of 1/4 and of 1 is at least two units, so that no rounding makes
-/// a result of its table negative. For example, the square root needs 2 bits, for which 1/2 is two units.
+/// Returns the smallest number of fraction bits with which the function's values at 1/4 and at 1 are at least two units. With
+/// fewer bits, rounding could make a value of the table negative. For example, the square root needs 2 bits, because its value
+/// 1/2 is then two units.
 fn fewest_fraction_bits(function: &Expression) -> i32 {
     let mut least = f64::INFINITY;
     for mantissa in [0.25, 1.0] {
@@ -192,14 +199,14 @@ fn fewest_fraction_bits(function: &Expression) -> i32 {
     1 - floor_of_log2(least)
 }
 
-/// Returns the format with `frac` fraction bits of values within limits, and of values a unit beyond them.
+/// Returns the format with `frac` fraction bits that can represent all values within limits, and values one unit beyond them.
 pub(super) fn holding(values: Enclosure, frac: i32) -> Format {
     let unit = exp2(frac);
     let low = if values.low >= 0.0 { 0 } else { (values.low * unit - 1.0).floor() as i128 };
     Format::holding(low, (values.high * unit + 1.0).floor() as i128, frac)
 }
 
-/// Returns the greatest power of two that is not above a positive number, as the exponent. For example, 5 gives 2.
+/// Returns the exponent of the greatest power of two that is not above a positive number. For example, 5 gives 2.
 fn floor_of_log2(value: f64) -> i32 {
     const FRACTION_BITS: u32 = f64::MANTISSA_DIGITS - 1;
     const BIAS: i32 = f64::MAX_EXP - 1;

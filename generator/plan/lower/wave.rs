@@ -1,11 +1,11 @@
 //! Rewrites sines and cosines such as `sin(2 * pi * x)` as operations of a plan, so that a short table serves the whole circle.
 //!
-//! If a formula has only the sine or only the cosine of an angle, the table covers a quadrant. The angle in quarter turns is
-//! q + w, with an integer q and w from 0 to below 1. The sine is the table's value at w if q is even, and at 1 − w if q is odd;
-//! in the third and the fourth quadrant it is negative. The cosine is the sine of the angle plus a quarter turn.
+//! If the formulas have only the sine or only the cosine of an angle, the table covers a quadrant. The angle in quarter turns
+//! is q + w, with an integer q and w from 0 to below 1. The sine is the table's value at w if q is even, and at 1 − w if q is
+//! odd. In the third and the fourth quadrant it is negative. The cosine is the sine of the angle plus a quarter turn.
 //!
-//! If the formulas have both, two tables cover an octant: the sine and the cosine of up to an eighth of a turn. They share the
-//! folded angle, and both results choose between them.
+//! If the formulas have both, two tables cover an octant: the sine and the cosine of up to an eighth of a turn. Both read the
+//! same reduced angle, and both results choose between the tables.
 
 use glint_formula::{Expression, Function, Kind, Operator, RBig};
 
@@ -13,14 +13,15 @@ use super::{Lowering, core_of, number};
 use crate::node::NodeId;
 use crate::refusal::PlanRefusal;
 
-/// The fewest bits of an angle within a quadrant for which the quadrants are worth their muxes.
+/// The smallest number of bits of an angle within a quadrant for which quadrants save more than their muxes cost.
 const FEWEST_BITS: i32 = 5;
 
-/// The most bits of an angle within a quadrant.
+/// The largest number of bits of an angle within a quadrant.
 const MOST_BITS: i32 = 20;
 
-/// Returns the power of two by which x is multiplied to give quarter turns, where `function` is the sine or the cosine of a
-/// multiple of x. For example, `sin(2 * pi * x)` gives 2: x is in turns, and 4·x in quarter turns.
+/// Returns the kind of a wave and an exponent, if `function` is the sine or the cosine of a multiple of x. x times 2 to this
+/// exponent is the angle in quarter turns. For example, `sin(2 * pi * x)` gives 2: x is in turns, and 4·x in quarter turns.
+/// Returns `None` for any other function.
 fn quarter_turns(function: &Expression) -> Option<(Function, i32)> {
     let Kind::Unary(kind @ (Function::Sin | Function::Cos), angle) = &function.kind else {
         return None;
@@ -52,23 +53,25 @@ fn is_multiple(formula: &Expression) -> bool {
     }
 }
 
-/// The sine and the cosine of an angle that is folded into the first octant, with the nodes that unfold them.
+/// The sine and the cosine of an angle that is reduced to the first octant, with the nodes that restore the results for the
+/// whole angle.
 pub(super) struct OctantWaves {
     /// The part of the formula from which the angle is computed.
     core: Expression,
-    /// The power of two by which the part is multiplied to give quarter turns.
+    /// The exponent: the part times 2 to this power is the angle in quarter turns.
     power: i32,
-    /// The sine and the cosine of the folded angle.
+    /// The sine and the cosine of the reduced angle.
     waves: [NodeId; 2],
-    /// 1 in the octants in which the size of the sine is the cosine of the folded angle.
+    /// 1 in the octants in which the absolute value of the sine is the cosine of the reduced angle.
     is_swapped: NodeId,
-    /// Whether the sine is negative, and whether the cosine is.
+    /// Two bits: whether the sine is negative, and whether the cosine is negative.
     signs: [NodeId; 2],
 }
 
 impl Lowering<'_> {
-    /// Returns the node of a sine or a cosine of whole turns; `None` for any other function, and where a quadrant has few
-    /// angles or too many.
+    /// Returns the node of a sine or a cosine. `function` must be the formula with x in the place of `core`. Returns `None` if
+    /// x times a power of two is not the angle in quarter turns, or if a quadrant has fewer than 5 or more than 20 bits of the
+    /// angle.
     pub(super) fn wave(
         &mut self,
         core: &Expression,
@@ -86,7 +89,8 @@ impl Lowering<'_> {
         self.wave_by_quadrants(kind, node, power).map(Some)
     }
 
-    /// Returns the node of a sine or a cosine, by a table of the sine in a quadrant.
+    /// Returns the node of a sine or a cosine (`kind`), computed by a table of the sine in a quadrant. `node` times 2^`power`
+    /// is the angle in quarter turns. Fails if a part has too many bits, no finite values, or no rule.
     fn wave_by_quadrants(
         &mut self,
         kind: Function,
@@ -109,11 +113,12 @@ impl Lowering<'_> {
         self.with_sign("wave", size, is_negative)
     }
 
-    /// Returns the node of a sine or a cosine, by tables of both in an octant.
+    /// Returns the node of a sine or a cosine (`kind`), computed by tables of the sine and the cosine in an octant. `core`
+    /// times 2^`power` is the angle in quarter turns. A sine and a cosine of the same angle share the tables.
     ///
-    /// In the octants 0 to 3 the size of the sine is the sine, the cosine, the cosine and the sine of the folded angle, and the
-    /// size of the cosine is the other one. The octants 4 to 7 repeat these. The sine is negative in the octants 4 to 7, and the
-    /// cosine in the octants 2 to 5.
+    /// In the octants 0 to 3, the absolute value of the sine is the sine, the cosine, the cosine and the sine of the reduced
+    /// angle. The absolute value of the cosine is the other value in each octant. The octants 4 to 7 repeat this pattern. The
+    /// sine is negative in the octants 4 to 7, and the cosine in the octants 2 to 5.
     fn wave_by_octants(
         &mut self,
         kind: Function,
@@ -142,7 +147,9 @@ impl Lowering<'_> {
         }
     }
 
-    /// Adds the tables of an octant, with the nodes that unfold the angle.
+    /// Adds the tables of the sine and the cosine in an octant, and the nodes that restore the results for the whole angle.
+    /// Returns these nodes. `core` times 2^`power` is the angle in quarter turns. Fails if a part has too many bits, no finite
+    /// values, or no rule.
     fn octant_waves(&mut self, core: &Expression, power: i32) -> Result<OctantWaves, PlanRefusal> {
         let node = self.part(core)?;
         let eighths = self.plan.scale("eighths", node, power + 1)?;
@@ -167,15 +174,16 @@ impl Lowering<'_> {
         })
     }
 
-    /// Returns the angle within a quadrant or an octant, counted from the end where the table begins: `way`, or 1 − `way` in
-    /// those with an odd number.
+    /// Returns the node of the reduced angle within a quadrant or an octant, a number from 0 to 1. It is `way` if the number of
+    /// the quadrant or octant is even, and 1 − `way` if the number is odd.
     fn folded(&mut self, name: &str, is_odd: NodeId, way: NodeId) -> Result<NodeId, PlanRefusal> {
         let one = self.plan.constant("whole", 1, 0)?;
         let back = self.plan.subtract("angle_back", one, way)?;
         self.plan.choose(&format!("angle_in_{name}"), is_odd, [way, back])
     }
 
-    /// Returns the node of a table of a sine or a cosine, for a folded angle from 0 to 1 with both ends.
+    /// Returns the node of a table of a sine or a cosine, which `formula` states, for a reduced angle from 0 to 1, both
+    /// included.
     fn wave_of_angle(
         &mut self,
         name: &str,
@@ -189,7 +197,7 @@ impl Lowering<'_> {
         })
     }
 
-    /// Returns a value with its sign changed where `is_negative` is 1.
+    /// Returns the node of `size`, negated if the bit `is_negative` is 1.
     fn with_sign(
         &mut self,
         name: &str,
@@ -200,7 +208,8 @@ impl Lowering<'_> {
         self.plan.choose(&format!("{name}_with_sign"), is_negative, [size, negated])
     }
 
-    /// Returns whether the formulas of the statement have both the sine and the cosine of an angle.
+    /// Returns whether the formulas of the statement have both the sine and the cosine of the same angle: `core` times
+    /// 2^`power` in quarter turns.
     fn has_sine_and_cosine(&self, core: &Expression, power: i32) -> bool {
         let has = |kind: Function| {
             let wanted = (kind, power);
@@ -211,7 +220,8 @@ impl Lowering<'_> {
     }
 }
 
-/// Returns whether a formula contains the sine or the cosine of a part, in quarter turns times a power of two.
+/// Returns whether a formula contains the wave `wanted`: the sine or the cosine of an angle that is `core` times 2 to the given
+/// power in quarter turns.
 fn has_wave(formula: &Expression, core: &Expression, wanted: (Function, i32)) -> bool {
     if core_of(formula) == core {
         let function = formula.substitute(core, &Expression::operand("x"), &formula.span);

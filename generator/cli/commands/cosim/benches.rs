@@ -15,33 +15,33 @@ use glint_base::program::Program;
 use glint_core::package::FileKind;
 use glint_tools::{BenchDifference, BenchOutcome, VerilogSimulator, bench_waveform, run_bench};
 
-/// Points when an external simulator runs.
+/// The number of results that are checked with an external simulator, if the user states none.
 const POINTS: u64 = 200;
 
-/// The most points for an external simulator, whose vectors are made in memory.
+/// The largest number of results with an external simulator, because the vectors are made in memory.
 const MOST_POINTS: u64 = 1_000_000;
 
-/// The outcome of a bench.
+/// The run of a bench in an external simulator.
 struct BenchRun {
     clocks: usize,
     outcome: BenchOutcome,
     mismatch: Option<BenchMismatch>,
 }
 
-/// The first difference of a bench, with the means to see it again.
+/// The first difference that a bench has found, with a waveform and a command that reproduce it.
 struct BenchMismatch {
     difference: BenchDifference,
-    /// The waveform, if it could be written.
+    /// The path of the waveform; `None` if it could not be written.
     vcd: Option<String>,
-    /// The first clock in it.
+    /// The first clock in the waveform.
     from: u64,
     command: String,
 }
 
-/// Runs the test benches of configurations in the simulator `which`, and reports the results.
+/// Runs the test benches of configurations in the simulator `which`, and reports the results. Returns whether all have passed.
 ///
 /// # Errors
-/// Fails for wrong usage, or if the simulator is missing, refuses a bench, or does not end in time.
+/// Fails for wrong usage, or if the simulator is missing, refuses a bench, or does not end within the time limit.
 pub fn benches(
     output: OutputOptions,
     loaded: &[Loaded],
@@ -73,7 +73,7 @@ pub fn benches(
     list.conclude(holds)
 }
 
-/// The run of a bench, with the options of the command.
+/// The run of a bench with the options of the command, for the report.
 struct BenchReport<'a> {
     one: &'a Loaded,
     run: &'a BenchRun,
@@ -93,7 +93,8 @@ impl CommandReport for BenchReport<'_> {
     }
 }
 
-/// Runs the emitted bench in an external simulator. Golden model and built-in simulator agree on the expected values.
+/// Emits a bench with `points` results, and runs it in an external simulator. The expected outputs are values on which golden
+/// model and built-in simulator agree. If the bench fails, also writes a waveform.
 fn bench(
     one: &Loaded,
     which: VerilogSimulator,
@@ -114,7 +115,7 @@ fn bench(
         let written = bench_waveform(which, &files, top, clocks, arguments.time_limit.get())
             .and_then(|waveform| destination::replace(&path, &waveform));
         if let Err(error) = &written {
-            // The difference is worth more than its waveform.
+            // The difference is more important than its waveform, so this is only a warning.
             failure::warn(&format!("{}: no waveform: {error:#}", one.path));
         }
         BenchMismatch {
@@ -132,7 +133,7 @@ fn bench(
     Ok(BenchRun { clocks, outcome, mismatch })
 }
 
-/// Returns the simulator as the command line names it. For example, `icarus`.
+/// Returns the name of the simulator on the command line. For example, `icarus`.
 fn name(arguments: &Arguments) -> String {
     format!("{:?}", arguments.simulator).to_lowercase()
 }

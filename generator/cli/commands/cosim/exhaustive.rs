@@ -19,17 +19,22 @@ use glint_core::cosim::exhaustive::{Job, Shard, ShardState, kept};
 use glint_core::registry::Registry;
 use show::{announce, report};
 
-/// How often the state is written.
+/// The time between two writes of the state.
 const SAVE: Duration = Duration::from_secs(5);
 
-/// A shorter proof is not worth more cores.
+/// The estimated duration below which a division among more cores is not suggested.
 const WORTH_SHARING: Duration = Duration::from_secs(60);
 
-/// Numbers of cores for which the duration of a proof is estimated. For example, `about 1 hour on 1 core`.
+/// The numbers of cores for which the duration of the check is printed. For example, `about 1 hour on 1 core`.
 const CORES: [u32; 3] = [1, 16, 1000];
 
-/// Runs `glint cosim --exhaustive`: measures the error at all operands, and compares it with the bound of the accuracy contract. It
-/// also compares model and hardware clock by clock for every combination of operands, if there are not too many.
+/// Runs `glint cosim --exhaustive`: measures the errors at all operands, and compares them with the bound of the accuracy
+/// contract. It also compares model and hardware clock by clock for every combination of operands, if there are not too many.
+/// Returns whether everything holds.
+///
+/// # Errors
+/// Fails if a configuration has problems, if the file of `--resume` belongs to another check or is damaged, or if a signal has
+/// interrupted the check.
 pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) -> Result<bool> {
     let loaded = load(registry, &arguments.configs.paths)?;
     if arguments.resume.is_some() && loaded.len() != 1 {
@@ -64,7 +69,10 @@ pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) ->
     list.conclude(holds)
 }
 
-/// Returns the progress that a file stores, or `None` if there is no file.
+/// Returns the progress of an exhaustive check that a file stores, or `None` if the file does not exist.
+///
+/// # Errors
+/// Fails if the file cannot be read, or if it has other contents.
 pub fn read(path: &Path) -> Result<Option<ShardState>> {
     let Some(text) = input::text(path)? else { return Ok(None) };
     let state = kept::from_text(&text).with_context(|| {
@@ -73,7 +81,8 @@ pub fn read(path: &Path) -> Result<Option<ShardState>> {
     Ok(Some(state))
 }
 
-/// Goes on to the end of the shard, keeping the state in `file`.
+/// Runs the job until the shard is done, and saves the state in `file` every few seconds, if a file is given. After a signal,
+/// it saves the state and fails with [`Failure::Interrupted`].
 fn prove(
     output: OutputOptions,
     job: &Job<'_>,
@@ -86,10 +95,10 @@ fn prove(
             None => Ok(()),
         }
     };
-    // Nothing is worth computing that cannot be kept.
+    // If the state cannot be saved, the check need not begin.
     save(state)?;
     let bar = progress::bar(output, job.remaining(state), "evaluations");
-    // Only a state that is kept in a file is worth waiting for.
+    // A signal is deferred only if the state is saved in a file.
     let deferred = file.map(|_| Deferred::begin());
     let interrupted = || deferred.as_ref().is_some_and(Deferred::noted);
     let mut saved = Instant::now();
@@ -128,7 +137,7 @@ fn prove(
     }
 }
 
-/// Tells how long a proof will take, by a sample.
+/// Prints an estimate of the check's duration, from a short sample. Fails if the design cannot be simulated.
 fn announce_duration(job: &Job<'_>, state: &ShardState) -> Result<()> {
     if job.remaining(state) == 0 {
         return Ok(());
@@ -136,7 +145,7 @@ fn announce_duration(job: &Job<'_>, state: &ShardState) -> Result<()> {
     let threads = rayon::current_num_threads();
     let duration = job.estimate(state, threads)?;
     let here = format!("{} on {}", roughly(duration), text::counted(threads, "thread"));
-    // On cores such as these, which a job array has to itself: parts are as many as one likes.
+    // This assumes cores of the same speed, which a job array has for itself alone. A check can have any number of shards.
     let elsewhere = CORES.map(|cores| {
         let duration = duration.mul_f64(threads as f64 / f64::from(cores));
         format!("{} on {}", roughly(duration), text::counted(cores as usize, "core"))

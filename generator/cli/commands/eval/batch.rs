@@ -13,11 +13,11 @@ use crate::report::CommandReport;
 use crate::{OutputOptions, failure, tables};
 use glint_golden::Contract;
 
-/// The result of a point. Its room is used again for the next.
+/// The result of a point. It is overwritten for each point, to avoid new allocations.
 #[derive(Default)]
 struct PointResult {
     operands: Vec<i64>,
-    /// Its number in the line, of a device that walks lines.
+    /// The number of the point in its line, from 0. `None` for a device that does not compute lines.
     point: Option<u64>,
     f: Option<i64>,
     outputs: Vec<i64>,
@@ -26,8 +26,12 @@ struct PointResult {
     inside: bool,
 }
 
-/// Computes every row of a CSV file, with the golden model's arithmetic and with the formula in f64. If the device computes a line
-/// of points, it computes all of them. The operands in `given` apply to all rows.
+/// Computes every row of a CSV file, with the golden model's arithmetic and with the formula in f64, and reports the results.
+/// If the device computes a line of points, it computes all points of the line. The operands in `given` apply to all rows.
+/// Returns true.
+///
+/// # Errors
+/// Fails if the file cannot be read, if a column is unknown or given twice, or if a value is not valid.
 pub fn batch(
     output: OutputOptions,
     one: &Loaded,
@@ -59,16 +63,16 @@ pub fn batch(
     Ok(true)
 }
 
-/// The points of a CSV file.
+/// The results for a CSV file, for the report.
 struct EvaluatedPoints<'a> {
     one: &'a Loaded,
     /// The CSV file.
     path: &'a Path,
-    /// The operands without a column, with the values that they have then.
+    /// The operands without a column, with the values that the command chose, as text.
     missing: Vec<String>,
-    /// The points as CSV, for people.
+    /// The results as CSV, if people read the answer.
     text: String,
-    /// The points for scripts.
+    /// The results as JSON, if a script reads the answer.
     points: Vec<Value>,
 }
 
@@ -88,8 +92,9 @@ impl CommandReport for EvaluatedPoints<'_> {
     }
 }
 
-/// Returns the operand of each column. A column of the real values that `glint setup` writes beside the operands has
-/// none. For example, it ignores a column `real_cos_gamma`.
+/// Returns the index of the operand for each column. The index is `None` for a column of real values, which `glint setup`
+/// writes and this command ignores, such as `real_cos_gamma`. Fails for any other heading, and for an operand that is given
+/// twice.
 fn columns<'a>(
     one: &Loaded,
     given: &[Option<i64>],
@@ -110,7 +115,8 @@ fn columns<'a>(
     Ok(columns)
 }
 
-/// Returns the operands that have neither a column nor a value on the command line, with the values that they have then.
+/// Returns the operands that have neither a column nor a value on the command line, with the values that the command chooses,
+/// as text.
 fn missing_columns(
     contract: &dyn Contract,
     given: &[Option<i64>],
@@ -123,7 +129,8 @@ fn missing_columns(
     operands::missing(contract, &with_columns)
 }
 
-/// Hands the points of a row to `show`: all points of a line, or one point.
+/// Computes the points of a row, which are all points of a line or one point, and calls `show` with each. `row` is overwritten.
+/// Fails if a value in the row is not valid.
 fn points(
     contract: &dyn Contract,
     given: &[Option<i64>],
@@ -135,7 +142,7 @@ fn points(
     let known = contract.operands();
     let mut of_row = given.to_vec();
     for (at, text) in columns.iter().zip(record) {
-        // An empty cell does not give the operand.
+        // An empty cell gives no value to the operand.
         if let (Some(at), false) = (*at, text.is_empty()) {
             of_row[at] = Some(operands::named_value(&known[at], text)?);
         }
@@ -173,9 +180,9 @@ fn points(
     Ok(())
 }
 
-/// Returns the first row of the results, ending with a newline. Operands, f and formulas are values. A result is a raw
-/// integer; its heading says so if the integer is not its value. For example, an output `y_out` with fraction bits has
-/// the heading `raw_y_out`.
+/// Returns the row of headings, with a newline. Operands, `f` and formulas are real values. An output is a raw integer; if the
+/// output has fraction bits, its heading begins with `raw_`. For example, an output `y_out` with fraction bits has the heading
+/// `raw_y_out`.
 fn headings(contract: &dyn Contract) -> String {
     let mut headings: Vec<String> =
         contract.operands().iter().map(|operand| operand.name.clone()).collect();
@@ -202,7 +209,7 @@ fn headings(contract: &dyn Contract) -> String {
     headings.join(",") + "\n"
 }
 
-/// Appends a row of numbers as CSV. No number needs a quote.
+/// Appends the result of a point as a row of CSV. Numbers need no quotes.
 fn append(contract: &dyn Contract, row: &PointResult, text: &mut String) {
     for (operand, &raw) in contract.operands().iter().zip(&row.operands) {
         decimal(operand.format.to_f64(raw.into()), text);
@@ -230,7 +237,8 @@ fn integer(value: i64, text: &mut String) {
     text.push(',');
 }
 
-/// Appends a number as `{}` writes it, whole numbers quickly. For example, it appends `2,` for 2 and `0.5,` for 0.5.
+/// Appends a number and a comma, in the form of the format `{}`. Whole numbers are written by a faster function. For example,
+/// it appends `2,` for 2 and `0.5,` for 0.5.
 fn decimal(value: f64, text: &mut String) {
     let whole = value as i64;
     let is_whole = whole as f64 == value && whole.unsigned_abs() < 1 << 53;

@@ -1,14 +1,15 @@
-//! Parses the operands that a user gives on the command line: `0.99` is a value, `#1038090` a raw integer.
+//! Parses the operands that a user gives on the command line. For example, `0.99` is a real value, and `#1038090` a raw
+//! integer.
 
 use crate::commands::none_of;
 use glint_core::cosim::trial;
 use glint_golden::{Contract, Operand};
 
-/// Returns the raw operands that `name=value` settings give, in the order of `operands`; `None` for one without a
-/// setting.
+/// Parses settings of the form `name=value`. Returns the raw operands in the order of `operands`, with `None` for an operand
+/// without a setting.
 ///
 /// # Errors
-/// Fails if a setting has no `=`, if an operand is unknown or set twice, or if a value is no number of its format.
+/// Fails if a setting has no `=`, if an operand is unknown or set twice, or if a value is not valid for the operand's format.
 pub fn given(operands: &[Operand], settings: &[String]) -> Result<Vec<Option<i64>>, String> {
     let mut raw: Vec<Option<i64>> = vec![None; operands.len()];
     for setting in settings {
@@ -24,7 +25,10 @@ pub fn given(operands: &[Operand], settings: &[String]) -> Result<Vec<Option<i64
     Ok(raw)
 }
 
-/// Returns the index of an operand among `operands`. It fails for any other name, and the message has the nearest name.
+/// Returns the index of the operand `name` in `operands`.
+///
+/// # Errors
+/// Fails if no operand has this name. The message then has the most similar name.
 pub fn position(operands: &[Operand], name: &str) -> Result<usize, String> {
     operands.iter().position(|operand| operand.name == name).ok_or_else(|| {
         let names: Vec<&str> = operands.iter().map(|operand| operand.name.as_str()).collect();
@@ -32,8 +36,8 @@ pub fn position(operands: &[Operand], name: &str) -> Result<usize, String> {
     })
 }
 
-/// Returns all operands. An operand that is not given is 0, or the value nearest to 0 in its domain. For example, an
-/// exponent with the domain 1 to 255 is 1.
+/// Returns raw values for all operands. An operand that is `None` in `given` gets 0, or the value nearest to 0 in its domain.
+/// For example, an exponent with the domain 1 to 255 gets 1.
 pub fn completed(contract: &dyn Contract, given: &[Option<i64>]) -> Vec<i64> {
     let operands = contract.operands().iter().zip(given);
     let value =
@@ -46,8 +50,8 @@ fn nearest_to_zero(operand: &Operand) -> i64 {
     0.clamp(low, high)
 }
 
-/// Returns all operands. An operand that is not given gets a value at which the results are well inside their ranges.
-/// A colour gets the largest value.
+/// Returns raw values for all operands. An operand that is `None` in `given` gets a value at which the results are well inside
+/// their ranges, and a colour gets its largest value.
 pub fn typical(contract: &dyn Contract, given: &[Option<i64>]) -> Vec<i64> {
     let typical = trial::typical(contract, given);
     let each = contract.operands().iter().zip(given).zip(typical);
@@ -57,8 +61,8 @@ pub fn typical(contract: &dyn Contract, given: &[Option<i64>]) -> Vec<i64> {
     each.collect()
 }
 
-/// Returns the operands that are not given, with the values that [`completed`] gives them. For example, `green = 0` and
-/// `blue = 0`.
+/// Returns the operands that are `None` in `given`, with the values that [`completed`] gives them, as text. For example, `green
+/// = 0` and `blue = 0`.
 pub fn missing(contract: &dyn Contract, given: &[Option<i64>]) -> Vec<String> {
     let operands = contract.operands().iter().zip(given);
     let missing = operands.filter(|(_, given)| given.is_none()).map(|(operand, _)| {
@@ -68,8 +72,12 @@ pub fn missing(contract: &dyn Contract, given: &[Option<i64>]) -> Vec<String> {
     missing.collect()
 }
 
-/// Returns the raw value that a text gives to an operand. The error message names the operand. For example, `0.5` and
-/// `#128` both give 128 to an operand with 8 fraction bits.
+/// Parses the value of an operand, and returns it as a raw value. For example, `0.5` and `#128` both give 128 for an operand
+/// with 8 fraction bits.
+///
+/// # Errors
+/// Fails if the text is not a number, if the number exceeds the format, or if it is a fraction and the format has only
+/// integers. The message names the operand.
 pub fn named_value(operand: &Operand, text: &str) -> Result<i64, String> {
     value(operand, text).map_err(|why| format!("operand `{}`: {why}", operand.name))
 }
@@ -97,8 +105,8 @@ fn value(operand: &Operand, text: &str) -> Result<i64, String> {
             let (least, most) = (format.to_f64(format.min_raw()), format.to_f64(format.max_raw()));
             return Err(format!("{value} is beyond {format}: {least} to {most}"));
         };
-        // A fraction is rounded to the nearest that the format has; who writes one for an integer means another
-        // operand, or another scale.
+        // A fraction is rounded to the nearest value of the format. A user who writes a fraction for an integer probably means
+        // another operand, or another scale, so this is an error.
         if format.frac == 0 && value.fract() != 0.0 {
             return Err(format!("{value} is not an integer, and {format} holds integers"));
         }

@@ -1,4 +1,5 @@
-//! Keeps the measurements of `glint synth` in the folder `.glint/` next to the configuration file, so that they are not repeated.
+//! Stores the measurements of `glint synth` in the folder `.glint/` next to the configuration file, so that they are not
+//! repeated.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -9,11 +10,11 @@ use crate::destination;
 use glint_base::input;
 use glint_prove::synth::{Figures, Target};
 
-/// The folder beside configurations, which may be deleted at any time.
+/// The folder next to the configuration file. It may be deleted at any time.
 const FOLDER: &str = ".glint";
 
-/// A folder with the measurements, one file for each configuration and target. For example, `.glint/rough.ecp5.json`. If a file
-/// cannot be read, the core is measured again; if a file cannot be written, the measurement is not stored.
+/// The folder with the measurements, one file for each configuration and target. For example, `.glint/rough.ecp5.json`. If a
+/// file cannot be read, the core is measured again. If a file cannot be written, the measurement is not stored.
 pub struct Cache(PathBuf);
 
 #[derive(Serialize, Deserialize)]
@@ -24,7 +25,7 @@ struct CacheEntry {
 }
 
 impl Cache {
-    /// Returns the cache next to the configuration file `path`. Returns `None` for standard input.
+    /// Returns the cache next to the configuration file `path`. Returns `None` if the configuration comes from standard input.
     pub fn beside(path: &str) -> Option<Self> {
         (path != input::STDIN)
             .then(|| Self(Path::new(path).parent().unwrap_or(Path::new("")).join(FOLDER)))
@@ -34,14 +35,15 @@ impl Cache {
         self.0.join(format!("{name}.{target}.json"))
     }
 
-    /// Returns the measurement on a target that is stored under a core's name, if it has this digest.
+    /// Returns the measurement on a target that is stored under the core's name. Returns `None` if there is no such file, or if
+    /// it has another digest.
     pub fn find(&self, name: &str, target: Target, digest: &str) -> Option<Figures> {
         let text = fs::read_to_string(self.file(name, target)).ok()?;
         let entry: CacheEntry = serde_json::from_str(&text).ok()?;
         (entry.digest == digest).then_some(entry.figures)
     }
 
-    /// Stores a measurement under a core's name. If the folder cannot be written, the function does nothing.
+    /// Stores a measurement with its digest under the core's name. If the folder cannot be written, the function does nothing.
     pub fn keep(&self, name: &str, digest: &str, figures: &Figures) {
         let entry = CacheEntry {
             glint: env!("CARGO_PKG_VERSION").to_owned(),

@@ -14,27 +14,28 @@ use glint_prove::tune;
 use glint_prove::tune::architectures::{self, Architecture};
 use glint_show::evidence::chart::{Chart, ChartAxis, Series};
 
-/// An architecture with its measured figures.
+/// An architecture of a configuration with its measured figures.
 struct MeasuredArchitecture {
     architecture: Architecture,
     figures: Figures,
-    /// Million points a second at the median frequency.
+    /// The rate in million points per second, at the median frequency. It is 0 if the core does not fit the chip.
     rate: f64,
-    /// The area in look-up tables, blocks counted in.
+    /// The area in look-up tables, in which DSP blocks and block RAMs count as look-up tables too.
     area: f64,
 }
 
-/// The architectures of a configuration, from the slowest to the fastest.
+/// The architectures of a configuration from the slowest to the fastest, for the report.
 struct ArchitectureFront<'a> {
     path: &'a str,
     target: Target,
     measured: Vec<MeasuredArchitecture>,
-    /// The place of the architecture that was chosen.
+    /// The index of the architecture that is marked as chosen.
     chosen: usize,
 }
 
-/// Measures the configuration in each architecture, and reports them. The chosen one is the smallest that has the rate of `--rate`,
-/// or without `--rate` the architecture of the configuration itself. Returns true, because nothing is checked.
+/// Measures the configuration in each architecture, and reports the results. The chosen architecture is the smallest that
+/// reaches `--rate`, or without `--rate` the architecture of the configuration itself. Returns true, because nothing is
+/// checked.
 ///
 /// # Errors
 /// Fails if a tool fails, if the target is not timed, if the device cannot be a pipeline, or if no architecture has the rate.
@@ -79,7 +80,8 @@ pub fn run(output: OutputOptions, arguments: &Arguments, loaded: &[Loaded]) -> R
     Ok(true)
 }
 
-/// Returns the target to measure for: the one that the user names, or the target of the pipeline, or ECP5.
+/// Returns the target to measure for: the target that the user names, or the target of the pipeline, or ECP5. Fails with wrong
+/// usage if the user names several, or one without a frequency.
 fn target(arguments: &Arguments, one: &Loaded) -> Result<Target> {
     let target = match arguments.targets[..] {
         [] => super::targets_of_pipelines(std::slice::from_ref(one)).first().copied(),
@@ -109,7 +111,7 @@ fn measure(
         Some(interval) => format!("{}.interval{interval}", core.config.name),
     };
     let figures = figures(core, &name, path, flow, arguments, done)?;
-    // A core that does not fit has no frequency, and so no rate.
+    // A core that does not fit the chip has no frequency, and therefore no rate.
     let mhz = figures.frequency.map_or(0.0, |frequency| frequency.median);
     let usage = figures.area.usage().context("an FPGA counts its cells")?;
     let area = tune::area(flow.target(), usage.luts as f64, usage.dsps, usage.block_rams);
@@ -121,8 +123,8 @@ fn measure(
     })
 }
 
-/// Returns the place of the architecture to mark: the smallest that has the rate, or without a rate the configuration's `own`
-/// interval.
+/// Returns the index of the architecture to mark: the smallest that has the rate, or without a rate the one with the interval
+/// `own`. Fails if no architecture has the rate.
 fn chosen(measured: &[MeasuredArchitecture], rate: Option<f64>, own: Option<u32>) -> Result<usize> {
     let Some(wanted) = rate else {
         let is_own = |it: &MeasuredArchitecture| it.architecture.interval == own;
@@ -151,7 +153,7 @@ impl ArchitectureFront<'_> {
     fn plot(&self) -> Result<String> {
         let name = &self.measured[0].architecture.core.config.name;
         let chosen = self.measured[self.chosen].architecture.interval;
-        // An architecture that does not fit the chip has no rate, and no place.
+        // An architecture that does not fit the chip has no rate, so the plot cannot show it.
         let mut shown: Vec<&MeasuredArchitecture> =
             self.measured.iter().filter(|it| it.rate > 0.0).collect();
         shown.sort_by(|one, other| one.rate.total_cmp(&other.rate));
@@ -213,7 +215,7 @@ impl CommandReport for ArchitectureFront<'_> {
         let mut rows = Vec::new();
         for (at, it) in self.measured.iter().enumerate() {
             let area = it.figures.area.usage().context("an FPGA counts its cells")?;
-            // A core that does not fit the chip has neither.
+            // A core that does not fit the chip has neither a frequency nor a rate.
             let (mhz, rate) = match it.figures.frequency {
                 Some(frequency) => (format!("{:.1}", frequency.median), format!("{:.1}", it.rate)),
                 None => ("–".to_owned(), "–".to_owned()),

@@ -1,4 +1,4 @@
-//! Prints the measurements of `glint synth` for people and for scripts.
+//! Prints the measurements of `glint synth`, as text for people and as JSON for scripts.
 
 use anyhow::Result;
 use serde::Serialize;
@@ -10,7 +10,7 @@ use crate::say;
 use crate::tables;
 use glint_prove::synth::{Figures, Frequency, Rate, tools};
 
-/// The cell without a figure.
+/// The text of a cell without a figure.
 const NONE: &str = "–";
 
 /// The measurements of all configurations, for printing.
@@ -66,7 +66,7 @@ fn print(measured: &[Measurement], notes: &[String]) {
     }
 }
 
-/// Returns the figures of a target in a line. For example, `ECP5: 367 LUT, 1 DSP, 0 RAM, 112.30 MHz`.
+/// Returns the figures of a target in one line. For example, `ECP5: 367 LUT, 1 DSP, 0 RAM, 112.30 MHz`.
 pub fn in_a_line(figures: &Figures) -> String {
     let area = &figures.area;
     let mut parts: Vec<String> = Vec::new();
@@ -84,7 +84,7 @@ pub fn in_a_line(figures: &Figures) -> String {
     format!("{}: {}", figures.target.title(), parts.join(", "))
 }
 
-/// Returns the text of a count, or [`NONE`].
+/// Returns a count as text, or [`NONE`].
 fn count(number: Option<u64>) -> String {
     match number {
         Some(number) => number.to_string(),
@@ -92,7 +92,7 @@ fn count(number: Option<u64>) -> String {
     }
 }
 
-/// Returns the text of a number with this number of digits behind the point, or [`NONE`].
+/// Returns a number as text with `digits` digits after the decimal point, or [`NONE`].
 fn decimal(number: Option<f64>, digits: usize) -> String {
     match number {
         Some(number) => format!("{number:.digits$}"),

@@ -7,10 +7,10 @@ use crate::commands::plot_file::svg_file;
 use glint_prove::tune::{Answer, Candidate, ErrorUnit};
 use glint_show::evidence::chart::{Chart, ChartAxis, Series};
 
-/// Returns the plot as an SVG file that needs no other file.
+/// Returns the plot as the text of an SVG file that needs no other file.
 ///
 /// # Errors
-/// Fails if the search found fewer than two configurations on the Pareto front, since they give no line.
+/// Fails if the Pareto front of the search has fewer than two configurations, since these give no line.
 pub fn plot(answer: &Answer, arguments: &Arguments) -> Result<String> {
     let is_best = |candidate: &&Candidate| candidate.config == answer.best.config;
     let (Some(first), Some(last)) = (answer.front.first(), answer.front.last()) else {
@@ -24,7 +24,7 @@ pub fn plot(answer: &Answer, arguments: &Arguments) -> Result<String> {
         ErrorUnit::F => "error of f",
         ErrorUnit::Output => "error in output units",
     };
-    // Where something on the front does not fit the chip, the answer may lie behind it.
+    // If a configuration on the front does not fit the chip, the answer may not lie on the front.
     let mut front: Vec<&Candidate> = answer.front.iter().collect();
     if !front.iter().any(is_best) {
         front.push(&answer.best);

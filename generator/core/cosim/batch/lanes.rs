@@ -16,7 +16,7 @@ use crate::cosim::instances::Instances;
 use glint_golden::Contract;
 use glint_rtl::netlist::{Design, NetId, Role};
 
-/// The number of clocks that a computation may take.
+/// The number of clocks after which a computation counts as one that never ends.
 const LIMIT: u64 = 1 << 16;
 
 /// An [`Engine`] that simulates the design with rust_hdl: one simulator for each thread, with an instance of the design in each
@@ -26,10 +26,10 @@ pub struct RustHdl {
 }
 
 impl RustHdl {
-    /// Makes a simulator of a design for each thread, and resets it.
+    /// Makes one simulator for each thread of rayon's pool, and resets the design in all of them.
     ///
     /// # Errors
-    /// Fails as [`glint_rtl::sim::Simulator::new`] does, or if the contract names ports that the design does not have.
+    /// Fails as [`glint_rtl::sim::Simulator::new`] does, or if design and contract do not have the same operands and outputs.
     pub fn new(design: &Design, contract: &dyn Contract) -> Result<Self> {
         let latency = design.pipeline.as_ref().map(|pipeline| pipeline.stages.len() as u64);
         let in_ready = design.port(|role| role == Role::InReady).map(|port| port.net);
@@ -56,30 +56,31 @@ impl Engine for RustHdl {
 /// The instances of one thread.
 struct Team {
     instances: Instances<LANES>,
-    /// The clocks from a point to its results, if the design is a pipeline.
+    /// The number of clocks from a point to its result, if the design is a pipeline; otherwise `None`.
     latency: Option<u64>,
-    /// The output that says when a pipeline takes a point; the same in all instances.
+    /// The output `in_ready` of a pipeline, which says that it takes a point. It has the same value in all instances. `None` if
+    /// the design has no such port.
     in_ready: Option<NetId>,
 }
 
-/// A computation of an instance.
+/// A computation that one instance has taken and not finished.
 struct LaneTask {
     point: usize,
-    /// Results so far.
+    /// The number of results that the instance has given so far.
     shown: usize,
-    /// The clock that took it.
+    /// The number of the clock in which the instance took the point.
     taken: u64,
 }
 
 impl Team {
-    /// Returns the results of the points in `range`. Every instance takes the next point as soon as it can: a core must be
-    /// free, and a pipeline must be ready.
+    /// Returns the raw outputs of the points in `range`, in the order of the points. Every instance takes the next point as
+    /// soon as it can: a core when it is free, and a pipeline when it is ready.
     fn compute(&mut self, points: &Points, range: Range<usize>) -> Result<Vec<i64>> {
         let Self { instances, latency, in_ready } = self;
         let width = instances.ports.results.len();
         let base = points.results[range.start];
         let mut out = vec![0; (points.results[range.end] - base) * width];
-        // The first was taken first.
+        // For each lane, its unfinished computations, oldest first.
         let mut tasks: [VecDeque<LaneTask>; LANES] = array::from_fn(|_| VecDeque::new());
         let (mut left, mut waiting) = (range.len(), range);
         let mut offering = false;

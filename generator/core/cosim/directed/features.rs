@@ -1,50 +1,56 @@
 //! Records which features of a design each computation exercises.
 //!
-//! A feature is one event at one net of the design: a mux takes one of its inputs, a comparison is true or false, a bit is set or
-//! clear. The words that a computation reads from ROMs are recorded too. `directed` uses the record to choose a few computations
-//! that together exercise every feature.
+//! A feature is one event at one net of the design: a mux takes one of its inputs, a comparison is true or false, a bit is 1 or
+//! 0. The words that a computation reads from ROMs are recorded too. The module `directed` uses the record to choose a few
+//! computations that together exercise every feature.
 
 use super::side_by_side::{LANES, Lanes};
 use glint_base::fixed::mask;
 use glint_rtl::netlist::{Design, Driver, NetId, Op};
 use glint_rtl::sim::Machine;
 
-/// The number of classes of brightness, by the largest result of a computation: 0, small or large. A feature is counted separately
-/// in each class, because a fault in a computation with the result 0 seldom shows.
+/// The number of classes of brightness. Class 0 has the computations whose results are all 0, class 2 those with a result above
+/// a sixteenth of the largest output, and class 1 the rest. A feature is counted separately in each class, because a fault in a
+/// computation with the result 0 seldom shows.
 pub const CLASSES: usize = 3;
 
-/// A net, or some nets, whose features are watched.
+/// A net, or a few nets, with features that are recorded. Each variant has up to 64 features, one for each bit of a number.
 enum Watched {
-    /// The bits that are 1. If all bits of the mask are set, the bits are inverted: the bits that are 0.
+    /// The bits of a net that are 1, after an exclusive or with the mask. The mask is 0, or has a 1 for every bit of the net;
+    /// then the features are the bits that are 0.
     Ones(NetId, u64),
-    /// The inputs that a mux takes, where another would be different.
+    /// The input that a mux takes, if another input has a different value in that clock. The nets are the select and the
+    /// inputs.
     Choice(NetId, Vec<NetId>),
-    /// The outcomes of a comparison: less, greater, equal, and less or greater by one.
+    /// The outcomes of a comparison of two nets: equal, less, greater, greater by one, less by one. The numbers are a mask of
+    /// the nets' bits, and the mask of the sign bit, or 0 without a sign.
     Comparison(NetId, NetId, u64, u64),
-    /// The bits that alone are 1, and none.
+    /// The bit that alone is 1 in a net, after an exclusive or with the mask. With a mask of ones, this is the bit that alone
+    /// is 0.
     Alone(NetId, u64),
-    /// The four combinations of two bits.
+    /// The four combinations of the values of two nets of one bit.
     Pair(NetId, NetId),
 }
 
-/// Watches the nets of a simulated design. For each lane it records the features that the lane's computation has exercised, such as
-/// an input of a mux or an outcome of a comparison.
+/// Observes the nets of a simulated design. For each lane it records the features that the lane's computation has exercised,
+/// such as an input of a mux or an outcome of a comparison.
 pub struct Watch {
     watched: Vec<Watched>,
     done: Vec<[u64; LANES]>,
-    /// The address of each ROM, and for each word the number of its feature.
+    /// For each ROM of the datapath: its address net, the number of its first word through all ROMs, and the number of its
+    /// words.
     addresses: Vec<(NetId, usize, usize)>,
     read: Vec<Vec<u32>>,
 }
 
 impl Watch {
-    /// Prepares to watch all features of a design, which are events at its nets.
+    /// Prepares to observe all features of `design`. Every net of the design must have a name; see [`observable`].
     pub fn new(design: &Design) -> Self {
         let mut watched = Vec::new();
         for (id, net) in design.iter() {
             match &net.driver {
                 Driver::Constant(_) | Driver::Undriven | Driver::Op(Op::Relabel(_)) => continue,
-                // A bit that is 0 is 1 inverted.
+                // For a mask of ones, the recorded bits are the bits that are 0.
                 _ => watched.extend([0, mask(design.width(id))].map(|it| Watched::Ones(id, it))),
             }
             let Driver::Op(op) = &net.driver else { continue };
@@ -81,12 +87,13 @@ impl Watch {
         }
     }
 
-    /// Returns the number of features that are recorded, such as "input 2 of a mux is taken". Reads of ROM words are not counted.
+    /// Returns the number of features, in all brightness classes together. It reserves 64 features in each class for everything
+    /// that is observed. Reads of ROM words are not counted.
     pub fn count(&self) -> usize {
         64 * CLASSES * self.watched.len()
     }
 
-    /// Records the features that the nets show in this clock, in the lanes that are `busy`.
+    /// Records the features that the nets have in this clock, and the ROM words that are read, in the lanes of the set `busy`.
     pub fn note(&mut self, machine: &Machine<LANES>, busy: Lanes) {
         for (watched, done) in self.watched.iter().zip(&mut self.done) {
             let mut add = |of: &dyn Fn(usize) -> u64| {
@@ -141,7 +148,8 @@ impl Watch {
         self.note_words(machine, busy);
     }
 
-    /// Records only the ROM words that are read in this clock, in the lanes that are `busy`.
+    /// Records only the ROM words that are read in this clock, in the lanes of the set `busy`. Reads beyond the end of a ROM
+    /// are ignored.
     pub fn note_words(&mut self, machine: &Machine<LANES>, busy: Lanes) {
         for &(address, first, count) in &self.addresses {
             let bits = machine.lanes(address);
@@ -154,8 +162,9 @@ impl Watch {
         }
     }
 
-    /// Returns the features that the computation in a lane has exercised, as features of the brightness class `class`. Also
-    /// returns the words that it has read, numbered through all ROMs. The record of the lane is then empty.
+    /// Returns the features that the computation in `lane` has exercised, as features of the brightness class `class`, and the
+    /// words that it has read. Words are numbered through all ROMs of the design; the words are in ascending order, each once.
+    /// The record of the lane is empty afterwards.
     pub fn take(&mut self, lane: usize, class: usize) -> (Vec<u32>, Vec<u32>) {
         let mut features = Vec::new();
         for (at, done) in self.done.iter_mut().enumerate() {
@@ -173,7 +182,7 @@ impl Watch {
     }
 }
 
-/// Returns a copy of the design in which every net has a name, because only named nets can be watched in simulation.
+/// Returns a copy of the design in which every net has a name. The simulator can read only nets with a name.
 pub fn observable(design: &Design) -> Design {
     let mut observable = design.clone();
     for net in &mut observable.nets {

@@ -1,24 +1,25 @@
 //! Gives each lane of the built-in simulator its own copy of a design's ROMs.
 //!
-//! The search for test computations inverts bits of ROM words to see whether a computation notices. With a copy for each lane,
-//! one simulation tries a different inverted bit in every lane.
+//! The search for test computations inverts bits of ROM words, to find out whether the results of a computation change. With a
+//! copy for each lane, one simulation tries a different inverted bit in every lane.
 
 use glint_base::fixed::Format;
 use glint_rtl::netlist::{Design, Driver, Net, NetId, Op, Port, Role};
 use glint_rtl::sim::Machine;
 
-/// The ROMs of a design after each lane got its own copy of them. It knows the address of each ROM word in the copy of each lane.
+/// The ROMs of a design after each lane got its own copy of them, with the position of each word in the copy of each lane.
 pub struct Memories {
-    /// The input port that selects the copy that a lane reads.
+    /// The input port that selects the copy that a lane reads. The caller must drive it with the number of the lane.
     pub lane: NetId,
-    /// For each ROM the number of its first word in the design, the number of its first word in the copies, and the distance
-    /// between copies.
+    /// For each ROM, three numbers. The first one is the number of the ROM's first word through all ROMs of the original
+    /// design, and the second one is this number in the design with copies. The third one is the distance in words from one
+    /// lane's copy to the next lane's.
     roms: Vec<(u32, usize, usize)>,
 }
 
 impl Memories {
-    /// Changes a design so that each of `lanes` lanes, a power of two, reads its own copy of the datapath's ROMs. The lanes share
-    /// the control ROM.
+    /// Changes a design so that each of `lanes` lanes reads its own copy of the datapath's ROMs. `lanes` must be a power of
+    /// two. The lanes share the control ROM.
     pub fn copied(design: &mut Design, lanes: usize) -> Self {
         let lane_bits = lanes.ilog2();
         let lane = add(design, "lane", lane_bits, Driver::Input);
@@ -49,8 +50,8 @@ impl Memories {
         Self { lane, roms }
     }
 
-    /// Inverts bits of one ROM word in one lane; a second call with the same arguments restores the word. Words are numbered
-    /// through all ROMs of the design.
+    /// Inverts the bits in the mask `bits` of one ROM word in the copy of lane `lane`. A second call with the same arguments
+    /// restores the word. `word` is the number of the word through all ROMs of the original design.
     pub fn invert<const LANES: usize>(
         &self,
         machine: &mut Machine<LANES>,
@@ -64,7 +65,7 @@ impl Memories {
     }
 }
 
-/// Returns a net of unsigned numbers.
+/// Adds a net of `bits` bits without a sign to the design, and returns the net.
 fn add(design: &mut Design, name: &str, bits: u32, driver: Driver) -> NetId {
     let like = design.net(design.roms[design.control.rom.index()].address);
     let (name, format) =

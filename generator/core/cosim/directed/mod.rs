@@ -5,9 +5,9 @@
 //! computations, simulates them, and chooses some of them:
 //!
 //! - For each ROM word that any computation reads, and each bit in the upper half of the word: one computation whose results
-//!   change if the bit is inverted. If the pool has none, the module searches near the computations that read the word. For a
-//!   device that computes a line of points, and reads a word a clock, it chooses a line that reads the word. If all this takes
-//!   too many clocks, only every second word has such a computation, or every third, and so on.
+//!   change if the bit is inverted. If the pool has no such computation, the module searches near the computations that read
+//!   the word. For a device that computes a line of points, and reads a word in each clock, it chooses a line that reads the
+//!   word. If all this takes too many clocks, only every second word has such a computation, or every third, and so on.
 //! - For a device that computes lines: one line of the largest length in the contract's domain.
 //! - Every combination of the smallest and the largest values of the operands that determine `f`.
 //! - For each bit of each net, each input of a mux and each outcome of a comparison: some computations that exercise it with
@@ -33,24 +33,25 @@ use glint_rtl::netlist::Design;
 use glint_rtl::sim::{CompiledDesign, Machine};
 use side_by_side::{LANES, OutputTrace, SideBySide};
 
-/// The number of computations that must show each feature, or all of them if there are fewer.
+/// The number of computations that must exercise each feature. If the pool has fewer for a feature, all of them are chosen.
 const TIMES: u8 = 2;
 
-/// Clocks of all computations together.
+/// The largest number of clocks of all computations together.
 const MOST_CLOCKS: u32 = 20_000;
 
-/// A computation of the pool.
+/// A computation of the pool, with what its simulation has shown.
 struct PoolComputation {
     operands: Vec<i64>,
     shown: OutputTrace,
-    /// How bright its results are, as a class.
+    /// The class of its brightest result; see [`class`].
     class: usize,
     features: Vec<u32>,
-    /// The words that it reads, numbered through all ROMs.
+    /// The ROM words that it reads, numbered through all ROMs, in ascending order.
     read: Vec<u32>,
 }
 
-/// A cache of chosen computations, by design. A core and the pipeline that is made from it have the same computations.
+/// A cache of chosen computations. The key is the design without its name, together with the contract. A core and the pipeline
+/// that is made from it therefore share their computations.
 #[derive(Default)]
 pub struct ComputationCache(Mutex<HashMap<String, Arc<Mutex<Option<Computations>>>>>);
 
@@ -59,17 +60,18 @@ pub struct ComputationCache(Mutex<HashMap<String, Arc<Mutex<Option<Computations>
 pub struct Computations {
     /// The raw operands of each computation, in the order of `Contract::operands`.
     pub operands: Vec<Vec<i64>>,
-    /// The spacing of the ROM words that have a computation which detects an inverted bit: every word if this is 1, every second
-    /// word if it is 2, and so on.
+    /// The distance between two ROM words whose inverted bits a computation detects, in words. For example, 1 means that every
+    /// word has such a computation, and 2 that every second word has one.
     pub word_stride: usize,
 }
 
 impl ComputationCache {
-    /// Returns [`computations`] of a design from the cache, or chooses and caches them. The name of the design does not matter;
-    /// `contract_digest` tells one contract from another.
+    /// Returns the result of [`computations`] for a design from the cache. If the cache does not have it, chooses the
+    /// computations and adds them to the cache. The name of the design does not matter. `contract_digest` must be different for
+    /// different contracts.
     ///
     /// # Errors
-    /// Fails as [`computations`] does.
+    /// Fails as [`computations`] does. A failure is not cached.
     pub fn computations(
         &self,
         design: &Design,
@@ -91,10 +93,11 @@ impl ComputationCache {
     }
 }
 
-/// Chooses the computations of the test bench of a design.
+/// Chooses the computations of the test bench of a design. The same design always gets the same computations.
 ///
 /// # Errors
-/// Fails if the design cannot be simulated, or does not belong to the contract.
+/// Fails if the design cannot be simulated, if design and contract do not have the same operands and outputs, if the design is
+/// a pipeline, or if a computation does not end.
 pub fn computations(design: &Design, contract: &dyn Contract) -> Result<Computations> {
     let observed = observable(design);
     let machine = Machine::new(Arc::new(CompiledDesign::new(&observed)?));
@@ -157,8 +160,9 @@ pub fn computations(design: &Design, contract: &dyn Contract) -> Result<Computat
     Ok(Computations { operands, word_stride: of_words.word_stride })
 }
 
-/// Chooses lines that read table after table: the first line, which is the longest, and each line that reads mostly new
-/// words.
+/// Returns the indices in `lines` of lines that read many words of tables. The first line, which is the longest, is always one
+/// of them. Another line is one of them if it reads new words, which no chosen line reads: their number must exceed half of the
+/// line's clocks.
 fn sweeps(lines: &[PoolComputation]) -> Vec<usize> {
     let mut read = HashSet::new();
     let mut chosen = Vec::new();
@@ -172,7 +176,8 @@ fn sweeps(lines: &[PoolComputation]) -> Vec<usize> {
     chosen
 }
 
-/// Returns a class for the brightest result: 0 in the dark, 1 dim, 2 beyond a sixteenth of the largest output.
+/// Returns the class of the brightest result: 0 if all outputs are 0, 2 if one is larger than a sixteenth of the largest
+/// output, and otherwise 1.
 fn class(contract: &dyn Contract, shown: &OutputTrace) -> usize {
     let mut class = 0;
     for (_, outputs) in &shown.results {
@@ -184,16 +189,17 @@ fn class(contract: &dyn Contract, shown: &OutputTrace) -> usize {
     class
 }
 
-/// Adds the candidates that show, per clock, the most features that were not shown often enough. It ends when no feature is
-/// missing or there are enough clocks. Features from number `words` on are ROM words, which must be read once.
+/// Adds candidates to `chosen`, always the one that exercises the most missing features per clock. It ends when no feature is
+/// missing, or when another candidate would exceed [`MOST_CLOCKS`]. Features from number `words` on are ROM words, which must
+/// be read once; `count` is the number of all features.
 fn choose(candidates: &[PoolComputation], words: usize, count: usize, chosen: &mut Vec<usize>) {
     let mut coverage = FeatureCoverage { wanted: vec![TIMES; count], clocks: 0 };
     coverage.wanted[words..].fill(1);
     for &at in &*chosen {
         coverage.add(&candidates[at]);
     }
-    // The gain of a candidate only falls as others are chosen. The first candidate whose gain has not changed is therefore
-    // the best.
+    // The gain of a candidate only falls as other candidates are chosen. The candidate at the top of the heap is therefore the
+    // best if its gain has not changed.
     let mut heap = BinaryHeap::new();
     for (at, candidate) in candidates.iter().enumerate() {
         heap.push((coverage.gain(candidate), std::cmp::Reverse(at)));
@@ -212,7 +218,7 @@ fn choose(candidates: &[PoolComputation], words: usize, count: usize, chosen: &m
     }
 }
 
-/// The features that the chosen computations still lack, and their clocks.
+/// The number of times that each feature must still be exercised, and the clocks of the chosen computations.
 struct FeatureCoverage {
     /// How many more times each feature must be shown.
     wanted: Vec<u8>,
@@ -221,7 +227,7 @@ struct FeatureCoverage {
 }
 
 impl FeatureCoverage {
-    /// Adds a computation.
+    /// Adds a computation: its clocks, and one execution of each of its features.
     fn add(&mut self, computation: &PoolComputation) {
         self.clocks += computation.shown.clocks;
         for &feature in &computation.features {
@@ -230,7 +236,7 @@ impl FeatureCoverage {
         }
     }
 
-    /// Returns the number of features that a computation would add, per 2^20 clocks.
+    /// Returns the number of missing features that a computation would add, per 2^20 clocks.
     fn gain(&self, computation: &PoolComputation) -> u64 {
         let mut news: u64 = 0;
         for &feature in &computation.features {

@@ -6,45 +6,47 @@
 use crate::cosim::{PointSource, Random};
 use glint_golden::{Contract, Highlight};
 
-/// The number of points that are drawn in the same way as the points of the default test.
+/// The number of random computations in [`Pool::drawn`], drawn in the same way as the points of the default test.
 const DRAWN: usize = 1024;
 
-/// Points with the other operands such that they are seen. Of three one is drawn evenly and reads words far from the peak,
-/// one by its distance from the ends of the domains, since tables have a word for each octave of it, and one is near the
-/// peak for operands from anywhere in their formats.
+/// The number of random computations in [`Pool::readers`] of a device without lines. They are drawn in three ways, in turn. One
+/// third is drawn evenly, and reads words far from the peak of the highlight. One third is near the ends of the domains, at
+/// distances of every magnitude, since tables have a word for each octave of the distance. One third has operands from anywhere
+/// in their formats, moved near the peak. In all three, the other operands are chosen such that the result is not 0.
 const SHOWN: usize = 3840;
 
-/// Every value of an operand without a fraction is a point, and the edges of the highlight there, if it has no more
-/// values than this.
+/// An operand without fraction bits gets one point for each of its values, and points at the edges of the highlight, if it has
+/// at most this number of values.
 const MOST_VALUES: u64 = 4096;
 
-/// The values above the lowest, of operands that choose a table, for which lines go through the highlight, and the
-/// bits of their lengths.
+/// The distances from the lowest value of the operands without fraction bits, which choose a table. A line through the
+/// highlight is drawn for each of them, and for each number of bits of the line's length.
 const FIRST_VALUES: [i64; 6] = [0, 1, 2, 3, 7, 15];
 const LINE_BITS: std::ops::RangeInclusive<u32> = 8..=12;
 
-/// The number of intervals that a line among the drawn points may have.
+/// The largest length operand of a line among the drawn points.
 const LONGEST: i64 = 1023;
 
-/// Where the formula is seen best.
+/// The value of the formula at which a wrong word shows best in the results.
 const VALUE: f64 = 0.6;
 
-/// The control operands are combined at the ends of their formats too if that gives no more points than this.
+/// The largest number of corners. The ends of the operands' formats are used only if this number is not exceeded.
 const MOST_CORNERS: usize = 128;
 
-/// The length of a line there.
+/// The length operand of a line in a corner.
 const CORNER_LENGTH: i64 = 2;
 
 /// The candidates from which the computations of a test bench are chosen.
 pub struct Pool {
-    /// Computations in which every operand that determines `f` is at an end of its domain or of its format.
+    /// Computations in which every operand that determines `f` is at an end of its domain. If this gives few enough
+    /// computations, also at an end of its format.
     pub corners: Vec<Vec<i64>>,
-    /// Random computations. The search records all features that they exercise.
+    /// Random computations. The search for a test bench records all features that they exercise.
     pub drawn: Vec<Vec<i64>>,
-    /// Further random computations. The search records only the ROM words that they read.
+    /// Further random computations. The search for a test bench records only the ROM words that they read.
     pub readers: Vec<Vec<i64>>,
-    /// Computations that read a ROM from its beginning to its end. Devices that compute a line of points after one `start` have
-    /// them.
+    /// Lines that read a ROM from its beginning to its end. Empty for a device that does not compute a line of points after one
+    /// `start`.
     pub sweeps: Vec<Vec<i64>>,
 }
 
@@ -98,7 +100,7 @@ pub fn pool(contract: &dyn Contract) -> Pool {
             readers.push(values);
         }
     }
-    // The simulator runs computations in its lanes together, so computations of similar length should be neighbours.
+    // The simulator runs computations in its lanes together. Computations of similar length should therefore be neighbours.
     if let Some(length) = points.length() {
         drawn.sort_by_key(|values| values[length]);
         readers.sort_by_key(|values| values[length]);
@@ -106,7 +108,7 @@ pub fn pool(contract: &dyn Contract) -> Pool {
     Pool { corners: corners(&points), drawn, readers, sweeps }
 }
 
-/// Sets the colours to their largest values. They come after the control operands.
+/// Sets the colours in `values`, which follow the control operands, to their largest values.
 fn brighten(points: &PointSource<'_>, values: &mut [i64]) {
     let operands = points.operands();
     let control = operands.iter().filter(|operand| !operand.colour).count();
@@ -115,8 +117,8 @@ fn brighten(points: &PointSource<'_>, values: &mut [i64]) {
     }
 }
 
-/// Moves operands with a fraction toward the ends of their domains, most of them to the upper end. A cosine there belongs to
-/// no angle.
+/// Moves operands with fraction bits toward the ends of their domains, by a distance of random magnitude. Half of them move to
+/// the upper end, a quarter to the lower end, and the rest keep their values.
 fn near_ends(points: &PointSource<'_>, random: &mut Random, values: &mut [i64]) {
     for (value, operand) in values.iter_mut().zip(points.operands()) {
         let (low, high) = operand.domain;
@@ -130,8 +132,9 @@ fn near_ends(points: &PointSource<'_>, random: &mut Random, values: &mut [i64]) 
     }
 }
 
-/// Draws operands from their formats, beyond the domains too, and moves them to where the formula has some value. A word
-/// that is read far from the peak alone within the domain is read near it there, and counts for more.
+/// Draws the control operands from their whole formats, also beyond the domains. Then moves them to where the formula has a
+/// random value from 0 to 1. A ROM word that is read only far from the peak for operands in the domain may be read near the
+/// peak for such operands, and then shows more in the results.
 fn anywhere(points: &PointSource<'_>, random: &mut Random, values: &mut [i64]) {
     let control = points.operands().iter().filter(|operand| !operand.colour).count();
     for (value, operand) in values[..control].iter_mut().zip(points.operands()) {
@@ -141,14 +144,16 @@ fn anywhere(points: &PointSource<'_>, random: &mut Random, values: &mut [i64]) {
     points.to_value(&mut values[..control], random.unit());
 }
 
-/// Returns every combination of the ends of the control operands' domains, and of their formats if those are not too many.
+/// Returns combinations of the ends of the control operands' domains, with the largest colours. The ends of the operands'
+/// formats are included if there are at most [`MOST_CORNERS`] combinations with them. Returns the first [`MOST_CORNERS`]
+/// combinations at most.
 fn corners(points: &PointSource<'_>) -> Vec<Vec<i64>> {
     let mut ends = corner_values(points, true);
     if combinations(&ends) > MOST_CORNERS {
         ends = corner_values(points, false);
     }
     let mut corners: Vec<Vec<i64>> = Vec::new();
-    // By their numbers: all of them would take more memory than there is where operands are many.
+    // The combinations are made from their numbers, because a list of all would take too much memory if the operands are many.
     for number in 0..combinations(&ends).min(MOST_CORNERS) {
         let mut corner = vec![0; ends.len()];
         let mut rest = number;
@@ -162,7 +167,8 @@ fn corners(points: &PointSource<'_>) -> Vec<Vec<i64>> {
     corners
 }
 
-/// Returns the values of each operand in the corners: the ends of its domain, and of its format if that is wanted.
+/// Returns the values of each operand in the corners: the ends of its domain, and also the ends of its format if `with_format`
+/// is true. A colour has only its largest value, and the length of a line only [`CORNER_LENGTH`].
 fn corner_values(points: &PointSource<'_>, with_format: bool) -> Vec<Vec<i64>> {
     let mut all = Vec::new();
     for (at, operand) in points.operands().iter().enumerate() {
@@ -193,9 +199,9 @@ fn combinations(values: &[Vec<i64>]) -> usize {
     product
 }
 
-/// Draws lines from the peak to the edge of the highlight, which read the words of a table one after another: for the
-/// first values of each other operand, and for each power of two of intervals, or the end of the domain if that is
-/// less. The longest are first.
+/// Draws lines from the peak to the edge of the highlight, which read the words of a table one after another. There is a line
+/// for each value in [`FIRST_VALUES`] of the operands that choose a table, and for each number of bits in [`LINE_BITS`] of the
+/// line's length. A length beyond its domain is replaced by the end of the domain. The longest lines are first.
 fn lines(highlight: &Highlight, points: &PointSource, length: usize) -> Vec<Vec<i64>> {
     let mut random = Random::new(2);
     let mut lines = Vec::new();

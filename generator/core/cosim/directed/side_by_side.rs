@@ -1,7 +1,7 @@
 //! Simulates up to 32 computations at once, one in each lane of the built-in simulator.
 //!
-//! It records the outputs of each computation and the clocks in which they appear. Two records are compared to decide whether a
-//! fault changes anything that a user can see.
+//! The module records the outputs of each computation and the clocks in which they appear. A comparison of two records decides
+//! whether a fault changes anything that a user can see.
 
 use anyhow::{Context, Result, bail};
 
@@ -15,7 +15,7 @@ use glint_rtl::sim::Machine;
 /// The number of computations that are simulated at once.
 pub const LANES: usize = 32;
 
-/// The number of clocks that a computation may take.
+/// The number of clocks after which a computation counts as one that never ends.
 const LIMIT: u32 = 1 << 16;
 
 /// A set of lanes as a bit mask: bit i is 1 if lane i is in the set.
@@ -24,15 +24,15 @@ pub type Lanes = u32;
 /// The outputs of one computation, with the clocks in which they appeared.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct OutputTrace {
-    /// The number of clocks from the computation's `start` to the next `start`.
+    /// The number of clocks from the computation's `start` to the first clock in which the core is not busy.
     pub clocks: u32,
-    /// For each clock in which `valid` is high, the number of the clock and the values of the result outputs.
+    /// For each clock in which `valid` is high: the number of clocks since `start`, and the bit patterns of the result outputs.
     pub results: Vec<(u32, Vec<u64>)>,
 }
 
 impl OutputTrace {
-    /// Returns how much the results of two traces differ: the sum of the absolute differences of their bit patterns. Returns the
-    /// largest `u64` if the traces differ in their clocks or in the number of results.
+    /// Returns how much the results of two traces differ: the sum of the absolute differences of their bit patterns. Returns
+    /// the largest `u64` if the traces differ in the number of clocks or of results.
     pub fn differs(&self, from: &Self) -> u64 {
         if self.results.len() != from.results.len() || self.clocks != from.clocks {
             return u64::MAX;
@@ -47,22 +47,23 @@ impl OutputTrace {
     }
 }
 
-/// A simulated design whose lanes run one computation each. The simulator writes all operands in the clock of `start`. While a lane
-/// is busy, its operand ports carry the complemented bits, so that a core that reads an operand too late computes a wrong result.
+/// A simulated core whose lanes run one computation each. The simulator writes all operands in the clock of `start`. In all
+/// later clocks, the operand ports carry the complemented bits, so that a core that reads an operand too late computes a wrong
+/// result.
 pub struct SideBySide {
     pub machine: Machine<LANES>,
     ports: Ports,
     busy: NetId,
     inputs: Vec<[u64; LANES]>,
-    /// The memories of a design whose lanes have tables of their own.
+    /// The copies of the ROMs, if each lane reads its own copy.
     copies: Option<Memories>,
 }
 
 impl SideBySide {
-    /// Makes the simulator of a design and resets it.
+    /// Makes the simulator of a design from `machine`, which must have been compiled from the same design, and resets it.
     ///
     /// # Errors
-    /// Fails if contract and design do not belong together.
+    /// Fails if design and contract do not have the same operands and outputs, or if the design is a pipeline.
     pub fn new(
         design: &Design,
         contract: &dyn Contract,
@@ -77,10 +78,11 @@ impl SideBySide {
         Ok(Self { machine, ports, busy, inputs, copies: None })
     }
 
-    /// Lets each lane read its own copy of the ROMs, as [`Memories::copied`] added them to the design.
+    /// Lets each lane read its own copy of the ROMs, as [`Memories::copied`] added them to the design. Without copies,
+    /// [`SideBySide::run_with`] inverts nothing.
     ///
     /// # Errors
-    /// Fails if the copies belong to another design.
+    /// Fails if the design does not have the input port of the copies.
     pub fn with_copies(mut self, design: &Design, copies: Memories) -> Result<Self> {
         let port = design.input_position(copies.lane)?;
         (0..LANES).for_each(|lane| self.inputs[port][lane] = lane as u64);
@@ -88,8 +90,8 @@ impl SideBySide {
         Ok(self)
     }
 
-    /// Runs computations as [`SideBySide::run`] does, but inverts bits of one ROM word in each lane. Words are numbered through
-    /// all ROMs.
+    /// Runs computations as [`SideBySide::run`] does, but with inverted bits in one ROM word: lane i inverts the bits in the
+    /// mask `faults[i]`. `word` is the number of the word through all ROMs. The word is restored afterwards.
     ///
     /// # Errors
     /// Fails as [`SideBySide::run`] does.
@@ -112,11 +114,12 @@ impl SideBySide {
         }
     }
 
-    /// Runs computations with these raw operands to their ends, at most as many as there are lanes. It calls `see` before each
-    /// clock edge, with the lanes that are busy.
+    /// Runs one computation in each lane to its end, from raw operands in the order of `Contract::operands`, and returns their
+    /// outputs in the same order. There must be at most [`LANES`] computations. It calls `see` before each clock edge with the
+    /// simulator and the set of the lanes that are busy.
     ///
     /// # Errors
-    /// Fails if a computation does not end.
+    /// Fails if a computation does not end within 65536 clocks.
     pub fn run<'c>(
         &mut self,
         computations: impl IntoIterator<Item = &'c [i64]>,
@@ -169,7 +172,7 @@ impl SideBySide {
     }
 }
 
-/// Returns the lanes in which a net of one bit is 1.
+/// Returns the set of the lanes in which a net of one bit is 1.
 fn lanes(bits: [u64; LANES]) -> Lanes {
     bits.iter().enumerate().fold(0, |set, (lane, &bit)| set | (bit as Lanes & 1) << lane)
 }

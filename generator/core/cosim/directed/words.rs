@@ -18,39 +18,42 @@ use glint_golden::{Contract, Operand};
 use glint_rtl::netlist::Design;
 use glint_rtl::sim::{CompiledDesign, Machine};
 
-/// The largest number of clocks of a computation that the search considers for a ROM word. A longer computation, which reads a
-/// whole ROM, is treated separately.
+/// The largest number of clocks of a computation that the search tries for a ROM word. A longer computation reads a whole ROM,
+/// and `directed` chooses it separately.
 pub const LONGEST: u32 = 64;
 
-/// The most clocks that one computation for each word may take. If all words would take more, only every second word has
-/// computations, or every third, and so on, evenly over all memories. A word can need several computations: with two lights,
-/// the bench of `shading` has 168 000 clocks, which Icarus Verilog simulates in five seconds.
+/// The approximate number of clocks that the chosen computations may take, at one computation for each word. If all words would
+/// take more, only every second word has computations, or every third, and so on, evenly over all memories. A word can need
+/// several computations. With two lights, for example, the bench of `shading` has 168 000 clocks, which Icarus Verilog
+/// simulates in five seconds.
 const MOST_CLOCKS: u64 = 40_000;
 
-/// The number of rounds in which computations near readers are tried, if no reader of a word notices a fault: first within
-/// the domain, and then beyond it.
+/// The number of rounds that try other computations for a word, if no candidate detects a fault in it. These rounds use
+/// operands within their domains; then `ROUNDS_BEYOND` rounds use operands from their whole formats.
 const ROUNDS: usize = 6;
 const ROUNDS_BEYOND: usize = 6;
 
-/// The number of tried computations that remain, those which show a larger fault in the word most: others near them are tried next.
+/// The number of tried computations that are kept after each round. They are the ones in which a fault in the word changes the
+/// results most, and the next round tries computations near them.
 const KEPT: usize = 8;
 
 /// The computations that were chosen because they detect faults in ROM words.
 #[derive(Default)]
 pub struct Chosen {
-    /// The numbers of the chosen candidates.
+    /// The indices of the chosen candidates.
     pub chosen: BTreeSet<usize>,
     /// The raw operands of further computations that the search has found.
     pub found: Vec<Vec<i64>>,
-    /// The spacing of the ROM words that have a computation: every word if this is 1, every second word if it is 2, and so on.
+    /// The distance between two ROM words with a computation that detects faults, in words. For example, 1 means that every
+    /// word has such a computation, and 2 that every second word has one.
     pub word_stride: usize,
 }
 
-/// Chooses computations that detect inverted bits in the upper halves of ROM words. It chooses among the `candidates`, and among
-/// further computations near them. It leaves out the words in `known`.
+/// Chooses computations that detect inverted bits in the upper halves of ROM words. It chooses among the `candidates`, and
+/// among further computations near them. It leaves out the words with the numbers in `known`, and the control ROM.
 ///
 /// # Errors
-/// Fails if the design cannot be simulated.
+/// Fails if the design cannot be simulated, if it does not belong to the contract, or if a computation does not end.
 pub fn chosen(
     design: &Design,
     contract: &dyn Contract,
@@ -81,14 +84,16 @@ pub fn chosen(
     Ok(search.result)
 }
 
-/// Returns the smallest stride with which one computation for each chosen word takes at most [`MOST_CLOCKS`], about.
+/// Returns the smallest stride with which the chosen words take at most about [`MOST_CLOCKS`] clocks, at one computation for
+/// each word. It is at least 1.
 fn word_stride(candidates: &[PoolComputation], readers: &BTreeMap<u32, Vec<usize>>) -> usize {
     let first = readers.values().filter_map(|readers| readers.first());
     let clocks: u64 = first.map(|&at| u64::from(candidates[at].shown.clocks)).sum();
     clocks.div_ceil(MOST_CLOCKS).max(1) as usize
 }
 
-/// Returns for each word the brightest of its readers, as many as there are lanes.
+/// Returns, for each word that is read, the indices of the candidates that read it, brightest first. Each list has at most
+/// [`LANES`] of them, and no candidate with more than [`LONGEST`] clocks.
 fn readers(candidates: &[PoolComputation]) -> BTreeMap<u32, Vec<usize>> {
     let mut order: Vec<usize> = (0..candidates.len()).collect();
     order.retain(|&at| candidates[at].shown.clocks <= LONGEST);
@@ -114,7 +119,8 @@ struct WordSearch<'a> {
 }
 
 impl WordSearch<'_> {
-    /// Chooses computations that notice these bits of a word.
+    /// Chooses computations that detect the bits in the mask `left` of a word. `readers` has the candidates that read the word.
+    /// A fault in a bit is detected if the outputs change.
     fn word(&mut self, word: u32, mut left: u64, readers: &[usize]) -> Result<()> {
         let candidates = self.candidates;
         for at in readers {
@@ -126,9 +132,9 @@ impl WordSearch<'_> {
         let mut nearest: Vec<&[i64]> =
             readers.iter().map(|&at| candidates[at].operands.as_slice()).collect();
         let all = nearest.clone();
-        // A computation that notices the lowest bit mostly notices the bits above it, which weigh more.
+        // A computation that detects the lowest bit mostly detects the bits above it too, because they weigh more.
         let mut unnoticed = 0;
-        // The last bit that some computation notices. `climb` starts from it.
+        // The latest bit that some computation detects. `climb` starts from it.
         let mut least = highest(left.max(1));
         while left & !unnoticed != 0 {
             let bit = lowest(left & !unnoticed);
@@ -152,10 +158,10 @@ impl WordSearch<'_> {
         self.climb(word, left, least, nearest.iter().map(|operands| operands.to_vec()).collect())
     }
 
-    /// Searches for computations that notice these bits of a word. It starts from computations that notice another bit, and
-    /// climbs to computations in which that bit shows more and more. Within the domain, some words are read only far from any
-    /// highlight. The last rounds therefore take operands from their whole formats, where the golden model still predicts
-    /// the device.
+    /// Searches for computations that detect the bits in the mask `left` of a word. It starts from the computations `nearest`,
+    /// which detect the bit `probe`, and goes on to computations near them in which a fault of this bit changes the results
+    /// more and more. Within the domain, some words are read only far from any highlight. The last rounds therefore take
+    /// operands from their whole formats, where the golden model still predicts the device.
     fn climb(
         &mut self,
         word: u32,
@@ -177,7 +183,7 @@ impl WordSearch<'_> {
                 probe = bit;
                 kept = vec![(1, tried[at].clone())];
             } else {
-                // The same fault shows the same.
+                // The bit `probe` was inverted already.
                 let shown = if probe == bit { shown } else { self.run(&operands, word, probe)? };
                 for (at, operands) in tried.into_iter().enumerate() {
                     kept.push((shown[at].differs(&fault_free[at]), operands));
@@ -191,13 +197,15 @@ impl WordSearch<'_> {
         Ok(())
     }
 
-    /// Returns the outputs of computations with bits of a word inverted.
+    /// Returns the outputs of computations with the bits in the mask `bits` of a word inverted. A mask of 0 gives the outputs
+    /// without a fault.
     fn run(&mut self, computations: &[&[i64]], word: u32, bits: u64) -> Result<Vec<OutputTrace>> {
         let faults: Vec<u64> = vec![bits; computations.len()];
         self.device.run_with(computations, word, &faults)
     }
 
-    /// Returns the bits of a word which a computation notices, one inverted at a time. `right` is its output without a fault.
+    /// Returns the bits in the mask `bits` of a word that a computation detects, when one bit is inverted at a time. `right`
+    /// must be the output of the computation without a fault.
     fn noticed(
         &mut self,
         word: u32,
@@ -219,9 +227,9 @@ impl WordSearch<'_> {
         Ok(noticed)
     }
 
-    /// Draws computations near these: each control operand as it is, or moved by a random magnitude within its domain
-    /// (within its format, if it may be beyond), or, without a fraction, drawn anew; some of them are then moved to
-    /// where the formula has some value. The colours are bright.
+    /// Draws one computation for each lane near the computations in `kept`. [`moved`] draws each operand; the length of a line
+    /// stays as it is. A quarter of the computations are then moved to where the formula has a random value from 0 to 1. If
+    /// `beyond` is true, control operands may leave their domains.
     fn near(&mut self, kept: &[(u64, Vec<i64>)], beyond: bool) -> Vec<Vec<i64>> {
         let Self { points, random, .. } = self;
         let operands = points.operands();
@@ -243,8 +251,9 @@ impl WordSearch<'_> {
     }
 }
 
-/// Returns the value of a control operand as it is, or moved by a random magnitude within its domain, or drawn anew. If `beyond`, it
-/// moves within the format of the operand. A colour is lowered at random.
+/// Returns a value near `raw` for an operand. A control operand moves by a random magnitude in half of the cases, and otherwise
+/// keeps its value. Without fraction bits it may also be drawn anew. It stays within its domain, or within its format if
+/// `beyond` is true. A colour is at most an eighth of its domain below its largest value.
 fn moved(random: &mut Random, operand: &Operand, raw: i64, beyond: bool) -> i64 {
     let (low, high) = if beyond && !operand.colour {
         (operand.format.min_raw() as i64, operand.format.max_raw() as i64)

@@ -10,7 +10,7 @@ use anyhow::{Result, ensure};
 use glint_base::text::grouped;
 use glint_golden::{Contract, Sweep, Values};
 
-/// The number of values that an axis may have. More are a slip of the pen.
+/// The largest number of values that an operand may have. A longer list is probably a typing error.
 const MOST_VALUES: usize = 1 << 20;
 
 /// The raw values of one operand that the user gives for an exhaustive check. For example,
@@ -18,7 +18,7 @@ const MOST_VALUES: usize = 1 << 20;
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct AxisValues {
     name: String,
-    /// Ascending, each once.
+    /// Ascending, without duplicates.
     values: Vec<i64>,
 }
 
@@ -50,8 +50,8 @@ impl FromStr for AxisValues {
     }
 }
 
-/// Parses first, last and step from `5`, `0..1000` or `0..1000/10`. For example, `0..1000/10` gives (0, 1000, 10), and `5`
-/// gives (5, 5, 1).
+/// Parses first value, last value and step from `5`, `0..1000` or `0..1000/10`. For example, `0..1000/10` gives (0, 1000, 10),
+/// and `5` gives (5, 5, 1). Returns `None` if a part is no integer, or if the step is 0.
 fn range(item: &str) -> Option<(i64, i64, usize)> {
     let Some((first, rest)) = item.split_once("..") else {
         let value = item.parse().ok()?;
@@ -65,11 +65,12 @@ fn range(item: &str) -> Option<(i64, i64, usize)> {
     Some((first.parse().ok()?, last.parse().ok()?, step))
 }
 
-/// Returns the contract's sweep, which lists the operand values of an exhaustive check, with the values in `others` instead of its
-/// own for some operands. Each operand may be named once.
+/// Returns the contract's sweep: the operand values that an exhaustive check visits. The values in `others` replace the
+/// contract's own values of the same operand. If they leave out a part of a range, `omits` in the returned sweep names the
+/// operand.
 ///
 /// # Errors
-/// Fails if an operand is no axis of the sweep, or if a value is outside the operand's domain.
+/// Fails if an operand is named twice, if the contract's sweep does not have it, or if a value is outside the operand's domain.
 pub fn sweep(contract: &dyn Contract, others: &[AxisValues]) -> Result<Sweep> {
     let mut sweep = contract.sweep();
     for (at, AxisValues { name, .. }) in others.iter().enumerate() {

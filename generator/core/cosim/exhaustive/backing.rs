@@ -1,8 +1,8 @@
-//! Says which evidence there is for the error bound that a contract states.
+//! Finds the evidence for the error bound that a contract states.
 //!
-//! The evidence is one of four: a proof in Rust beside the golden model of a device of the catalogue, the record of an exhaustive
-//! check by `glint cosim --exhaustive`, the record of a proof by `glint certify`, or nothing but the author's statement.
-//! Datasheets and reports print it next to the bound.
+//! The evidence is a proof in Rust beside the golden model of a device of the catalogue, or the record of an exhaustive check
+//! by `glint cosim --exhaustive`, or the record of a proof by `glint certify`. Without any of these, only the author states the
+//! bound. Datasheets and reports print the evidence next to the bound.
 
 use std::fmt;
 use std::path::Path;
@@ -15,10 +15,10 @@ use glint_base::input;
 use glint_base::program::Program;
 use glint_golden::Contract;
 
-/// The directory of certificates inside the directory of the records.
+/// The folder with the records of `glint certify`, inside the directory of the records.
 const CERTIFICATES: &str = "certificates";
 
-/// How far the recorded bound may be from today's, in units.
+/// The largest difference between the recorded bound and the bound that the contract states, in units.
 const SAME: f64 = 1e-9;
 
 /// The evidence for the error bound that a contract states.
@@ -57,10 +57,11 @@ pub struct Certificate {
 
 impl Backing {
     /// Returns the evidence for the bound of a contract that is not in the catalogue, from the records in `directory`. `digest`
-    /// is the digest of the contract.
+    /// identifies the contract: [`crate::core::Core::contract_digest`]. A record of an exhaustive check comes before a
+    /// certificate; without a record that proves the bound, the evidence is the author's statement.
     ///
     /// # Errors
-    /// Fails if a record cannot be read.
+    /// Fails if the directory or a record cannot be read, or if the record of the exhaustive check belongs to another sweep.
     pub fn of_records(directory: &Path, digest: &str, contract: &dyn Contract) -> Result<Self> {
         let shown = |path: &Path| path.display().to_string().replace('\\', "/");
         if let Some(record) = Record::find(directory, digest, contract)?
@@ -78,7 +79,7 @@ impl Backing {
         Ok(found.next().map_or(Self::Author, Self::Certificate))
     }
 
-    /// Returns a sentence about the evidence, which pages print before the terms of the bound.
+    /// Returns a sentence about the evidence, for pages that print it before the terms of the bound.
     pub fn sentence(&self) -> String {
         match self {
             Self::Catalogue => "The bound is proven, not measured".to_owned(),
@@ -96,7 +97,7 @@ impl Backing {
     }
 }
 
-/// As an attribute of the bound.
+/// Prints the evidence as an attribute of the bound, for example "proven by Gappa".
 impl fmt::Display for Backing {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {

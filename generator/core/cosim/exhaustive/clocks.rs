@@ -1,9 +1,9 @@
 //! Compares every register and every output with the golden model at every clock, for every combination of operands.
 //!
-//! This is feasible only for devices whose operands have at most 26 bits in total, so a device of full width is checked through a
-//! narrow configuration of it. The combinations are numbered and cut into blocks. Each lane of a simulator runs some consecutive
-//! combinations from power-up on, and each computation begins with the registers that the previous one left. The result depends
-//! neither on the number of blocks nor on their order.
+//! This is feasible only for devices whose operands have at most 26 bits in total; a device of full width is checked through a
+//! narrow configuration. The combinations are numbered and divided into blocks. Each lane of a simulator runs some consecutive
+//! combinations from power-up on, and each computation begins with the register values of the previous one. The result does not
+//! depend on the order of the blocks.
 
 use std::fmt;
 use std::io::Write;
@@ -25,10 +25,10 @@ use glint_rtl::netlist::Design;
 /// The largest total number of operand bits for which all combinations are run. For more bits this would take too long.
 pub const MOST_BITS: u32 = 26;
 
-/// Combinations of a lane.
+/// The number of combinations that one lane runs from power-up on.
 const RUN: u64 = 512;
 
-/// Combinations of a block.
+/// The number of combinations in a block.
 const BLOCK: u64 = RUN * LANES as u64;
 
 /// The progress of a shard, which is one machine's part of the check of all combinations.
@@ -36,8 +36,8 @@ const BLOCK: u64 = RUN * LANES as u64;
 pub struct Steps {
     /// The number of finished blocks. They are the first blocks of the shard.
     pub done: u64,
-    /// The number of the first combination for which model and hardware differ; `None` if they agree so far. Later combinations are
-    /// then not checked.
+    /// The number of the first combination for which model and hardware differ; `None` if they agree so far. After a
+    /// difference, the shard counts as done, and later combinations are not checked.
     pub differs: Option<u64>,
 }
 
@@ -50,8 +50,8 @@ pub struct Difference {
     pub clock: u64,
     /// The operands of the combination: each name with its bit pattern.
     pub operands: Vec<(String, u64)>,
-    /// The signal that differs, with its value in the model and in the hardware. Its clock is counted from the power-up of the
-    /// simulated instance.
+    /// The signal that differs, with its value in the model and in the hardware. The clock in it is counted from the
+    /// power-up of the simulated instance.
     pub mismatch: Mismatch,
 }
 
@@ -81,7 +81,8 @@ impl<'a> Clocks<'a> {
     /// Matches the golden model with the ports and registers of a design by name.
     ///
     /// # Errors
-    /// Fails if one side has a name that the other does not have.
+    /// Fails if the model predicts a signal that the design does not have, or if the design has an architectural register or an
+    /// output that the model does not predict. Fails also if design and contract do not have the same operands and outputs.
     pub fn new(
         design: &'a Design,
         model: Box<dyn Model>,
@@ -90,7 +91,7 @@ impl<'a> Clocks<'a> {
         Ok(Self { binding: Binding::new(design, model, contract)? })
     }
 
-    /// Fixes some operands at raw values, so that the combinations cover only the other operands.
+    /// Fixes operands at raw values, given as pairs of a name and a value. The combinations then cover only the other operands.
     #[must_use]
     pub fn holding(self, held: &[(String, i64)]) -> Self {
         Self { binding: self.binding.holding(held) }
@@ -110,8 +111,8 @@ impl<'a> Clocks<'a> {
         }
     }
 
-    /// Returns a sentence about the part that the check does not cover: why it does not run the combinations, or which inputs
-    /// only random tests cover.
+    /// Returns a phrase about the cases that the check does not cover. It says why the combinations are not run, or which
+    /// inputs only random tests cover.
     pub fn omits(&self) -> String {
         match self.count() {
             0 => format!(
@@ -128,7 +129,7 @@ impl<'a> Clocks<'a> {
         }
     }
 
-    /// Returns the number of blocks into which the combinations are cut.
+    /// Returns the number of blocks into which the combinations are divided. It is 0 if there are too many combinations.
     pub fn blocks(&self) -> u64 {
         self.count().div_ceil(BLOCK)
     }
@@ -137,16 +138,17 @@ impl<'a> Clocks<'a> {
         block * BLOCK..((block + 1) * BLOCK).min(self.count())
     }
 
-    /// Returns the number of combinations in some blocks.
+    /// Returns the number of combinations in the given blocks.
     pub(super) fn visits(&self, blocks: impl Iterator<Item = u64>) -> u64 {
         blocks.map(|block| self.of_block(block)).map(|places| places.end - places.start).sum()
     }
 
-    /// Checks some blocks, in ascending order, on all threads of rayon's pool. Returns the number of the first combination for
-    /// which model and hardware differ. It calls `progress` with the number of combinations of each finished block.
+    /// Checks the blocks with the given numbers on all threads of rayon's pool; the numbers must be in ascending order. Returns
+    /// the number of the first combination for which model and hardware differ, or `None` if they always agree. It calls
+    /// `progress` with the number of combinations in each finished block.
     ///
     /// # Errors
-    /// Fails if the design cannot be simulated, or does not settle.
+    /// Fails if the design cannot be simulated, or if its signals do not settle in a clock.
     pub fn check(&self, blocks: Vec<u64>, progress: &(dyn Fn(u64) + Sync)) -> Result<Option<u64>> {
         let found = blocks.into_par_iter().find_map_first(|block| {
             let places = self.of_block(block);
@@ -158,7 +160,8 @@ impl<'a> Clocks<'a> {
         found.transpose()
     }
 
-    /// Returns the first of some places at which something differs, each lane with a run of them from power-up on.
+    /// Returns the first of some consecutive combinations at which a signal differs. Each lane runs 512 of them from
+    /// power-up on.
     fn first(&self, places: Range<u64>) -> Result<Option<u64>> {
         let runs =
             places.clone().step_by(RUN as usize).map(|first| (first, RUN.min(places.end - first)));
@@ -175,10 +178,11 @@ impl<'a> Clocks<'a> {
         Ok(mismatch.map(|mismatch| mismatch.seed))
     }
 
-    /// Runs combination number `place` again, for which [`Clocks::check`] found a difference, and returns the details.
+    /// Runs combination number `place` again, for which [`Clocks::check`] found a difference, and returns the details. The run
+    /// begins with the first combination of the same lane.
     ///
     /// # Errors
-    /// Fails if nothing differs for this combination, or as [`Clocks::check`] fails.
+    /// Fails if there is no combination `place`, if nothing differs for it, or as [`Clocks::check`] fails.
     pub fn difference(&self, place: u64) -> Result<Difference> {
         let mut alone = self.alone(place)?;
         alone.go_on(u64::MAX)?;
@@ -193,8 +197,8 @@ impl<'a> Clocks<'a> {
         })
     }
 
-    /// Writes the waveform that ends with the difference in combination number `place`. It begins with clock `from`, counted from
-    /// the power-up of the simulated instance.
+    /// Writes a waveform, in the VCD format, that ends with the difference in combination number `place`. It begins with clock
+    /// `from`, counted from the power-up of the simulated instance.
     ///
     /// # Errors
     /// Fails as [`Clocks::difference`] does, or if the file cannot be written.
@@ -202,7 +206,7 @@ impl<'a> Clocks<'a> {
         self.alone(place)?.trace(from, file)
     }
 
-    /// Returns the run that has a place, up to it, in a simulator of its own.
+    /// Returns a runner with a simulator of its own, which runs the combinations of the lane up to and including `place`.
     fn alone(&self, place: u64) -> Result<Runner<'_, 1>> {
         ensure!(place < self.count(), "there is no combination {place}");
         let first = place - place % RUN;

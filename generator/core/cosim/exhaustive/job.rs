@@ -1,9 +1,9 @@
 //! Runs an exhaustive check as a job that can be interrupted, resumed, and divided among machines.
 //!
-//! The check is cut into numbered blocks, and the blocks are divided among shards: shard i of N has every N-th block, beginning
-//! with block i − 1. For example, shard 2 of 4 has the blocks 1, 5, 9 and so on. A [`ShardState`] records the progress of a
-//! shard, as a few numbers in a file. [`Job::merge`] joins the states of all shards to exactly the result of one uninterrupted
-//! run, because the largest error does not depend on the order in which the blocks were checked.
+//! The check is divided into numbered blocks, and the blocks are divided among shards: shard i of N has every N-th block,
+//! beginning with block i − 1. For example, shard 2 of 4 has the blocks 1, 5, 9 and so on. A [`ShardState`] records the
+//! progress of a shard, as a few numbers in a file. [`Job::merge`] joins the states of all shards to exactly the result of one
+//! uninterrupted run, because the largest error does not depend on the order of the blocks.
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -22,10 +22,11 @@ use glint_golden::{Contract, Sweep};
 /// The largest number of shards of a job. A larger number is probably a typing error.
 pub const MOST_SHARDS: u64 = 1_000_000;
 
-/// Missing shards that are named.
+/// The largest number of missing shards that an error message names.
 const NAMED: usize = 10;
 
-/// Blocks for each thread between two looks at the state: some tenths of a second.
+/// The number of blocks for each thread that are checked between two calls of `look` in [`Job::run`]. They take some tenths of
+/// a second.
 const CHUNK: u64 = 4;
 
 /// A shard: one part of a job that is divided among machines. For example, `2/4` is the second of four shards, and has the blocks
@@ -42,22 +43,23 @@ impl Shard {
     /// The only shard of a job that is not divided.
     pub const WHOLE: Self = Self { number: 1, of: 1 };
 
-    /// Returns whether there is such a part.
+    /// Returns whether the number is from 1 to the number of shards, and the number of shards from 1 to [`MOST_SHARDS`].
     fn is_valid(self) -> bool {
         (1..=MOST_SHARDS).contains(&self.of) && (1..=self.of).contains(&self.number)
     }
 
-    /// Returns the blocks of the shard, of `blocks` in all. For example, shard 1 of 4 has 3 of 10 blocks, and shard 4 has 2.
+    /// Returns how many of all `blocks` blocks the shard has. For example, shard 1 of 4 has 3 of 10 blocks, and shard 4 has 2.
     fn count(self, blocks: u64) -> u64 {
         (blocks + self.of - self.number) / self.of
     }
 
-    /// Returns the number of the shard's block `at`, from 0, among all blocks.
+    /// Returns the number, among all blocks, of the shard's own block `at`. Both are counted from 0.
     fn block(self, at: u64) -> u64 {
         self.number - 1 + at * self.of
     }
 
-    /// Returns the next blocks of the shard, which has `count`, after `done` of them; and how many are done then.
+    /// Returns the next blocks to check, by their number among all blocks. `done` of the shard's `count` blocks are done
+    /// already. Also returns how many are done after these.
     fn chunk(self, done: u64, count: u64) -> (u64, Vec<u64>) {
         let end = (done + CHUNK * rayon::current_num_threads() as u64).min(count);
         (end, (done..end).map(|at| self.block(at)).collect())
@@ -100,7 +102,7 @@ pub struct Progress {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ShardState {
-    /// A digest of the configuration and of the sources of the checking code; see [`crate::core::Core::fingerprint`].
+    /// A digest of the configuration and of the checking code: [`crate::core::Core::fingerprint`].
     pub digest: String,
     /// The shard whose progress this is.
     pub shard: Shard,
@@ -113,8 +115,7 @@ pub struct ShardState {
 }
 
 impl ShardState {
-    /// Makes the state of a shard that has done no work yet. A shard is one machine's part of an exhaustive check. `digest`
-    /// identifies the check.
+    /// Makes the state of a shard that has done no work yet. `digest` identifies the check: [`crate::core::Core::fingerprint`].
     pub fn new(digest: &str, shard: Shard) -> Self {
         let nothing = Progress { done: 0, peak: Peak::NONE };
         Self {
@@ -129,16 +130,18 @@ impl ShardState {
 
 /// An exhaustive check of a configuration, divided into blocks.
 pub struct Job<'a> {
-    /// The operand combinations at which the errors of `f` are measured.
+    /// The operand combinations at which the errors of `f` are measured, or of the outputs of a device that is no highlight.
     pub f: Places<'a>,
     /// The combinations of a word `f` with a colour, at which the rounding errors of products are measured.
     pub colours: Places<'a>,
-    /// The combinations of operands that are compared clock by clock, if their number is small enough.
+    /// The operand combinations in which model and hardware are compared clock by clock. `None` if the job does not compare
+    /// them.
     pub clocks: Option<Clocks<'a>>,
 }
 
 impl<'a> Job<'a> {
-    /// Makes the check of a contract's error bound, for the operand values in the contract's own sweep.
+    /// Makes the check of a contract's error bound, for the operand values in the contract's own sweep. It does not compare
+    /// clock by clock; [`Job::with`] adds this.
     pub fn new(contract: &'a dyn Contract) -> Self {
         Self::of_sweep(contract, contract.sweep())
     }
@@ -149,7 +152,8 @@ impl<'a> Job<'a> {
         Self { f, colours, clocks: None }
     }
 
-    /// Returns a phrase that says how many evaluations of `f` and of products the check makes.
+    /// Returns a phrase with the number of evaluations that the check makes, for example "1 000 evaluations of f and 500 colour
+    /// products".
     pub fn words(&self) -> String {
         let places = grouped(self.f.count());
         match self.colours.count() {
@@ -160,24 +164,26 @@ impl<'a> Job<'a> {
         }
     }
 
-    /// Adds the comparison of every combination of operands clock by clock, if there are not too many.
+    /// Adds the comparison of model and hardware clock by clock, for every combination of operands. If there are too many,
+    /// [`Clocks::count`] is 0, and nothing is compared.
     #[must_use]
     pub fn with(mut self, clocks: Clocks<'a>) -> Self {
         self.clocks = Some(clocks);
         self
     }
 
-    /// Returns the number of blocks of the combinations of operands.
+    /// Returns the number of blocks of the comparison clock by clock. It is 0 without this comparison.
     fn blocks_of_clocks(&self) -> u64 {
         self.clocks.as_ref().map_or(0, Clocks::blocks)
     }
 
-    /// Returns the number of combinations that the shard has still to visit.
+    /// Returns the number of combinations that the shard has still to visit, in all parts of the check together.
     pub fn remaining(&self, state: &ShardState) -> u64 {
         self.parts_remaining(state).iter().sum()
     }
 
-    /// Returns the remaining work of each part: of `f`, of the colours, of the combinations.
+    /// Returns the number of combinations that the shard has still to visit in each part: for `f`, for the colours, and clock
+    /// by clock.
     fn parts_remaining(&self, state: &ShardState) -> [u64; 3] {
         // The blocks of a part that are left after the first `done` blocks of the shard.
         let left = |done: u64, blocks: u64| {
@@ -193,11 +199,12 @@ impl<'a> Job<'a> {
         [f, colours, clocks]
     }
 
-    /// Checks that a state from a file can be a state of this job. Its numbers must be in range. The function computes the recorded
-    /// largest errors again, at the recorded operands, and compares them.
+    /// Checks that a state from a file can be a state of this job. The numbers must be in range, and the recorded largest
+    /// errors must be in blocks that are done. The function computes the largest errors again, at the recorded operands, and
+    /// compares them with the recorded errors.
     ///
     /// # Errors
-    /// Fails if the state cannot belong to this job.
+    /// Fails if any of these conditions is violated.
     pub fn validate(&self, state: &ShardState) -> Result<()> {
         let shard = state.shard;
         ensure!(shard.is_valid(), "there is no shard {shard}");
@@ -242,10 +249,10 @@ impl<'a> Job<'a> {
         Ok(())
     }
 
-    /// Estimates how long the rest of the shard takes on `threads` threads, by timing a short sample of each part.
+    /// Estimates how long the remaining work of the shard takes on `threads` threads, by timing a short sample of each part.
     ///
     /// # Errors
-    /// Fails if the design cannot be simulated, or does not settle.
+    /// Fails if the design cannot be simulated, or if its signals do not settle in a clock.
     pub fn estimate(&self, state: &ShardState, threads: usize) -> Result<Duration> {
         let [f, colours, clocks] = self.parts_remaining(state);
         let mut sum = 0.0;
@@ -262,11 +269,12 @@ impl<'a> Job<'a> {
         Ok(Duration::from_secs_f64(sum / threads.max(1) as f64))
     }
 
-    /// Continues a shard from `state` to its end. It calls `look` with the state now and then, and stops if `look` returns
-    /// `ControlFlow::Break`. It calls `progress` with the number of combinations of each finished block.
+    /// Continues a shard from `state` to its end, and updates `state`. It calls `look` with the state after every few blocks.
+    /// It returns `ControlFlow::Break` as soon as `look` does, and `ControlFlow::Continue` when the shard is done. It calls
+    /// `progress` with the number of combinations in each finished block.
     ///
     /// # Errors
-    /// Fails if the design cannot be simulated, or does not settle.
+    /// Fails if the design cannot be simulated, or if its signals do not settle in a clock.
     pub fn run(
         &self,
         state: &mut ShardState,
@@ -304,10 +312,12 @@ impl<'a> Job<'a> {
         Ok(ControlFlow::Continue(()))
     }
 
-    /// Merges the results of all shards of one job. `names` gives the name of each of the `states`, in their order, for the error.
+    /// Merges the results of all shards of one job into the state of an undivided job. `names` gives a name for each of the
+    /// `states`, in the same order, for error messages.
     ///
     /// # Errors
-    /// Fails if the shards belong to different jobs, or if a shard is missing, duplicated or not done.
+    /// Fails if `states` is empty, if the shards belong to different jobs or divisions, or if a shard is missing, duplicated,
+    /// damaged or not done.
     pub fn merge(&self, states: &[ShardState], names: &[String]) -> Result<ShardState> {
         let Some(first) = states.first() else {
             anyhow::bail!("nothing to merge");
@@ -360,7 +370,7 @@ impl<'a> Job<'a> {
     }
 }
 
-/// The parts of a job.
+/// The two parts of a job that measure errors.
 #[derive(Clone, Copy)]
 enum JobPart {
     F,

@@ -13,7 +13,7 @@ use crate::package::digest;
 #[serde(deny_unknown_fields)]
 struct SavedShard {
     state: ShardState,
-    /// SHA-256 of the state as JSON without blanks.
+    /// The SHA-256 digest of the state as JSON without blanks, in hexadecimal.
     checksum: String,
 }
 
@@ -21,7 +21,7 @@ fn checksum(state: &ShardState) -> Result<String> {
     Ok(digest(&serde_json::to_vec(state)?))
 }
 
-/// Returns the text of a file that stores the progress of a shard.
+/// Returns the text of a file with the progress of a shard: JSON with a checksum.
 ///
 /// # Errors
 /// Fails if the state cannot be written as JSON.
@@ -30,10 +30,10 @@ pub fn to_text(state: &ShardState) -> Result<String> {
     Ok(serde_json::to_string_pretty(&kept)? + "\n")
 }
 
-/// Parses the text of a file that stores the progress of a shard.
+/// Parses the text of a file with the progress of a shard, as [`to_text`] writes it.
 ///
 /// # Errors
-/// Fails if the text is not the text of such a file, or was changed since it was written.
+/// Fails if the text is no such file of this version of Glint, or if its checksum is wrong, because the file was changed.
 pub fn from_text(text: &str) -> Result<ShardState> {
     let kept: SavedShard =
         serde_json::from_str(text).context("not a file of this version of Glint")?;

@@ -1,11 +1,12 @@
 //! Checks the error bound of a contract for all operands, instead of a random sample.
 //!
-//! A highlight device multiplies each colour by a reflectance `f`, so the check has two parts. The first measures the error of
-//! `f` for every operand combination in the contract's sweep. The second measures the rounding of every possible word `f` times
-//! every colour. The sum of both largest errors bounds the error of an output, and is compared with the contract. For a device
-//! with few operand bits, [`Clocks`] also compares model and hardware clock by clock.
+//! A highlight device multiplies each colour by a reflectance `f`, so the check has two parts. The first part measures the
+//! error of `f` for every operand combination that the contract lists for an exhaustive check (its *sweep*). The second part
+//! measures the rounding of every possible word `f` times every colour. The sum of both largest errors bounds the error of an
+//! output, and is compared with the contract. [`Clocks`] also compares model and hardware clock by clock, if the operands have
+//! few bits.
 //!
-//! All combinations are numbered and cut into blocks. Any machine may check any blocks in any order; the joined result is the
+//! All combinations are numbered and divided into blocks. Machines may check the blocks in any order; the joined result is the
 //! same.
 
 pub mod axis;
@@ -29,26 +30,30 @@ pub use record::Record;
 use super::outcome::ROUNDING_OF_F64;
 use glint_golden::{Contract, Sweep};
 
-/// The default directory of the records of exhaustive checks.
+/// The default directory of the records of exhaustive checks, relative to the working directory.
 pub const PROOFS: &str = "records/proofs";
 
 /// The result of an exhaustive check of the error bound.
 #[derive(Clone, Debug)]
 pub struct Proof {
-    /// Whether the sweep measures the f of a highlight, and not the outputs themselves.
+    /// Whether the check measures the error of the reflectance `f` of a highlight, and not the error of the outputs themselves.
     of_f: bool,
-    /// The largest error of `f`. For a device that is no highlight, the largest error of an output, in units.
+    /// The largest error of `f` as an absolute number. For a device that is no highlight, the largest error of an output, in
+    /// units of the output's last bit.
     pub f: Peak,
-    /// The error of f in output units, for the largest colour.
+    /// The error of `f` in output units, for the largest colour: `f.error` times the largest colour operand. For a device that
+    /// is no highlight, the same as `f.error`.
     pub f_units: f64,
-    /// The largest rounding error of a product of `f` with a colour, in output units.
+    /// The largest rounding error of a product of `f` with a colour, in output units. It is 0 for a device that is no
+    /// highlight.
     pub colours: Peak,
-    /// Sentences about the errors that exceed the contract's bound; empty if the bound holds.
+    /// Sentences about the errors that exceed the contract's bound. Empty if the bound holds.
     pub failures: Vec<String>,
 }
 
 impl Proof {
-    /// Compares the largest error of `f` and the largest rounding error of the products with colours with the contract's bound.
+    /// Compares two largest errors with the contract's bound: `f` is the largest error of `f`, and `colours` the largest
+    /// rounding error of the products with colours, in output units.
     pub fn new(contract: &dyn Contract, f: Peak, colours: Peak) -> Self {
         let colour = contract.operands().iter().find(|operand| operand.colour);
         let largest = colour.map_or(1.0, |operand| operand.domain.1 as f64);
@@ -79,8 +84,9 @@ impl Proof {
         proof
     }
 
-    /// Returns the verdict of the check in a word. It is "proved" only if the sweep left out no operand that determines `f`, and if
-    /// the bound keeps the contract.
+    /// Returns the verdict of the check in words. "proved" means that the errors are within the bound, that the bound keeps the
+    /// accuracy contract, and that `sweep` leaves out no operand that determines `f`. The other verdicts are "FAILS", "no bound
+    /// is stated", "within its bound, outside the contract" and "passed, not proved".
     pub fn verdict(&self, contract: &dyn Contract, sweep: &Sweep) -> &'static str {
         if !self.failures.is_empty() {
             "FAILS"
@@ -95,7 +101,8 @@ impl Proof {
         }
     }
 
-    /// Returns a phrase with the largest errors. The text `at`, such as the operands of the first error, is inserted after it.
+    /// Returns a phrase with the largest errors. The text `at`, for example the operands of the largest error, is inserted
+    /// after this error; `at` may be empty.
     pub fn words(&self, at: &str) -> String {
         if !self.of_f {
             return format!("an output is off by {:.3} units at most{at}", self.together());

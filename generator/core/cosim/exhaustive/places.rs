@@ -14,7 +14,7 @@ use glint_golden::{Axis, Contract, Sweep, Values};
 /// The number of operand combinations in a block. A block takes some milliseconds.
 pub const BLOCK: u64 = 1 << 17;
 
-/// The number of places that are timed, and about the number of places of a glimpse.
+/// The number of places that are timed, and the approximate number of places of [`Places::glimpse`].
 const SAMPLE: u64 = 4096;
 
 /// The largest error among some operand combinations, and the first combination with this error.
@@ -23,20 +23,21 @@ pub struct Peak {
     /// The absolute error. It is infinite if the formula has no value for the operands.
     #[serde(deserialize_with = "or_infinite")]
     pub error: f64,
-    /// The number of the operand combination.
+    /// The number of the operand combination, by the numbering of [`Places`].
     pub place: u64,
 }
 
-/// Reads a number, or the `null` that JSON has for an infinite one.
+/// Reads a number, or `null`, which JSON has in place of an infinite number.
 fn or_infinite<'de, D: Deserializer<'de>>(number: D) -> Result<f64, D::Error> {
     Ok(Option::deserialize(number)?.unwrap_or(f64::INFINITY))
 }
 
 impl Peak {
-    /// The initial value of a search for the largest error, before any combination was visited. Any error replaces it.
+    /// The start of a search for the largest error, when no combination was visited. [`Peak::join`] with any visited
+    /// combination replaces it.
     pub const NONE: Self = Self { error: 0.0, place: u64::MAX };
 
-    /// Returns the larger of two peaks; if their errors are equal, the one with the smaller number.
+    /// Returns the larger of two peaks; if their errors are equal, the peak with the smaller place.
     #[must_use]
     pub fn join(self, other: Self) -> Self {
         let later = self.place > other.place;
@@ -53,7 +54,8 @@ enum PlaceMeasure {
     Colour,
 }
 
-/// The operand combinations that a check of the error bound visits, each with a number. The last operand changes fastest.
+/// The operand combinations that a check of the error bound visits. Each has a number, its place; the last operand changes
+/// fastest.
 pub struct Places<'a> {
     contract: &'a dyn Contract,
     measure: PlaceMeasure,
@@ -71,8 +73,8 @@ impl<'a> Places<'a> {
         Self { contract, measure: PlaceMeasure::F, sweep }
     }
 
-    /// Numbers the combinations of every word `f` with every value of a colour operand. All colour operands are alike, so one is
-    /// enough.
+    /// Numbers the combinations of every word `f` with every value of a colour operand. All colour operands are alike, so the
+    /// first represents all. A device without colours has no combinations.
     pub fn of_colours(contract: &'a dyn Contract) -> Self {
         let colour = contract.operands().iter().find(|operand| operand.colour);
         let values = match contract.highlight().zip(colour) {
@@ -97,7 +99,7 @@ impl<'a> Places<'a> {
         }
     }
 
-    /// Returns the operands with their values, and the operands that the sweep leaves out.
+    /// Returns the operands with their values. The field `omits` names the operands and values that the check leaves out.
     pub fn sweep(&self) -> &Sweep {
         &self.sweep
     }
@@ -107,13 +109,13 @@ impl<'a> Places<'a> {
         self.sweep.axes.iter().map(|axis| axis.values.count()).product()
     }
 
-    /// Returns the number of blocks into which the combinations are cut.
+    /// Returns the number of blocks into which the combinations are divided. The last block may be smaller.
     pub fn blocks(&self) -> u64 {
         self.count().div_ceil(BLOCK)
     }
 
-    /// Returns the operand values of combination `number`. For example, with operands of 2 and of 3 values, combination 4 has the
-    /// second value of each.
+    /// Returns the raw operand values of combination `number`, counted from 0. For example, with operands of 2 and of 3 values,
+    /// combination 4 has the second value of each operand.
     pub fn place(&self, mut number: u64) -> Vec<i64> {
         let mut values: Vec<i64> = self
             .sweep
@@ -131,8 +133,8 @@ impl<'a> Places<'a> {
         values
     }
 
-    /// Returns the names and values of the operands in combination `number`, as text. For example, `cos_gamma = 1044480, exponent =
-    /// 20`.
+    /// Returns the names and raw values of the operands in combination `number`, as text. For example, `cos_gamma = 1044480,
+    /// exponent = 20`.
     pub fn words(&self, number: u64) -> String {
         let pairs = self.sweep.axes.iter().zip(self.place(number));
         let words: Vec<String> =
@@ -140,12 +142,14 @@ impl<'a> Places<'a> {
         words.join(", ")
     }
 
-    /// Returns the error for combination `number`.
+    /// Returns the error for combination `number`: the absolute error of `f`, the error of an output in units, or the rounding
+    /// error of a product, depending on the kind of these places. It is infinite if the formula has no value there.
     pub fn error(&self, number: u64) -> f64 {
         self.error_at(&self.place(number))
     }
 
-    /// Returns the errors for some combinations that are spread evenly over all. They serve as a fingerprint of the golden model.
+    /// Returns the errors for some combinations, about 4096, that are spread evenly over all. Callers use them as a
+    /// fingerprint of the golden model.
     pub fn glimpse(&self) -> Vec<f64> {
         let step = (self.count() / SAMPLE).max(1);
         (0..self.count()).step_by(step as usize).map(|place| self.error(place)).collect()
@@ -168,17 +172,17 @@ impl<'a> Places<'a> {
         place / BLOCK
     }
 
-    /// Returns the places of one block.
+    /// Returns the places of block number `block`.
     fn of_block(&self, block: u64) -> Range<u64> {
         block * BLOCK..((block + 1) * BLOCK).min(self.count())
     }
 
-    /// Returns the number of places in some blocks.
+    /// Returns the total number of places in the given blocks.
     pub(super) fn visits(&self, blocks: impl Iterator<Item = u64>) -> u64 {
         blocks.map(|block| self.of_block(block)).map(|places| places.end - places.start).sum()
     }
 
-    /// Measures how long one place takes on one thread.
+    /// Measures how long the check of one place takes on one thread.
     pub(super) fn pace(&self) -> Duration {
         let count = self.count().min(SAMPLE);
         let first = (self.count() - count) / 2;
@@ -187,7 +191,7 @@ impl<'a> Places<'a> {
         begin.elapsed() / count.max(1) as u32
     }
 
-    /// Returns the peak of places that follow one another.
+    /// Returns the largest error among consecutive places, with the first place that has it.
     fn peak(&self, places: Range<u64>) -> Peak {
         let mut peak = Peak::NONE;
         let Some(inner) = self.sweep.axes.last() else {
@@ -196,7 +200,7 @@ impl<'a> Places<'a> {
         let count = inner.values.count();
         let mut number = places.start;
         while number < places.end {
-            // Along the last axis only its own value moves.
+            // Consecutive places differ only in the value of the last axis, until that axis begins again.
             let mut place = self.place(number);
             let last = place.len() - 1;
             let at = number % count;
@@ -213,8 +217,8 @@ impl<'a> Places<'a> {
         peak
     }
 
-    /// Measures the errors for all combinations in some blocks on all processors, and returns the largest. It calls `progress` with
-    /// the number of combinations in each finished block.
+    /// Measures the errors for all combinations in the given blocks on all threads of rayon's pool, and returns the largest.
+    /// Returns [`Peak::NONE`] without blocks. It calls `progress` with the number of combinations in each finished block.
     pub fn check(
         &self,
         blocks: impl IntoParallelIterator<Item = u64>,

@@ -1,10 +1,10 @@
 //! Reads the records of exhaustive checks, which `glint cosim --exhaustive --json` writes.
 //!
-//! An exhaustive check computes the error of a device for every combination of operand values that its contract lists. The digest
-//! of the contract in a record tells to which configuration the record belongs.
+//! An exhaustive check computes the error of a device for every combination of operand values that its contract lists. The
+//! digest of the contract in a record tells to which configuration the record belongs.
 //!
-//! Glint does not simply trust a record. The record names the operands with the largest error of the check. Glint computes the
-//! error at these operands again, and compares it with the recorded error ([`Record::proves`]).
+//! Glint does not simply trust a record. It computes the error again at the operands with the largest error in the record, and
+//! compares it with the recorded error ([`Record::proves`]).
 
 use std::path::{Path, PathBuf};
 
@@ -16,23 +16,23 @@ use glint_base::input;
 use glint_base::program::Program;
 use glint_golden::{Axis, Contract, Sweep, Values};
 
-/// The largest difference between a recorded figure and the figure that is computed today.
+/// The largest difference between a recorded figure and the same figure when Glint computes it again.
 const SAME: f64 = 1e-9;
 
 /// The record of an exhaustive check of a configuration.
 #[derive(Clone, Debug, Deserialize)]
 pub struct Record {
     axes: Vec<RecordedAxis>,
-    /// The number of evaluations of `f` in the check.
+    /// The number of combinations at which the check computed `f`, or the outputs of a device that is no highlight.
     pub evaluations: u64,
-    /// The number of products of a word `f` with a colour. It is 0 for a device that is no highlight.
+    /// The number of products of a word `f` with a colour that the check computed. It is 0 for a device that is no highlight.
     pub colour_products: u64,
-    /// The largest error of f. For a device that is no highlight, the largest error of an output, in units.
+    /// The largest error of `f`. For a device that is no highlight, the largest error of an output, in units.
     pub f: RecordedPeak,
     /// The largest error of a colour multiplier, in output units.
     colour_units: f64,
-    /// The upper bound that the check gives for the error of an output, in output units: the error of `f` for the largest colour,
-    /// plus the rounding of the product.
+    /// The upper bound that the check gives for the error of an output, in output units. It is the error of `f` for the largest
+    /// colour plus the largest rounding error of a product with a colour.
     pub together: f64,
     /// Whether the contract's bound held for all operands.
     pub holds: bool,
@@ -44,7 +44,7 @@ pub struct Record {
 /// The largest error of `f` in a record.
 #[derive(Clone, Copy, Debug, Deserialize)]
 pub struct RecordedPeak {
-    /// The absolute error of `f`.
+    /// The absolute error of `f`, without a unit.
     pub error: f64,
     /// The error of `f` in output units, for the largest colour.
     pub units: f64,
@@ -62,7 +62,8 @@ struct RecordedAxis {
 }
 
 impl RecordedAxis {
-    /// Returns whether the record visited every value of an axis, and perhaps more.
+    /// Returns whether the record visited every value of `axis`. A recorded list may have more values than the axis; a range
+    /// must be the same.
     fn covers(&self, axis: &Axis) -> bool {
         self.name == axis.name
             && match &axis.values {
@@ -82,17 +83,18 @@ impl RecordedAxis {
 
 #[derive(Deserialize)]
 struct Report {
-    /// In each, `configuration` identifies the checked contract: [`crate::core::Core::contract_digest`].
+    /// The results by configuration. The entry `configuration` of each identifies the checked contract:
+    /// [`crate::core::Core::contract_digest`].
     configurations: Vec<serde_json::Value>,
 }
 
 impl Record {
-    /// Returns the record of a configuration, among all in a directory. Returns `None` if the directory or the record does not
-    /// exist. It ignores files that are no records.
+    /// Returns the record for the contract with this digest, from the JSON files in `directory`. Returns `None` if the
+    /// directory does not exist, or has no such record. It ignores files that are no records.
     ///
     /// # Errors
-    /// Fails if the directory or a file in it cannot be read, if a record is damaged, or if the record's sweep is not the
-    /// contract's.
+    /// Fails if the directory or a file in it cannot be read, if a record is damaged, or if the record leaves out a part of the
+    /// contract's sweep.
     pub fn find(directory: &Path, digest: &str, contract: &dyn Contract) -> Result<Option<Self>> {
         for (path, report) in input::records::<Report>(directory)? {
             let found = report.configurations.into_iter().find(|it| it["configuration"] == digest);
@@ -107,15 +109,15 @@ impl Record {
         Ok(None)
     }
 
-    /// Returns the sweep of the recorded check: the contract's sweep, or one with more values of an operand for which the
-    /// contract lists some.
+    /// Returns the sweep of the recorded check: the operand values that it visited. It has at least the values of the
+    /// contract's own sweep.
     pub fn sweep(&self, contract: &dyn Contract) -> Sweep {
         let axes = self.axes.iter().map(RecordedAxis::axis).collect();
         Sweep { axes, omits: contract.sweep().omits }
     }
 
-    /// Refuses a record that leaves out a part of the contract's sweep. The bound in the record may be out of date, so its
-    /// errors are compared with today's bound.
+    /// Refuses a record that leaves out a part of the contract's sweep. The bound in the record does not matter here:
+    /// [`Record::proves`] compares the recorded errors with the contract's present bound.
     fn is_of(&self, contract: &dyn Contract) -> Result<()> {
         let sweep = contract.sweep();
         let same_axes = self.axes.len() == sweep.axes.len()
@@ -146,12 +148,13 @@ impl Record {
         Proof::new(contract, f, Peak { error: self.colour_units, place: 0 })
     }
 
-    /// Returns a phrase with the largest errors of the record.
+    /// Returns a phrase with the largest errors of the record, in the form of [`Proof::words`].
     pub fn words(&self, contract: &dyn Contract) -> String {
         self.proof(contract).words("")
     }
 
-    /// Returns the number of evaluations that [`Record::recheck`] makes if it visits about `places` operand combinations of `f`.
+    /// Returns the number of evaluations that [`Record::recheck`] reports to its `progress`, if it gets the same `places`.
+    /// `places` must not be 0.
     pub fn steps(&self, contract: &dyn Contract, places: u64) -> u64 {
         let f = Places::of_sweep(contract, self.sweep(contract));
         let colours = Places::of_colours(contract);
@@ -159,8 +162,9 @@ impl Record {
     }
 
     /// Computes a part of the recorded check again and compares it with the record. The part is about `places` evenly spread
-    /// operand combinations, the combination with the largest error, and all products with colours. Returns the number of
-    /// evaluations of `f`, and the differences from the record.
+    /// operand combinations, the combination with the largest error, and all products with colours. `places` must not be 0.
+    /// Returns the number of combinations at which it computed `f`, and a sentence for each difference from the record; no
+    /// sentence means that the record holds. It calls `progress` with the number of evaluations in each finished block.
     pub fn recheck(
         &self,
         contract: &dyn Contract,
@@ -197,7 +201,7 @@ impl Record {
     }
 }
 
-/// Returns the numbers of blocks that together have about `count` places, spread evenly.
+/// Returns the numbers of evenly spread blocks that together have about `count` places, at least one block.
 fn part(places: &Places<'_>, count: u64) -> Vec<u64> {
     let stride = (places.count() / count).max(1);
     (0..places.blocks()).step_by(stride as usize).collect()

@@ -5,7 +5,8 @@ use std::ops::ControlFlow;
 use super::*;
 use glint_golden::{Axis, Bound, Operand, Output, Sweep, Values};
 
-/// No outputs; the "error" numbers the places 0, 1, 2, …, and repeats its largest value.
+/// A contract without outputs. Its "error" is the number of the place, 0, 1, 2 and so on, and its largest value occurs at many
+/// places.
 struct Counting;
 
 impl Contract for Counting {
@@ -65,7 +66,7 @@ fn without_colours_there_are_no_products() {
     assert_eq!(Places::of_colours(&Counting).count(), 0);
 }
 
-/// Goes on to the end of a shard.
+/// Runs a shard from `state` to its end.
 fn completed(mut state: ShardState) -> ShardState {
     let end = Job::new(&Counting).run(&mut state, &|_| (), &mut |_| ControlFlow::Continue(()));
     assert_eq!(end.unwrap(), ControlFlow::Continue(()));
@@ -111,7 +112,7 @@ fn shards_join_to_the_whole() {
     assert!(refused(&[nothing]).contains("`c` is not complete; go on with --shard 1/3"));
 }
 
-/// As an attacker, or a bad disk, would write them.
+/// Tries states that a damaged disk or an attacker could have written.
 #[test]
 fn what_cannot_be_a_state_is_refused() {
     let job = Job::new(&Counting);
@@ -138,7 +139,7 @@ fn what_cannot_be_a_state_is_refused() {
         let merged = job.merge(&[state], &["part".to_owned()]).unwrap_err();
         assert!(format!("{merged:#}").contains("`part` is damaged"), "{merged:#}");
     }
-    // A place of another shard, or of a block that is not done.
+    // The largest error is in a block of another shard, or in a block that is not done.
     let mut state = ShardState::new("digest", Shard { number: 1, of: 2 });
     state.f = Progress { done: 1, peak: Peak { error: f64::from(1 << 17), place: 1 << 17 } };
     assert!(job.validate(&state).unwrap_err().to_string().contains("has not done"));

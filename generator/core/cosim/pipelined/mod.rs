@@ -1,9 +1,9 @@
 //! Predicts the signals of a pipelined core at every clock, from the golden model of the sequential core.
 //!
-//! The model computes each point (one set of operands) on its own. This module tracks in which stage each point is, and predicts
-//! the handshake, the results and the side channel, which carries data of the user along with each point. It also predicts
-//! *checkpoints*: nets in a stage of the pipeline that carry the same value as a register of the sequential core after some
-//! microinstruction. For the point in that stage, it expects the value of that register in the model.
+//! The model computes each point (one set of operands) on its own. This module tracks in which stage each point is, and
+//! predicts the handshake, the results and the side channel, which carries data of the user along with each point. It also
+//! predicts *checkpoints*: nets in a stage of the pipeline that carry the same value as a register of the sequential core after
+//! some microinstruction. For the point in that stage, it expects the value of that register in the model.
 
 mod reference;
 #[cfg(test)]
@@ -21,19 +21,19 @@ use glint_golden::pipeline::Occupancy;
 use glint_rtl::netlist::{Design, NetId, Pipeline, Role};
 use reference::{Expected, Reference};
 
-/// A point on its way.
+/// A point that the pipeline has taken and whose results were not read.
 #[derive(Clone, Debug)]
 struct PipelinedPoint {
     /// Raw operands, in the order of `Contract::operands`.
     operands: Vec<i64>,
     side: u64,
     expected: Expected,
-    /// The place of a combination, and the clock that took it.
+    /// The number that the caller gave to the point, and the clock that took it.
     place: u64,
     taken: u64,
 }
 
-/// The points that are in a pipeline, with the predicted signals.
+/// The points that are in a pipeline, and the signals that are predicted from them.
 #[derive(Clone)]
 pub(super) struct Pipe {
     columns: Arc<Vec<(ComparedValue, usize)>>,
@@ -44,7 +44,7 @@ pub(super) struct Pipe {
     pub(super) taken: bool,
 }
 
-/// A value that is compared.
+/// A signal that is compared. Results are numbered in the order of the ports, and checkpoints in the order of the pipeline.
 #[derive(Clone, Copy)]
 enum ComparedValue {
     OutValid,
@@ -55,11 +55,12 @@ enum ComparedValue {
 }
 
 impl Pipe {
-    /// Returns a pipeline without points. Also returns the nets whose values are compared after each clock, in the order in which
-    /// differences are reported, and the nets of the results among them.
+    /// Returns a pipeline without points. Also returns the nets whose values are compared after each clock, in the order in
+    /// which differences are reported, and the nets of the results among them.
     ///
     /// # Errors
-    /// Fails if one side has a name that the other does not have.
+    /// Fails if the model does not predict a result, a checkpoint's register, `word_address`, `busy` or `valid`, or if it does
+    /// not have the inputs of the operands and of the handshake.
     pub(super) fn new(
         design: &Design,
         pipeline: &Pipeline,
@@ -101,8 +102,8 @@ impl Pipe {
         Ok((pipe, nets, results))
     }
 
-    /// Advances the points by one clock with the given inputs. A point that is taken gets the number `place`. If `measure` is
-    /// given, it measures the errors of the results.
+    /// Advances the points by one clock with the given inputs, and counts a result in `seen` if the receiver takes one. A point
+    /// that is taken gets the number `place`. If `measure` is given, the function measures the error of the result.
     ///
     /// # Errors
     /// Fails if the golden model does not finish a computation.
@@ -137,7 +138,9 @@ impl Pipe {
         Ok(())
     }
 
-    /// Returns the predicted value of compared net number `at` after the latest clock, if it is known.
+    /// Returns the predicted value of the compared net number `at` after the latest clock, or `None` if the value is not
+    /// predicted. The value of a point's signal is not predicted if no point is in its stage, or if the computation of the
+    /// point does not reach the checkpoint.
     #[inline]
     pub(super) fn expected(&self, at: usize) -> Option<u64> {
         let (column, stage) = self.columns[at];
@@ -151,8 +154,8 @@ impl Pipe {
         }
     }
 
-    /// Returns the number of the point whose value compared net number `at` carries, and the clock in which the pipeline took the
-    /// point.
+    /// Returns the number of the point in the stage of the compared net number `at`, and the clock in which the pipeline took
+    /// the point. Returns `None` if no point is in that stage.
     pub(super) fn point(&self, at: usize) -> Option<(u64, u64)> {
         self.stages.stage(self.columns[at].1).map(|point| (point.place, point.taken))
     }

@@ -9,7 +9,7 @@ use crate::cosim::ports::Ports;
 use glint_golden::Model;
 use glint_rtl::netlist::{Design, NetId, Pipeline};
 
-/// The number of clocks that a computation may take.
+/// The number of clocks after which a computation counts as one that never ends.
 const MOST_CLOCKS: usize = 8192;
 
 /// The golden model of the sequential core, which computes one point at a time.
@@ -17,11 +17,12 @@ const MOST_CLOCKS: usize = 8192;
 pub(super) struct Reference {
     model: Driven,
     address: usize,
-    /// The signals of the results.
+    /// The indices of the results among the model's signals.
     results: Vec<usize>,
-    /// For each checkpoint, its signal.
+    /// For each checkpoint, the index of its register among the model's signals.
     registers: Vec<usize>,
-    /// For each microinstruction, the checkpoints in it: how often it was executed before, and which.
+    /// For each microinstruction, its checkpoints: how often the microinstruction was executed before, and the index of the
+    /// checkpoint.
     due: Vec<Vec<(usize, usize)>>,
     visits: Vec<usize>,
 }
@@ -29,7 +30,7 @@ pub(super) struct Reference {
 /// The values that a pipeline must show for a point.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Expected {
-    /// The bit patterns of the results.
+    /// The bit patterns of the first results that the computation shows.
     pub results: Vec<u64>,
     /// For each checkpoint, the value of its register, or `None` if the computation does not reach the checkpoint's
     /// microinstruction.
@@ -40,7 +41,8 @@ impl Reference {
     /// Finds the signals of the model that belong to the checkpoints and the results of a pipeline.
     ///
     /// # Errors
-    /// Fails if one side has a name that the other does not have.
+    /// Fails if the model does not predict a result, a checkpoint's register, `word_address`, `busy` or `valid`, or if it does
+    /// not have the inputs of the operands and of the handshake.
     pub(super) fn new(
         design: &Design,
         pipeline: &Pipeline,
@@ -67,11 +69,11 @@ impl Reference {
         })
     }
 
-    /// Computes one point from the bit patterns of its operands, in the order of the ports. Returns its results, and its register
-    /// values at the checkpoints.
+    /// Computes one point from the bit patterns of its operands, in the order of the ports. Returns its results, and its
+    /// register values at the checkpoints.
     ///
     /// # Errors
-    /// Fails if the golden model does not finish the computation.
+    /// Fails if the golden model does not finish the computation within 8192 clocks.
     pub(super) fn point(&mut self, patterns: impl Iterator<Item = u64>) -> Result<Expected> {
         self.model.start(patterns);
         self.visits.fill(0);

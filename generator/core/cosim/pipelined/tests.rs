@@ -2,14 +2,14 @@ use crate::cosim::{Lockstep, Outcome};
 use crate::registry::{Device, Registry};
 use glint_config::{Config, Value};
 
-/// Returns the default configuration of a device with these keys.
+/// Returns the default configuration of a device as a pipeline, but with these keys.
 fn pipelined(device: &Device, keys: &[(&str, Value)]) -> Config {
     let mut values = vec![("architecture".to_owned(), Value::Text("pipelined".to_owned()))];
     values.extend(keys.iter().map(|(name, value)| ((*name).to_owned(), value.clone())));
     Config::from_values(&(device.schema)(), "device", values).expect("keys that there are")
 }
 
-/// Runs `points` points through a pipeline of a device with these keys, beside its golden model.
+/// Compares `points` results of the pipeline of a device with its golden model, in a configuration with these keys.
 fn outcome(device: &Device, keys: &[(&str, Value)], points: u64) -> Outcome {
     let config = pipelined(device, keys);
     let design = device.design(&config).unwrap_or_else(|wrong| panic!("{wrong}"));
@@ -18,7 +18,7 @@ fn outcome(device: &Device, keys: &[(&str, Value)], points: u64) -> Outcome {
     lockstep.run_alone(points).unwrap()
 }
 
-/// Returns the devices that compute a point at a time.
+/// Returns the devices that compute one point after each `start`.
 fn devices() -> Vec<Device> {
     let registry = Registry::catalogue();
     let lines = ["quad-cosine", "cosine-squared"];
@@ -34,7 +34,8 @@ fn every_device_is_what_its_golden_model_says() {
     }
 }
 
-/// A point every few clocks: fewer multipliers, registers that hold values, and a slot in which points are taken.
+/// A point is taken only every few clocks. Such a pipeline has fewer multipliers, registers that hold values, and one clock in
+/// each interval in which it takes a point.
 #[test]
 fn every_device_with_shared_multipliers_is_what_its_golden_model_says() {
     let interval = |clocks: u32| ("pipeline.interval", Value::Text(clocks.to_string()));
@@ -52,7 +53,7 @@ fn every_device_with_shared_multipliers_is_what_its_golden_model_says() {
     }
 }
 
-/// Every key of `[pipeline]`: the side channel is compared too.
+/// Tries every key of `[pipeline]`. The side channel is compared too.
 #[test]
 fn a_pipeline_with_a_side_channel_or_without_stalls_is_what_its_golden_model_says() {
     let registry = Registry::catalogue();
@@ -70,7 +71,7 @@ fn a_pipeline_with_a_side_channel_or_without_stalls_is_what_its_golden_model_say
     }
 }
 
-/// A side value that stays behind, or goes ahead, is noticed.
+/// A side value that comes a clock too late or too early is noticed.
 #[test]
 fn a_wrong_side_value_is_noticed() {
     let registry = Registry::catalogue();
@@ -89,7 +90,8 @@ fn a_wrong_side_value_is_noticed() {
     assert_eq!(mismatch.signal, "side_out");
 }
 
-/// Every point of a list comes out, in its order, after the drawn points: none is withdrawn or reset.
+/// Every point of a list comes out, in the order of the list, after the drawn points. No point of the list is withdrawn or lost
+/// in a reset.
 #[test]
 fn a_recording_goes_through_every_point_of_a_list() {
     let registry = Registry::catalogue();

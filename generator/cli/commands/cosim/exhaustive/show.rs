@@ -14,7 +14,7 @@ use glint_base::text;
 use glint_core::cosim::exhaustive::{Difference, Job, Proof, Shard, ShardState};
 use glint_golden::Values;
 
-/// Tells the user how much work is ahead, and which part of the check it leaves out.
+/// Prints how much work is ahead, and which parts the check does not cover.
 pub fn announce(one: &Loaded, job: &Job<'_>, state: &ShardState) {
     say!("{}: {} ({})", one.path, job.words(), job.f.sweep().words(),);
     if !job.f.sweep().omits.is_empty() {
@@ -38,7 +38,8 @@ pub fn announce(one: &Loaded, job: &Job<'_>, state: &ShardState) {
     }
 }
 
-/// Reports the result of a shard. Returns whether the errors are within the bound, and model and hardware do not differ.
+/// Reports the result of a shard, and adds it to `list`. Returns whether the errors are within the bound, and model and
+/// hardware do not differ.
 ///
 /// # Errors
 /// Fails if the design cannot be simulated, or if the waveform of a difference cannot be written.
@@ -59,13 +60,13 @@ pub fn report(
     Ok(holds)
 }
 
-/// The state of a proof, with its conclusion.
+/// The state of an exhaustive check with its conclusion, for the report.
 struct ProofReport<'a> {
     one: &'a Loaded,
     job: &'a Job<'a>,
     state: &'a ShardState,
     proof: Proof,
-    /// The first combination that differs, with its waveform.
+    /// The first combination for which model and hardware differ, with its waveform; `None` if they agree.
     found: Option<(Difference, Reproducer)>,
 }
 
@@ -83,7 +84,7 @@ impl CommandReport for ProofReport<'_> {
     }
 }
 
-/// Returns the first combination that differs, with its waveform.
+/// Returns the first combination for which model and hardware differ, and writes its waveform. Returns `None` if they agree.
 fn found(
     one: &Loaded,
     job: &Job<'_>,
@@ -126,7 +127,7 @@ fn print(one: &Loaded, job: &Job<'_>, proof: &Proof, state: &ShardState) {
     }
 }
 
-/// Returns a proof for scripts, and for the record.
+/// Returns the result as JSON, for scripts and for the record in the repository.
 fn as_json(
     one: &Loaded,
     job: &Job<'_>,
@@ -179,7 +180,8 @@ fn as_json(
     value
 }
 
-/// Returns a difference for scripts. It is like the difference of a run, with the combination in place of a seed.
+/// Returns a difference as JSON. It has the keys of a difference in a random run, but `seed` is null, and `combination`,
+/// `clock_of_computation` and `operands` are added.
 fn mismatch_json((difference, reproducer): &(Difference, Reproducer)) -> Value {
     let mut value = reproducer.json(&difference.mismatch);
     let operands: BTreeMap<&str, String> = difference
