@@ -19,15 +19,7 @@ pub fn describe<'d>(d: &'d Designer, config: &Config) {
     let keys = Keys::of(config);
     let parts = keys.parts().unwrap_or_else(|(part, _)| panic!("`{part}` is checked"));
     d.about(about(&keys));
-    let describe = match keys.highlight {
-        HighlightDevice::CosinePower => cosine_power::describe,
-        HighlightDevice::Blinn => blinn::describe,
-        HighlightDevice::Schlick => schlick::describe,
-        HighlightDevice::Gauss => gauss::describe,
-        HighlightDevice::Quadratic => quadratic::describe,
-        HighlightDevice::Threshold => threshold::describe,
-        HighlightDevice::Function => function::describe,
-    };
+    let highlight_part = highlight_part(&keys);
     let vector = |name: &str, suffix: &str, doc: &str, format| {
         ["x", "y", "z"].map(|axis| {
             let operand = d.operand(&format!("{name}{axis}{suffix}"), format);
@@ -75,6 +67,7 @@ pub fn describe<'d>(d: &'d Designer, config: &Config) {
         given.extend(exponent.map(|it| ("exponent", it)));
         given.extend(["red", "green", "blue"].into_iter().zip(guarded));
         let part = |given: &[(&str, Signal<'d>)]| {
+            let describe = highlight_part.describe;
             d.instance(&format!("highlight{suffix}"), |d| describe(d, &parts.highlight), given)
         };
         if keys.has_exponent() {
@@ -108,21 +101,38 @@ pub fn describe<'d>(d: &'d Designer, config: &Config) {
     d.dataflow();
 }
 
-fn about(keys: &Keys) -> About {
-    let Keys { power, formula, .. } = keys;
-    let f = match keys.highlight {
+/// The hardware description of a highlight device, with its formula.
+struct HighlightPart {
+    describe: fn(&Designer, &Config),
+    /// The reflectance f as a function of the cosine c and the exponent n. For example, `c^n`.
+    formula: String,
+}
+
+/// Returns the highlight device that the key `highlight` names.
+fn highlight_part(keys: &Keys) -> HighlightPart {
+    let part = |describe, formula: &str| HighlightPart { describe, formula: formula.to_owned() };
+    match keys.highlight {
         HighlightDevice::CosinePower => {
-            format!("max(0, n/{power}*(c - 1) + 1)^{power} where c > 0, else 0")
+            let power = keys.power;
+            let formula = format!("max(0, n/{power}*(c - 1) + 1)^{power} where c > 0, else 0");
+            part(cosine_power::describe, &formula)
         }
-        HighlightDevice::Blinn => "c^n".to_owned(),
-        HighlightDevice::Schlick => "c/(n - n*c + c)".to_owned(),
-        HighlightDevice::Gauss => "exp(-n*acos(c)^2/2) where c > 0, else 0".to_owned(),
-        HighlightDevice::Quadratic => "max(0, c - a(n)*(c - c^2))".to_owned(),
-        HighlightDevice::Threshold => {
-            "max(0, n/2*(c - 1) + 1)^2 where that reaches ROM(n) and c > 0, else 0".to_owned()
+        HighlightDevice::Blinn => part(blinn::describe, "c^n"),
+        HighlightDevice::Schlick => part(schlick::describe, "c/(n - n*c + c)"),
+        HighlightDevice::Gauss => part(gauss::describe, "exp(-n*acos(c)^2/2) where c > 0, else 0"),
+        HighlightDevice::Quadratic => part(quadratic::describe, "max(0, c - a(n)*(c - c^2))"),
+        HighlightDevice::Threshold => part(
+            threshold::describe,
+            "max(0, n/2*(c - 1) + 1)^2 where that reaches ROM(n) and c > 0, else 0",
+        ),
+        HighlightDevice::Function => {
+            part(function::describe, &format!("{} with x = c", keys.formula))
         }
-        HighlightDevice::Function => format!("{formula} with x = c"),
-    };
+    }
+}
+
+fn about(keys: &Keys) -> About {
+    let f = highlight_part(keys).formula;
     let cosine = |other: &str| match keys.two_sided {
         true => format!("min(1, abs(N.{other}))"),
         false => format!("min(1, max(0, N.{other}))"),

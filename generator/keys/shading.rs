@@ -111,7 +111,31 @@ pub struct PartConfigs {
     pub highlight: Config,
 }
 
+/// A highlight device as a part of `shading`.
+struct PartSettings {
+    /// The configuration keys of the device.
+    schema: Schema,
+    /// The number of fraction bits of the reflectance f.
+    fraction: i64,
+    /// The smallest exponent n for which the accuracy contract of `shading` is stated. For a smaller n, f jumps at a right angle.
+    least: i64,
+}
+
 impl Keys {
+    /// Returns the highlight device that the key `highlight` names.
+    fn highlight_part(&self) -> PartSettings {
+        let (schema, fraction, least) = match self.highlight {
+            HighlightDevice::CosinePower => (cosine_power::schema(), 18, self.power.into()),
+            HighlightDevice::Blinn => (blinn::schema(), 18, 1),
+            HighlightDevice::Gauss => (gauss::schema(), 18, 16),
+            HighlightDevice::Quadratic => (quadratic::schema(), 16, 1),
+            HighlightDevice::Threshold => (threshold::schema(), 16, 2),
+            HighlightDevice::Schlick => (schlick::schema(), 14, 1),
+            HighlightDevice::Function => (function::schema(), 16, 1),
+        };
+        PartSettings { schema, fraction, least }
+    }
+
     /// Returns the format of a component of the normal vector.
     pub fn normal_format(&self) -> Format {
         Format::signed(1, self.normal as i32)
@@ -147,12 +171,7 @@ impl Keys {
     /// Returns the smallest exponent n for which the accuracy contract is stated. For a smaller n the highlight's formula jumps
     /// at a right angle.
     pub fn least(&self) -> i64 {
-        match self.highlight {
-            HighlightDevice::CosinePower => self.power.into(),
-            HighlightDevice::Gauss => 16,
-            HighlightDevice::Threshold => 2,
-            _ => 1,
-        }
+        self.highlight_part().least
     }
 
     /// Returns whether the highlight device has an operand `exponent`. The device `function` has none.
@@ -190,27 +209,19 @@ impl Keys {
             make(dot_product::schema(), keys)
         };
         let (facing, cosine) = (between(self.facing())?, between(self.cosine)?);
-        let (schema, fraction) = match self.highlight {
-            HighlightDevice::CosinePower => (cosine_power::schema(), 18),
-            HighlightDevice::Blinn => (blinn::schema(), 18),
-            HighlightDevice::Gauss => (gauss::schema(), 18),
-            HighlightDevice::Quadratic => (quadratic::schema(), 16),
-            HighlightDevice::Threshold => (threshold::schema(), 16),
-            HighlightDevice::Schlick => (schlick::schema(), 14),
-            HighlightDevice::Function => {
-                let text = |key, value: &str| (key, Value::Text(value.to_owned()));
-                let keys = vec![
-                    text("function.formula", &self.formula),
-                    text("function.from", "0"),
-                    text("function.to", "1"),
-                    ("function.to_included", Value::Flag(true)),
-                    integer("operand.fraction", self.cosine.into()),
-                    integer("result.fraction", 16),
-                ];
-                let highlight = make(function::schema(), keys)?;
-                return Ok(PartConfigs { facing, cosine, highlight });
-            }
-        };
+        let PartSettings { schema, fraction, .. } = self.highlight_part();
+        if !self.has_exponent() {
+            let text = |key, value: &str| (key, Value::Text(value.to_owned()));
+            let keys = vec![
+                text("function.formula", &self.formula),
+                text("function.from", "0"),
+                text("function.to", "1"),
+                ("function.to_included", Value::Flag(true)),
+                integer("operand.fraction", self.cosine.into()),
+                integer("result.fraction", fraction),
+            ];
+            return Ok(PartConfigs { facing, cosine, highlight: make(schema, keys)? });
+        }
         let mut keys = vec![
             integer("cosine.fraction", self.cosine.into()),
             integer("exponent.bits", self.exponent_bits.into()),

@@ -32,7 +32,7 @@ pub fn configurations() -> Vec<(String, Core)> {
 pub fn pipelines() -> Vec<(String, Core)> {
     let pipelined = |(_, core): &(String, Core)| core.design.pipeline.is_some();
     let found: Vec<_> = all_configurations().into_iter().filter(pipelined).collect();
-    assert_eq!(found.len(), 11, "pipelines");
+    assert_eq!(found.len(), 13, "pipelines");
     found
 }
 

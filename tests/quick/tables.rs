@@ -273,7 +273,8 @@ fn pipelines(rows: &mut Vec<Row>) {
     let highlights = all_configurations().into_iter();
     let highlights = highlights.filter(|(_, core)| core.contract.highlight().is_some());
     let inferred = highlights.filter(|(_, core)| {
-        core.design.pipeline.as_ref().is_some_and(|pipeline| pipeline.registered.is_empty())
+        let pipeline = core.design.pipeline.as_ref();
+        pipeline.is_some_and(|it| it.registered.is_empty() && it.interval == 1)
     });
     assert_eq!(listed, inferred.map(|(_, core)| core.config.name).collect());
 }

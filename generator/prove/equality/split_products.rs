@@ -12,7 +12,7 @@ use super::term::{VectorTermId, VectorTerms};
 use glint_base::fixed::MAX_WIDTH;
 
 /// The number of sets of random values at which terms are compared.
-const SAMPLES: usize = 4;
+const SAMPLES: usize = 24;
 
 /// The values of all terms when the unknowns are random numbers. Terms with the same values may be equal, and the solver decides.
 pub struct Candidates {
@@ -67,7 +67,11 @@ pub fn samples(
         let key = random.next_u64();
         terms.values(cone, |number| {
             let mut one = ChaCha8Rng::seed_from_u64(key ^ u64::from(number));
-            one.next_u64()
+            match one.next_u32() % 8 {
+                0 => 0,
+                1 => u64::MAX,
+                _ => one.next_u64(),
+            }
         })
     })
 }

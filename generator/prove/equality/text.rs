@@ -82,6 +82,7 @@ pub fn compare_text(
         terms: VectorTerms::default(),
         inputs: HashMap::new(),
         products: Vec::new(),
+        unknown_registers: HashMap::new(),
         solver: Solver::new(solver, limit)?,
         proof: TextProof { delays: counters.longest_delays(), ..TextProof::default() },
     };
@@ -125,6 +126,8 @@ struct TextComparison<'p> {
     /// The terms of the inputs, by name and clock.
     inputs: HashMap<(String, usize), VectorTermId>,
     products: Vec<Product>,
+    /// For the term of each register of the netlist in the present clock, an unknown of the same width.
+    unknown_registers: HashMap<VectorTermId, VectorTermId>,
     solver: Solver<'p>,
     proof: TextProof,
 }
@@ -276,6 +279,7 @@ impl TextComparison<'_> {
         let mut held = self.registers_in_slot(0);
         let mut written: Vec<Vec<Vec<VectorTermId>>> = Vec::new();
         for clock in 0..=self.latency {
+            self.forget_registers(&nets[clock]);
             let (roles, inputs, counters) = (self.roles, &mut self.inputs, self.counters);
             let input = |terms: &mut VectorTerms, name: &str, width: u32| {
                 input(terms, inputs, name, roles.get(name).copied(), width, clock)
@@ -331,6 +335,20 @@ impl TextComparison<'_> {
             ensure!(taken == Some(1), "the netlist does not take a point in slot 0");
         }
         Ok(nets)
+    }
+
+    /// Makes an unknown for the term of every register of the netlist. `nets` are the terms of the nets in the present clock.
+    fn forget_registers(&mut self, nets: &[VectorTermId]) {
+        self.unknown_registers.clear();
+        for register in &self.design.registers {
+            let held = nets[register.q.index()];
+            let is_free =
+                matches!(self.terms.term(held), VectorTerm::Unknown(_) | VectorTerm::Constant(_));
+            if !is_free && !self.unknown_registers.contains_key(&held) {
+                let unknown = self.terms.unknown(self.terms.width(held));
+                self.unknown_registers.insert(held, unknown);
+            }
+        }
     }
 
     /// Replaces the terms in registers of the Verilog by the terms of nets that the solver proves equal.
@@ -426,7 +444,18 @@ impl TextComparison<'_> {
         }
     }
 
+    /// Asks the solver whether the one-bit terms `wanted` can all be 1. The first question has unknowns in place of the registers, so
+    /// that it is about the logic of one clock alone. If these terms cannot all be 1 for any values of the registers, they cannot be
+    /// 1 for the values that the registers have. The other questions have these values, and then all facts about partial products.
     fn ask(&mut self, wanted: &[VectorTermId]) -> Result<SolverAnswer> {
+        let mut of_one_clock = wanted.to_vec();
+        self.terms.replace(&self.unknown_registers, &mut of_one_clock);
+        if of_one_clock != wanted
+            && let SolverAnswer::Unsatisfiable =
+                self.solver.ask(&mut self.terms, &of_one_clock, &self.products, false)?
+        {
+            return Ok(SolverAnswer::Unsatisfiable);
+        }
         match self.solver.ask(&mut self.terms, wanted, &self.products, false)? {
             SolverAnswer::Unsatisfiable => Ok(SolverAnswer::Unsatisfiable),
             _ => self.solver.ask(&mut self.terms, wanted, &self.products, true),

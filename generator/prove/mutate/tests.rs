@@ -23,7 +23,7 @@ fn every() -> usize {
 /// A fault may replace an operand by a net that the prover does not see around the fault.
 #[test]
 fn faults_that_read_other_nets_are_no_proof_and_no_panic() {
-    let core = core("benches/small/rough_up5k_pipelined.toml");
+    let core = core("configs/rough_up5k_pipelined.toml");
     let prover = Prover::new(&core.design).unwrap();
     let faults = Faults::of(&core.design);
     let wired: Vec<_> = faults.iter().filter(|fault| fault.kind == FaultKind::Wiring).collect();
@@ -52,8 +52,7 @@ fn no_proof_of_what_shows() {
     let names = devices.devices().iter().map(|device| device.name.replace('-', "_"));
     let paths =
         names.flat_map(|name| ["", "_pipelined"].map(|it| format!("configs/{name}{it}.toml")));
-    let every_few =
-        ["lyon", "rough"].map(|name| format!("benches/small/{name}_up5k_pipelined.toml"));
+    let every_few = ["lyon", "rough"].map(|name| format!("configs/{name}_up5k_pipelined.toml"));
     for path in paths.filter(|path| at(path).exists()).chain(every_few) {
         let core = core(&path);
         let prover = Prover::new(&core.design).unwrap();
