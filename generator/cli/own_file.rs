@@ -1,48 +1,39 @@
-//! Writes single files that Glint rewrites at each run, such as records. It refuses to overwrite a file that Glint did not write.
+//! Writes single files that Glint rewrites at each run, such as records. Each contains a digest of its own text ([`Seal`]), so
+//! that Glint refuses to overwrite a file that it did not write, or that somebody edited since.
 
-use std::fs;
 use std::path::{Path, PathBuf};
 
-use anyhow::{Context, Result, bail};
+use anyhow::{Context, Result};
 use serde::Serialize;
 
 use super::destination::Destination;
 use super::directories::create_directory;
 use super::record_text::record_text;
+use super::store;
+use glint_core::package::{Seal, sealed, sealed_object};
 
 /// A file that will be written, with its destination.
 pub struct OwnFile {
     path: PathBuf,
+    seal: Seal,
     destination: Destination,
 }
 
 impl OwnFile {
-    /// The first characters of a JSON file that Glint wrote.
-    pub const JSON: &str = "{\n  \"glint\":";
-
-    /// Prepares to write the file `name` in `directory`, which is created if it is missing. If the file exists, it must contain
-    /// `marker`. A command calls this function before the work for the file, so that a path that cannot be written is reported
-    /// early.
+    /// Prepares to write the file `name` in `directory`, which is created if it is missing. A command calls this function before
+    /// the work for the file, so that a path that cannot be written is reported early. `seal` is the place of the digest in the
+    /// file.
     ///
     /// # Errors
-    /// Fails if something else is there, or if the file cannot be written.
-    pub fn new(directory: &Path, name: &str, marker: &str) -> Result<Self> {
+    /// Fails if Glint did not write the file that is there, or if somebody edited it since. Fails if the file cannot be written.
+    pub fn new(directory: &Path, name: &str, seal: Seal) -> Result<Self> {
         create_directory(directory)?;
         let path = directory.join(name);
-        // Other problems with the file show in writing.
-        let foreign = path.is_file()
-            && fs::read(&path).is_ok_and(|bytes| {
-                let found = std::str::from_utf8(&bytes);
-                !found.is_ok_and(|text| text.contains(marker))
-            });
-        if foreign {
-            bail!(
-                "`{}` is not of Glint's making: move it away, or give another directory with --out",
-                path.display()
-            );
+        if path.is_file() {
+            store::may_replace(&path, seal)?;
         }
         let destination = Destination::open(&path)?;
-        Ok(Self { path, destination })
+        Ok(Self { path, seal, destination })
     }
 
     /// Returns the record `<name>.json`, if there is a directory for records. For example, `--out mutation` makes
@@ -51,25 +42,30 @@ impl OwnFile {
     /// # Errors
     /// Fails as [`OwnFile::new`] does.
     pub fn record(directory: Option<&Path>, name: &str) -> Result<Option<Self>> {
-        directory.map(|it| Self::new(it, &format!("{name}.json"), Self::JSON)).transpose()
+        directory.map(|it| Self::new(it, &format!("{name}.json"), Seal::Json)).transpose()
     }
 
-    /// Writes the file and returns its path.
+    /// Writes the text `contents`, followed by the line with its digest, and returns the path of the file.
     ///
     /// # Errors
     /// Fails if the file cannot be written.
-    pub fn write(self, contents: &str) -> Result<String> {
-        let name = self.path.display().to_string().replace('\\', "/");
-        self.destination.write(contents)?;
-        Ok(name)
+    pub fn write(self, contents: String) -> Result<String> {
+        let text = sealed(contents, self.seal);
+        self.write_as_it_is(&text)
     }
 
-    /// Writes `value` as the JSON of a record, as [`OwnFile::write`] does.
+    /// Writes `value` as the JSON of a record, with one member more for the digest, and returns the path of the file.
     ///
     /// # Errors
-    /// Fails if the file cannot be written.
+    /// Fails if the value is no object, or if the file cannot be written.
     pub fn write_json(self, value: &impl Serialize) -> Result<String> {
         let value = serde_json::to_value(value).context("cannot write JSON")?;
-        self.write(&record_text(&value))
+        self.write_as_it_is(&record_text(&sealed_object(value)?))
+    }
+
+    fn write_as_it_is(self, text: &str) -> Result<String> {
+        let name = self.path.display().to_string().replace('\\', "/");
+        self.destination.write(text)?;
+        Ok(name)
     }
 }

@@ -1,7 +1,8 @@
 //! Prints the answers of commands: as JSON for scripts, or as text for people.
 //!
-//! A command returns its answer as a [`CommandReport`], which supports both forms. Only this file asks which form the user
-//! wants.
+//! A command returns its answer as a [`CommandReport`], which supports both forms. [`OutputOptions::report`] prints the form that
+//! the user wants. A command that behaves differently for scripts asks [`OutputOptions::is_for_people`]. For example, `glint tune`
+//! refuses `--csv` together with `--json`.
 
 use anyhow::Result;
 use serde_json::{Value, json};

@@ -15,7 +15,7 @@ use std::fs;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
-use anyhow::{Context, Result, bail};
+use anyhow::{Context, Result, bail, ensure};
 
 use super::destination;
 use super::directories::{create_directory, create_parent};
@@ -106,12 +106,39 @@ pub fn write_sealed(path: &Path, text: &str, seal: Seal, force: bool) -> Result<
 /// # Errors
 /// Without `force`, fails if Glint did not write the file, or if it was edited since. Fails if it cannot be read.
 pub fn may_write(path: &Path, seal: Seal, force: bool) -> Result<Option<Vec<u8>>> {
+    let found = contents(path)?;
+    if let Some(found) = &found
+        && !force
+    {
+        ensure!(
+            is_sealed(found, seal),
+            "{}\nmove it away, choose another --out, or replace it with --force",
+            not_glints(path)
+        );
+    }
+    Ok(found)
+}
+
+/// Checks that a command without `--force` may replace the file at `path`, if there is one.
+///
+/// # Errors
+/// Fails if Glint did not write the file, or if it was edited since. Fails if it cannot be read.
+pub fn may_replace(path: &Path, seal: Seal) -> Result<()> {
+    let is_own = contents(path)?.is_none_or(|found| is_sealed(&found, seal));
+    ensure!(is_own, "{}\nmove it away, or choose another --out", not_glints(path));
+    Ok(())
+}
+
+fn not_glints(path: &Path) -> String {
+    format!(
+        "`{}` was not written by Glint, or was edited since; nothing was changed",
+        path.display()
+    )
+}
+
+/// Returns the contents of a file; `None` if there is no file.
+fn contents(path: &Path) -> Result<Option<Vec<u8>>> {
     match fs::read(path) {
-        Ok(found) if !force && !is_sealed(&found, seal) => bail!(
-            "`{}` was not written by Glint, or was edited since; nothing was changed\n\
-             move it away, choose another --out, or replace it with --force",
-            path.display()
-        ),
         Ok(found) => Ok(Some(found)),
         Err(error) if error.kind() == ErrorKind::NotFound => Ok(None),
         Err(error) => Err(error).with_context(|| format!("cannot read `{}`", path.display())),

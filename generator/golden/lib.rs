@@ -387,7 +387,7 @@ pub struct Bound {
 /// A part of a core that computes an expression, for pages that people read.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ComputedPart {
-    /// The name of the part's net.
+    /// The name of the net that carries the part's value. The part is one operation of the core's computation, such as `x · y`.
     pub name: String,
     /// What it computes. For example, `x · y`.
     pub words: String,

@@ -9,7 +9,8 @@ use glint_base::fixed::MAX_WIDTH;
 pub struct PlanRefusal {
     /// The index of the result that the refusal concerns; `None` if it concerns the whole expression.
     pub result: Option<usize>,
-    /// The range of bytes in the formula of that result; `None` if the refusal concerns no part of the formula.
+    /// The part of a formula that the refusal concerns, as a range of bytes. The formula is the one of the result with the index
+    /// `result`. `None` if the refusal concerns no part of a formula.
     pub place: Option<Range<usize>>,
     /// The reason, as a message.
     pub message: String,

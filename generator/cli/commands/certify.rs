@@ -15,7 +15,7 @@ use crate::report::CommandReport;
 use crate::{Configs, OutputOptions, progress, say};
 use glint_base::{input, text};
 use glint_core::cosim::exhaustive::Certificate;
-use glint_core::package::digest;
+use glint_core::package::{Seal, is_sealed};
 use glint_core::registry::Registry;
 use glint_golden::{Bound, Contract, Term};
 use glint_prove::certify::{
@@ -51,13 +51,10 @@ pub struct Arguments {
     time_limit: u64,
 }
 
-/// The first words of a script that Glint wrote. Glint overwrites no other file.
+/// The first words of a script that Glint wrote.
 const MARKER: &str = "# Certificate by Glint: ";
 
-/// The text before the digest of a script, in the second line of the file.
-const DIGEST: &str = "# SHA-256 of the script below: ";
-
-/// The text before a point at which the hypotheses of the statement hold, in the third line of the file.
+/// The text before a point at which the hypotheses of the statement hold, in the second line of the file.
 const WITNESS: &str = "# The hypotheses hold at ";
 
 /// Prints the contract's bound and its terms, as a help for the reader of a failed proof. If a device consists of parts, the
@@ -342,24 +339,15 @@ fn write(
         let head =
             format!("{MARKER}{}, {outputs}, statement {number}: {state}.", input::label(config));
         let script = &scripts[chosen];
-        let digest = digest(script.as_bytes());
-        let text = format!("{head} To check: gappa {name}\n{DIGEST}{digest}\n{witness}\n{script}");
+        let text = format!("{head} To check: gappa {name}\n{witness}\n{script}");
         // All files are opened before the first is written. If one of them was not written by Glint, the command fails and
         // changes nothing.
-        let file = OwnFile::new(directory, &name, MARKER)?;
-        let path = directory.join(&name);
-        if std::fs::read_to_string(&path).is_ok_and(|text| !is_unedited(&text)) {
-            bail!(
-                "`{}` was edited since Glint wrote it; nothing was changed: move it away, or give another \
-                 directory with --out",
-                path.display()
-            );
-        }
+        let file = OwnFile::new(directory, &name, Seal::Hash)?;
         files.push((file, text));
         names.push(name);
     }
     for (file, text) in files {
-        file.write(&text)?;
+        file.write(text)?;
     }
     let entries = std::fs::read_dir(directory);
     for entry in entries.with_context(|| format!("cannot read `{}`", directory.display()))? {
@@ -371,7 +359,7 @@ fn write(
         let is_own = |text: String| {
             let first = text.lines().next().unwrap_or_default();
             let is_named = first.ends_with(&format!(" gappa {name}"));
-            first.starts_with(MARKER) && is_named && is_unedited(&text)
+            first.starts_with(MARKER) && is_named && is_sealed(text.as_bytes(), Seal::Hash)
         };
         if is_old && std::fs::read_to_string(&path).is_ok_and(is_own) {
             std::fs::remove_file(&path)
@@ -379,12 +367,4 @@ fn write(
         }
     }
     Ok(())
-}
-
-/// Returns whether a script file is as Glint wrote it. For example, it returns false if a number in the script was changed,
-/// because the digest in the head then differs.
-fn is_unedited(text: &str) -> bool {
-    let Some((head, script)) = text.split_once("\n\n") else { return false };
-    head.lines().nth(1).and_then(|line| line.strip_prefix(DIGEST))
-        == Some(&digest(script.as_bytes()))
 }

@@ -194,11 +194,11 @@ pub fn write(out: &Path, one: &Loaded, files: &OutputFiles, force: bool) -> Resu
     let path = out.join(&driver.path);
     // The driver is checked before anything is written. Other obstacles are found while files are written.
     if path.is_file() {
-        store::may_write(&path, Seal::Python, force)?;
+        store::may_write(&path, Seal::Hash, force)?;
     }
     let written = store::write(out, &one.core.config.name, files.as_slice(), force)
         .with_context(|| format!("`{}` was not generated", one.path))?;
-    store::write_sealed(&path, &driver.contents, Seal::Python, force)?;
+    store::write_sealed(&path, &driver.contents, Seal::Hash, force)?;
     Ok(written)
 }
 

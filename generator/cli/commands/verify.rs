@@ -13,6 +13,7 @@ use crate::report::CommandReport;
 use crate::{Configs, OutputOptions, TimeLimit, progress, say, tables};
 use glint_base::text::counted;
 use glint_core::cosim::exhaustive::PROOFS;
+use glint_core::package::Seal;
 use glint_core::registry::Registry;
 use glint_prove::verify::{
     CHECKS, CheckAnswer, CheckSubject, CheckTime, CheckVerdict, Conclusion, Effort,
@@ -67,19 +68,18 @@ struct Files {
 
 impl Files {
     fn new(directory: &Path, name: &str) -> Result<Self> {
-        let file =
-            |suffix: &str, marker| OwnFile::new(directory, &format!("{name}{suffix}"), marker);
+        let file = |suffix: &str, seal| OwnFile::new(directory, &format!("{name}{suffix}"), seal);
         Ok(Self {
-            page: file(".html", page::MARKER)?,
-            record: file(".json", OwnFile::JSON)?,
-            timings: file(".timings.json", OwnFile::JSON)?,
+            page: file(".html", Seal::Markup)?,
+            record: file(".json", Seal::Json)?,
+            timings: file(".timings.json", Seal::Json)?,
         })
     }
 
     fn write(self, record: &VerificationRecord, timings: &[CheckTime]) -> Result<[String; 3]> {
         let times = json!({ "glint": record.glint, "config": record.config, "seconds": timings });
         Ok([
-            self.page.write(&page::page(record, timings)?)?,
+            self.page.write(page::page(record, timings)?)?,
             self.record.write_json(record)?,
             self.timings.write_json(&times)?,
         ])

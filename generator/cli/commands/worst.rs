@@ -15,6 +15,7 @@ use crate::{Configs, OutputOptions, count, progress, say};
 use glint_base::program::Program;
 use glint_base::{input, text};
 use glint_core::cosim::search::{self, Reached};
+use glint_core::package::Seal;
 use glint_core::registry::Registry;
 
 /// Search for the largest error of an output
@@ -177,7 +178,7 @@ fn climbs(starts: u64) -> String {
 fn record(one: &Loaded, arguments: &Arguments) -> Result<Option<(OwnFile, Option<LargestError>)>> {
     let Some(directory) = &arguments.out else { return Ok(None) };
     let name = format!("{}.json", one.core.config.name);
-    let file = OwnFile::new(directory, &name, OwnFile::JSON)?;
+    let file = OwnFile::new(directory, &name, Seal::Json)?;
     let before = read(&directory.join(&name))?;
     Ok(Some((file, before.filter(|before| before.contract == one.core.contract_digest()))))
 }

@@ -83,5 +83,5 @@ pub fn driver() -> OutputFile {
     let text = fill!("glint_cocotb.py" {}).expect("a template without fields");
     let kind = FileKind::CocotbDriver;
     let path = format!("{}/glint_cocotb.py", kind.folder());
-    OutputFile::new(kind, path, sealed(text, Seal::Python))
+    OutputFile::new(kind, path, sealed(text, Seal::Hash))
 }

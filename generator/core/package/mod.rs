@@ -66,7 +66,7 @@ pub use instance::{InstanceExample, instances};
 pub use output_file::{OutputFile, digest};
 pub use output_files::OutputFiles;
 pub use points::{POINTS_FILE, PointsBench, RESULTS_FILE};
-pub use seal::{Seal, is_sealed, sealed, sealed_json};
+pub use seal::{Seal, is_sealed, sealed, sealed_json, sealed_object};
 pub use software::check_recomputation;
 pub use surroundings::{Surroundings, check_clock, check_rom_style};
 

@@ -13,8 +13,8 @@ use super::output_file::digest;
 pub enum Seal {
     /// Markdown and HTML: a last line `<!-- … -->`, which no reader of the page sees.
     Markup,
-    /// Python: a last line `# …`.
-    Python,
+    /// Python and Gappa: a last line `# …`.
+    Hash,
     /// JSON: a member of the object.
     Json,
 }
@@ -32,27 +32,35 @@ pub fn sealed(text: String, seal: Seal) -> String {
 fn last_line(above: &[u8], seal: Seal) -> String {
     match seal {
         Seal::Markup => format!("<!-- sha256 {} -->\n", digest(above)),
-        Seal::Python => format!("# sha256 {}\n", digest(above)),
+        Seal::Hash => format!("# sha256 {}\n", digest(above)),
         Seal::Json => String::new(),
     }
 }
 
-/// Returns the text of a JSON object with one member more, which has the digest of the other members. The text ends with a newline.
+/// Returns a JSON object with one member more, which has the digest of the other members.
 ///
 /// # Errors
 /// Fails if the value is no object.
-pub fn sealed_json(mut value: Value) -> Result<String> {
+pub fn sealed_object(mut value: Value) -> Result<Value> {
     let digest = digest(value.to_string().as_bytes());
     let members = value.as_object_mut().context("no object")?;
     members.insert(MEMBER.to_owned(), Value::String(digest));
-    Ok(serde_json::to_string_pretty(&value)? + "\n")
+    Ok(value)
+}
+
+/// Returns the text of [`sealed_object`], indented, with a newline at its end.
+///
+/// # Errors
+/// Fails if the value is no object.
+pub fn sealed_json(value: Value) -> Result<String> {
+    Ok(serde_json::to_string_pretty(&sealed_object(value)?)? + "\n")
 }
 
 /// Returns whether the digest in a file matches the file's other contents, so that nobody has edited the file since Glint wrote it.
 pub fn is_sealed(contents: &[u8], seal: Seal) -> bool {
     match seal {
         Seal::Json => is_sealed_json(contents),
-        Seal::Markup | Seal::Python => ends_with_seal(contents, seal),
+        Seal::Markup | Seal::Hash => ends_with_seal(contents, seal),
     }
 }
 
@@ -82,7 +90,7 @@ mod tests {
 
     #[test]
     fn an_edited_file_is_not_glints() {
-        for (seal, other) in [(Seal::Markup, Seal::Python), (Seal::Python, Seal::Markup)] {
+        for (seal, other) in [(Seal::Markup, Seal::Hash), (Seal::Hash, Seal::Markup)] {
             let file = sealed("# title\n\ntext\n".to_owned(), seal);
             let is_sealed = |text: &str| super::is_sealed(text.as_bytes(), seal);
             assert!(is_sealed(&file));

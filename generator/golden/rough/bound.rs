@@ -1,28 +1,33 @@
-//! Computes the terms of the error bound of the device `rough`, which computes f = (n/2·(cos(γ ± dγ) − 1) + 1)². The rest of this
-//! head is the proof of the bound. Block numbers, such as register 11, are the numbers in the figure of the source, the patent UA
-//! 60139.
+//! Computes the terms of the error bound of the device `rough`, which computes f = (n/2·(cos(γ ± dγ) − 1) + 1)². Each term has the
+//! configuration key that governs it. For the patent's arithmetic, which wraps modulo 1.0, the only term is 1.0.
 //!
-//! **Notation.** b = n/2·(cos(γ ± dγ) − 1) + 1 is the base of the square in the formula, and b′ is the base that the hardware
-//! computes (adder 16, in word 6 of the microprogram). E is a bound of |b′ − b|. Operands are exact, because the formula is taken
-//! at the quantised operands.
+//! The rest of this head proves the bound for exact arithmetic. Block numbers, such as register 11, are the numbers in the figure
+//! of the source, the patent UA 60139.
 //!
-//! **The base.** Registers 11 and 12 hold cos γ·cos dγ and sin γ·sin dγ. They have the rounding errors e₁₁ and e₁₂; the sines from
-//! the table have the errors δ(γ) and δ(dγ). With s = sin γ and t = sin dγ, register 12 is off by at most s·δ(dγ) + (t +
+//! **Notation.** b = n/2·(cos(γ ± dγ) − 1) + 1 is the base of the square in the formula, before any clamp. b′ is the base that the
+//! hardware computes (adder 16, in word 6 of the microprogram). E is a bound of |b′ − b|. Operands are exact, because the formula
+//! is taken at the quantised operands.
+//!
+//! **The base.** Registers 11 and 12 hold cos γ·cos dγ and sin γ·sin dγ, with the rounding errors e₁₁ and e₁₂. The sines from the
+//! table have the errors δ(γ) and δ(dγ). Let s = sin γ and t = sin dγ. The sines put register 12 off by at most s·δ(dγ) + (t +
 //! δ(dγ))·δ(γ). Adder 15 is exact, the product by n/2 is exact, and register 13 adds the rounding error e₁₃. Hence E = n/2·(e₁₁ +
 //! e₁₂ + s·δ(dγ) + (t + δ(dγ))·δ(γ)) + e₁₃. Saturation of register 13 moves b′ only towards the interval 0 … 1 (clamped) or −1 … 1
 //! (not clamped). The value of b′ matters only within this interval.
 //!
-//! **The square.** If both bases are clamped to 0 … 1, |b′² − b²| ≤ 2·b·E + E², which vanishes if b < −E. An error e of the cosine
-//! therefore changes f by n·b·e, so n·b is its weight. Let q = 1 − cos(γ − dγ), which is the smaller of the two distances for the
-//! signs + and −. As b ≤ 1 − n·q/2, the weight n·b is largest at n = 1/q. It is small if γ and dγ are far apart, so the table may
-//! be coarse there. Without the clamp, |b| ≤ 1 and n·q/2 ≤ 2 + E hold instead. Register 13 rounds the square by less than an ulp,
-//! or saturates 1.0 to 1.0 − ulp.
+//! **The square with the clamp.** Let c(b) be b clamped to 0 … 1. For b ≥ −E, |c(b′)² − c(b)²| ≤ 2·max(b, 0)·E + E². For b < −E the
+//! difference is 0, because both bases are clamped to 0. An error e of the cosine therefore changes f by n·b·e, so n·b is its
+//! weight. Let q = 1 − cos(γ − dγ), the smaller of the two values 1 − cos(γ ± dγ). As b ≤ 1 − n·q/2, the weight n·b is largest at
+//! n = 1/q. The weight is small if γ and dγ are far apart, so the table may be coarse there.
+//!
+//! **The square without the clamp.** Here |b| ≤ 1, and n·q/2 ≤ 2 + E wherever the square is not constant. The weight is therefore
+//! at most the largest such n. With and without the clamp, register 13 rounds the square by less than an ulp, or saturates 1.0 to
+//! 1.0 − ulp.
 //!
 //! **The maximum.** The quarter circle is cut into equal bins, and the largest error of the table's entries is known in each bin.
 //! The smallest γ − dγ of two bins depends only on their distance, and the smallest γ + dγ only on the sum of their numbers. The
-//! code tries all pairs of bins. With the clamp, [`super::pairs`] examines the pairs with the largest bounds, because the largest
-//! errors of the table and of the roundings do not occur together at the same operands. The terms of the result are the terms of
-//! the worst pair of bins, in proportion.
+//! code tries all pairs of bins, and the terms are the terms of the worst pair. With the clamp, [`super::pairs`] finds a smaller
+//! bound, because the largest errors of table and roundings do not occur at the same operands. All terms are then multiplied by one
+//! factor, so that their sum is this smaller bound.
 
 use super::analysis::Analysis;
 use super::{Keys, Kind, RomLayout, RoughArithmetic, pairs};

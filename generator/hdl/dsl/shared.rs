@@ -1,5 +1,5 @@
-//! Gives the modules of the description language access to the state of a designer: nets, registers, fields, and the collected
-//! mistakes.
+//! Gives the other modules of the description language access to the state of a [`Designer`], the builder of a
+//! netlist. The state has the nets, registers, fields and ports so far, and the mistakes that were found in the description.
 
 use std::panic::Location;
 

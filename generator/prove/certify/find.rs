@@ -1,6 +1,8 @@
 //! Finds an error bound that Gappa can prove, for a contract that states none.
 //!
-//! Gappa finds a bound for each statement about an output, and the largest of these is the result.
+//! Gappa answers each statement about an output with an upper bound. The search lowers the largest of these bounds by bisection, in
+//! steps of 1/2048 units. It goes on as long as Gappa proves a smaller bound within two seconds. The result is one bound for all
+//! statements, or a reason in words if Gappa finds no bound for a statement.
 
 use std::fs;
 use std::time::Duration;

@@ -150,7 +150,12 @@ fn input(
 }
 
 impl TextComparison<'_> {
-    /// Proves that the pipeline may wait, in every slot. A pipeline without `out_ready` never waits.
+    /// Proves, for every value of the slot counter, that a clock in which the pipeline waits changes no register and no memory. The
+    /// slot counter counts the clocks from one point to the next. A pipeline without `out_ready` never waits, so that nothing is
+    /// proved for it.
+    ///
+    /// # Errors
+    /// Returns [`EarlyEnd`] if a clock does not have this property, if the solver does not decide, or if the proof cannot be made.
     fn stays(&mut self) -> Result<(), EarlyEnd> {
         let has = |role| self.roles.values().any(|it| *it == role);
         if has(Role::OutReady) {

@@ -76,11 +76,12 @@ impl Netlist {
         Ok(Self { names, registers, cells: cells.clone() })
     }
 
-    /// Checks that timing analysis can include the delay of every DSP block: all parameters of the cells of kind `kind` must
-    /// satisfy `timed`.
+    /// Checks that timing analysis includes the delay of every DSP block, which is every cell of the kind `kind`. `timed` gets the
+    /// name and the value of a parameter of such a cell. It returns whether the tool times a cell with this value.
     ///
     /// # Errors
-    /// Fails if a parameter is not `timed`; `why` explains the consequence.
+    /// Fails at the first parameter for which `timed` returns false. `why` gets a text such as `REG_INPUTA_CLK is CLK0`, and
+    /// returns the end of the message, which begins with "the DSP block" and the name of the cell.
     pub fn check_timed(
         &self,
         kind: &str,

@@ -1,8 +1,10 @@
-//! Runs every check of a configuration for `glint verify`, and writes a record and a page about the results.
+//! Defines the checks of `glint verify`, and makes the record and the page about their results. The command itself runs the checks
+//! and writes the files.
 //!
-//! A [`Check`] asks one question about a configuration, for example whether golden model and simulation agree. It returns a
-//! [`Finding`]: the answer, the domain for which the answer holds, and the points that it leaves open. Checks do not depend on
-//! each other's findings. The same tools give the same findings; run times are separate, in [`CheckTime`].
+//! A [`Check`] asks one question about a configuration, for example whether golden model and simulation agree. [`Check::run`]
+//! returns a [`CheckAnswer`] with a [`Finding`]: the verdict, the domain for which it holds, and the questions that remain open.
+//! A missing tool is a verdict too, and no error. Checks do not depend on each other's findings. The same tools give the same
+//! findings; run times are separate, in [`CheckTime`].
 
 mod inside;
 mod outside;

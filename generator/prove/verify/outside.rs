@@ -1,4 +1,5 @@
-//! Defines the checks of `glint verify` that run outside tools, such as simulators and provers, on the emitted files.
+//! Defines the checks of `glint verify` that run outside tools, such as simulators and provers. Most of them read the emitted files.
+//! [`CERTIFICATE`] reads the netlist and the microprogram, and [`EQUALITY`] the netlists of a pipeline and its sequential core.
 
 use std::fs;
 use std::path::Path;

@@ -8,8 +8,8 @@ use serde_json::json;
 
 use super::{CheckAnswer, CheckTime, VerificationRecord};
 
-/// The text by which Glint recognises a page that it wrote. Glint overwrites no other page.
-pub const MARKER: &str = "<meta name=\"generator\" content=\"glint verify\">";
+/// The HTML element that says which program wrote the page.
+const MARKER: &str = "<meta name=\"generator\" content=\"glint verify\">";
 
 #[glint_base::template::template("verification.html")]
 struct Page<'a> {

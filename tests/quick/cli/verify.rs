@@ -63,7 +63,10 @@ fn page_and_record_are_the_same_every_time_but_for_the_timings() {
         assert_eq!(checks.of("check", check)["verdict"], verdict, "{check}");
     }
     assert!(page.contains("--without-tools leaves it out."));
-    assert_eq!(again.json()["configurations"][0]["record"], found);
+    // The file has one member more, the digest of the others.
+    let mut record = found.clone();
+    record.as_object_mut().expect("an object").remove("sha256").expect("a digest");
+    assert_eq!(again.json()["configurations"][0]["record"], record);
     let timings = dir.json("made/core.timings.json");
     assert_eq!(timings["seconds"].list().len(), checks.list().len());
     assert_eq!(dir.files().keys().filter(|it| it.starts_with("made")).count(), 3);
