@@ -11,13 +11,13 @@ use crate::common::files::{paths, read};
 use glint::cosim::exhaustive::PROOFS;
 use glint::registry::Registry;
 
-/// Returns the default configurations and their pipelines, each with the name of its module.
+/// Returns the default configurations, their pipelines and the pipelines for UP5K, each with the name of its module.
 fn names() -> Vec<(String, String)> {
     let catalogue = Registry::shipped();
     let devices = catalogue.devices().iter();
     let cores = devices.map(|device| device.name.replace('-', "_"));
     let both = cores.flat_map(|core| {
-        [format!("configs/{core}_pipelined.toml"), format!("configs/{core}.toml")]
+        ["_pipelined", "_up5k_pipelined", ""].map(|kind| format!("configs/{core}{kind}.toml"))
     });
     let both = both.filter(|path| Path::new(path).exists());
     both.map(|path| (configuration(&path).config.name.clone(), path)).collect()
