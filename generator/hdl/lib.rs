@@ -43,5 +43,6 @@ pub mod blocks;
 pub mod dsl;
 pub mod netlist;
 pub mod pipeline;
+pub mod retime;
 pub mod sim;
 pub mod verilog;

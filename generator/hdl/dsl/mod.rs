@@ -97,8 +97,8 @@ pub use registers::{Counter, Flag, InputOperand, Register, Select};
 pub use rom::Rom;
 pub use signal::{Mux, Signal};
 
-use crate::netlist::register_held;
 pub use crate::netlist::{About, Note, Topic};
+use crate::retime::register_held;
 
 use crate::netlist::{
     Design, Driver, FieldId, NetId, NetlistRom as NetRom, Op, Partition, RegisterKind, Role,

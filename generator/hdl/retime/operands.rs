@@ -6,8 +6,8 @@
 
 use std::collections::{BTreeMap, BTreeSet, HashSet};
 
-use super::needed::needed;
-use super::{Design, Driver, NetId, Op, RegId, RegisterKind, Sequence};
+use super::first_use::needed;
+use crate::netlist::{Design, Driver, Net, NetId, Op, RegId, RegisterKind, Sequence};
 
 /// Inserts registers, named `<name>_held`, into steady logic so that the longest path from an operand becomes as short as
 /// possible. Among positions with an equally short path, it chooses nets with the fewest bits. At most two registers lie on a
@@ -327,7 +327,7 @@ fn add_register(design: &mut Design, net: NetId, taken: &mut HashSet<String>) ->
     // The register is 0 from power-up to its first load.
     let range = (of.range.0.min(0), of.range.1.max(0));
     let doc = format!("{}, delayed by a clock: the operands do not change", of.name);
-    let q = design.add_net(super::Net { name, range, block: None, doc, named: true, ..of });
+    let q = design.add_net(Net { name, range, block: None, doc, named: true, ..of });
     design.add_register(q, RegisterKind::Internal).data = Some(net);
     q
 }

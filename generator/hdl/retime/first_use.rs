@@ -1,10 +1,9 @@
 //! Finds, for each net, the first clock of a computation in which its value is used. Logic that depends on operands alone, and is
-//! first used after the first microinstruction, may take several clocks. The module `held` inserts registers into such logic.
+//! first used after the first microinstruction, may take several clocks. The module `operands` inserts registers into such logic.
 
 use std::collections::{HashSet, VecDeque};
 
-use super::{Design, Driver, Microinstruction, NetId, Op};
-use glint_base::fixed::mask;
+use crate::netlist::{Design, Driver, NetId, Op, passed_on, setting_of};
 
 /// Returns for each net of the design the first clock in which its value is used. A value is used if it reaches an output, the
 /// sequencer, or a register that is loaded. The clock of the first microinstruction has the number 0. The result is `usize::MAX`
@@ -40,39 +39,6 @@ pub fn needed(design: &Design) -> Vec<usize> {
         register.data.into_iter().for_each(|data| walk.at_once(data));
     }
     walk.needed
-}
-
-/// Returns the value of a control line, such as the select of a mux, while `microinstruction` is executed. Returns `None` if the
-/// value depends on anything but fields of the control word and constants.
-pub fn setting_of(
-    design: &Design,
-    microinstruction: &Microinstruction,
-    line: NetId,
-) -> Option<u64> {
-    let net = design.net(line);
-    let of = |line: NetId| setting_of(design, microinstruction, line);
-    match &net.driver {
-        Driver::Field(field) => Some(microinstruction.values[field.index()]),
-        Driver::Constant(bits) => Some(*bits),
-        Driver::Op(Op::Relabel(a)) => of(*a),
-        Driver::Op(Op::Slice { of: a, low }) => Some(of(*a)? >> low & mask(net.format.width())),
-        Driver::Op(Op::Not(a)) => Some(!of(*a)? & mask(net.format.width())),
-        Driver::Op(Op::Or(a, b)) => Some(of(*a)? | of(*b)?),
-        Driver::Op(Op::And(a, b)) if of(*a) == Some(0) || of(*b) == Some(0) => Some(0),
-        Driver::Op(Op::And(a, b)) => Some(of(*a)? & of(*b)?),
-        _ => None,
-    }
-}
-
-/// Returns the nets on which `net` depends within the clock of `microinstruction`. If the microinstruction determines the
-/// select of a mux, the mux depends only on its chosen input.
-pub fn passed_on(design: &Design, microinstruction: &Microinstruction, net: NetId) -> Vec<NetId> {
-    if let Driver::Op(Op::Mux { select, inputs }) = &design.net(net).driver
-        && let Some(chosen) = setting_of(design, microinstruction, *select)
-    {
-        return inputs.get(chosen as usize).or(inputs.last()).copied().into_iter().collect();
-    }
-    design.combinational_inputs(net)
 }
 
 struct UseSearch<'a> {
