@@ -25,8 +25,8 @@ type RegisterValues = BTreeMap<usize, u64>;
 
 /// The counters of a pipeline's Verilog, in the clocks in which all points move.
 pub struct Counters {
-    /// For each slot, the values of the registers that count the slots. The list has one entry for each clock of the interval. The
-    /// registers are empty if the interval is 1.
+    /// For each slot, which is a clock of the interval from one point to the next, the values of the registers that count the
+    /// slots. The list has one entry for each clock of the interval. An entry is an empty map if the interval is 1.
     pub slots: Vec<RegisterValues>,
     /// For each memory, each of its read ports and each slot, the number of clocks from a write to the read. It is `None` if this
     /// number is not fixed.
@@ -83,8 +83,8 @@ impl Counters {
         Ok(Self { slots, delays })
     }
 
-    /// Returns the number of clocks from a write to the read at a port of a memory, for a read `clock` clocks after a point entered.
-    /// Returns `None` if this number is not fixed.
+    /// Returns the number of clocks from a write to the read of the same word at a port of a memory, for a read `clock` clocks
+    /// after a point entered. Returns `None` if this number is not fixed.
     pub fn delay(&self, read: Read, clock: usize) -> Option<usize> {
         self.delays[read.memory][read.port][clock % self.slots.len()]
     }
@@ -99,7 +99,9 @@ impl Counters {
     }
 }
 
-/// Returns the values of the registers that count the slots, for each slot. `reset` are the constants after a reset.
+/// Returns the values of the registers that count the slots, for each slot. `reset` has the registers that are constant after a
+/// reset. Fails if the interval is longer than 1 and these registers do not make `in_ready` 1 in slot 0 and 0 in all other
+/// slots.
 fn slots(
     module: &Module,
     roles: &Roles,
@@ -137,7 +139,8 @@ fn slots(
 }
 
 /// Returns the constants of each clock until all counters have their first values again. The counters are the slot counter and
-/// `counter`, a register with its value after a reset. Returns `None` if `counter` does not return to this value.
+/// `counter`, a register with its value after a reset. Returns `None` if `counter` has no constant value in a clock, or if the
+/// first values do not return within 1024 clocks.
 fn course(
     module: &Module,
     roles: &Roles,

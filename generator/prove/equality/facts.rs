@@ -84,7 +84,7 @@ fn by_one_or_none(
 }
 
 /// Finds products that a design computes as a sum of partial products, among the terms on which `roots` depend. Returns each
-/// product with the term of its sum.
+/// product with the term of its sum. The map is empty if no product is computed in this way.
 pub fn divided(
     terms: &mut VectorTerms,
     roots: impl IntoIterator<Item = VectorTermId>,
@@ -106,7 +106,8 @@ pub fn divided(
     divided
 }
 
-/// Returns the term that `factor` extends, and whether the extension copies the sign bit; `None` if `factor` is no extension.
+/// Returns the narrower term that `factor` extends, and whether the extension copies the sign bit (`true`) or adds zeros
+/// (`false`). Returns `None` if `factor` is no extension.
 pub fn extended(terms: &VectorTerms, factor: VectorTermId) -> Option<(VectorTermId, bool)> {
     match *terms.term(factor) {
         VectorTerm::SignExtend(bits) => Some((bits, true)),
@@ -195,8 +196,9 @@ fn square_in_parts(
     Some(ProductSum { product, sum, there: true })
 }
 
-/// Returns the larger term whose upper bits are `bits`, and the number of its bits below `bits`. Returns `None` if `bits` is
-/// not cut from a larger term. For example, bits 4 to 7 of a term give bits 0 to 7, and 4.
+/// Returns the larger term whose upper bits are `bits`, and the number of its bits below `bits`. Returns `None` if `bits` is no
+/// slice above bit 0 of a larger term. For example, if `bits` is bits 4 to 7 of a term, the result is the term's bits 0 to 7,
+/// and 4.
 fn whole(terms: &mut VectorTerms, bits: VectorTermId) -> Option<(VectorTermId, u32)> {
     match *terms.term(bits) {
         VectorTerm::Slice { of, low } if low > 0 => {
@@ -211,8 +213,8 @@ fn whole(terms: &mut VectorTerms, bits: VectorTermId) -> Option<(VectorTermId, u
     }
 }
 
-/// Returns whether the terms contain the first row of the product of `bits` and `other`: `other` if the lowest bit is 1,
-/// otherwise 0.
+/// Returns whether the terms contain the first partial product of `bits` and `other`: `other` if the lowest bit of `bits` is 1,
+/// and otherwise 0. If so, the design multiplies `bits` by `other` with adders.
 fn has_row(terms: &mut VectorTerms, bits: VectorTermId, other: VectorTermId) -> bool {
     let narrow = match *terms.term(other) {
         VectorTerm::SignExtend(narrow) => narrow,
@@ -264,8 +266,9 @@ fn range_by_width(terms: &VectorTerms, factor: VectorTermId) -> Interval {
     }
 }
 
-/// Returns the fact that a product lies in the product of the ranges, if its factors lie in their ranges. Returns `None` if a
-/// range does not fit into 64 bits.
+/// Returns the fact that a product lies in the product of its factors' ranges if both factors lie in their ranges. For example,
+/// factors within 0 to 3 and 0 to 5 have a product within 0 to 15. Returns `None` if an end of a range does not fit into 64
+/// bits.
 fn within(terms: &mut VectorTerms, product: &Product) -> Option<VectorTermId> {
     let [a, b] = product.factors;
     let [x, y] = product.ranges;

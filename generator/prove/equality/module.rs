@@ -1,7 +1,7 @@
-//! Executes a Verilog module, which Yosys has flattened, clock by clock on symbolic terms.
+//! Parses the JSON netlist of a Verilog module, which Yosys has flattened, and executes it clock by clock on symbolic terms.
 //!
 //! Every undetermined bit (`x` or `z`) becomes a new unknown at each read. A read beyond the contents of a memory gives an
-//! unknown word.
+//! unknown word. The module accepts only registers and memories that change at the rising edge of `clk`.
 
 use std::collections::HashMap;
 
@@ -12,7 +12,7 @@ use super::cells::{Bit, Connection, WireValues};
 use super::term::{VectorTermId, VectorTerms};
 use glint_base::fixed::MAX_WIDTH;
 
-/// The function of a combinational cell: an operation, or a read from a memory.
+/// What a combinational cell computes: an operation, or a read from a memory.
 enum What {
     Cell {
         kind: String,
@@ -24,7 +24,8 @@ enum What {
     Read(Read),
 }
 
-/// A read port of a memory in a flat Verilog module.
+/// A read port of a memory in a flat Verilog module: the index of the memory in [`Module::memories`], and the number of the
+/// port.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Read {
     pub memory: usize,
@@ -388,7 +389,8 @@ impl Memory {
         values.columns(terms, &self.write.data)
     }
 
-    /// Returns the addresses of the write port and of each read port, and the enable of the write port.
+    /// Returns the address at the write port, then the address at each read port, then the enables of the written bits, as
+    /// terms of at most 64 bits, the lowest bits first.
     pub fn control(&self, terms: &mut VectorTerms, values: &WireValues) -> Vec<VectorTermId> {
         let enable = values.columns(terms, &self.write.enable);
         let mut control = vec![values.word(terms, &self.write.address)];

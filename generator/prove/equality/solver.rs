@@ -1,4 +1,7 @@
 //! Asks an SMT solver whether some one-bit terms can all be 1 at once, and reads its answer.
+//!
+//! Each question is a file in SMT-LIB 2 with the terms, and with the arithmetic facts of `facts`. Products and memory reads are
+//! uninterpreted functions in it. All questions of one [`Solver`] share a time limit.
 
 use std::fmt::Write as _;
 use std::fs;

@@ -1,4 +1,4 @@
-//! Stores and simplifies bit-vector terms, the values of nets when the operands are unknown.
+//! Stores and simplifies bit-vector terms: expressions for the values of nets when the operands are unknown.
 //!
 //! Equal terms are stored once. Constants are folded, so that a microprogram with unknown operands still runs. Concatenations,
 //! slices and extensions are brought into one normal form, so that many equal values become the same term without the solver.
@@ -53,7 +53,8 @@ pub enum VectorTerm {
     Join(VectorTermId, VectorTermId),
     /// A narrower term with copies of its top bit above it.
     SignExtend(VectorTermId),
-    /// A word of a memory, which is 0 for an address beyond its contents. The address has [`ADDRESS`] bits.
+    /// A word of a memory: `memory` is an index into [`VectorTerms::memories`]. The word is 0 for an address beyond the
+    /// contents. The address has [`ADDRESS`] bits.
     Word {
         memory: usize,
         address: VectorTermId,
@@ -174,8 +175,8 @@ impl VectorTerms {
         self.memories.len() - 1
     }
 
-    /// Returns the term for a read at an address beyond the contents of a memory. It is an unknown that is the same for every read
-    /// at the same address.
+    /// Returns the term of `width` bits for a read at an address beyond the contents of a memory. The term is an unknown, and
+    /// it is the same for every read of this memory at the same address.
     pub fn beyond(&mut self, memory: usize, address: VectorTermId, width: u32) -> VectorTermId {
         if let Some(&word) = self.beyond.get(&(memory, address)) {
             return word;
@@ -237,8 +238,8 @@ impl VectorTerms {
         self.known.contains_key(&(ordered(term.clone()), width))
     }
 
-    /// Replaces a condition, a one-bit term, by the constant `value` in all of `terms`. The execution does so where a path assumes
-    /// the condition.
+    /// Replaces `condition`, a one-bit term, by the constant `value` in all of `terms`. The symbolic execution calls this
+    /// function on a path that exists only if the condition has this value.
     pub fn assuming(&mut self, condition: VectorTermId, value: bool, terms: &mut [VectorTermId]) {
         let constant = self.constant(value.into(), 1);
         self.replace(&HashMap::from([(condition, constant)]), terms);
@@ -266,7 +267,8 @@ impl VectorTerms {
         terms.iter_mut().for_each(|term| *term = new[term]);
     }
 
-    /// Returns a term in its simplified form. Terms that simple rules show to be equal have the same form.
+    /// Returns the id of a term, after simplification. Operations on constants become constants. Terms that simple rules show
+    /// to be equal have the same id. For example, a + 0 is a.
     pub fn make(&mut self, term: VectorTerm, width: u32) -> VectorTermId {
         let constants: Option<HashMap<VectorTermId, u64>> =
             term.operands().into_iter().map(|id| Some((id, self.constant_of(id)?))).collect();
@@ -423,8 +425,9 @@ impl VectorTerms {
         }
     }
 
-    /// Returns a simpler form of `op(a, b)`, a sum or a difference, if the lowest bits of `b` are 0. These bits of the result
-    /// are the bits of `a`, so only the upper bits are added. Returns `None` if no such bits are known.
+    /// Returns a simpler form of `op(a, b)`, a sum or a difference, if the lowest bits of `b` are known to be 0. These bits of
+    /// the result are the bits of `a`, so only the upper bits are added or subtracted. Returns `None` if no bits or all bits of
+    /// `b` are known to be 0.
     fn passed_by(
         &mut self,
         a: VectorTermId,

@@ -1,10 +1,11 @@
 //! Proves that the emitted Verilog of a pipeline and its netlist have the same outputs, for every point (one set of operands)
 //! and from any state.
 //!
-//! Yosys reads the Verilog, and the module executes netlist and Verilog on symbolic terms, with unknown registers and memories
-//! at the beginning. [`Counters`] finds the slot counter, and proves that every memory is a delay line; `stays` proves that a
-//! clock in which the pipeline waits changes nothing. It is therefore enough to compare both in the clocks from a point to its
-//! results. A register of the Verilog that equals a net takes the net's term, so the solver only has to compare one clock at a time.
+//! Yosys has read the Verilog, and the module executes netlist and Verilog on symbolic terms, with unknown registers and
+//! memories at the beginning. [`Counters`] finds the slot counter, which counts the clocks between two points, and proves that
+//! every memory is a delay line. The module proves that a clock in which the pipeline waits changes nothing, and then compares
+//! the clocks from a point to its results. A register of the Verilog that equals a net takes the net's term, so a question
+//! concerns little more than one clock.
 
 use std::collections::{HashMap, HashSet};
 use std::time::Duration;
@@ -50,11 +51,11 @@ pub struct TextProof {
     pub questions: usize,
 }
 
-/// Proves that the emitted Verilog of a pipeline, as [`glint_tools::elaborate`] reads it, equals the pipeline's netlist. `limit`
-/// is the time limit of the solver.
+/// Proves that the emitted Verilog of a pipeline equals the pipeline's netlist, or finds a difference. `text` is the JSON of
+/// [`glint_tools::elaborate`] for this Verilog. `limit` is the time limit of all answers of the solver together.
 ///
 /// # Errors
-/// Fails if the design is no pipeline, or if the solver does not do its work.
+/// Fails if the design is no pipeline, if the Verilog lacks an output of the netlist, or if the solver cannot be run.
 pub fn compare_text(
     design: &Design,
     text: &Value,
@@ -132,8 +133,9 @@ struct TextComparison<'p> {
     proof: TextProof,
 }
 
-/// Returns the term of an input in a clock after the point enters in clock 0. The handshake is fixed: no reset, `out_ready` is
-/// 1, and `in_valid` is 1 in clock 0. Every other input is an unknown.
+/// Returns the term of an input in clock number `clock`; the point enters in clock 0. The handshake is fixed: no reset,
+/// `out_ready` is 1, and `in_valid` is 1 in clock 0. Every other input is an unknown, and it is the same for the same `name`
+/// and `clock`.
 fn input(
     terms: &mut VectorTerms,
     inputs: &mut HashMap<(String, usize), VectorTermId>,
@@ -277,7 +279,7 @@ impl TextComparison<'_> {
         }
     }
 
-    /// Proves that the outputs of netlist and Verilog are the same when the results of a point are shown.
+    /// Proves that the outputs of netlist and Verilog are the same in the clock in which the results of a point are shown.
     fn follows_a_point(&mut self) -> Result<(), EarlyEnd> {
         let nets = self.netlist()?;
         let module = self.module;
@@ -342,7 +344,8 @@ impl TextComparison<'_> {
         Ok(nets)
     }
 
-    /// Makes an unknown for the term of every register of the netlist. `nets` are the terms of the nets in the present clock.
+    /// Fills `unknown_registers` for the present clock: an unknown for the term of every register of the netlist, unless the
+    /// term is a constant or an unknown already. `nets` are the terms of the nets in this clock.
     fn forget_registers(&mut self, nets: &[VectorTermId]) {
         self.unknown_registers.clear();
         for register in &self.design.registers {
@@ -409,8 +412,11 @@ impl TextComparison<'_> {
         Ok(())
     }
 
-    /// Ends the comparison with a verdict unless two terms are proved equal. With a `condition`, they need to be equal only if
-    /// its bit has its value. For example, a register must keep its value if `in_ready` is 0.
+    /// Proves that two terms are equal. With a `condition`, they need to be equal only if its bit has its value. For example, a
+    /// register must keep its value if `in_ready` is 0. `what` names the terms in a message.
+    ///
+    /// # Errors
+    /// Returns [`EarlyEnd`] if the widths differ, if a difference is found, or if the solver does not decide.
     fn must_equal(
         &mut self,
         condition: Option<(VectorTermId, bool)>,
@@ -467,8 +473,9 @@ impl TextComparison<'_> {
         }
     }
 
-    /// Finds values of the unknowns for which all `wanted` terms are 1, and describes them in words. It tries random values,
-    /// and the values `found` by the solver. Returns `None` if the terms are not all 1 for any of them.
+    /// Finds values of the unknowns for which all `wanted` terms are 1, and describes in words the two terms that then differ.
+    /// It tries 24 sets of random values, and the values `found` by the solver. Returns `None` if some `wanted` term is 0 for
+    /// each of them.
     fn difference(
         &self,
         wanted: &[VectorTermId],
