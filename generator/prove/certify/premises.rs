@@ -21,7 +21,8 @@ pub struct Premise {
     pub script: String,
 }
 
-/// Returns the premises of a case's statements.
+/// Returns the premises of a case's statements: one for each parabola of the case, and three for each divider whose operands'
+/// intervals do not already imply the conditions. `operands` has each variable of the script with its interval of values.
 ///
 /// # Errors
 /// Fails if a value has no translation.
@@ -126,9 +127,9 @@ impl PremiseTask<'_> {
     }
 }
 
-/// Writes the statement that a step of a divider leaves a remainder from 0 to the divisor. `fits` is whether the divisor fits
-/// into twice the remainder. All numbers are multiples of the divisor. For example, a remainder of 0.75 is doubled to 1.5, and
-/// leaves 0.5.
+/// Writes the statement that a step of a divider leaves a remainder from 0 to the divisor. `fits` says whether the divisor fits
+/// into twice the remainder. All numbers are in multiples of the divisor. For example, a remainder of 0.75 is doubled to 1.5,
+/// and leaves 0.5.
 fn step(fits: bool) -> String {
     let (condition, left) =
         if fits { ("doubled - 1 >= 0", "doubled - 1") } else { ("doubled - 1 <= 0", "doubled") };

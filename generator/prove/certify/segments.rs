@@ -54,12 +54,12 @@ struct WordSegment {
     to: f64,
 }
 
-/// Returns the statements for a device that computes a line of points. `walk` are the registers that change from point to point,
-/// such as the angle.
+/// Returns the statements for a device that computes a line of points. `walk` are the registers that change from point to
+/// point, such as the angle.
 ///
 /// # Errors
-/// Fails if the formula or the netlist does not have the expected form: a table with a power of a cosine, whose address is an angle
-/// that grows from point to point.
+/// Fails if the task has no bound, or if the contract is no highlight. Fails also if the formula or the netlist does not have
+/// the expected form: a table with a power of a cosine, whose address is an angle that grows from point to point.
 pub fn statements(task: &Task, walk: &[WalkRegister]) -> Result<Vec<Statement>, String> {
     let bound = task.bound.ok_or("a table is stated by segment with a stated bound alone")?;
     if task.contract.highlight().is_none() {
@@ -112,8 +112,8 @@ struct AngleWalk {
 }
 
 impl AngleWalk {
-    /// Returns the angle along a line if it is the only register that changes from point to point. The register must begin with
-    /// one operand, and another operand must be added to it modulo its format. Fails otherwise.
+    /// Returns the angle along a line of points. The angle must be the only register that changes from point to point. The
+    /// register must begin with one operand, and another operand must be added to it modulo its format. Fails otherwise.
     fn new(task: &Task, walk: &[WalkRegister]) -> Result<Self, String> {
         let graph = task.graph();
         let is_more_than_a_sum = "its points walk on by more than a sum";
@@ -138,8 +138,8 @@ impl AngleWalk {
         Ok(Self { start: start.to_owned(), wrapped })
     }
 
-    /// Returns `formula` with [`POINT`] in place of the angle of a point, start + index·step, wrapped around. By induction, the
-    /// register of the angle has this value.
+    /// Returns `formula` with the name [`POINT`] in place of the angle of a point, which is start + index·step, wrapped around.
+    /// By induction, the register of the angle has this value.
     fn angle(&self, formula: &Expression) -> Expression {
         formula.substitute(&self.wrapped, &Expression::operand(POINT), &formula.span)
     }
@@ -153,9 +153,12 @@ fn operand_name<'t>(task: &'t Task, id: NodeId) -> Option<&'t str> {
     }
 }
 
-/// The colour operand of each output, the table word by which all outputs are multiplied, and the outputs.
+/// The names of the colour operands, the node of the table word by which all outputs are multiplied, and the outputs with their
+/// nodes.
 type ProductsByColour = (Vec<String>, NodeId, Vec<(String, NodeId)>);
 
+/// Finds the one table word on which all outputs depend. Fails if the outputs depend on several words, if they depend on
+/// anything but this word and the colours, or if the numbers of colours and outputs differ.
 fn table(task: &Task) -> Result<ProductsByColour, String> {
     let graph = task.graph();
     let outputs = task.outputs()?;
@@ -205,7 +208,8 @@ fn is_open(graph: &Graph, id: NodeId) -> bool {
 }
 
 /// Returns the words of the table that are read, in the order of their addresses, each with the interval of the angles that
-/// read it.
+/// read it, in right angles. Fails if the address depends on anything but the angle, or if an angle leaves the range from 0 to
+/// 1.
 fn words(
     task: &Task,
     table: NodeId,
@@ -272,13 +276,14 @@ fn decided_address(
     if low == high { Some(low) } else { None }
 }
 
-/// Returns an interval that contains the formula's angle if the angle of the point is in the given range. Returns `None` if the
-/// formula's angle depends on anything else.
+/// Returns an interval, in right angles, that contains the formula's angle if the angle of the point is from `low` to `high`.
+/// Returns `None` if the formula's angle depends on anything but the angle of the point.
 fn enclosed(angle: &Expression, (low, high): (f64, f64)) -> Option<Enclosure> {
     angle.enclose(&[(POINT, Enclosure::between(low, high))]).ok()
 }
 
-/// Writes the statement that the formula is within `bound` of each word at both ends of the word's segment.
+/// Writes the statement that the formula is within `bound` of each word at both ends of the word's segment. `first` is the
+/// index of the first word, and `power` the exponent of the cosine.
 fn about_words(words: &[WordSegment], first: usize, power: u32, bound: f64) -> String {
     let degree = 2 * TERMS + 2;
     let mut text = format!(
@@ -330,7 +335,8 @@ fn cosine(name: &str, angle: f64, power: u32) -> String {
     text
 }
 
-/// Writes the statement that an output is within `bound` of `colour` times f, for every f within `of_f` of the table word.
+/// Writes the statement that the output `out` is within `bound`, in output units, of `colour` times f, for every f within
+/// `of_f` of the table word. Fails if the output has no translation or the table has a single word.
 fn about_output(
     task: &Task,
     (out, table): (NodeId, NodeId),

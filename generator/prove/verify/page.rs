@@ -49,10 +49,8 @@ impl<'a> CheckView<'a> {
     }
 }
 
-/// Returns the HTML page of a verification. Only the last section depends on the run times.
-///
-/// # Errors
-/// Fails if the template fails.
+/// Returns the HTML page of a verification. `timings` has the time of each check, in the order of the record's checks. Only the
+/// last section of the page depends on it.
 pub fn page(record: &VerificationRecord, timings: &[CheckTime]) -> Result<String> {
     let counts = record.counts.iter();
     let checks = record.checks.iter();
