@@ -10,8 +10,8 @@ use glint_base::fixed::mask;
 use glint_core::cosim::Random;
 use glint_rtl::netlist::{Design, Driver, Net, NetId, Op, RegId, Role, RomId};
 
-/// The largest number of words of a ROM for which all pairs of words are swapped. `ALL_BITS` is the largest number of bits of a
-/// ROM for which every bit is inverted.
+/// The largest number of words of a ROM for which all pairs of words are swapped, and the largest number of bits of a ROM for
+/// which every bit is inverted.
 const ALL_WORDS: usize = 32;
 const ALL_BITS: usize = 1024;
 
@@ -73,7 +73,7 @@ pub struct NetlistFault {
     pub site: Site,
 }
 
-/// A list of faults that can be planted in a netlist, each in a mutant of its own. For large ROMs the list has only a sample of the
+/// A list of faults that can be planted in a netlist, each in a mutant of its own. For large ROMs the list has a sample of the
 /// possible faults.
 #[derive(Clone, Debug, Default)]
 pub struct Faults(Vec<NetlistFault>);
@@ -248,7 +248,7 @@ fn pairs(words: &[u64], random: &mut Random) -> BTreeSet<(usize, usize)> {
     pairs
 }
 
-/// Returns the field of the control word that holds a bit, and the number of the bit in the field. For example, the
+/// Returns the field of the control ROM's words that contains a bit, and the number of the bit in the field. For example, the
 /// result is `difference_load[0]` for the field `difference_load` of one bit.
 fn field_bit(design: &Design, bit: u32) -> String {
     let fields = design.control.fields.iter().zip(design.field_positions());

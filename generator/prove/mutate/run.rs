@@ -1,5 +1,8 @@
-//! Plants the faults of mutation testing one at a time in the netlist of a core, and finds the verdict on each: caught by a check,
-//! proved equivalent, or undecided. The checks and proofs of a fault end with the first that decides.
+//! Plants faults one at a time in the netlist of a core, and finds the verdict on each: caught by a check, proved equivalent,
+//! or undecided.
+//!
+//! For each fault, the module tries in turn a short test, the proofs, the default test, and directed tests. It ends with the
+//! first that decides. In addition it finds whether the shipped bench notices the fault.
 
 use std::sync::OnceLock;
 
@@ -28,11 +31,12 @@ const FIRST_POINTS: u64 = 256;
 const BEYOND_POINTS: u64 = 1_000_000;
 const BEYOND_SEED: u64 = 2;
 
-/// Plants each of the faults in turn, runs the checks on the mutant (the design with the fault), and returns the verdicts. It calls
-/// `progress` after each fault.
+/// Plants each of the faults in turn, runs the checks on the mutant (the design with the fault), and returns the verdicts, in
+/// the order of `faults`. It calls `progress` after each fault.
 ///
 /// # Errors
-/// Fails if a mutant cannot be simulated.
+/// Fails if a mutant cannot be simulated, or if golden model and fault-free simulation disagree. The message may have the id of
+/// the fault.
 pub fn run<'f>(
     core: &Core,
     faults: impl IntoIterator<Item = &'f NetlistFault>,
@@ -65,7 +69,8 @@ pub fn run<'f>(
         .collect()
 }
 
-/// The shared state of all faults of a configuration.
+/// What the checks of all faults of a configuration share: the fault-free design, the golden model, and prepared searches and
+/// proofs.
 struct Bench<'a> {
     core: &'a Core,
     sound: Design,
@@ -91,6 +96,7 @@ impl Bench<'_> {
         Ok(FaultResult { fault: fault.clone(), verdict, shipped })
     }
 
+    /// Returns the verdict of the first check or proof that decides.
     fn verdict(&self, fault: &NetlistFault, mutant: &Design) -> Result<MutantVerdict> {
         if let Some(mismatch) = self.first_look(mutant, &fault.site)? {
             return Ok(caught(mismatch));
@@ -113,7 +119,7 @@ impl Bench<'_> {
     }
 
     /// Searches for a point at which the mutant of a pipeline differs from the fault-free pipeline, and confirms it with the
-    /// golden model. A sequential core is undecided.
+    /// golden model. Without such a point, or for a sequential core, the verdict is `Undecided`.
     fn searched(&self, mutant: &Design) -> Result<MutantVerdict> {
         let Some(beside) = &self.beside else {
             return Ok(MutantVerdict::Undecided);
@@ -124,8 +130,8 @@ impl Bench<'_> {
             .map_or(MutantVerdict::Undecided, |it| MutantVerdict::Caught(Detector::Directed, it)))
     }
 
-    /// Returns the first difference in a short part of the default test. If words of a table are faulty, the part consists of
-    /// the streams that read these words, because the fault can show only there.
+    /// Returns the first difference in a short part of the default test, or `None` if there is no difference. If words of a
+    /// table are faulty, the part consists of the streams that read these words, because the fault can show only there.
     fn first_look(&self, mutant: &Design, site: &Site) -> Result<Option<Mismatch>> {
         let looks = match self.words(site) {
             Some(_) => self.places(site),
@@ -146,7 +152,7 @@ impl Bench<'_> {
     }
 
     /// Runs a mutant whose faulty table words are read only for a few operands, with these operands fixed. It then tries all
-    /// operands if they are few enough.
+    /// operands if they have few enough bits. If no combination differs for any of the words, the verdict is `Equivalent`.
     fn directed(
         &self,
         mutant: &Design,
@@ -208,8 +214,8 @@ impl Bench<'_> {
         Ok(readings)
     }
 
-    /// Returns the first difference in the streams of a longer test that read a word, if the default test does not read it. It
-    /// does so only for pipelines, which have no registers that keep the operands of a read.
+    /// Returns the first difference in the streams of a longer test that read a word, if the default test does not read it.
+    /// Returns `None` for a sequential core, whose operand registers give directed operands for the word instead.
     fn beyond_shows(&self, mutant: &Design, rom: RomId, word: usize) -> Result<Option<Mismatch>> {
         if self.latency == 0 || !self.tested.places(rom, word).is_empty() {
             return Ok(None);

@@ -46,9 +46,9 @@ pub struct Tally {
     pub equivalent: BTreeMap<How, usize>,
     /// The number of faults that no check noticed and no proof showed to be equivalent.
     pub undecided: usize,
-    /// The number of faults that the shipped bench notices. `missed` is the number that it does not notice although another check
-    /// does.
+    /// The number of faults that the shipped bench notices.
     pub shipped: usize,
+    /// The number of faults that the shipped bench does not notice although another check does.
     pub missed: usize,
 }
 
@@ -118,7 +118,7 @@ impl Score {
     }
 
     /// Returns the share of inverted bits, in the upper half of ROM words, that the shipped bench notices, among the inversions
-    /// that any check notices. Returns `None` for a design without ROMs.
+    /// that any check notices. Returns `None` if no such fault was planted, for example in a design without ROMs.
     pub fn of_memory(&self) -> Option<Share> {
         self.kinds.get(&FaultKind::RomHighBit).map(Tally::of_shipped)
     }
@@ -139,7 +139,7 @@ pub struct TextScore {
     pub undecided: Vec<String>,
     /// The share of the faults that the shipped bench notices, among the faults that it or a longer bench notices.
     pub shipped: Share,
-    /// The ids of the faults that the shipped bench does not notice.
+    /// The ids of the faults that the shipped bench does not notice although a longer bench does.
     pub missed: Vec<String>,
 }
 

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use super::fault::NetlistFault;
 use glint_core::cosim::Mismatch;
 
-/// The check that noticed a fault first.
+/// The check that noticed a fault in the netlist first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Detector {
@@ -25,7 +25,8 @@ pub enum How {
     Induction,
     /// The fault was proved equivalent by trying every combination of values on the nets around it.
     Exhaustion,
-    /// The fault was proved equivalent by trying every combination of the operands with which the hardware uses the faulty word.
+    /// The fault, in words of a ROM, was proved equivalent by trying every combination of the operands with which the hardware
+    /// reads the words.
     Operands,
 }
 
