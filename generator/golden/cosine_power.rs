@@ -21,7 +21,7 @@ use glint_keys::cosine_power::Keys;
 struct PowerArithmetic {
     keys: Keys,
     squarings: u32,
-    /// The accumulator's largest fraction: 1.0 minus one unit in the last place.
+    /// The largest value of the accumulator: 1.0 minus one unit in the last place, as a raw value.
     largest: i64,
     scaled: Narrow,
     square: Narrow,
@@ -41,13 +41,15 @@ impl PowerArithmetic {
         }
     }
 
-    /// Returns `n/m·(1 − cos γ)`, saturated.
+    /// Returns the raw value of `n/m·(1 − cos γ)`, rounded, and limited to the accumulator's format. `cosine` and `exponent`
+    /// are raw operands.
     #[inline]
     fn scaled(&self, cosine: i64, exponent: i64) -> i64 {
         self.scaled.apply((self.keys.operands.cosine.one() - cosine) * exponent)
     }
 
-    /// Returns the inverse of the accumulator, `1.0 − ulp − accumulator`; 0 for a surface that faces away.
+    /// Returns the raw base: the inverse of the accumulator, `1.0 − ulp − accumulator`. It is 0 for a surface that faces away,
+    /// which has the cosine 0.
     #[inline]
     fn base(&self, cosine: i64, accumulator: i64) -> i64 {
         if cosine == 0 { 0 } else { self.largest - accumulator }
@@ -189,7 +191,7 @@ impl Reflectance for PowerArithmetic {
     }
 }
 
-/// Returns the largest difference between W and cosⁿγ over the cosines from 0 to 1, on a fine grid.
+/// Returns the largest difference between W and cosⁿγ over 512 cosines, spaced evenly from 1/512 to 1.
 fn formula_error(n: i64, power: u32) -> f64 {
     const GRID: u32 = 512;
     (1..=GRID)

@@ -1,4 +1,7 @@
-//! Models which point each stage of a pipeline holds, clock by clock. A point is one set of operands, on its way to its results.
+//! Models which point each stage of a pipeline contains, clock by clock. A point is one set of operands, on its way to its
+//! results.
+//!
+//! The model predicts the handshake of a pipeline. It computes no results.
 
 use std::collections::VecDeque;
 
@@ -37,19 +40,20 @@ impl<P> Occupancy<P> {
         self.stages.back().and_then(Option::as_ref)
     }
 
-    /// Returns the point in a stage. Stages are numbered from 1.
+    /// Returns the point in a stage, or `None` if the stage is empty or does not exist. Stages are numbered from 1.
     pub fn stage(&self, stage: usize) -> Option<&P> {
         self.stages.get(stage.checked_sub(1)?).and_then(Option::as_ref)
     }
 
-    /// Returns every point in the pipeline with the number of its stage, from 1 on.
+    /// Returns every point in the pipeline with the number of its stage, from 1 on. Empty stages are left out.
     pub fn points(&self) -> impl Iterator<Item = (usize, &P)> {
         let stages = self.stages.iter().enumerate();
         stages.filter_map(|(at, point)| point.as_ref().map(|point| (at + 1, point)))
     }
 
-    /// Performs a rising edge with `offered` as the offered point, if any. Returns the point whose results were taken at this
-    /// edge. If `rst_n` is low, the pipeline is empty after the edge.
+    /// Performs a rising edge with `offered` as the offered point, if any. The pipeline drops the offered point if it does not
+    /// accept it in this clock ([`Occupancy::takes`]). Returns the point whose results were taken at this edge, or `None`. If
+    /// `rst_n` is low, the pipeline is empty after the edge.
     pub fn clock(&mut self, rst_n: bool, offered: Option<P>, out_ready: bool) -> Option<P> {
         let taken = if self.moves(out_ready) {
             self.stages.push_front(offered.filter(|_| self.slot == 0));

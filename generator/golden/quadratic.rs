@@ -50,7 +50,7 @@ impl QuadraticArithmetic {
         }
     }
 
-    /// Returns `c² − c`.
+    /// Returns the raw `c² − c`, rounded to the register `difference`.
     #[inline]
     fn difference(&self, cosine: i64) -> i64 {
         self.difference.apply(cosine * cosine - (cosine << self.keys.operands.cosine.fraction))

@@ -69,13 +69,14 @@ impl ThresholdArithmetic {
         words
     }
 
-    /// Returns `n/2·(cos γ − 1)`, rounded, and −1.0 if the product is less.
+    /// Returns the raw value of `n/2·(cos γ − 1)`, rounded, or −1.0 if the product is less.
     #[inline]
     fn scaled(&self, cosine: i64, exponent: i64) -> i64 {
         self.scaled.apply((cosine - self.keys.operands.cosine.one()) * exponent)
     }
 
-    /// Returns the word of ROM(n) for the octave of `exponent`. The last word serves all octaves beyond it.
+    /// Returns the word of ROM(n), a raw f, for the octave of `exponent`: the exponents from 2^k to below 2^(k + 1). The last
+    /// word serves all octaves beyond it.
     #[inline]
     fn threshold(&self, exponent: i64) -> i64 {
         let octave = exponent.max(1).ilog2() as usize;
@@ -205,7 +206,7 @@ impl Reflectance for ThresholdArithmetic {
         ]
     }
 
-    /// Warns of a level that hides outputs above 0. Such a level is visible as an edge around the highlight.
+    /// Returns a remark if a level hides outputs above 0. Such a level is visible as an edge around the highlight.
     fn remarks(&self) -> Vec<String> {
         let (f, colour_bits) = (&self.keys.f, self.keys.operands.colours.bits);
         let largest = (1 << colour_bits) - 1;

@@ -26,9 +26,9 @@ pub trait Reflectance: Send + Sync {
     /// Returns the exact f: the source's formula in f64, unrounded, at the values that the raw control operands represent.
     fn reference(&self, control: &[i64]) -> f64;
 
-    /// Returns the two values that count as correct for `f` at the raw control operands. Both are normally the exact f. If the
+    /// Returns the two values that count as correct for `f` at the raw control operands. Normally both are the exact f. If the
     /// formula jumps and rounding may lead to either side of the jump, they are the values on both sides. An error is measured
-    /// from the nearer one.
+    /// from the nearer value.
     fn references(&self, control: &[i64]) -> [f64; 2] {
         [self.reference(control); 2]
     }
@@ -42,9 +42,9 @@ pub trait Reflectance: Send + Sync {
         Vec::new()
     }
 
-    /// Changes the control operands of a computation to the control operands of its result number `index`, counted from 0.
+    /// Changes the raw control operands of a computation to the control operands of its result number `index`, counted from 0.
     ///
-    /// A device with one result for each `start` leaves them as they are. A device that walks along a line, such as
+    /// A device with one result for each `start` leaves them as they are. A device that computes a line of points, such as
     /// `quad-cosine`, must set the angle of that point.
     fn point(&self, control: &mut [i64], index: u64) {
         let _ = (control, index);
@@ -79,12 +79,13 @@ pub trait Reflectance: Send + Sync {
         None
     }
 
-    /// Returns limits on how much the formula changes with the cosine over the domain, or `None` if nobody has stated them.
+    /// Returns proven limits on how much the formula changes with the cosine over the domain, or `None` if nobody has stated
+    /// them.
     fn variation(&self) -> Option<Variation> {
         None
     }
 
-    /// Returns the name of the operand that states how many results a computation has, as [`Contract::length`] does.
+    /// Returns the name of the operand that states how many results a computation has, as [`Contract::length`] does, or `None`.
     fn length(&self) -> Option<&str> {
         None
     }
@@ -99,8 +100,8 @@ pub trait Reflectance: Send + Sync {
         contract::operands_at(operands, gamma, n, &[])
     }
 
-    /// Returns cos γ, as the control operands represent it. By default it is the value of the operand `cos_gamma`, if the device
-    /// has one. `operands` are the operands of the contract.
+    /// Returns cos γ, as the raw control operands represent it, limited to 0 … 1. By default it is the value of the operand
+    /// `cos_gamma`; `None` if the device has no such operand. `operands` are the operands of the contract.
     fn cosine(&self, operands: &[Operand], control: &[i64]) -> Option<f64> {
         let (operand, raw) =
             operands.iter().zip(control).find(|(operand, _)| operand.name == COSINE)?;
@@ -112,14 +113,15 @@ pub trait Reflectance: Send + Sync {
         None
     }
 
-    /// Returns the absolute error of `f` in one case of the check, or `None` if a case is a set of control operands.
+    /// Returns the absolute error of `f`, as a value, in one case of the check. `place` has the value on each axis of the
+    /// sweep. Returns `None` if a case is a set of control operands; the caller then computes the error itself.
     #[inline]
     fn sweep_error(&self, place: &[i64]) -> Option<f64> {
         let _ = place;
         None
     }
 
-    /// Returns the contributions to the error of f, each a proven upper limit; nothing if the bound is not known yet.
+    /// Returns the contributions to the error of f, each a proven upper limit; an empty list if the bound is not known yet.
     fn shares(&self) -> Vec<ErrorShare> {
         Vec::new()
     }
@@ -143,7 +145,8 @@ pub struct Variation {
 /// The accuracy contract of a device that multiplies colours by a reflectance f.
 pub struct Highlight {
     reflectance: Box<dyn Reflectance>,
-    /// Whether a computation has one result, at the point that the operands state. A device that walks a line has several.
+    /// Whether a computation has one result, at the point that the operands state. A device that computes a line of points has
+    /// several.
     single: bool,
     products: Products,
     operands: Vec<Operand>,
@@ -207,8 +210,8 @@ impl Highlight {
         point
     }
 
-    /// Returns the raw f of result number `index` (from 0) for raw operands. It writes the exact values, as [`Contract::exact`]
-    /// gives them, into `exact`, and the control operands of that point into `point`.
+    /// Returns the raw f of result number `index` (from 0) for raw operands. It appends the exact values, as
+    /// [`Contract::exact`] gives them, to `exact`, and replaces the contents of `point` by the control operands of that result.
     #[inline]
     pub fn measured(
         &self,
@@ -236,12 +239,14 @@ impl Highlight {
         }));
     }
 
-    /// Returns the control operands for an angle and an exponent: [`Reflectance::at`] with the operands of this contract.
+    /// Returns the control operands for an angle `gamma` in radians and an exponent `n`: [`Reflectance::at`] with the operands
+    /// of this contract. Returns `None` if no operand in the domain represents `n`.
     pub fn at(&self, gamma: f64, n: f64) -> Option<Vec<i64>> {
         self.reflectance.at(&self.operands, gamma, n)
     }
 
-    /// Returns the cosine that the control operands represent: [`Reflectance::cosine`] with the operands of this contract.
+    /// Returns the cosine that the raw control operands represent: [`Reflectance::cosine`] with the operands of this contract.
+    /// Returns `None` if the cosine cannot be computed from them.
     pub fn cosine(&self, control: &[i64]) -> Option<f64> {
         self.reflectance.cosine(&self.operands, control)
     }
@@ -281,7 +286,7 @@ impl Contract for Highlight {
         self.reflectance.sweep().unwrap_or_else(|| Sweep::all(control.iter()))
     }
 
-    /// Returns the absolute error of f.
+    /// Returns the absolute error of f, as a value, in one case of the sweep.
     #[inline]
     fn sweep_error(&self, place: &[i64]) -> f64 {
         self.reflectance.sweep_error(place).unwrap_or_else(|| {

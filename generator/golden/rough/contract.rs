@@ -11,8 +11,8 @@ use crate::highlight::{Highlight, Reflectance};
 use crate::{Axis, Contract, Operand, Sweep, Values};
 use glint_config::Config;
 
-/// The values of dγ, in degrees, that an exhaustive check visits in addition to the largest dγ of the domain. It visits only
-/// values below that.
+/// The values of dγ, in degrees, that an exhaustive check visits in addition to the largest dγ of the domain. Values that are
+/// not below the largest dγ are left out.
 const SWEPT_DEVIATIONS: [f64; 4] = [0.0, 1.0, 5.0, 15.0];
 
 /// Returns the accuracy contract of the device `rough`. Its control operands are `cos_gamma`, `cos_dgamma`, `exponent` and
@@ -60,7 +60,7 @@ impl Reflectance for RoughArithmetic {
         })]
     }
 
-    /// Returns the operands of γ and n with dγ = 0.
+    /// Returns the operands of γ and n with dγ = 0. Returns `None` if no operand in the domain represents `n`.
     fn at(&self, operands: &[Operand], gamma: f64, n: f64) -> Option<Vec<i64>> {
         let no_deviation = [("cos_dgamma", self.keys.largest_cosine())];
         shared::operands_at(operands, gamma, n, &no_deviation)
