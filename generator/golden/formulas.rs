@@ -51,8 +51,8 @@ pub fn rough(c: f64, cd: f64, dgamma_negative: bool, n: f64) -> f64 {
     base * base
 }
 
-/// Returns the formula of the device `rough` without its clamp: `(n/2·(cos(γ ± dγ) − 1) + 1)²` also if the base is negative, where
-/// the parabola rises again. The result is limited to 1. The parameters are the same as for [`rough`].
+/// Returns the formula of the device `rough` without its clamp: `(n/2·(cos(γ ± dγ) − 1) + 1)²` also if the base is negative,
+/// where the parabola rises again. The result is limited to 1. The parameters are the same as for [`rough`].
 #[inline]
 pub fn rough_unclamped(c: f64, cd: f64, dgamma_negative: bool, n: f64) -> f64 {
     if c <= 0.0 {

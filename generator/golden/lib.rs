@@ -196,8 +196,8 @@ pub trait Contract: Send + Sync {
         None
     }
 
-    /// Returns whether an output wraps: a value beyond its format loses its high bits, so that the formula alone does not say which
-    /// value is right.
+    /// Returns whether an output wraps: a value beyond its format loses its high bits, so that the formula alone does not say
+    /// which value is right.
     fn wraps(&self) -> bool {
         false
     }

@@ -30,8 +30,8 @@ impl Polynomial {
         self.sums[0]
     }
 
-    /// Returns the operation of Horner's rule that adds coefficient number `coefficient`, for one of the registers. `raw` computes
-    /// the raw operand of the polynomial from the state.
+    /// Returns the operation of Horner's rule that adds coefficient number `coefficient`, for one of the registers. `raw`
+    /// computes the raw operand of the polynomial from the state.
     pub fn step<R>(&self, coefficient: usize, raw: R) -> impl Fn(&mut State) + use<R>
     where
         R: Fn(&State) -> i64 + Send + Sync + 'static,

@@ -124,8 +124,8 @@ impl Products {
         program
     }
 
-    /// Returns the golden model that executes `program` and then computes the products. `program` must leave f in the slot `f`; the
-    /// last microinstruction shows the products.
+    /// Returns the golden model that executes `program` and then computes the products. `program` must leave f in the slot `f`;
+    /// the last microinstruction shows the products.
     pub fn behind(&self, mut frame: Frame, f: Slot, mut program: Vec<FrameStep>) -> ClockedModel {
         program.extend(self.slots(&mut frame, f));
         program.push(idle().valid().end());

@@ -172,14 +172,15 @@ impl Analysis {
         self.bound_of(i, j, negative, self.errors.product(i, j))
     }
 
-    /// Returns a bound on the error of f as [`Self::bound`] does. In place of the bins' own table errors, `error` is the amount by
-    /// which the table errors change the product of the sines in register 12.
+    /// Returns a bound on the error of f as [`Self::bound`] does. In place of the bins' own table errors, `error` is the amount
+    /// by which the table errors change the product of the sines in register 12.
     pub fn bound_of(&self, i: usize, j: usize, negative: bool, error: f64) -> f64 {
         let apart = if negative { i.abs_diff(j) } else { i + j };
         self.rounded(self.weights[apart].linear * (error + self.products))
     }
 
-    /// Returns the bound on the error of f with all roundings, for a given `linear`: the weight n·b times the error of cos(γ ± dγ).
+    /// Returns the bound on the error of f with all roundings, for a given `linear`: the weight n·b times the error of cos(γ ±
+    /// dγ).
     pub fn rounded(&self, linear: f64) -> f64 {
         let base = self.square + self.base;
         linear + 2.0 * self.base + self.ulp + base * base

@@ -1,8 +1,8 @@
 //! The accuracy contract of the device `rough`, which computes f = (n/2·(cos(γ ± dγ) − 1) + 1)². γ is the angle between surface
 //! normal and half vector, and dγ the deviation of the normal on a rough surface.
 //!
-//! The contract states the exact formula, the operands at which f is largest, the error bound, and the operands that an exhaustive
-//! check visits.
+//! The contract states the exact formula, the operands at which f is largest, the error bound, and the operands that an
+//! exhaustive check visits.
 
 use super::{Derived as _, Kind, RoughArithmetic, bound, keys_of};
 use crate::contract::{self as shared, ErrorShare};

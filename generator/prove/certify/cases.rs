@@ -17,11 +17,12 @@ use glint_rtl::pipeline::{Cell, Graph, NodeId, NodeOp};
 /// The largest number of cases that are examined, including cases that turn out to be impossible.
 const MOST: usize = 4096;
 
-/// Intervals of raw values for some nodes of a computation's graph. They narrow the intervals that follow from the operands alone.
+/// Intervals of raw values for some nodes of a computation's graph. They narrow the intervals that follow from the operands
+/// alone.
 pub type NodeIntervals = BTreeMap<NodeId, Interval>;
 
-/// A case of a computation: one combination of outcomes of its conditions. For example, one case of a saturation is that the value
-/// exceeds the upper limit.
+/// A case of a computation: one combination of outcomes of its conditions. For example, one case of a saturation is that the
+/// value exceeds the upper limit.
 #[derive(Clone, Debug)]
 pub struct Case {
     /// The hypotheses of the case: intervals of nodes that follow from the outcomes of the conditions.

@@ -1,5 +1,5 @@
-//! Writes the Gappa statements for devices that compute a line of points (many points after one `start`) from a ROM with powers of
-//! a cosine. At each point, the device reads a ROM word for the angle and multiplies it by a colour.
+//! Writes the Gappa statements for devices that compute a line of points (many points after one `start`) from a ROM with powers
+//! of a cosine. At each point, the device reads a ROM word for the angle and multiplies it by a colour.
 //!
 //! A ROM word serves all angles of a segment. The contract follows from two kinds of statements:
 //!
@@ -8,14 +8,14 @@
 //! - For each output: if a word w and a real f differ by at most that bound, then the output differs from f times the colour by at
 //!   most the contract's bound.
 //!
-//! Gappa has no cosine, so the script uses Taylor's formula cos y = 1 − y²/2! + y⁴/4! − … ± y²ᵐ/(2m)! + ρ·y²ᵐ⁺²/(2m+2)! with |ρ| ≤
-//! 1, which holds for every real y. Gappa proves the statement for every ρ from −1 to 1, and for every number within 10⁻²⁰ of π/2
-//! in place of π/2.
+//! Gappa has no cosine, so the script uses Taylor's formula cos y = 1 − y²/2! + y⁴/4! − … ± y²ᵐ/(2m)! + ρ·y²ᵐ⁺²/(2m+2)! with
+//! |ρ| ≤ 1, which holds for every real y. Gappa proves the statement for every ρ from −1 to 1, and for every number within
+//! 10⁻²⁰ of π/2 in place of π/2.
 //!
-//! The module finds the angles of each word by bisection: it halves an interval of angles until the netlist reads the same word for
-//! the whole interval, as in [`super::cases`]. The device computes each point of a line as it computes the first, but at another
-//! angle; [`glint_rtl::pipeline::unroll_line`] proves this by induction. The formula's angle at a point is the value of the
-//! register that adds up the angle along the line ([`AngleWalk::angle`]).
+//! The module finds the angles of each word by bisection: it halves an interval of angles until the netlist reads the same word
+//! for the whole interval, as in [`super::cases`]. The device computes each point of a line as it computes the first, but at
+//! another angle; [`glint_rtl::pipeline::unroll_line`] proves this by induction. The formula's angle at a point is the value of
+//! the register that adds up the angle along the line ([`AngleWalk::angle`]).
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;

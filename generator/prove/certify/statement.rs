@@ -23,8 +23,8 @@ pub struct Statement {
 }
 
 impl Statement {
-    /// Returns the statement with a stated bound instead of a question for the bound. For example, `|difference_7| in ? }` becomes
-    /// `|difference_7| <= 0.5 }`.
+    /// Returns the statement with a stated bound instead of a question for the bound. For example, `|difference_7| in ? }`
+    /// becomes `|difference_7| <= 0.5 }`.
     #[must_use]
     pub fn within(&self, bound: f64) -> Self {
         let stated = format!("| <= {} }}", number(bound));

@@ -150,8 +150,8 @@ impl RealTerms {
         }
     }
 
-    /// Returns the values of all terms if the variables have these values. A variable without a value, and every term that depends
-    /// on it, is NaN.
+    /// Returns the values of all terms if the variables have these values. A variable without a value, and every term that
+    /// depends on it, is NaN.
     pub fn evaluate(&self, variables: &HashMap<String, f64>) -> Vec<f64> {
         let mut values: Vec<f64> = Vec::with_capacity(self.terms.len());
         for (term, _) in &self.terms {

@@ -20,7 +20,8 @@ const MOST_CLOCKS: usize = 1024;
 /// The roles of the ports, by their names.
 pub type Roles = HashMap<String, Role>;
 
-/// The values of some registers, by their numbers in the module. The order of a `BTreeMap` makes the result the same in every run.
+/// The values of some registers, by their numbers in the module. The order of a `BTreeMap` makes the result the same in every
+/// run.
 type RegisterValues = BTreeMap<usize, u64>;
 
 /// The counters of a pipeline's Verilog, in the clocks in which all points move.
@@ -168,9 +169,9 @@ fn course(
     Ok(None)
 }
 
-/// Returns the number of clocks from write to read, for each read port and each slot. `course` has the accesses in each clock of a
-/// period, which repeats. A number is `None` if it is not the same in all clocks of the slot. For example, with one slot, write
-/// addresses 0, 1, 2, 3 and read addresses 2, 3, 0, 1 give 2 clocks.
+/// Returns the number of clocks from write to read, for each read port and each slot. `course` has the accesses in each clock
+/// of a period, which repeats. A number is `None` if it is not the same in all clocks of the slot. For example, with one slot,
+/// write addresses 0, 1, 2, 3 and read addresses 2, 3, 0, 1 give 2 clocks.
 fn lags(course: &[&MemoryClock], reads: usize, interval: usize) -> Vec<Vec<Option<usize>>> {
     let period = course.len();
     let lag = |read: usize, now: usize| {
@@ -191,8 +192,8 @@ fn lags(course: &[&MemoryClock], reads: usize, interval: usize) -> Vec<Vec<Optio
     lags
 }
 
-/// Returns the constants of a clock. The clock is a reset (`rst_n` = 0), or a clock in which the results are taken. `known` are the
-/// values of some registers before the clock; everything else is unknown.
+/// Returns the constants of a clock. The clock is a reset (`rst_n` = 0), or a clock in which the results are taken. `known` are
+/// the values of some registers before the clock; everything else is unknown.
 fn constants(
     module: &Module,
     roles: &Roles,
@@ -230,8 +231,8 @@ fn constants(
     Ok(ClockConstants { registers, memories, ready })
 }
 
-/// Returns the accesses to a memory. `ports` are the terms of [`Memory::control`]. Returns `None` if it is not known which word is
-/// written, or if only some bits of it are.
+/// Returns the accesses to a memory. `ports` are the terms of [`Memory::control`]. Returns `None` if it is not known which word
+/// is written, or if only some bits of it are.
 fn accesses(terms: &VectorTerms, memory: &Memory, ports: &[VectorTermId]) -> Option<MemoryClock> {
     let (addresses, enables) = ports.split_at(1 + memory.reads.len());
     let all_are = |wanted: fn(u32) -> u64| {

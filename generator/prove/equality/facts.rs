@@ -17,9 +17,9 @@ const ROWS: u32 = 8;
 /// The largest number of words of a memory whose contents are written out word by word.
 const WORDS: usize = 16;
 
-/// Returns arithmetic facts about the products and memory words on which the terms `roots` depend. Each fact is a term of one bit
-/// that is always 1. If `parts` is set, the facts also say that a product is the sum of the products of a factor's parts. This adds
-/// new products.
+/// Returns arithmetic facts about the products and memory words on which the terms `roots` depend. Each fact is a term of one
+/// bit that is always 1. If `parts` is set, the facts also say that a product is the sum of the products of a factor's parts.
+/// This adds new products.
 pub fn about(
     terms: &mut VectorTerms,
     roots: &[VectorTermId],

@@ -69,8 +69,8 @@ pub struct Module {
     wires: usize,
 }
 
-/// The symbolic values of all registers of a flat Verilog module. Each register has a list of terms of at most 64 bits, the lowest
-/// bits first.
+/// The symbolic values of all registers of a flat Verilog module. Each register has a list of terms of at most 64 bits, the
+/// lowest bits first.
 pub type RegisterContents = Vec<Vec<VectorTermId>>;
 
 fn bits(value: &Value) -> Result<Connection> {
@@ -308,8 +308,8 @@ impl Module {
         self.registers.iter().map(|it| unknown(terms, it.output.len())).collect()
     }
 
-    /// Returns the value of every wire of the module in one clock, given the inputs, the registers and the words at the read ports
-    /// of memories.
+    /// Returns the value of every wire of the module in one clock, given the inputs, the registers and the words at the read
+    /// ports of memories.
     ///
     /// # Errors
     /// Fails if the module does not know a cell, or if a cell or a port is wider than 64 bits.

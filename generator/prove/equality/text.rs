@@ -152,9 +152,9 @@ fn input(
 }
 
 impl TextComparison<'_> {
-    /// Proves, for every value of the slot counter, that a clock in which the pipeline waits changes no register and no memory. The
-    /// slot counter counts the clocks from one point to the next. A pipeline without `out_ready` never waits, so that nothing is
-    /// proved for it.
+    /// Proves, for every value of the slot counter, that a clock in which the pipeline waits changes no register and no memory.
+    /// The slot counter counts the clocks from one point to the next. A pipeline without `out_ready` never waits, so that
+    /// nothing is proved for it.
     ///
     /// # Errors
     /// Returns [`EarlyEnd`] if a clock does not have this property, if the solver does not decide, or if the proof cannot be made.
@@ -179,8 +179,8 @@ impl TextComparison<'_> {
     }
 
     /// Proves that a clock in the slot either moves all points or changes nothing. A clock that moves no point must change no
-    /// register and no memory. A clock that moves the points must do the same as a clock with `out_ready` = 1. With an interval of
-    /// 1, the points move if `in_ready` is 1. With a longer interval, they move if the slot counter counts.
+    /// register and no memory. A clock that moves the points must do the same as a clock with `out_ready` = 1. With an interval
+    /// of 1, the points move if `in_ready` is 1. With a longer interval, they move if the slot counter counts.
     fn stays_in_slot(&mut self, slot: usize) -> Result<(), EarlyEnd> {
         let module = self.module;
         let held = self.registers_in_slot(slot);
@@ -455,9 +455,10 @@ impl TextComparison<'_> {
         }
     }
 
-    /// Asks the solver whether the one-bit terms `wanted` can all be 1. The first question has unknowns in place of the registers, so
-    /// that it is about the logic of one clock alone. If these terms cannot all be 1 for any values of the registers, they cannot be
-    /// 1 for the values that the registers have. The other questions have these values, and then all facts about partial products.
+    /// Asks the solver whether the one-bit terms `wanted` can all be 1. The first question has unknowns in place of the
+    /// registers, so that it is about the logic of one clock alone. If these terms cannot all be 1 for any values of the
+    /// registers, they cannot be 1 for the values that the registers have. The other questions have these values, and then all
+    /// facts about partial products.
     fn ask(&mut self, wanted: &[VectorTermId]) -> Result<SolverAnswer> {
         let mut of_one_clock = wanted.to_vec();
         self.terms.replace(&self.unknown_registers, &mut of_one_clock);

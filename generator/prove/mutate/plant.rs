@@ -9,8 +9,8 @@ use glint_rtl::netlist::{Design, Driver, Net, NetId, Op, RegId, RomId};
 impl NetlistFault {
     /// Returns a copy of the design in which this fault is planted.
     ///
-    /// The copy can be simulated and emitted. Its nets keep the intervals of the fault-free design, which their values in the copy
-    /// may leave.
+    /// The copy can be simulated and emitted. Its nets keep the intervals of the fault-free design, which their values in the
+    /// copy may leave.
     pub fn planted(&self, design: &Design) -> Design {
         let mut mutant = design.clone();
         match &self.site {

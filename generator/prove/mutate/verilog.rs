@@ -31,8 +31,8 @@ const PROOF_LIMIT: Duration = Duration::from_secs(120);
 /// A fault in the text of the emitted Verilog. For example, `4'd9` becomes `4'd8`.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct TextFault {
-    /// The name of the fault: the file, the line number, the kind of fault, and a number among the faults of this kind in the line.
-    /// For example, `blinn_datapath.v:127:operator:1` is the first wrong operator in line 127.
+    /// The name of the fault: the file, the line number, the kind of fault, and a number among the faults of this kind in the
+    /// line. For example, `blinn_datapath.v:127:operator:1` is the first wrong operator in line 127.
     pub id: String,
     /// The name of the kind of fault, such as `operator`.
     pub kind: &'static str,

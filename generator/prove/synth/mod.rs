@@ -117,8 +117,8 @@ impl Flow {
         package::digest(text.as_bytes())
     }
 
-    /// Returns the number of times that [`Flow::measure`] calls `done`, so that a caller can show progress. For example, iCE40 with
-    /// 3 seeds has 4 steps: one synthesis and three routes.
+    /// Returns the number of times that [`Flow::measure`] calls `done`, so that a caller can show progress. For example, iCE40
+    /// with 3 seeds has 4 steps: one synthesis and three routes.
     pub fn steps(target: Target, seeds: u32) -> u64 {
         match target {
             Target::Ice40 | Target::Ecp5 | Target::Nexus | Target::Gatemate => 1 + u64::from(seeds),

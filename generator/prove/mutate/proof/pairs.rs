@@ -29,8 +29,8 @@ impl Pairs {
     }
 
     /// Makes the pairs for a net with an interval of values, the same in the fault-free design and in the mutant: the bits that
-    /// every value from `low` to `high` has, and any others. For example, the interval from 4 to 6 in 4 bits has bit 2 at 1 and bit
-    /// 3 at 0. Bits 0 and 1 may have any value.
+    /// every value from `low` to `high` has, and any others. For example, the interval from 4 to 6 in 4 bits has bit 2 at 1 and
+    /// bit 3 at 0. Bits 0 and 1 may have any value.
     pub(super) fn of_interval((low, high): Interval, width: u32) -> Self {
         let (low, high) = (low as u64 & mask(width), high as u64 & mask(width));
         let differ = low ^ high;
