@@ -125,8 +125,8 @@ impl Reflectance for PowerArithmetic {
         vec![contract::where_it_faces(&format!("{base} ** {power}"))]
     }
 
-    /// Limits the slope n·base^(m − 1) to n, since the base is at most 1. At a right angle W is (1 − n/m)^m if n is below m,
-    /// and jumps from this value to 0.
+    /// Returns the largest n as an upper limit of the slope n·base^(m − 1), since the base is at most 1. At a right angle W is
+    /// (1 − n/m)^m if n is below m, and jumps from this value to 0. The result has this jump for the smallest n.
     fn variation(&self) -> Option<Variation> {
         let (least, most) = self.keys.domain.exponents();
         let power = f64::from(self.keys.power);

@@ -112,8 +112,8 @@ impl Reflectance for QuadraticArithmetic {
         Some(formulas::quadratic(cosine, self.exact[exponent as usize]))
     }
 
-    /// Limits the slope to 1 + |a|. Where the formula is not clamped, the slope is 1 − a + 2·a·c. The formula has no jump: at a
-    /// right angle it is 0.
+    /// Returns the slope 1 + |a|, as an upper limit, and no jump. If the formula is not clamped, its slope is 1 − a + 2·a·c. At
+    /// a right angle the formula is 0, so it has no jump.
     fn variation(&self) -> Option<Variation> {
         let (least, most) = self.keys.domain.exponents();
         let exact = self.exact[least as usize..=most as usize].iter();

@@ -329,7 +329,7 @@ impl Formula for Shading {
         f64::from(self.keys.lights) + 0.5
     }
 
-    /// Returns random operands. The lights are in any direction, and the half vectors are near the normal, the nearer the
+    /// Returns random raw operands. The lights are in any direction, and the half vectors are near the normal, the nearer the
     /// larger the exponent is. The colours are so dark that their sum does not saturate.
     fn hint(&self, unit: &mut dyn FnMut() -> f64) -> Option<Vec<i64>> {
         let Keys { normal, light, colour_bits, most, lights, .. } = self.keys;

@@ -147,9 +147,9 @@ impl Reflectance for ThresholdArithmetic {
         Some(formulas::threshold(formulas::parabola(cosine, exponent as f64), level))
     }
 
-    /// Limits the slope n·base to n, since the base is at most 1. The formula jumps to 0 once, since the base falls with the
-    /// cosine. It jumps from the level in ROM(n), where either side is right within the margin. If (1 − n/2)² is above that
-    /// level, the formula jumps from this value at a right angle instead.
+    /// Returns the largest n as an upper limit of the slope n·base, since the base is at most 1, and the largest jump. The
+    /// formula jumps to 0 once, since the base falls with the cosine. It jumps from the level in ROM(n), where either side is
+    /// right within the margin. If (1 − n/2)² is above that level, the formula jumps from this value at a right angle instead.
     fn variation(&self) -> Option<Variation> {
         let (least, most) = self.keys.domain.exponents();
         let mut jump: f64 = 0.0;

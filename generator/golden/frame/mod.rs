@@ -110,7 +110,7 @@ pub fn step(does: impl Fn(&mut State) + Send + Sync + 'static) -> FrameStep {
 }
 
 /// Returns a microinstruction like [`step`], whose operation also gets `arithmetic`, data that several microinstructions share.
-/// For example, `arithmetic` holds the tables of the device.
+/// For example, `arithmetic` may have the tables of the device.
 pub fn step_by<A: Send + Sync + 'static>(
     arithmetic: &Arc<A>,
     does: impl Fn(&A, &mut State) + Send + Sync + 'static,

@@ -50,12 +50,12 @@ pub trait Reflectance: Send + Sync {
         let _ = (control, index);
     }
 
-    /// Returns control operands at which the formula is largest, near `control`: for example, a cosine becomes 1, and an angle or
-    /// a vector becomes 0. Tests draw points between the peak and other operands, so the formula should not rise on the straight
-    /// way from the peak to `control`.
+    /// Returns raw control operands at which the formula is largest, near `control`: for example, a cosine becomes 1, and an
+    /// angle or a vector becomes 0. Tests draw points between the peak and other operands, so the formula should not rise on
+    /// the straight line from the peak to `control`.
     ///
-    /// With `None`, each operand with fraction bits is set to an end of its domain or to 0, whichever gives the largest value. A
-    /// device whose peak lies elsewhere must return it here.
+    /// With `None`, each operand with fraction bits is set to an end of its domain or to 0, whichever gives the largest value.
+    /// A device whose peak lies elsewhere must return it here.
     fn peak(&self, control: &[i64]) -> Option<Vec<i64>> {
         let _ = control;
         None
@@ -63,10 +63,11 @@ pub trait Reflectance: Send + Sync {
 
     /// Returns the control operands of a line that goes from a first point to a last point. `first` and `last` are the control
     /// operands at these two points, and `first` also has the length of the line. For example, a line from the angle 0 to the
-    /// angle 300 in 3 steps gets the step 100. A step that is no integer is rounded toward 0, so the line may end before `last`.
+    /// angle 300 in 3 steps gets the step 100. A step that is no integer is rounded toward 0, so the line may end before
+    /// `last`.
     ///
-    /// [`Reflectance::point`] goes the other way, from a line to one of its points. A device with one result for each `start`
-    /// returns `first`.
+    /// [`Reflectance::point`] is the reverse: it gives a point of a line. A device with one result for each `start` returns
+    /// `first`.
     fn line(&self, first: &[i64], last: &[i64]) -> Vec<i64> {
         let _ = last;
         first.to_vec()

@@ -119,9 +119,9 @@ impl Reflectance for QuadCosineArithmetic {
         Some((end(magnitude) - f).max(f - end(magnitude + 1)))
     }
 
-    /// Returns the contributions for the n with the largest sum. They are the distance of ROM 12 from the formula within a
-    /// step, the rounding of ROM 12, and two errors of the stretched angle. The latter are multiplied by the steepest slope of
-    /// the power.
+    /// Returns the contributions to the error of f, for the n with the largest sum: the distance of ROM 12 from the formula
+    /// within a step, the rounding of ROM 12, and two errors of the stretched angle. These two errors are multiplied by the
+    /// steepest slope of the power.
     fn shares(&self) -> Vec<ErrorShare> {
         let keys = &self.keys;
         let (low, high) = keys.domain.exponents();

@@ -66,7 +66,8 @@ impl Reflectance for RoughArithmetic {
         shared::operands_at(operands, gamma, n, &no_deviation)
     }
 
-    /// Returns the operands at which cos(γ ± dγ) is largest. If dγ is subtracted, γ is dγ; if dγ is added, both are 0.
+    /// Returns the raw operands at which cos(γ ± dγ) is largest. If dγ is subtracted, γ becomes dγ; if dγ is added, both become
+    /// 0.
     fn peak(&self, control: &[i64]) -> Option<Vec<i64>> {
         let deviation = if control[3] == 1 { control[1] } else { self.keys.largest_cosine() };
         Some(vec![deviation, deviation, control[2], control[3]])

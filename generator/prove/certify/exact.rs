@@ -234,7 +234,8 @@ fn unconditional(term: RealTermId) -> Vec<Branch> {
     vec![Branch { term, ..Branch::default() }]
 }
 
-/// Returns every combination of a branch of each formula whose choices do not contradict each other, with the terms of both.
+/// Returns every combination of a branch of `a` with a branch of `b` whose choices do not contradict each other: the conditions
+/// of both branches, the term of `a` and the term of `b`. Fails if a formula has a part without a translation.
 fn pairs(
     [a, b]: [&Expression; 2],
     setting: &FormulaContext,
@@ -267,7 +268,8 @@ fn operation(
     Ok(found)
 }
 
-/// Returns the branches in which a comparison holds, or does not hold if `taken` is false.
+/// Returns the branches in which a comparison is true, or is false if `taken` is false. Fails if a side of the comparison has
+/// no translation.
 fn conditions(
     comparison: &Comparison,
     taken: bool,
@@ -362,8 +364,9 @@ fn known_range(formula: &Expression, setting: &FormulaContext) -> Option<(f64, f
     }
 }
 
-/// Returns whether a comparison of numbers and operands holds for all values of this case, or for none. Returns `None` if it
-/// holds for some. For example, `x < 4` holds if x is from 0 to 3, and is undecided if x is from 0 to 5.
+/// Returns whether a comparison of numbers and operands is true for all values of this case, or for none. Returns `None` if it
+/// is true for some values, or if a side is neither a number nor an operand. For example, `x < 4` is true if x is from 0 to 3,
+/// and is undecided if x is from 0 to 5.
 fn decided(comparison: &Comparison, setting: &FormulaContext) -> Option<bool> {
     let left = known_range(&comparison.left, setting)?;
     let right = known_range(&comparison.right, setting)?;

@@ -62,7 +62,8 @@ pub fn bound(gappa: &Tool, asked: &[Statement], limit: Duration) -> Result<Resul
 }
 
 /// Returns the bound that Gappa finds for a statement: the smallest bound among its scripts, in output units. The inner value
-/// is `None` if the statement does not ask for a bound, and a reason in words if Gappa finds none.
+/// is `None` if the statement does not ask for a bound, and a reason in words if Gappa finds none. Fails if Gappa cannot be
+/// run.
 fn answer(
     gappa: &Tool,
     statement: &Statement,

@@ -102,7 +102,7 @@ impl<'a> Hardware<'a> {
     }
 
     /// Returns the result of a divider, as a variable. A fact says that the real quotient is larger than the variable by at
-    /// most one unit of its last bit.
+    /// most one unit of its last bit. Fails if the dividend or the divisor has no translation.
     fn quotient(
         &mut self,
         terms: &mut RealTerms,

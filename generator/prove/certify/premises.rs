@@ -62,8 +62,9 @@ struct PremiseTask<'a> {
 }
 
 impl PremiseTask<'_> {
-    /// Writes the statement that the value of a node lies from `low` to `high`. The value is a quadratic polynomial, and a hint
-    /// completes its square. Returns `None` if the node or the variable of the polynomial is a constant.
+    /// Writes the statement that the value of a node lies from `low` to `high`, both raw. The value is a quadratic polynomial,
+    /// and a hint completes its square. Returns `None` if the node or the variable of the polynomial is a constant. Fails if a
+    /// value has no translation.
     fn parabola(
         &mut self,
         node: NodeId,
@@ -90,7 +91,7 @@ impl PremiseTask<'_> {
     }
 
     /// Writes the statement that the divisor of a divider is positive, and that the dividend is neither negative nor above the
-    /// divisor.
+    /// divisor. Fails if one of them has no translation.
     fn dividend(&mut self, quotient: Quotient) -> Result<String, String> {
         let (dividend, divisor) = self.hardware.fraction(&mut self.terms, quotient)?;
         let rest = self.terms.insert(RealTerm::Sub(divisor, dividend), "rest");

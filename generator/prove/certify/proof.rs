@@ -93,7 +93,7 @@ pub fn prove(
 }
 
 /// Returns whether the hypotheses of an accepted script can hold. If the search finds no point at which they hold, the function
-/// asks Gappa whether they contradict each other.
+/// asks Gappa whether they contradict each other. Fails if Gappa cannot be run.
 fn subject(gappa: &Tool, script: &str, limit: Duration) -> Result<ProofSubject> {
     if let Some(point) = witness::witness(script) {
         return Ok(ProofSubject::Point(point));

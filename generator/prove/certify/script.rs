@@ -113,11 +113,11 @@ impl GappaScript<'_> {
         hypotheses
     }
 
-    /// Returns hints of four kinds: first those that state equalities, then those that state that two terms are near. A sum a +
-    /// (1 − a)·x gets a form that shows its range (`blend`). A term of the formula may be a factor times a term of the
-    /// hardware, plus an offset. Or it equals a term of the hardware without its roundings; these terms are added to `roots`.
-    /// Or it is near a term of the hardware with roundings. The comparison of samples finds the last three kinds, and Gappa
-    /// proves each hint that it uses.
+    /// Returns hints of four kinds: a list of equalities, and a list of pairs of terms that are near each other. A sum a + (1 −
+    /// a)·x gets a form that shows its range (`blend`). A term of the formula may be a factor times a term of the hardware,
+    /// plus an offset. Or it equals a term of the hardware without its roundings; these terms are added to `roots`. Or it is
+    /// near a term of the hardware with roundings. The comparison of samples finds the last three kinds, and Gappa proves each
+    /// hint that it uses.
     fn hints(
         &self,
         terms: &mut RealTerms,

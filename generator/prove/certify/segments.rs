@@ -30,7 +30,7 @@ use glint_base::fixed::exp2;
 use glint_formula::{Enclosure, Expression, Function, Kind, Operator, parse};
 use glint_rtl::pipeline::{Cell, Graph, NodeId, NodeOp, WalkRegister};
 
-/// The number of words in a script: Gappa's time grows with its square.
+/// The number of ROM words in a script: Gappa's time grows with its square.
 const WORDS: usize = 8;
 
 /// Twice this number is the exponent of y in the last term of the polynomial for the cosine. At a right angle, the remainder is

@@ -36,9 +36,8 @@ impl Task<'_> {
         &self.unrolled.graph
     }
 
-    /// Narrows the interval of a node to `range`, and stores the result in `known`, as [`cases::learn`] does. The other
-    /// intervals are those that the nodes of the graph have before any case is distinguished. Returns false if no value is
-    /// left.
+    /// Narrows the interval of a node to `range`, and stores the result in `known`, as [`cases::learn`] does. All other nodes
+    /// have the intervals of the graph, before any case is distinguished. Returns false if no value is left.
     pub(super) fn learn(
         &self,
         known: &mut NodeIntervals,

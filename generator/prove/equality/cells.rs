@@ -230,7 +230,8 @@ impl WireValues {
         Ok(vec![terms.resized(bit, width as u32)])
     }
 
-    /// Returns the term of some bits with `width` bits, extended by the sign or by zeros.
+    /// Returns the term of some bits with `width` bits, extended by the sign if `signed`, and otherwise by zeros. High bits are
+    /// dropped if `width` is smaller. Fails for more than 64 bits.
     fn extended(
         &self,
         terms: &mut VectorTerms,
@@ -246,7 +247,7 @@ impl WireValues {
         })
     }
 
-    /// Returns two operands with `width` bits each, as [`Self::extended`] does.
+    /// Returns two operands with `width` bits each, extended as [`Self::extended`] does. Fails for more than 64 bits.
     fn both_extended(
         &self,
         terms: &mut VectorTerms,

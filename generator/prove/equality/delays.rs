@@ -44,7 +44,7 @@ struct MemoryClock {
 
 /// The constants of one clock.
 struct ClockConstants {
-    /// The registers that hold a constant after the clock.
+    /// The registers that are constant after the clock, with their values.
     registers: RegisterValues,
     /// The accesses to each memory; `None` if it is not known which word is written.
     memories: Vec<Option<MemoryClock>>,
@@ -141,7 +141,7 @@ fn slots(
 
 /// Returns the constants of each clock until all counters have their first values again. The counters are the slot counter and
 /// `counter`, a register with its value after a reset. Returns `None` if `counter` has no constant value in a clock, or if the
-/// first values do not return within 1024 clocks.
+/// first values do not return within 1024 clocks. Fails if the module has an unknown cell.
 fn course(
     module: &Module,
     roles: &Roles,
@@ -192,8 +192,8 @@ fn lags(course: &[&MemoryClock], reads: usize, interval: usize) -> Vec<Vec<Optio
     lags
 }
 
-/// Returns the constants of a clock. The clock is a reset (`rst_n` = 0), or a clock in which the results are taken. `known` are
-/// the values of some registers before the clock; everything else is unknown.
+/// Returns the constants of a clock: a reset if `rst_n` is 0, and otherwise a clock in which the results are taken. `known` are
+/// the values of some registers before the clock; everything else is unknown. Fails if the module has an unknown cell.
 fn constants(
     module: &Module,
     roles: &Roles,

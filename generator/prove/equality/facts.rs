@@ -124,9 +124,9 @@ struct ProductSum {
     there: bool,
 }
 
-/// Returns a sum of partial products if `factor` is the upper bits of a larger term. The larger term times `other` is the
-/// product of `factor` and `other`, shifted, plus the product of the lower bits and `other`. For example, if u is the bits from
-/// 4 up of w, then w·x is 16·(u·x) plus the lowest 4 bits of w times x.
+/// Returns a sum of partial products if `factor` is the upper bits of a larger term, and `None` otherwise. The larger term
+/// times `other` is the product of `factor` and `other`, shifted, plus the product of the lower bits and `other`. For example,
+/// if u is the bits from 4 up of w, then w·x is 16·(u·x) plus the lowest 4 bits of w times x.
 fn in_parts(
     terms: &mut VectorTerms,
     factor: VectorTermId,
@@ -161,8 +161,9 @@ fn in_parts(
     Some(ProductSum { product, sum, there })
 }
 
-/// Returns the square of `u·2^r + l` as a sum, if the terms contain the product of `l` and `u·2^(r+1) + l`. The sum is this
-/// product plus the square of u, shifted by 2r. For example, 13² with u = 3, l = 1 and r = 2 is 1·25 plus 9·16.
+/// Returns the square of `u·2^r + l` as a sum, if the terms contain the product of `l` and `u·2^(r+1) + l`, and `None`
+/// otherwise. The sum is this product plus the square of u, shifted by 2r. For example, 13² with u = 3, l = 1 and r = 2 is 1·25
+/// plus 9·16.
 fn square_in_parts(
     terms: &mut VectorTerms,
     factor: VectorTermId,

@@ -164,7 +164,8 @@ fn drawn(random: &mut ChaCha8Rng) -> u64 {
     }
 }
 
-/// Returns the first output that differs between the designs at a point, or `None` if all are equal.
+/// Returns the first output that differs between the designs at a point, or `None` if all are equal. `operands` are bit
+/// patterns; bits above the width of an operand are dropped. Fails if a design cannot be simulated to a result.
 fn differs(pair: &DesignPair<'_>, operands: &[u64]) -> Result<Option<OutputDifference>> {
     let mut masked: Vec<u64> = Vec::new();
     for (name, bits) in pair.operands.iter().zip(operands) {
@@ -208,7 +209,7 @@ struct PipelineComparison<'p> {
     divided: HashMap<VectorTermId, VectorTermId>,
     /// The products that the pipeline computes, as a whole or in parts, in ascending order.
     parts: Vec<VectorTermId>,
-    /// The operands of the point.
+    /// The terms of the operands of the point, which are unknowns.
     operands: Vec<VectorTermId>,
     proof: EqualityProof,
 }
@@ -262,7 +263,8 @@ impl<'p> PipelineComparison<'p> {
         Ok(Verdict::Equal(self.proof))
     }
 
-    /// Returns the term of every net of the pipeline in each clock. Entry 0 is the clock in which the pipeline takes the point.
+    /// Returns the term of every net of the pipeline in each clock, as an entry for each clock with a term for each net. Entry
+    /// 0 is the clock in which the pipeline takes the point. Fails if the pipeline does not show the results after its latency.
     fn pipeline(&mut self) -> Result<Vec<Vec<VectorTermId>>> {
         let pair = self.pair;
         let execution = Execution::new(&mut self.terms, pair.pipeline);
@@ -392,7 +394,7 @@ impl<'p> PipelineComparison<'p> {
 
     /// Splits a path at a register of the sequencer whose value depends on operands, and adds both continuations to `ways`. A
     /// continuation that the solver proves impossible is left out. Returns always `Equal`: the continuations are compared
-    /// later.
+    /// later. Fails if the value is neither one bit nor a choice between two values.
     fn fork(
         &mut self,
         way: MicroprogramPath,
@@ -419,7 +421,7 @@ impl<'p> PipelineComparison<'p> {
         Ok(EqualityAnswer::Equal)
     }
 
-    /// Returns one-bit terms that are all 1 if and only if the conditions hold.
+    /// Returns one-bit terms that are all 1 if and only if each condition has its value.
     fn holding(&mut self, conditions: &[(VectorTermId, bool)]) -> Vec<VectorTermId> {
         let mut holding = Vec::new();
         for &(condition, value) in conditions {
@@ -430,7 +432,8 @@ impl<'p> PipelineComparison<'p> {
 
     /// Proves the checkpoints of microinstruction number `address`. A checkpoint states that a register of the core equals a
     /// net of the pipeline when this microinstruction begins. Each register that is proved equal takes the pipeline's term. A
-    /// checkpoint that the solver does not decide is skipped.
+    /// checkpoint that the solver does not decide is skipped. Returns `Different` for a real difference in an output, and
+    /// otherwise `Equal`.
     fn lemmas(
         &mut self,
         core: &Execution<'_>,
@@ -542,8 +545,9 @@ impl<'p> PipelineComparison<'p> {
         Ok(())
     }
 
-    /// Asks the solver whether the one-bit terms `wanted` can all be 1. It first replaces products by the sums in `divided`. If
-    /// that does not prove it impossible, it asks again with the original products and all facts about parts.
+    /// Asks the solver whether the one-bit terms `wanted` can all be 1. The first question has the sums in `divided` in place
+    /// of products. If its answer is not "never", a second question has the original products and all facts about partial
+    /// products.
     fn ask(&mut self, wanted: Vec<VectorTermId>) -> Result<SolverAnswer> {
         self.divide_by_lowest(&wanted)?;
         let mut divided = wanted.clone();

@@ -12,7 +12,7 @@ use super::cells::{Bit, Connection, WireValues};
 use super::term::{VectorTermId, VectorTerms};
 use glint_base::fixed::MAX_WIDTH;
 
-/// What a combinational cell computes: an operation, or a read from a memory.
+/// The computation of a combinational cell: an operation, or a read from a memory.
 enum What {
     Cell {
         kind: String,
@@ -88,7 +88,8 @@ fn bits(value: &Value) -> Result<Connection> {
     Ok(bits)
 }
 
-/// Returns a parameter of a cell as a number. Yosys writes parameters in binary. For example, `00000101` is 5.
+/// Returns a parameter of a cell as a number. Yosys writes parameters in binary. For example, `00000101` is 5. Fails if the
+/// parameter is missing or is no number.
 fn parameter(cell: &Value, name: &str) -> Result<usize> {
     let value = &cell["parameters"][name];
     if let Some(text) = value.as_str()
@@ -100,7 +101,7 @@ fn parameter(cell: &Value, name: &str) -> Result<usize> {
     Ok(number as usize)
 }
 
-/// Returns the bits at a port of a cell.
+/// Returns the bits at a port of a cell. Fails if the cell lacks the port.
 fn connection(cell: &Value, port: &str) -> Result<Connection> {
     bits(&cell["connections"][port])
 }
@@ -364,8 +365,8 @@ impl Module {
     }
 }
 
-/// Returns the index of the first cell that drives an input of `cell` and has no position in the order yet. Such a cell has the
-/// position 0.
+/// Returns the index of the first cell that drives an input of `cell` and has no position in the order yet, or `None` if all
+/// have one. A cell without a position has the position 0.
 fn unplaced_driver(cell: &ModuleCell, driver: &[Option<usize>], place: &[usize]) -> Option<usize> {
     for bit in cell.inputs.iter().flatten() {
         if let Bit::Wire(wire) = *bit
@@ -413,7 +414,8 @@ fn unknown(terms: &mut VectorTerms, width: usize) -> Vec<VectorTermId> {
 }
 
 /// Returns the contents of a memory that is never written. The last digits of the parameter `INIT` are word 0. For example,
-/// `1101` with words of 2 bits has word 0 = 1 and word 1 = 3.
+/// `1101` with words of 2 bits has word 0 = 1 and word 1 = 3. Fails if a word is wider than 64 bits or has undetermined bits,
+/// or if the number of words is wrong.
 fn words(cell: &Value, width: usize) -> Result<Vec<u64>> {
     let contents = cell["parameters"]["INIT"].as_str().unwrap_or_default();
     ensure!(width <= MAX_WIDTH as usize, "its words have more than 64 bits");

@@ -359,7 +359,8 @@ impl TextComparison<'_> {
         }
     }
 
-    /// Replaces the terms in registers of the Verilog by the terms of nets that the solver proves equal.
+    /// Replaces the terms in registers of the Verilog by terms of nets that the solver proves equal. `nets` are the terms of
+    /// the netlist's nets in the same clock. A register without an equal net keeps its term.
     fn register(&mut self, held: &mut RegisterContents, nets: &[VectorTermId]) -> Result<()> {
         let known: HashSet<VectorTermId> = nets.iter().copied().collect();
         let cone = self.terms.cone(held.iter().flatten().chain(nets).copied());
@@ -456,9 +457,9 @@ impl TextComparison<'_> {
     }
 
     /// Asks the solver whether the one-bit terms `wanted` can all be 1. The first question has unknowns in place of the
-    /// registers, so that it is about the logic of one clock alone. If these terms cannot all be 1 for any values of the
-    /// registers, they cannot be 1 for the values that the registers have. The other questions have these values, and then all
-    /// facts about partial products.
+    /// registers, so that it concerns the logic of one clock alone. If these terms cannot all be 1 for any values of the
+    /// registers, they cannot be 1 for the values that the registers have. The second question has these values. The third has
+    /// also the facts about partial products.
     fn ask(&mut self, wanted: &[VectorTermId]) -> Result<SolverAnswer> {
         let mut of_one_clock = wanted.to_vec();
         self.terms.replace(&self.unknown_registers, &mut of_one_clock);

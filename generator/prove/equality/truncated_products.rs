@@ -63,7 +63,8 @@ impl PipelineComparison<'_> {
         Ok(self.same(low, bits)?.then_some(Factor::Lowest(width)))
     }
 
-    /// Returns whether the solver proves that two terms are equal for all operands.
+    /// Returns whether the solver proves that two terms are equal for all operands. Terms that differ at random values are not
+    /// asked about.
     fn same(&mut self, one: VectorTermId, other: VectorTermId) -> Result<bool> {
         if one == other || !agree(&self.terms, one, other) {
             return Ok(one == other);

@@ -69,8 +69,8 @@ pub fn run<'f>(
         .collect()
 }
 
-/// What the checks of all faults of a configuration share: the fault-free design, the golden model, and prepared searches and
-/// proofs.
+/// The shared data of the checks of all faults of a configuration: the fault-free design, the golden model, and prepared
+/// searches and proofs.
 struct Bench<'a> {
     core: &'a Core,
     sound: Design,
@@ -79,7 +79,7 @@ struct Bench<'a> {
     prover: Option<Prover<'a>>,
     /// The positions at which the default test reads each ROM word.
     tested: Coverage,
-    /// The positions at which a longer test reads each ROM word. It is computed at the first need.
+    /// The positions at which a longer test reads each ROM word, computed when they are first used.
     beyond: OnceLock<Coverage>,
     shipped: Shipped,
     /// The number of stages of a pipeline, and so the largest number of points in it; 0 for a sequential core.
@@ -96,7 +96,7 @@ impl Bench<'_> {
         Ok(FaultResult { fault: fault.clone(), verdict, shipped })
     }
 
-    /// Returns the verdict of the first check or proof that decides.
+    /// Returns the verdict of the first check or proof that decides. Fails if the mutant cannot be simulated.
     fn verdict(&self, fault: &NetlistFault, mutant: &Design) -> Result<MutantVerdict> {
         if let Some(mismatch) = self.first_look(mutant, &fault.site)? {
             return Ok(caught(mismatch));
@@ -140,7 +140,8 @@ impl Bench<'_> {
         self.shown(mutant, looks)
     }
 
-    /// Returns the first difference in some streams. Each stream is a seed and the number of results to compare.
+    /// Returns the first difference in some streams, or `None` if there is no difference. Each stream is a seed and the number
+    /// of results to compare.
     fn shown(&self, mutant: &Design, streams: Vec<(u64, u64)>) -> Result<Option<Mismatch>> {
         for (seed, points) in streams {
             let mismatch = self.lockstep(mutant, seed)?.run_alone(points)?.mismatch;
@@ -198,8 +199,8 @@ impl Bench<'_> {
         })
     }
 
-    /// Returns the control operands of computations that read a word. They come from the default test, or from a longer test if
-    /// the default test does not read the word.
+    /// Returns the control operands of computations that read a word, one list of raw values by name for each. The computations
+    /// are part of the default test, or of a longer test if the default test does not read the word.
     fn readings(&self, rom: RomId, word: usize) -> Result<Vec<OperandValues>> {
         let design = &self.sound;
         let mut readings: Vec<OperandValues> = self.tested.operands(design, rom, word).collect();
@@ -235,7 +236,8 @@ impl Bench<'_> {
         Lockstep::new(mutant, self.model.boxed_clone(), contract, seed)
     }
 
-    /// Returns the faulty words if the fault is in a table, but not if it is in the control ROM.
+    /// Returns the table and its faulty words, each with its address, if the fault is in a table. Returns `None` for any other
+    /// fault, also for a fault in the control ROM.
     fn words<'s>(&self, site: &'s Site) -> Option<(RomId, &'s [(usize, u64)])> {
         match site {
             Site::Words(rom, words) if *rom != self.sound.control.rom => Some((*rom, words)),

@@ -17,7 +17,7 @@ pub enum Detector {
     Directed,
 }
 
-/// The way in which a fault was proved equivalent.
+/// The method by which a fault was proved equivalent.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum How {

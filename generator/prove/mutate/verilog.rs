@@ -311,7 +311,8 @@ impl VerilogText {
         Ok(TextFaultResult { verdict, shipped })
     }
 
-    /// Returns whether Verilator's lint refuses the modules or warns of them.
+    /// Returns whether Verilator's lint refuses the modules or warns of them. Fails if Verilator does not start or does not end
+    /// within `limit`.
     fn is_linted(&self, files: &[OutputFile], verilator: &Tool, limit: Duration) -> Result<bool> {
         let dir = Directory::new().context("cannot make a temporary directory")?;
         for file in files {
@@ -359,8 +360,9 @@ impl VerilogText {
         })
     }
 
-    /// Returns whether Yosys proves that the module in a file behaves as it does without the fault. `dir` must contain all
-    /// files. If the core is a pipeline, the module is the whole pipeline with its multiplier.
+    /// Returns whether Yosys proves that the module in file number `file` behaves as it does without the fault. The directory
+    /// `dir` must contain all files. If the core is a pipeline, the module is the whole pipeline with its multiplier. Fails if
+    /// Yosys is missing.
     fn proves(
         &self,
         mutant: &[OutputFile],

@@ -22,8 +22,8 @@ const LANES: usize = 64;
 /// The number of clocks of a search.
 const CLOCKS: usize = 1 << 16;
 
-/// The number of points after which the search ends although `confirm` has confirmed none. The golden model predicts a
-/// checkpoint only for points that come to its microinstruction, so some differences are not confirmed.
+/// The number of calls of `confirm` after which the search ends although none has confirmed a point. The golden model predicts
+/// a checkpoint only for points that execute its microinstruction, so some differences are not confirmed.
 const TRIES: usize = 32;
 
 /// The largest number of points that are kept and changed further.

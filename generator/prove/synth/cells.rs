@@ -125,7 +125,7 @@ fn area(statistics: &str, gate: f64) -> Option<Area> {
     })
 }
 
-/// Returns the shortest period in nanoseconds, and the longest path.
+/// Returns the shortest period in nanoseconds, and the longest path. Fails if OpenSTA fails, takes too long or states no path.
 fn timing(
     sta: &Tool,
     subject: &SynthesisSubject,

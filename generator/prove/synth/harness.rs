@@ -23,6 +23,9 @@ struct Slice<'a> {
 
 /// Returns the Verilog of the harness. A shift register feeds all inputs of the core. Each output is captured in a register and
 /// then shifted out, so that the harness has four pins, whatever the ports of the core.
+///
+/// # Errors
+/// Fails if the template fails.
 pub fn harness(design: &Design) -> Result<String> {
     let (inputs, fed) = slices(design, design.inputs());
     let (outputs, captured) = slices(design, design.outputs());

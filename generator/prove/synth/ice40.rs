@@ -22,7 +22,7 @@ const DEVICE: &str = "iCE40 UP5K, SG48";
 /// The largest chip of the family that has DSP blocks.
 const CHIP: &Chip = &ICE40.chips[0];
 
-/// The frequency in MHz that nextpnr is asked for. It is out of reach, so that the placer tries hardest.
+/// The frequency in MHz that nextpnr is asked for. No core reaches this frequency, so that the placer tries hardest.
 const GOAL: &str = "60";
 
 /// Measures the area of a core alone, and the frequency of the core in its harness for each seed. Calls `done` after synthesis
@@ -67,7 +67,8 @@ fn is_pure(parameter: &str, value: &Value) -> bool {
     }
 }
 
-/// Places, routes and times the core with one seed. Returns the frequency in MHz and the longest path.
+/// Places, routes and times the core with one seed. Returns the frequency in MHz and the longest path. Fails if a tool fails or
+/// takes too long, or if icetime states no path.
 fn route(
     nextpnr: &Tool,
     icetime: &Tool,

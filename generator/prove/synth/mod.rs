@@ -159,8 +159,8 @@ impl Flow {
     }
 }
 
-/// Returns the version that a tool states, without the rest of its banner. For example, nextpnr gives `nextpnr-ice40
-/// 0.4-1+b1`.
+/// Returns the version that a tool states, without the rest of its banner. For example, nextpnr gives `nextpnr-ice40 0.4-1+b1`.
+/// Fails if the tool does not state its version.
 fn version(tool: &Tool) -> Result<String> {
     let said = tool.version()?;
     Ok(match said.split_once("(Version ") {
@@ -204,7 +204,7 @@ fn yosys_of(family: &Family, search: &OsStr) -> Result<Tool> {
     }
 }
 
-/// Measures only the area of a core, for targets without a tool that times all cells.
+/// Measures only the area of a core, for targets without a tool that times all cells. Fails if Yosys fails or takes too long.
 fn area(
     target: Target,
     yosys: &Tool,

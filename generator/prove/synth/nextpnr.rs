@@ -23,7 +23,7 @@ pub struct Recipe {
     pub speed: &'static str,
     /// Further options of nextpnr; the chip and the frequency have options of their own.
     pub options: &'static str,
-    /// The frequency that nextpnr is asked for, in MHz. It must be out of reach, so that the placer tries hardest.
+    /// The frequency that nextpnr is asked for, in MHz. No core may reach this frequency, so that the placer tries hardest.
     pub goal: u32,
     /// Checks that nextpnr times every cell of the netlist, and prepares the files that nextpnr reads.
     pub prepare: fn(&Workspace, &Netlist) -> Result<()>,
@@ -58,7 +58,8 @@ pub fn measure(
     routed(figures, subject, done, |seed| route(recipe, nextpnr, &workspace, &netlist, chip, seed))
 }
 
-/// Places, routes and times the core with one seed. Returns the frequency in MHz and the longest path.
+/// Places, routes and times the core with one seed. Returns the frequency in MHz and the longest path. Fails if nextpnr fails,
+/// takes too long, or reports no frequency.
 fn route(
     recipe: &Recipe,
     nextpnr: &Tool,

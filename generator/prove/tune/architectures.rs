@@ -118,6 +118,7 @@ fn intervals(sequential: &Architecture) -> std::ops::RangeInclusive<u32> {
 
 /// Returns a configuration as a pipeline with an interval. If the configuration is sequential, the pipeline is scheduled for
 /// the target. If such a pipeline cannot reach the default clock, it is scheduled for the fastest clock that it can reach.
+/// Fails if the device cannot be a pipeline with this interval.
 fn pipeline(device: &Device, base: &Config, target: Target, interval: u32) -> Result<Architecture> {
     let mut config = base.clone();
     config.set("architecture", Value::Text("pipelined".to_owned()));

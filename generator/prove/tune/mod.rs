@@ -97,14 +97,14 @@ const ARCHITECTURE: [&str; 2] = ["architecture", "pipeline.interval"];
 /// Searches for the configuration with the smallest cost that meets `goal`. The search is local, so a smaller configuration may
 /// exist.
 ///
-/// `base` has the keys that are part of the user's question. The search changes the other keys, except those in `fixed`. It
+/// `base` has the keys that are part of the user's question. The search changes the other keys, except the keys in `fixed`. It
 /// also tries pipelines if a rate is wanted or DSP blocks are limited, and `fixed` does not contain the architecture. Such a
 /// pipeline accepts a point (a set of operands) as seldom as the goal allows, so that several products can share a multiplier.
 /// `progress` is called with the number of configurations that were evaluated.
 ///
 /// # Errors
 /// Fails if `base` makes no design, or if the search finds no configuration that meets the goal. The message then says which
-/// term of the bound, the clock, or the DSP blocks are in the way.
+/// term of the bound, the clock, or the DSP blocks prevent this.
 pub fn tune(
     device: &Device,
     base: &Config,
@@ -181,7 +181,8 @@ fn pipelines(device: &Device, base: &Config, fixed: &[&str], goal: &TuningGoal) 
     pipelines
 }
 
-/// Searches as [`tune`] does, in the architecture of `base` alone.
+/// Searches as [`tune`] does, in the architecture of `base` alone. Fails if `base` makes no design, or if the search does not
+/// meet the goal.
 fn of_architecture(
     device: &Device,
     base: &Config,
@@ -207,6 +208,9 @@ fn of_architecture(
 
 /// Tries all combinations of the `values` of keys, and returns the configuration with the smallest cost that meets the goal, or
 /// `None` if no combination does. Use it for tests of the search, and for small spaces.
+///
+/// # Errors
+/// Fails if `base` makes no design, or if a key does not exist.
 pub fn exhaustive(
     device: &Device,
     base: &Config,

@@ -177,9 +177,9 @@ fn dsps_one_way(family: &Family, first: u32, second: u32) -> u64 {
     blocks
 }
 
-/// Returns the widths of the slices into which Yosys cuts an operand: slices of the width of a block, and a rest. A rest of a
-/// single bit is left out, because it becomes a row of gates. For example, 35 bits for blocks of 16 are 16, 16 and 3, and 33
-/// bits are 16 and 16.
+/// Returns the widths of the slices into which Yosys divides an operand of `operand` bits: slices of the width of a block, and
+/// a rest. A rest of a single bit is left out, because it becomes a row of gates. For example, 35 bits for blocks of 16 are 16,
+/// 16 and 3, and 33 bits are 16 and 16.
 fn slices(operand: u32, block: u32) -> Vec<u32> {
     let mut slices = vec![block; (operand / block) as usize];
     let rest = operand % block;
@@ -203,7 +203,8 @@ fn count_slices(operand: u32, block: u32) -> u64 {
     u64::from(operand.div_ceil(block).max(1))
 }
 
-/// Returns the number of block RAMs: those of synchronous ROMs that are large enough and do not share the block of another ROM.
+/// Returns the number of block RAMs. A synchronous ROM takes block RAMs if it is large enough and does not share the block of
+/// another ROM.
 fn block_rams(design: &Design, family: &Family) -> u64 {
     let mut blocks = 0;
     for rom in &design.roms {

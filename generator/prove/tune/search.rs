@@ -231,6 +231,9 @@ impl<'a> Search<'a> {
     }
 
     /// Moves from `base` to the neighbour that is nearest to the goal, again and again, until the goal is met.
+    ///
+    /// # Errors
+    /// Fails if no neighbour is nearer to the goal.
     fn reach(&self, base: Candidate) -> Result<Candidate> {
         let mut here = base;
         while !self.keeps(&here) {

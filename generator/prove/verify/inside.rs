@@ -25,7 +25,8 @@ const EVALUATIONS: u64 = 1 << 28;
 /// The approximate number of evaluations of `f` that are repeated for a recorded proof.
 const AGAIN: u64 = 1 << 24;
 
-/// The largest number of faults that are planted without full effort, spread evenly over all faults. They take a minute or two.
+/// The largest number of faults that are planted without full effort, spread evenly over all faults. The check then takes a
+/// minute or two.
 const MOST_FAULTS: usize = 1 << 11;
 
 /// States that the netlist obeys the design rules. The check repeats nothing: the rules are checked when the core is built, so

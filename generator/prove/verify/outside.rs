@@ -403,12 +403,13 @@ pub const COCOTB: Check = Check {
     },
 };
 
-/// Writes all emitted files, and the Python driver, into a new temporary directory, each at its path.
+/// Writes all emitted files, and the Python driver, into a new temporary directory, each at its path. Fails if a file cannot be
+/// made or written.
 fn written(subject: &CheckSubject<'_>) -> Result<Directory> {
     directory_of(subject.files()?.iter().chain([&package::driver()]))
 }
 
-/// Writes files into a new temporary directory, each at its path.
+/// Writes files into a new temporary directory, each at its path. Fails if a file cannot be written.
 pub(super) fn directory_of<'f>(
     files: impl IntoIterator<Item = &'f OutputFile>,
 ) -> Result<Directory> {

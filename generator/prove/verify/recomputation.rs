@@ -29,7 +29,7 @@ const MOST_OPERANDS: u128 = 1 << 20;
 /// of them.
 const MOST_COMBINATIONS: u128 = 1 << 24;
 
-/// The exit code of the program if it finds no error but cannot decide some combinations.
+/// The exit code of the program if it finds no error, but cannot decide whether the results of some combinations are right.
 const SOME_UNDECIDED: i32 = 3;
 
 /// Checks the error bound with a generated C program, which computes every combination of operands and compares the results with
@@ -94,7 +94,8 @@ struct ProgramCompiler<'a> {
 }
 
 impl ProgramCompiler<'_> {
-    /// Compiles the source file `source`. Returns whether the compiler accepts it, and the output of the compiler.
+    /// Compiles the source file `source`. Returns whether the compiler accepts it, and the output of the compiler. Fails if the
+    /// compiler cannot be run, or reaches the time limit.
     fn compile(&self, source: &str) -> Result<(bool, String)> {
         let arguments = ["-std=c99", "-O2", "-o", "recompute", source, "-lmpfr", "-lgmp", "-lm"];
         let run = self.tool.run(arguments, self.dir, self.subject.effort.time_limit)?;

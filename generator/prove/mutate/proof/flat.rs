@@ -1,7 +1,7 @@
 //! Makes a copy of a pipeline in which every register passes on its input at once, except the registers of the handshake.
 //!
 //! A multiplier that several products share becomes one multiplier for each product. The copy computes the same results for a
-//! single point (one set of operands), and a proof about a fault can look across the stages.
+//! single point (one set of operands), and a proof about a fault can reach across the stages.
 
 use std::collections::BTreeMap;
 
