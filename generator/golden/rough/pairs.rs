@@ -8,9 +8,10 @@
 //! the square, and n·b is largest at n = 1/(1 − cos(γ − dγ)) or at an end of the domain of n. For a pair of operands and one n,
 //! the error itself is computed, with the hardware's roundings.
 //!
-//! **The search.** The search keeps the largest error that it has computed. It skips every pair whose bound is no larger, because
-//! no larger error is there, and looks into all other pairs. If that takes too many steps, the answer is the largest bound of the
-//! remaining pairs. The answer is never below half of the first bound, so that the search spends no time on smaller errors.
+//! **The search.** The search remembers the largest error that it has computed. It skips every pair whose bound is no larger,
+//! because such a pair has no larger error, and examines all other pairs. If that takes more than 2²¹ steps, the result is the
+//! largest bound of the remaining pairs. The result is never below half of the bound of the worst pair of bins, so that the
+//! search spends no time on smaller errors.
 
 use std::collections::BTreeMap;
 

@@ -1,4 +1,7 @@
 //! Collects the Gappa statements of a proof, and keeps equal statements only once.
+//!
+//! Statements are equal if their scripts are the same except for names. For example, the outputs red and green often share a
+//! statement. The module writes no script and runs no prover.
 
 use std::collections::HashMap;
 

@@ -1,6 +1,7 @@
 //! Lists the faults that mutation testing plants in a netlist, each with a name that stays the same from run to run.
 //!
-//! For example, `adder15[3]:stuck-at-0` is bit 3 of the net `adder15`, stuck at 0.
+//! For example, `adder15[3]:stuck-at-0` is bit 3 of the net `adder15`, stuck at 0. For a large ROM, the list has only a sample
+//! of the faulty words. The module plants nothing.
 
 use std::collections::BTreeSet;
 

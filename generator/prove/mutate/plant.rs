@@ -1,4 +1,4 @@
-//! Makes a mutant, which is a copy of a netlist with one fault.
+//! Makes a mutant, which is a copy of a netlist with one fault. The copy can be simulated and emitted as any other netlist.
 
 use std::borrow::Cow;
 

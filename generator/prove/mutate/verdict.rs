@@ -1,4 +1,5 @@
-//! Defines the verdicts on faults: caught by a check, proved equivalent, or undecided.
+//! Defines the verdicts on faults in a netlist: caught by a check, proved equivalent, or undecided. A verdict also names the
+//! check or the proof that decided.
 
 use std::fmt;
 
