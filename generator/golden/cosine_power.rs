@@ -17,7 +17,8 @@ use glint_base::fixed::{Format, Rounding, exp2};
 use glint_config::Config;
 use glint_keys::cosine_power::Keys;
 
-/// The arithmetic of the device, with one method for each operation. The accumulator register holds f after the last squaring.
+/// The integer arithmetic of the device, with one method for each operation; the methods take and return raw values. The
+/// accumulator register contains f after the last squaring.
 struct PowerArithmetic {
     keys: Keys,
     squarings: u32,

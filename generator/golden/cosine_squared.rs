@@ -18,7 +18,7 @@ use glint_base::fixed::exp2;
 use glint_config::Config;
 use glint_keys::cosine_squared::Keys;
 
-/// The arithmetic of the device, with one method for each operation.
+/// The integer arithmetic of the device, with one method for each operation. The methods take and return raw values.
 struct SquaredArithmetic {
     keys: Keys,
     /// The table of cos², ROM 12 by the numbers of blocks in seed 000.

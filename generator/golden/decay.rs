@@ -26,7 +26,7 @@ use glint_keys::decay::{Decay, Keys};
 /// The number of parts into which each octave of the distance is divided. The error is bounded in each part separately.
 const PARTS: i64 = 32;
 
-/// The arithmetic of the device, with one method for each operation.
+/// The integer arithmetic of the device, with one method for each operation. These methods take and return raw values.
 struct DecayArithmetic {
     of: Decay,
     keys: Keys,

@@ -76,7 +76,7 @@ impl Frame {
     }
 
     /// Returns the device that runs the parts of the frame one after the other, in the order in which [`Frame::part`] added
-    /// them, and holds its outputs in registers.
+    /// them, and has a register behind each output that is combinational logic.
     ///
     /// # Panics
     /// This method never panics. Its program ends unconditionally with the microinstruction that raises `valid`, so that output
@@ -98,7 +98,7 @@ impl Device {
     }
 
     /// Sets the domain of the operand `operand` in the contract to the raw values `low ..= high`. A device needs this if the
-    /// operand's register can hold values for which the contract promises nothing.
+    /// operand's register can have values for which the contract promises nothing.
     ///
     /// # Panics
     /// Panics if the device has no operand with this name.
@@ -126,8 +126,8 @@ pub trait Formula: Send + Sync {
     fn exact(&self, operands: &[f64]) -> Vec<f64>;
 
     /// Returns the two values that count as exact for output number `output` if the formula gives `value`. An error is measured
-    /// from the nearer one. Both are normally `value`. They differ if the output wraps: for example, an output from −1 to below
-    /// 1 that wraps may be close to −1 or to 1 if the formula gives 1.
+    /// from the nearer value. Normally both are `value`. The values differ if the output wraps: for example, an output from −1
+    /// to below 1 that wraps may be close to −1 or to 1 if the formula gives 1.
     fn right_values(&self, value: f64, output: usize) -> [f64; 2] {
         let _ = output;
         [value; 2]
@@ -250,7 +250,7 @@ impl<F> OfModel<F> {
         inputs
     }
 
-    /// Returns the raw outputs that the model shows now.
+    /// Returns the raw outputs that the model shows after its latest clock.
     fn raw_outputs(&self, model: &ClockedModel) -> Vec<i64> {
         let mut outputs = Vec::with_capacity(self.shown.len());
         for (&at, output) in self.shown.iter().zip(&self.device.outputs) {

@@ -14,7 +14,7 @@ use glint_formula::{Comparison, Enclosure, RBig};
 use glint_keys::expression::found;
 use glint_plan::{NodeId, Operation, ProvedPlan, StatedOverflow, StatedWidth};
 
-/// Makes the device of a plan that was found.
+/// Returns the device that executes the plan `found`, with the operands and results of its statement.
 fn device(found: &ProvedPlan) -> device::Device {
     let results = found.statement.results.iter();
     let outputs: Vec<String> = results.map(|result| format!("{}_out", result.name)).collect();
@@ -48,7 +48,7 @@ fn values_in_format(value: f64, format: Format) -> [f64; 2] {
     [inside, if is_in_upper_half { inside - range } else { inside + range }]
 }
 
-/// The formulas with the bounds that were proved.
+/// The formulas of the configuration, with the plan and with the bound that was proved for each formula.
 struct ProvedFormulas {
     found: Arc<ProvedPlan>,
 }

@@ -19,7 +19,7 @@ use glint_plan::ExpressionPlan;
 /// exact.
 const PIECES: u32 = 4096;
 
-/// Makes the device of the plan of the function.
+/// Returns the device that evaluates the piecewise polynomial `it` of the function.
 fn device(function: &TargetFunction, it: &Arc<Piecewise>) -> device::Device {
     let plan = ExpressionPlan::of_function(function, it).expect("a plan that was checked");
     plan_device(&[operand(it)], &plan, &["result_out".to_owned()])
@@ -66,7 +66,7 @@ pub(super) fn slope(config: &Config) -> Option<f64> {
     Some(steepest)
 }
 
-/// The function with the bound that was proved.
+/// The function, its piecewise polynomial, and the bound of the error that was proved, in units of the result.
 struct Stated {
     function: TargetFunction,
     bound: f64,

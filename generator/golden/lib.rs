@@ -131,7 +131,7 @@ pub struct Operand {
     pub name: String,
     /// The fixed-point format of the operand's port.
     pub format: Format,
-    /// The smallest and largest raw value for which the contract is stated.
+    /// The smallest and largest raw value for which the contract is stated; both are included.
     pub domain: (i64, i64),
     /// Whether this is a colour operand of a highlight device, which multiplies the reflectance `f`. The other operands determine
     /// `f`.
@@ -184,8 +184,9 @@ pub trait Contract: Send + Sync {
     /// certify` may then find one.
     fn bound(&self) -> Bound;
 
-    /// Returns the formula of each output as a Python expression ([`highlight::Reflectance::expressions`] has the rules), or
-    /// nothing if nobody has written them. A [`Highlight`] has its own.
+    /// Returns the formula of each output as a Python expression ([`highlight::Reflectance::expressions`] has the rules), or an
+    /// empty list if nobody has written them. For a highlight the list is empty; [`Highlight::expressions`] has the expressions
+    /// of f.
     fn expressions(&self) -> Vec<String> {
         Vec::new()
     }
@@ -236,8 +237,8 @@ pub trait Contract: Send + Sync {
         self.largest_error(place)
     }
 
-    /// Returns the bound on the error of the output with this number, in units of the output's last bit. It never exceeds
-    /// [`Contract::bound`].
+    /// Returns the bound on the error of output number `output`, from 0, in units of the output's last bit. This bound never
+    /// exceeds [`Contract::bound`].
     fn output_bound(&self, output: usize) -> f64 {
         let _ = output;
         self.bound().units
@@ -314,7 +315,7 @@ pub struct Axis {
 /// The values on an [`Axis`] that an exhaustive check visits.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Values {
-    /// All integers from the first to the last. For example, `Range(1, 1000)` has 1000 values.
+    /// All integers from the first to the last, both included. For example, `Range(1, 1000)` has 1000 values.
     Range(i64, i64),
     /// The values of this list.
     List(Vec<i64>),

@@ -134,7 +134,7 @@ const SLACK: f64 = 1.0 / (1u64 << 40) as f64;
 /// step is the middle of the values of `cosᵏ` at both ends of the step; the last word is 0.
 #[derive(Clone, Debug)]
 pub struct CosineTable {
-    /// The raw words, as fractions of `fraction` bits.
+    /// The raw words, one for each step. Their number of fraction bits is the parameter `fraction` of [`CosineTable::new`].
     pub words: Vec<i64>,
     /// The largest distance of `cosᵏ` at the ends of a step from the middle of these two values.
     pub step: f64,

@@ -78,7 +78,7 @@ impl Keys {
     }
 }
 
-/// The arithmetic of the device, with one method for each operation.
+/// The integer arithmetic of the device, with one method for each operation. The methods take and return raw values.
 struct LyonArithmetic {
     keys: Keys,
     squarings: u32,

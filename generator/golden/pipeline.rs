@@ -7,7 +7,7 @@ use std::collections::VecDeque;
 
 /// The points in the stages of a pipeline.
 ///
-/// At a rising edge either all points move to the next stage or none does. They stay if the last stage holds a point whose
+/// At a rising edge either all points move to the next stage or none does. They stay if the last stage contains a point whose
 /// results nobody takes (`out_ready` is low). A pipeline with an interval of more than 1 accepts a new point only at every
 /// `interval`-th move.
 #[derive(Clone, Debug)]
@@ -25,7 +25,7 @@ impl<P> Occupancy<P> {
         Self { stages: (0..latency).map(|_| None).collect(), interval, slot: 0 }
     }
 
-    /// Returns whether the pipeline accepts a point that is offered now: the value of `in_ready`.
+    /// Returns whether the pipeline accepts a point that is offered in this clock: the value of `in_ready`.
     pub fn takes(&self, out_ready: bool) -> bool {
         self.moves(out_ready) && self.slot == 0
     }
@@ -35,7 +35,7 @@ impl<P> Occupancy<P> {
         out_ready || self.last().is_none()
     }
 
-    /// Returns the point whose results are on the outputs. It is `None` exactly if `out_valid` is low.
+    /// Returns the point whose results are on the outputs, or `None` exactly if `out_valid` is low.
     pub fn last(&self) -> Option<&P> {
         self.stages.back().and_then(Option::as_ref)
     }

@@ -31,10 +31,10 @@ fn range_of(n: i64) -> usize {
     }
 }
 
-/// The power k of the table with each number.
+/// The power k of each table, by the number that [`range_of`] returns. For example, table 2 is of cos⁴.
 const POWERS: [i64; 4] = [1, 2, 4, 16];
 
-/// The arithmetic of the device, with one method for each operation.
+/// The integer arithmetic of the device, with one method for each operation. The methods take and return raw values.
 struct QuadCosineArithmetic {
     keys: Keys,
     /// The words of ROM 9, one for each n: the factor √(n/k).

@@ -20,7 +20,7 @@ use glint_base::fixed::{Format, exp2};
 use glint_config::Config;
 use glint_keys::quadratic::{Keys, Scheme};
 
-/// The arithmetic of the device, with one method for each operation.
+/// The integer arithmetic of the device, with one method for each operation. The methods take and return raw values.
 struct QuadraticArithmetic {
     keys: Keys,
     difference: Narrow,

@@ -108,7 +108,7 @@ impl Keys {
         (1 << self.operands.cosine.fraction) - i64::from(self.patent())
     }
 
-    /// Returns the format of register 13.
+    /// Returns the format of register 13, which contains first n/2·(cos(γ ± dγ) − 1) and then the square.
     fn result_format(&self) -> Format {
         let frac = self.f.fraction as i32;
         match (self.arithmetic, self.clamp) {
@@ -171,7 +171,7 @@ impl RoughArithmetic {
         Self { sine: Sine::new(&keys.sine()), kind, keys }
     }
 
-    /// Returns the next value of register 11: cos γ·cos dγ.
+    /// Returns the next raw value of register 11: cos γ·cos dγ.
     #[inline]
     fn cos_cos(&self, cos_gamma: i64, cos_dgamma: i64) -> i64 {
         match &self.kind {
@@ -180,7 +180,7 @@ impl RoughArithmetic {
         }
     }
 
-    /// Returns the next value of register 12: sin γ·sin dγ.
+    /// Returns the next raw value of register 12: sin γ·sin dγ.
     #[inline]
     fn sin_sin(&self, sin_gamma: i64, sin_dgamma: i64) -> i64 {
         match &self.kind {
@@ -209,7 +209,8 @@ impl RoughArithmetic {
         }
     }
 
-    /// Returns the first value of register 13: n/2·(cos(γ ± dγ) − 1), or −1.0 for a surface that faces away.
+    /// Returns the first raw value of register 13: n/2·(cos(γ ± dγ) − 1), or −1.0 for a surface that faces away, which has cos
+    /// γ = 0.
     #[inline]
     fn scaled(&self, adder_15: i64, exponent: i64, cos_gamma: i64) -> i64 {
         match &self.kind {
@@ -221,7 +222,7 @@ impl RoughArithmetic {
         }
     }
 
-    /// Returns the second value of register 13: the square of adder 16, which is register 13 + 1.0.
+    /// Returns the second raw value of register 13: the square of the output of adder 16, which is register 13 + 1.0.
     #[inline]
     fn squared(&self, result: i64, cos_gamma: i64) -> i64 {
         match &self.kind {

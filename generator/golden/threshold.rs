@@ -21,7 +21,7 @@ use glint_base::fixed::{Format, exp2};
 use glint_config::Config;
 use glint_keys::threshold::Keys;
 
-/// The arithmetic of the device, with one method for each operation.
+/// The integer arithmetic of the device, with one method for each operation. These methods take and return raw values.
 struct ThresholdArithmetic {
     keys: Keys,
     /// The value 1.0 in the fraction bits of the base.

@@ -165,8 +165,8 @@ impl Deref for Highlight {
 }
 
 impl Highlight {
-    /// Makes the contract of a device from its `Reflectance`, and from its control operands in the order in which the
-    /// `Reflectance` takes them.
+    /// Makes the contract of a device from its `Reflectance`, from its control operands in the order in which the `Reflectance`
+    /// takes them, and from the products of f with the colour operands, which come after the control operands.
     pub fn new(
         reflectance: impl Reflectance + 'static,
         control: Vec<Operand>,
@@ -179,7 +179,7 @@ impl Highlight {
         Self { reflectance: Box::new(reflectance), single, products, operands, bound }
     }
 
-    /// Returns the number of control operands. They come before the colour operands.
+    /// Returns the number of control operands, which come before the colour operands.
     pub fn control(&self) -> usize {
         self.operands.len() - self.products.operands.len()
     }
@@ -189,7 +189,8 @@ impl Highlight {
         self.products.f
     }
 
-    /// Returns the raw colour output for a raw reflectance f and a raw colour operand.
+    /// Returns the raw colour output for a raw reflectance f and a raw colour operand: the product, rounded to the output's
+    /// format.
     #[inline]
     pub fn colour(&self, f: i64, colour: i64) -> i64 {
         self.products.narrow.apply(f * colour)

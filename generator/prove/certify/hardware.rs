@@ -48,7 +48,8 @@ pub struct Hardware<'a> {
 }
 
 impl<'a> Hardware<'a> {
-    /// Prepares the translation of a case. `variables` are the operands.
+    /// Prepares the translation of a case. `variables` are the operands, in the order of the computation, and `tables` the
+    /// names of the ROMs, by index.
     pub fn new(
         view: UnrolledComputation<'a>,
         case: &'a Case,

@@ -29,7 +29,8 @@ pub enum ProofOutcome {
     /// Gappa accepted a script and, if Coq was given, Coq accepted the proof. The fields are the index of this script in
     /// [`Statement::scripts`], and whether its hypotheses can hold.
     Proved(usize, ProofSubject),
-    /// The statement is not proved. The text is Gappa's answer to the last script.
+    /// The statement is not proved. The text says why: Gappa's or Coq's answer to the last script, or the time limit that Gappa
+    /// reached.
     Open(String),
 }
 

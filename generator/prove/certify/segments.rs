@@ -33,15 +33,15 @@ use glint_rtl::pipeline::{Cell, Graph, NodeId, NodeOp, WalkRegister};
 /// The number of ROM words in a script: Gappa's time grows with its square.
 const WORDS: usize = 8;
 
-/// Twice this number is the exponent of y in the last term of the polynomial for the cosine. At a right angle, the remainder is
-/// below 10⁻¹⁶.
+/// The number m in Taylor's formula: the polynomial for the cosine ends with the term in y²ᵐ. At a right angle, the remainder
+/// is below 10⁻¹⁶.
 const TERMS: u32 = 10;
 
 /// Two numbers between which π/2 lies.
 const RIGHT: (&str, &str) = ("1.57079632679489661923", "1.57079632679489661924");
 
-/// The statements use the bound of f, rounded down to this number of fraction bits. It is a short number, so that its
-/// sum with a word is exact in f64.
+/// The number of fraction bits to which the statements round the bound of f down. The rounded bound is a short number, so that
+/// its sum with a word is exact in f64.
 const PLACES: i32 = 42;
 
 /// The name of the angle of a point in a formula. It is no operand, because the operand has only the angle of the first point.

@@ -122,7 +122,8 @@ impl RealTerms {
         &self.terms[id].0
     }
 
-    /// Returns the name of a term in the script.
+    /// Returns the text of a term in the script: the name of its definition, the name of a variable, or a number. For example,
+    /// `sum_2`, `x` or `(-0.5)`.
     pub fn name(&self, id: RealTermId) -> String {
         match self.get(id) {
             RealTerm::Number(value) if *value < 0.0 => format!("({})", number(*value)),

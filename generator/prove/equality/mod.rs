@@ -66,7 +66,8 @@ pub enum Open {
     Limit,
 }
 
-/// The numbers of proved facts in a proof that a pipeline equals its sequential core.
+/// The size of a proof that a pipeline equals its sequential core: the numbers of outputs, checkpoints, paths, products and
+/// questions.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct EqualityProof {
     /// The number of outputs that are proved equal.
@@ -486,7 +487,7 @@ impl<'p> PipelineComparison<'p> {
         Ok(EqualityAnswer::Equal)
     }
 
-    /// Returns the outputs of the pipeline for the point.
+    /// Returns the terms of the pipeline's outputs in the clock in which the results of the point are shown.
     fn results_of(&self, stages: &[Vec<VectorTermId>]) -> Vec<VectorTermId> {
         let last = &stages[self.pair.latency];
         self.pair.outputs.iter().map(|&(_, net, _)| last[net.index()]).collect()

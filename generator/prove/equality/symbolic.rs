@@ -65,7 +65,8 @@ impl<'a> Execution<'a> {
         state
     }
 
-    /// Returns the term of every net for the given inputs and state, and adds the products among them to `products`.
+    /// Returns the term of every net, at the index of the net, for the given state. `input` gives the term of each input port.
+    /// Products that are new are added to `products`.
     pub fn settle(
         &self,
         terms: &mut VectorTerms,
@@ -97,7 +98,7 @@ impl<'a> Execution<'a> {
         values
     }
 
-    /// Returns the state after a rising edge of the clock.
+    /// Returns the state after a rising edge of the clock. `state` and `values`, the terms of all nets, are before the edge.
     pub fn edge(
         &self,
         terms: &mut VectorTerms,

@@ -38,11 +38,13 @@ pub enum VectorTerm {
     Product(VectorTermId, VectorTermId),
     /// A bit that is 1 if two terms of the same width are equal.
     Equal(VectorTermId, VectorTermId),
-    /// A bit that is 1 if the first of two terms of the same width is less than the second, as unsigned numbers.
+    /// A bit that is 1 if the left operand is less than the right operand, as unsigned numbers. Both have the same width.
     Less(VectorTermId, VectorTermId),
-    /// A bit that is 1 if the first of two terms of the same width is less than the second, as two's complement numbers.
+    /// A bit that is 1 if the left operand is less than the right operand, as two's complement numbers. Both have the same
+    /// width.
     SignedLess(VectorTermId, VectorTermId),
-    /// The second term if the first, which has one bit, is 1; otherwise the third.
+    /// A choice: if the first operand, which has one bit, is 1, the value of the second operand, and otherwise the value of the
+    /// third operand.
     Choice(VectorTermId, VectorTermId, VectorTermId),
     /// Bits of a term from `low` up, as many as the result has.
     Slice {
@@ -553,7 +555,7 @@ fn ordered(mut term: VectorTerm) -> VectorTerm {
     term
 }
 
-/// Returns the term with other operands.
+/// Returns the term with each operand replaced by the result of `of`.
 fn renamed(term: &VectorTerm, mut of: impl FnMut(VectorTermId) -> VectorTermId) -> VectorTerm {
     let mut term = term.clone();
     term.operands_mut().into_iter().for_each(|id| *id = of(*id));

@@ -38,7 +38,8 @@ pub enum TextVerdict {
     Unread(String),
 }
 
-/// The numbers of proved facts in a proof that the emitted Verilog of a pipeline equals its netlist.
+/// The size of a proof that the emitted Verilog of a pipeline equals its netlist: the numbers of outputs, registers and
+/// questions, and the delays of the memories.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct TextProof {
     /// The number of outputs that are proved equal.

@@ -71,7 +71,8 @@ pub(super) fn alone(
     Ok(mismatch.map(|mismatch| SignalDifference { held, mismatch }))
 }
 
-/// The result of comparing a mutant with the golden model for all values of the operands that determine `f` and are not held.
+/// The result of comparing a mutant with the golden model for all values of the operands that determine `f` and have no fixed
+/// value.
 pub(super) enum Tried {
     /// Nothing was tried: the operands have too many values, or the device computes lines of points.
     Nothing,

@@ -99,7 +99,8 @@ fn plant_bit(design: &mut Design, net: NetId, bit: u32, how: BitChange) {
     }
 }
 
-/// Makes every reader of the net `from` read the net `to`, except the nets in `except`.
+/// Makes every cell, register input, register enable and ROM address that reads the net `from` read the net `to`, except the
+/// cells that drive the nets in `except`.
 fn redirect(design: &mut Design, from: NetId, to: NetId, except: &[NetId]) {
     let redirect = |net: &mut NetId| {
         if *net == from {

@@ -22,8 +22,8 @@ use glint_core::cosim::{Lockstep, Mismatch};
 use glint_golden::Model;
 use glint_rtl::netlist::{Design, RomId};
 
-/// The number of points of the first check. They are the first points of the default test's first stream, so a difference in
-/// them is a difference in the default test.
+/// The number of points of the short test, which runs first. They are the first points of the default test's first stream, so a
+/// difference in them is a difference in the default test.
 const FIRST_POINTS: u64 = 256;
 
 /// The number of results of a longer test, and its seed. The longer test is searched for reads of words that the default test

@@ -1,4 +1,7 @@
 //! Counts the verdicts on the faults of a run, and decides whether the run passes.
+//!
+//! [`Score`] counts faults in the netlist; it passes if at most 1 % of them are undecided. [`TextScore`] counts faults in the
+//! emitted Verilog. The goals for the shipped bench are constants here, and callers compare the counts with them.
 
 use std::collections::BTreeMap;
 
@@ -86,7 +89,7 @@ impl Tally {
     }
 }
 
-/// The verdicts on the faults of one configuration, or of one part of it.
+/// The numbers of faults in the netlist of one configuration, or of one part of it, by verdict and by kind.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Score {
     /// The numbers for all faults together.
@@ -124,7 +127,7 @@ impl Score {
     }
 }
 
-/// The verdicts on the faults in the emitted Verilog of one configuration.
+/// The numbers of faults in the emitted Verilog of one configuration, by verdict.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct TextScore {
     /// The number of faults that were planted.

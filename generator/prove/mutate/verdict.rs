@@ -14,7 +14,8 @@ use glint_core::cosim::Mismatch;
 pub enum Detector {
     /// The default test noticed the fault: it compares golden model and simulated hardware for random operands.
     Cosim,
-    /// A directed test noticed the fault: it fixes some operands at values with which the hardware reads the faulty ROM words.
+    /// A directed test noticed the fault: it fixes operands at values with which the hardware reads faulty ROM words, or at a
+    /// point that a search has found.
     Directed,
 }
 

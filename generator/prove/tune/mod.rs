@@ -30,7 +30,7 @@ use crate::synth::Target;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum ErrorUnit {
-    /// The reflectance f, from 0 to 1.
+    /// The reflectance f, from 0 to 1: an error is a difference of f.
     F,
     /// The weight of an output's least significant bit.
     Output,
