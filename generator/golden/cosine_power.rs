@@ -135,8 +135,8 @@ impl Reflectance for PowerArithmetic {
         Some(Variation { slope: most as f64, jump: libm::pow(base, power) })
     }
 
-    /// Derives the terms of f's error. Every quantity here lies in 0 … 1, hardware's and formula's alike, so by the mean value
-    /// theorem an error ε before a power p grows to at most p·ε.
+    /// Returns the contributions to the error of f, as values with their keys, and derives them. Every quantity here lies in 0
+    /// … 1, hardware's and formula's alike, so by the mean value theorem an error ε before a power p grows to at most p·ε.
     ///
     /// - Base: the hardware uses the inverse, 1.0 − ulp − t, instead of 1.0 − t. If t is truncated, its error is in (−ulp, 0],
     ///   and the base is low by (0, ulp]. If t is rounded to the nearest, its error is ±ulp/2, and the base is low by up to 3/2

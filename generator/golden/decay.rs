@@ -238,7 +238,7 @@ impl Reflectance for DecayArithmetic {
         Some(self.formula(cosine, exponent as f64))
     }
 
-    /// Limits the slope by the largest n, and the jump at a right angle by the jump of the smallest n:
+    /// Returns the largest n as an upper limit of the slope, and the jump of the smallest n at a right angle:
     /// - cosⁿγ has the slope n·c^(n − 1), at most n. With n = 0 it jumps from 1 to 0 at a right angle.
     /// - exp(−n·γ²/2) has the slope n·(γ/sin γ)·exp(−n·γ²/2). It is at most n, since γ/sin γ ≤ exp(γ²/2) up to a right angle:
     ///   the logarithm of γ/sin γ is γ²/6 + γ⁴/180 + …, of positive terms that are together below γ²/2 there. At a right angle
@@ -260,8 +260,8 @@ impl Reflectance for DecayArithmetic {
         })]
     }
 
-    /// Derives the terms of f's error. Let y = n·decay be exact and z the hardware's product before it is cut to the fraction
-    /// bits of the table of 2^−x.
+    /// Returns the contributions to the error of f, as values with their keys, and derives them. Let y = n·decay be exact and z
+    /// the hardware's product before it is cut to the fraction bits of the table of 2^−x.
     ///
     /// - The ratio of decay to distance has the error of its table, which is proved over every operand. In addition, several
     ///   distances share one operand of the table. Their difference from the middle distance is multiplied by the steepest

@@ -33,9 +33,8 @@ impl Root {
         Self { width: 2 * components + 4, address, fraction, ends }
     }
 
-    /// Returns the number of pairs of leading zeros of a raw sum of [`Self::width`] bits. For 0 it returns the largest number
-    /// that the shifter's count can represent. For example, the sum 0b0001 of 4 bits has one pair and one more zero, so the
-    /// number is 1.
+    /// Returns the number of pairs of leading zeros of a raw sum of `width` bits. For 0 it returns the largest number that the
+    /// shifter's count can represent. For example, the sum 0b0001 of 4 bits has one pair and one more zero, so the number is 1.
     pub fn pairs(&self, sum: i64) -> i64 {
         match sum {
             0 => (1 << self.pair_bits()) - 1,

@@ -131,8 +131,9 @@ impl Reflectance for QuadraticArithmetic {
         vec![contract::where_it_faces(&contract::clamped_at_0(&f))]
     }
 
-    /// Derives the terms of the error of `c − a·g`, with g = c − c² in 0 … 1/4. If formula and hardware are both clamped, the
-    /// error is 0. Otherwise `a·g ≤ c`, which means `1 − c ≤ 1/a`, holds for the exact a or for its word, and g is at most 1/a.
+    /// Returns the contributions to the error of f = `c − a·g`, with g = c − c² in 0 … 1/4, as values with their keys, and
+    /// derives them. If formula and hardware are both clamped, the error is 0. Otherwise `a·g ≤ c`, which means `1 − c ≤ 1/a`,
+    /// holds for the exact a or for its word, and g is at most 1/a.
     ///
     /// - An error of the word a(n) is multiplied by g.
     /// - The rounding of g is multiplied by the word a(n).

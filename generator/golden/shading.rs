@@ -257,9 +257,9 @@ impl Formula for Shading {
         colours
     }
 
-    /// Derives the terms of a colour's error. An error of an operand of a part is multiplied by the slope of the part, and the
-    /// part adds its own error. The errors of all lights add up. If nobody has stated how f changes with the cosine, there are
-    /// no terms and the bound is not stated.
+    /// Returns the terms of the error bound of a colour, in units, and derives them. An error of an operand of a part is
+    /// multiplied by the slope of the part, and the part adds its own error. The errors of all lights add up. If nobody has
+    /// stated how f changes with the cosine, there are no terms and the bound is not stated.
     ///
     /// - A colour is diffuse·cosine + specular·f(cosine), saturated. Its slope by the cosine of the light is at most the
     ///   largest colour. Its slope by the cosine of the highlight is at most the largest colour times the slope of f.

@@ -187,8 +187,8 @@ impl Reflectance for ThresholdArithmetic {
             .to_vec()
     }
 
-    /// Derives the terms of f's error. Base, square and formula lie in 0 … 1, so that an error ε of the base is at most 2·ε in
-    /// the square.
+    /// Returns the contributions to the error of f, as values with their keys, and derives them. Base, square and formula lie
+    /// in 0 … 1, so that an error ε of the base is at most 2·ε in the square.
     ///
     /// The product is rounded into the base, and limited to −1.0 where the formula is clamped. The square is rounded; the
     /// square of 1.0 is an ulp low. The comparison with ROM(n) adds no error: if the square differs from ROM(n) by at most the

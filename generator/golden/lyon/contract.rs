@@ -135,8 +135,8 @@ impl Reflectance for LyonArithmetic {
         Some((f - nearest).abs().max((f - formula(high)).abs()))
     }
 
-    /// Derives the terms of f's error. Base and powers lie in 0 … 1, hardware's and formula's alike, so by the mean value theorem
-    /// an error ε before a power p grows to at most p·ε.
+    /// Returns the contributions to the error of f, as values with their keys, and derives them. Base and powers lie in 0 … 1,
+    /// hardware's and formula's alike, so by the mean value theorem an error ε before a power p grows to at most p·ε.
     ///
     /// - An error of D² is multiplied by β = n/(2·m), and by at most m when the base is raised to m: n/2 in all.
     /// - Base: as in `cosine-power`, the hardware uses the inverse, 1.0 − ulp − t, instead of 1.0 − t. If t is truncated, the
