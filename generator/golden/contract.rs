@@ -1,7 +1,8 @@
-//! Helpers for the accuracy contracts of several devices: the operands `cos_gamma` and `exponent`, the error bound of a device
-//! that multiplies colours, and Python expressions.
+//! Makes parts of the accuracy contracts that several devices need: the operands `cos_gamma` and `exponent`, the error bound of
+//! a device that multiplies colours, and Python expressions.
 //!
-//! An accuracy contract states the operands, the exact formula and the proven error bound of one device.
+//! An accuracy contract states the operands, the exact formula and the proven error bound of one device. The module of each
+//! device has its formula.
 
 use super::{Bound, Operand, Term};
 use glint_base::fixed::{Format, Rounding, exp2};
@@ -82,7 +83,8 @@ pub fn where_it_faces(expression: &str) -> String {
 }
 
 /// Returns the raw value of `operand` that represents the specular exponent `n` exactly. Returns `None` if the format or the
-/// domain of the operand has no such value. For example, n = 20 gives 20 in `u10.0`, and n = 20.5 gives `None`.
+/// domain of the operand has no such value. For example, n = 20 gives 20 in `u10.0` (10 integer bits), and n = 20.5 gives
+/// `None`.
 pub fn exponent_at(operand: &Operand, n: f64) -> Option<i64> {
     let raw = operand.format.quantise(n);
     let held = operand.format.to_f64(raw) == n;
@@ -90,9 +92,9 @@ pub fn exponent_at(operand: &Operand, n: f64) -> Option<i64> {
     (held && (low..=high).contains(&raw)).then_some(raw)
 }
 
-/// Returns the control operands among `operands` for an angle `gamma` (in radians) and an exponent `n`. `operands` must
-/// contain `cos_gamma` and `exponent`. Any other operand takes its value in `neutral`, or else the value of its domain that
-/// is nearest to 0.
+/// Returns the raw control operands among `operands`, in their order, for an angle `gamma` (in radians) and an exponent `n`.
+/// `operands` must contain `cos_gamma` and `exponent`. Any other operand takes its raw value in `neutral`, or else the value of
+/// its domain that is nearest to 0.
 ///
 /// Returns `None` if `cos_gamma` or `exponent` is missing, if `n` is not in the domain of the exponent, or if the exponent
 /// cannot represent `n`.

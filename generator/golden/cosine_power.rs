@@ -17,11 +17,12 @@ use glint_base::fixed::{Format, Rounding, exp2};
 use glint_config::Config;
 use glint_keys::cosine_power::Keys;
 
-/// The arithmetic of the device, with one method for each operation. The accumulator register holds f after the last squaring.
+/// The integer arithmetic of the device, with one method for each operation; the methods take and return raw values. The
+/// accumulator register contains f after the last squaring.
 struct PowerArithmetic {
     keys: Keys,
     squarings: u32,
-    /// The accumulator's largest fraction: 1.0 minus one unit in the last place.
+    /// The largest value of the accumulator: 1.0 minus one unit in the last place, as a raw value.
     largest: i64,
     scaled: Narrow,
     square: Narrow,
@@ -41,13 +42,15 @@ impl PowerArithmetic {
         }
     }
 
-    /// Returns `n/m·(1 − cos γ)`, saturated.
+    /// Returns the raw value of `n/m·(1 − cos γ)`, rounded, and limited to the accumulator's format. `cosine` and `exponent`
+    /// are raw operands.
     #[inline]
     fn scaled(&self, cosine: i64, exponent: i64) -> i64 {
         self.scaled.apply((self.keys.operands.cosine.one() - cosine) * exponent)
     }
 
-    /// Returns the inverse of the accumulator, `1.0 − ulp − accumulator`; 0 for a surface that faces away.
+    /// Returns the raw base: the inverse of the accumulator, `1.0 − ulp − accumulator`. It is 0 for a surface that faces away,
+    /// which has the cosine 0.
     #[inline]
     fn base(&self, cosine: i64, accumulator: i64) -> i64 {
         if cosine == 0 { 0 } else { self.largest - accumulator }
@@ -123,8 +126,8 @@ impl Reflectance for PowerArithmetic {
         vec![contract::where_it_faces(&format!("{base} ** {power}"))]
     }
 
-    /// Limits the slope n·base^(m − 1) to n, since the base is at most 1. At a right angle W is (1 − n/m)^m if n is below m,
-    /// and jumps from this value to 0.
+    /// Returns the largest n as an upper limit of the slope n·base^(m − 1), since the base is at most 1. At a right angle W is
+    /// (1 − n/m)^m if n is below m, and jumps from this value to 0. The result has this jump for the smallest n.
     fn variation(&self) -> Option<Variation> {
         let (least, most) = self.keys.domain.exponents();
         let power = f64::from(self.keys.power);
@@ -132,8 +135,8 @@ impl Reflectance for PowerArithmetic {
         Some(Variation { slope: most as f64, jump: libm::pow(base, power) })
     }
 
-    /// Derives the terms of f's error. Every quantity here lies in 0 … 1, hardware's and formula's alike, so by the mean value
-    /// theorem an error ε before a power p grows to at most p·ε.
+    /// Returns the contributions to the error of f, as values with their keys, and derives them. Every quantity here lies in 0
+    /// … 1, hardware's and formula's alike, so by the mean value theorem an error ε before a power p grows to at most p·ε.
     ///
     /// - Base: the hardware uses the inverse, 1.0 − ulp − t, instead of 1.0 − t. If t is truncated, its error is in (−ulp, 0],
     ///   and the base is low by (0, ulp]. If t is rounded to the nearest, its error is ±ulp/2, and the base is low by up to 3/2
@@ -189,7 +192,7 @@ impl Reflectance for PowerArithmetic {
     }
 }
 
-/// Returns the largest difference between W and cosⁿγ over the cosines from 0 to 1, on a fine grid.
+/// Returns the largest difference between W and cosⁿγ over 512 cosines, spaced evenly from 1/512 to 1.
 fn formula_error(n: i64, power: u32) -> f64 {
     const GRID: u32 = 512;
     (1..=GRID)

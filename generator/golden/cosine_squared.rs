@@ -18,7 +18,7 @@ use glint_base::fixed::exp2;
 use glint_config::Config;
 use glint_keys::cosine_squared::Keys;
 
-/// The arithmetic of the device, with one method for each operation.
+/// The integer arithmetic of the device, with one method for each operation. The methods take and return raw values.
 struct SquaredArithmetic {
     keys: Keys,
     /// The table of cos², ROM 12 by the numbers of blocks in seed 000.
@@ -30,21 +30,21 @@ impl SquaredArithmetic {
         Self { table: CosineTable::new(2, keys.table_address, keys.fraction), keys }
     }
 
-    /// Returns the address of ROM 12 for a stretched angle.
+    /// Returns the address of ROM 12 for a raw angle a·δ. An angle of a right angle or more has the last address.
     #[inline]
     fn step_of(&self, angle: i64) -> i64 {
         magnitude(angle, self.keys.angle_fraction, self.keys.table_address)
             .unwrap_or(self.table.words.len() as i64 - 1)
     }
 
-    /// Returns the word of ROM 12 for a stretched angle.
+    /// Returns the word of ROM 12, which is cos² as a raw value, for a raw angle a·δ.
     #[inline]
     fn cosine_of(&self, angle: i64) -> i64 {
         self.table.words[self.step_of(angle) as usize]
     }
 }
 
-/// Returns the product of the word of ROM 12 with the amplitude.
+/// Returns the product of f, the word of ROM 12, with the operand `amplitude`.
 fn products(keys: &Keys) -> Products {
     Products::amplitude(keys.f_format(), keys.colour_bits, keys.output_rounding)
         .at_edges(keys.stages > 2)
@@ -130,8 +130,8 @@ impl Reflectance for SquaredArithmetic {
         Some("length")
     }
 
-    /// Returns every step of ROM 12, which covers every angle that a line can reach. For a right angle and beyond, the word is
-    /// the table's last, 0, and the formula is 0 too.
+    /// Returns every step of ROM 12, an interval of angles with one word. The steps cover every angle that a line can reach.
+    /// For a right angle and beyond, the word is the table's last, 0, and the formula is 0 too.
     fn sweep(&self) -> Option<Sweep> {
         let last = (1 << self.keys.table_address) - 1;
         Some(Sweep::ranges([("step of the table", (0, last))]))

@@ -1,9 +1,10 @@
 //! Builds a table of straight segments that approximates an increasing, concave function, such as the square root.
 //!
-//! The golden model of a device uses it to check a table in the hardware, which other code computes. The operand u is an unsigned
-//! integer of C bits. The upper three quarters of the operands are the first range; the upper three quarters of the remaining
-//! quarter are the second range, and so on. The operands below all ranges are called the tail. Every range, and the tail, is cut
-//! into segments of equal length. A value of the table is a raw number in the format u0.S.
+//! The golden model of the device `rough` uses it for its table of sines; the hardware description computes that table with
+//! other code. The operand u is an unsigned integer of C bits. The upper three quarters of the operands are the first range;
+//! the upper three quarters of the remaining quarter are the second range, and so on. The operands below all ranges are called
+//! the tail. Every range, and the tail, is divided into segments of equal length. A value of the table is a raw number in the
+//! format u0.S, which has S fraction bits.
 
 use glint_base::fixed::exp2;
 
@@ -16,14 +17,15 @@ pub struct CurveParams {
     pub fraction: u32,
     /// The number D of fraction bits of a slope. A slope is the rise over a whole segment.
     pub slope_fraction: u32,
-    /// log₂ of the number of prefixes in each range. A prefix is the leading bits of u that select a segment; a quarter of the
-    /// prefixes belongs to the operands below the range.
+    /// log₂ of the number of prefixes in each range, the topmost range first; at least 2. A prefix is the leading bits of u
+    /// that select a segment; a quarter of the prefixes belongs to the operands below the range. For example, 4 makes 16
+    /// prefixes, 12 of them segments of the range.
     pub segments: Vec<u32>,
     /// log₂ of the number of segments of the tail, the operands below all ranges.
     pub tail: u32,
 }
 
-/// A segment, with its stored base and slope.
+/// A segment: its first operand, log₂ of its number of operands, and the base and slope that the table stores, as raw values.
 #[derive(Clone, Copy, Debug)]
 struct CurveSegment {
     start: u64,
@@ -49,8 +51,8 @@ pub struct Piece {
 #[derive(Clone, Debug)]
 pub struct SegmentedCurve {
     params: CurveParams,
-    /// For each range from the topmost down, and then for the tail: log₂ of the length of a segment, and an index in
-    /// `segments`. Prefix 0 of the range would have this index.
+    /// For each range from the topmost down, and then for the tail: log₂ of the number of operands of a segment, and an index
+    /// in `segments`. A segment of the range has this index plus its prefix.
     ranges: Vec<(u32, i64)>,
     segments: Vec<CurveSegment>,
     largest: i64,
@@ -58,7 +60,8 @@ pub struct SegmentedCurve {
 }
 
 impl SegmentedCurve {
-    /// Returns the table of `function`. `function` gets the operand u as an integer, and must increase from 0 to 1.
+    /// Returns the table of `function`. `function` gets the operand u as an integer from 0 to 2^C; it must be concave and
+    /// increase from 0 to 1.
     pub fn new(params: &CurveParams, function: impl Fn(f64) -> f64) -> Self {
         let mut curve = Self {
             params: params.clone(),
@@ -145,7 +148,7 @@ impl SegmentedCurve {
         &self.pieces
     }
 
-    /// Returns the raw value of the table at the operand u.
+    /// Returns the raw value of the table at the operand u, which must be from 0 to 2^C − 1.
     #[inline]
     pub fn at(&self, u: i64) -> i64 {
         let length = 64 - (u as u64).leading_zeros();

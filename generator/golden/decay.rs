@@ -26,7 +26,7 @@ use glint_keys::decay::{Decay, Keys};
 /// The number of parts into which each octave of the distance is divided. The error is bounded in each part separately.
 const PARTS: i64 = 32;
 
-/// The arithmetic of the device, with one method for each operation.
+/// The integer arithmetic of the device, with one method for each operation. These methods take and return raw values.
 struct DecayArithmetic {
     of: Decay,
     keys: Keys,
@@ -67,8 +67,9 @@ impl DecayArithmetic {
     }
 
     /// Returns the octave and the raw distance of the raw cosine c. In `blinn`, the octave is the number of times that c must
-    /// be doubled to be at least one half. The distance is 1 minus the doubled c, less an ulp. In `gauss`, the octave is always
-    /// 0, and c is not doubled. For example, with 4 fraction bits, c = 5/16 has octave 1 and distance 5 in `blinn`.
+    /// be doubled to be at least one half. The distance is 1 minus the doubled c, less an ulp (one unit in the last place). In
+    /// `gauss`, the octave is always 0, and c is not doubled. For example, with 4 fraction bits, c = 5/16 has octave 1 and
+    /// distance 5 in `blinn`.
     ///
     /// If the fraction bits of c are all 0 (c = 0 or 1.0), the octave in `blinn` is all ones, as in the hardware. The
     /// reflectance does not depend on the octave and the distance then.
@@ -89,7 +90,7 @@ impl DecayArithmetic {
         }
     }
 
-    /// Returns the decay as the factor that is multiplied by n, and whether the decay is small. The decay is `octave` plus
+    /// Returns the decay as the raw factor that is multiplied by n, and whether the decay is small. The decay is `octave` plus
     /// `distance` times `ratio`. A small decay, below ¼, has `decay.fraction` fraction bits; a larger decay is truncated to
     /// `decay.coarse_fraction` fraction bits.
     #[inline]
@@ -130,7 +131,7 @@ impl DecayArithmetic {
         }
     }
 
-    /// Returns the exact decay in f64 for a distance 1 − c, as a value from 0 to 1.0.
+    /// Returns the exact decay in f64 for a distance 1 − c, which is a value from 0 to 1.0.
     fn exact_decay(&self, distance: f64) -> f64 {
         match self.of {
             Decay::Logarithm => -libm::log2(1.0 - distance),
@@ -141,8 +142,8 @@ impl DecayArithmetic {
         }
     }
 
-    /// Returns upper limits of three errors of f for all raw distances from `from` to `to` in an octave. They come from the
-    /// error of the ratio, from the rounding of the decay, and from the bits that a coarse decay loses.
+    /// Returns upper limits of three errors of f, as values, for all raw distances from `from` to `to` in an octave. They come
+    /// from the error of the ratio, from the rounding of the decay, and from the bits that a coarse decay loses.
     fn of_distances(&self, (from, to): (i64, i64), octave: f64) -> [f64; 3] {
         let keys = &self.keys;
         let [from, to] = [from, to].map(|raw| raw as f64 * keys.operands.cosine.ulp());
@@ -237,7 +238,7 @@ impl Reflectance for DecayArithmetic {
         Some(self.formula(cosine, exponent as f64))
     }
 
-    /// Limits the slope by the largest n, and the jump at a right angle by the jump of the smallest n:
+    /// Returns the largest n as an upper limit of the slope, and the jump of the smallest n at a right angle:
     /// - cosⁿγ has the slope n·c^(n − 1), at most n. With n = 0 it jumps from 1 to 0 at a right angle.
     /// - exp(−n·γ²/2) has the slope n·(γ/sin γ)·exp(−n·γ²/2). It is at most n, since γ/sin γ ≤ exp(γ²/2) up to a right angle:
     ///   the logarithm of γ/sin γ is γ²/6 + γ⁴/180 + …, of positive terms that are together below γ²/2 there. At a right angle
@@ -259,8 +260,8 @@ impl Reflectance for DecayArithmetic {
         })]
     }
 
-    /// Derives the terms of f's error. Let y = n·decay be exact and z the hardware's product before it is cut to the fraction
-    /// bits of the table of 2^−x.
+    /// Returns the contributions to the error of f, as values with their keys, and derives them. Let y = n·decay be exact and z
+    /// the hardware's product before it is cut to the fraction bits of the table of 2^−x.
     ///
     /// - The ratio of decay to distance has the error of its table, which is proved over every operand. In addition, several
     ///   distances share one operand of the table. Their difference from the middle distance is multiplied by the steepest

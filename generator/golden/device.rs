@@ -46,7 +46,7 @@ use super::{ANY_VALUE, Bound, ComputedPart, Contract, Model, Operand, Output, Sw
 /// The largest number of clocks that a computation may take.
 const LONGEST: u32 = 1 << 20;
 
-/// The value that replaces a result which the device never shows.
+/// The raw value that replaces a result that the device never shows.
 const NEVER: i64 = i64::MAX >> 1;
 
 /// A device whose golden model is a list of microinstructions. [`Frame::device`] makes it.
@@ -76,7 +76,7 @@ impl Frame {
     }
 
     /// Returns the device that runs the parts of the frame one after the other, in the order in which [`Frame::part`] added
-    /// them, and holds its outputs in registers.
+    /// them, and has a register behind each output that is combinational logic.
     ///
     /// # Panics
     /// This method never panics. Its program ends unconditionally with the microinstruction that raises `valid`, so that output
@@ -98,7 +98,7 @@ impl Device {
     }
 
     /// Sets the domain of the operand `operand` in the contract to the raw values `low ..= high`. A device needs this if the
-    /// operand's register can hold values for which the contract promises nothing.
+    /// operand's register can have values for which the contract promises nothing.
     ///
     /// # Panics
     /// Panics if the device has no operand with this name.
@@ -126,8 +126,8 @@ pub trait Formula: Send + Sync {
     fn exact(&self, operands: &[f64]) -> Vec<f64>;
 
     /// Returns the two values that count as exact for output number `output` if the formula gives `value`. An error is measured
-    /// from the nearer one. Both are normally `value`. They differ if the output wraps: for example, an output from −1 to below
-    /// 1 that wraps may be close to −1 or to 1 if the formula gives 1.
+    /// from the nearer value. Normally both are `value`. The values differ if the output wraps: for example, an output from −1
+    /// to below 1 that wraps may be close to −1 or to 1 if the formula gives 1.
     fn right_values(&self, value: f64, output: usize) -> [f64; 2] {
         let _ = output;
         [value; 2]
@@ -140,8 +140,9 @@ pub trait Formula: Send + Sync {
         true
     }
 
-    /// Appends the raw outputs for raw operands to `raw` and returns true, if the author can compute them faster than by running
-    /// the microprogram. Otherwise returns false. The outputs must equal the results of the golden model.
+    /// Appends the raw outputs for raw operands to `raw` and returns true, if the author can compute them faster than by
+    /// running the microprogram. Otherwise returns false and appends nothing. The outputs must equal the results of the golden
+    /// model.
     fn results(&self, operands: &[i64], raw: &mut Vec<i64>) -> bool {
         let _ = (operands, raw);
         false
@@ -158,7 +159,8 @@ pub trait Formula: Send + Sync {
         Vec::new()
     }
 
-    /// Returns the bound of output number `output`, if the outputs have different bounds, as [`Contract::output_bound`] does.
+    /// Returns the bound of output number `output`, as [`Contract::output_bound`] does, or `None` if all outputs have the bound
+    /// of the contract.
     fn output_bound(&self, output: usize) -> Option<f64> {
         let _ = output;
         None
@@ -169,7 +171,8 @@ pub trait Formula: Send + Sync {
         1.0
     }
 
-    /// Returns the formula of each output as a Python expression, as [`Contract::expressions`] does.
+    /// Returns the formula of each output as a Python expression, as [`Contract::expressions`] does; an empty list if nobody
+    /// has written them.
     fn expressions(&self) -> Vec<String> {
         Vec::new()
     }
@@ -179,12 +182,13 @@ pub trait Formula: Send + Sync {
         false
     }
 
-    /// Returns the comparisons under which errors are promised, as [`Contract::conditions`] does.
+    /// Returns the comparisons under which errors are promised, as [`Contract::conditions`] does, or `None` without such
+    /// comparisons.
     fn conditions(&self) -> Option<Vec<Option<Comparison>>> {
         None
     }
 
-    /// Returns operands at which an error is likely to show, as [`Contract::hint`] does.
+    /// Returns raw operands at which an error is likely to show, as [`Contract::hint`] does, or `None` without a suggestion.
     fn hint(&self, unit: &mut dyn FnMut() -> f64) -> Option<Vec<i64>> {
         let _ = unit;
         None
@@ -235,8 +239,8 @@ impl<F> OfModel<F> {
         None
     }
 
-    /// Returns the bits of all inputs of the model in a clock without reset. `start` and the write strobes have the value
-    /// `strobe`.
+    /// Returns the bit patterns of all inputs of the model in a clock without reset. `start` and the write strobes have the
+    /// value `strobe`.
     fn inputs(&self, operands: &[i64], strobe: u64) -> Vec<u64> {
         let mut inputs = vec![1, strobe];
         for (operand, &raw) in self.device.operands.iter().zip(operands) {
@@ -246,7 +250,7 @@ impl<F> OfModel<F> {
         inputs
     }
 
-    /// Returns the raw outputs that the model shows now.
+    /// Returns the raw outputs that the model shows after its latest clock.
     fn raw_outputs(&self, model: &ClockedModel) -> Vec<i64> {
         let mut outputs = Vec::with_capacity(self.shown.len());
         for (&at, output) in self.shown.iter().zip(&self.device.outputs) {

@@ -71,7 +71,7 @@ pub fn contract(config: &Config) -> Box<dyn Contract> {
     device(config).contract(CosineFormula::new(config))
 }
 
-/// Returns the raw numbers of `fraction` fraction bits that are nearest to the components of a vector.
+/// Returns the raw components of a vector, rounded to `fraction` fraction bits. For example, 0.5 with 4 fraction bits is 8.
 fn raw_vector(vector: [f64; 3], fraction: u32) -> [i64; 3] {
     vector.map(|component| (component * exp2(fraction as i32)).round() as i64)
 }
@@ -101,7 +101,7 @@ impl CosineFormula {
         }
     }
 
-    /// Returns the value of the register `distance`: half of N·H, shifted so that the length of N is from 1 to 2. With
+    /// Returns the raw value of the register `distance`: half of N·H, shifted so that the length of N is from 1 to 2. With
     /// `two_sided` it is half of |N·H|.
     fn distance(&self, sum: i64, shift: i64) -> i64 {
         self.distance.apply(if self.keys.two_sided { sum.abs() } else { sum } << shift)
@@ -167,7 +167,7 @@ impl Formula for CosineFormula {
         Some([normal, half].concat())
     }
 
-    /// Returns every sum of squares, which determines the inverse root.
+    /// Returns every sum of squares N·N, as a raw value. The sum determines the inverse root.
     fn sweep(&self) -> Option<Sweep> {
         Some(self.root.sweep())
     }

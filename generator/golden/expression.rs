@@ -14,7 +14,7 @@ use glint_formula::{Comparison, Enclosure, RBig};
 use glint_keys::expression::found;
 use glint_plan::{NodeId, Operation, ProvedPlan, StatedOverflow, StatedWidth};
 
-/// Makes the device of a plan that was found.
+/// Returns the device that executes the plan `found`, with the operands and results of its statement.
 fn device(found: &ProvedPlan) -> device::Device {
     let results = found.statement.results.iter();
     let outputs: Vec<String> = results.map(|result| format!("{}_out", result.name)).collect();
@@ -38,8 +38,8 @@ pub fn contract(config: &Config) -> Box<dyn Contract> {
     device(&found).contract(ProvedFormulas { found })
 }
 
-/// Returns the two numbers nearest to a format that differ from a value by a multiple of the format's range. The first is in the
-/// format. For example, 1.25 gives −0.75 and 1.25 for s0.7, whose range is 2.
+/// Returns the two numbers nearest to a format that differ from `value` by a multiple of the format's range. The first is in
+/// the format. For example, 1.25 gives −0.75 and 1.25 for s0.7, which has the numbers from −1 to below 1 and so the range 2.
 fn values_in_format(value: f64, format: Format) -> [f64; 2] {
     let range = exp2(format.width() as i32 - format.frac);
     let least = format.to_f64(format.min_raw());
@@ -48,13 +48,13 @@ fn values_in_format(value: f64, format: Format) -> [f64; 2] {
     [inside, if is_in_upper_half { inside - range } else { inside + range }]
 }
 
-/// The formulas with the bounds that were proved.
+/// The formulas of the configuration, with the plan and with the bound that was proved for each formula.
 struct ProvedFormulas {
     found: Arc<ProvedPlan>,
 }
 
 impl ProvedFormulas {
-    /// Returns the operands by their names.
+    /// Returns the values of the operands by name, as intervals of a single number.
     fn enclosed(&self, operands: &[f64]) -> Vec<(&str, Enclosure)> {
         let mut named = Vec::with_capacity(operands.len());
         for (operand, value) in self.found.statement.operands.iter().zip(operands) {
@@ -63,7 +63,7 @@ impl ProvedFormulas {
         named
     }
 
-    /// Returns the operands by their names, as rational numbers.
+    /// Returns the values of the operands by name, as rational numbers.
     fn rational(&self, operands: &[f64]) -> Vec<(&str, RBig)> {
         let mut named = Vec::with_capacity(operands.len());
         for (operand, value) in self.found.statement.operands.iter().zip(operands) {
@@ -76,7 +76,7 @@ impl ProvedFormulas {
 }
 
 impl Formula for ProvedFormulas {
-    /// Returns the values of the formulas; no number where one has no value.
+    /// Returns the values of the formulas, in the order of the outputs; NaN for a formula without a value, such as 1 / 0.
     fn exact(&self, operands: &[f64]) -> Vec<f64> {
         let enclosed = self.enclosed(operands);
         let mut values = Vec::with_capacity(self.found.statement.results.len());
@@ -101,7 +101,8 @@ impl Formula for ProvedFormulas {
         result.promise.is_none() || result.is_promised(&self.enclosed(operands)) != Some(false)
     }
 
-    /// Appends the results within the domain. No value leaves its format there, which was proved.
+    /// Appends the raw results of the plan and returns true, if the operands are in the domain. No value leaves its format
+    /// there, which was proved. Returns false for other operands.
     fn results(&self, operands: &[i64], raw: &mut Vec<i64>) -> bool {
         let mut computed = Vec::with_capacity(operands.len());
         for (operand, raw) in self.found.statement.operands.iter().zip(operands) {
@@ -119,7 +120,8 @@ impl Formula for ProvedFormulas {
         true
     }
 
-    /// Returns the terms of the result whose bound is the largest part of the error that it may have.
+    /// Returns the terms of the bound of the result with the largest bound: the rounding of the result, and everything before
+    /// it.
     fn terms(&self) -> Vec<Term> {
         let bound = self.found.bounds.iter().copied().fold(0.0, f64::max);
         let rounding = bound.min(0.5);
@@ -133,7 +135,7 @@ impl Formula for ProvedFormulas {
         ]
     }
 
-    /// Returns the operations of the plan, without operands and exact constants.
+    /// Returns the operations of the plan as parts, without operands and exact constants.
     fn parts(&self) -> Vec<ComputedPart> {
         let plan = &self.found.plan;
         let mut parts = Vec::new();

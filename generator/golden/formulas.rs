@@ -17,8 +17,9 @@ pub fn blinn(c: f64, n: f64) -> f64 {
     if c <= 0.0 { 0.0 } else { libm::pow(c, n) }
 }
 
-/// Returns cos(γ + dγ), or cos(γ − dγ) if `dgamma_negative`. `c` is cos γ and `cd` is cos dγ; both angles are in 0 … 90°. The
-/// device `rough` tilts γ by dγ, the deviation of the normal on a rough surface.
+/// Returns cos(γ + dγ), or cos(γ − dγ) if `dgamma_negative`. `c` is cos γ and `cd` is cos dγ; both angles must be in 0 … 90°.
+/// The device `rough` tilts γ by dγ, the deviation of the normal on a rough surface. For example, γ = 60° and dγ = 30° give 0,
+/// or cos 30° if `dgamma_negative`.
 #[inline]
 pub fn turned_cosine(c: f64, cd: f64, dgamma_negative: bool) -> f64 {
     let sines = ((1.0 - c * c) * (1.0 - cd * cd)).max(0.0).sqrt();
@@ -50,8 +51,8 @@ pub fn rough(c: f64, cd: f64, dgamma_negative: bool, n: f64) -> f64 {
     base * base
 }
 
-/// Returns the formula of the device `rough` without its clamp: `(n/2·(cos(γ ± dγ) − 1) + 1)²` also if the base is negative, where
-/// the parabola rises again. The result is limited to 1. The parameters are the same as for [`rough`].
+/// Returns the formula of the device `rough` without its clamp: `(n/2·(cos(γ ± dγ) − 1) + 1)²` also if the base is negative,
+/// where the parabola rises again. The result is limited to 1. The parameters are the same as for [`rough`].
 #[inline]
 pub fn rough_unclamped(c: f64, cd: f64, dgamma_negative: bool, n: f64) -> f64 {
     if c <= 0.0 {
@@ -152,7 +153,8 @@ pub fn cosine_squared(stretched: f64) -> f64 {
     lobe(stretched, 2)
 }
 
-/// Returns the formula of the device `gauss` (seed 002): `exp(−n·γ²/2)` with the angle γ = arccos c.
+/// Returns the formula of the device `gauss` (seed 002): `exp(−n·γ²/2)` with the angle γ = arccos c, or 0 if `c ≤ 0`. For
+/// example, c = 1 gives 1 for every n.
 #[inline]
 pub fn gauss(c: f64, n: f64) -> f64 {
     if c <= 0.0 {

@@ -15,10 +15,11 @@ use glint_formula::{Enclosure, parse};
 use glint_keys::function::{found, operand};
 use glint_plan::ExpressionPlan;
 
-/// The pieces of a domain in which a slope is enclosed: a power of two, so that their ends are exact.
+/// The number of pieces of a domain in which a slope is enclosed. It is a power of two, so that the ends of the pieces are
+/// exact.
 const PIECES: u32 = 4096;
 
-/// Makes the device of the plan of the function.
+/// Returns the device that evaluates the piecewise polynomial `it` of the function.
 fn device(function: &TargetFunction, it: &Arc<Piecewise>) -> device::Device {
     let plan = ExpressionPlan::of_function(function, it).expect("a plan that was checked");
     plan_device(&[operand(it)], &plan, &["result_out".to_owned()])
@@ -43,14 +44,14 @@ pub fn contract(config: &Config) -> Box<dyn Contract> {
     device(&function, &it).contract(Stated { function, bound, polynomials: it.clone() })
 }
 
-/// Returns the value of a formula of x, in f64.
+/// Returns the value of a formula of x, in f64. Returns NaN if the formula cannot be parsed or has no value.
 pub(super) fn at(formula: &str, x: f64) -> f64 {
     let value = parse(formula).and_then(|it| it.enclose(&[("x", Enclosure::exactly(x))]));
     value.map_or(f64::NAN, Enclosure::middle)
 }
 
-/// Returns a proven limit of the formula's slope over its domain, from interval derivatives; none where it may jump or be
-/// infinitely steep.
+/// Returns a proven limit of the absolute slope of the formula over its domain, from interval derivatives. Returns `None` if
+/// the formula may jump or be infinitely steep, or if the function is given by samples.
 pub(super) fn slope(config: &Config) -> Option<f64> {
     let (function, it) = found(config).ok()?;
     let Curve::Formula(formula) = &function.curve else { return None };
@@ -65,7 +66,7 @@ pub(super) fn slope(config: &Config) -> Option<f64> {
     Some(steepest)
 }
 
-/// The function with the bound that was proved.
+/// The function, its piecewise polynomial, and the bound of the error that was proved, in units of the result.
 struct Stated {
     function: TargetFunction,
     bound: f64,
@@ -73,7 +74,7 @@ struct Stated {
 }
 
 impl Formula for Stated {
-    /// Returns the formula's value, no number where it has none.
+    /// Returns the value of the formula or the curve; NaN if it has no value.
     fn exact(&self, operands: &[f64]) -> Vec<f64> {
         let x = operand(&self.polynomials).computed(operands[0]);
         let raw = (x * exp2(self.function.operand.frac)) as i64;
@@ -81,7 +82,8 @@ impl Formula for Stated {
         vec![value * exp2(-(self.function.fraction as i32))]
     }
 
-    /// Appends the result within the domain. No sum leaves its format there: that was proved at every operand.
+    /// Appends the raw result and returns true, if the operand is in the domain. No sum leaves its format there: this was
+    /// proved at every operand. Returns false for another operand.
     fn results(&self, operands: &[i64], raw: &mut Vec<i64>) -> bool {
         let (first, last) = self.polynomials.domain;
         let x = operand(&self.polynomials).computed_raw(operands[0]);

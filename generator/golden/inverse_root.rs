@@ -7,7 +7,7 @@
 use super::Sweep;
 use glint_base::fixed::{exp2, mask};
 
-/// The largest sum of squares as a value: each of the three components is at least −2.0, so its square is at most 4.
+/// The largest sum of squares, as a value: each of the three components is at least −2.0, so its square is at most 4.
 const FARTHEST: i64 = 12;
 
 /// A table that gives the inverse square root of a sum of three squares.
@@ -33,8 +33,8 @@ impl Root {
         Self { width: 2 * components + 4, address, fraction, ends }
     }
 
-    /// Returns the number of pairs of leading zeros of a sum. For 0 it returns the largest number that the shifter's count can
-    /// represent.
+    /// Returns the number of pairs of leading zeros of a raw sum of `width` bits. For 0 it returns the largest number that the
+    /// shifter's count can represent. For example, the sum 0b0001 of 4 bits has one pair and one more zero, so the number is 1.
     pub fn pairs(&self, sum: i64) -> i64 {
         match sum {
             0 => (1 << self.pair_bits()) - 1,
@@ -47,12 +47,12 @@ impl Root {
         (self.width - 1).ilog2()
     }
 
-    /// Returns the mantissa of a sum: the sum shifted left by `pairs` pairs of bits.
+    /// Returns the raw mantissa of a sum: the sum shifted left by `pairs` pairs of bits. The mantissa of 0 is 0.
     pub fn mantissa(&self, sum: i64, pairs: i64) -> i64 {
         if sum == 0 { 0 } else { sum << (2 * pairs) }
     }
 
-    /// Returns the raw 1/√m of a mantissa m, interpolated linearly in its segment.
+    /// Returns the raw 1/√m of a raw mantissa m, interpolated linearly in its segment. The result for 0 is 0.
     pub fn inverse(&self, mantissa: i64) -> i64 {
         if mantissa == 0 {
             return 0;
@@ -98,7 +98,7 @@ impl Root {
     }
 }
 
-/// Returns a vector whose components are random numbers from −1 to 1. `unit` returns random numbers from 0 to 1.
+/// Returns a vector whose components are random numbers from −1 to 1. `unit` must return random numbers from 0 to 1.
 pub(super) fn centred(unit: &mut dyn FnMut() -> f64) -> [f64; 3] {
     [(); 3].map(|()| 2.0 * unit() - 1.0)
 }

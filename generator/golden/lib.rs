@@ -1,14 +1,13 @@
 //! The golden models and the accuracy contracts of the devices.
 //!
-//! A golden model is a second implementation of a device, written from the formula and the text of its source; it predicts every
-//! register and output on every clock. An accuracy contract states the exact formula of the device and a proven bound on its
-//! error.
+//! A golden model is a second implementation of a device, written from the formula and the text of its source; it predicts
+//! every register and output on every clock. An accuracy contract states the exact formula of the device and a proven bound on
+//! its error.
 //!
-//! A golden model uses only [`glint_base::fixed`] and [`glint_config`], and computes its own tables. It never sees the hardware
-//! description, the netlist or the microcode, so that an error in one of them shows as a difference in simulation. Four devices
-//! are exceptions. In `blinn` and `gauss` the description and the golden model read the same polynomials ([`glint_keys::decay`]); an
-//! exhaustive comparison with the formula checks these polynomials. In `function` and `expression` both read the same plan
-//! ([`glint_plan`]), whose error against the formulas is proved.
+//! A golden model never sees the hardware description, the netlist or the microcode, so that an error in one of them shows as a
+//! difference in simulation. It also computes its own tables, except in four devices. In `blinn` and `gauss` the description
+//! and the golden model read the same polynomials ([`glint_keys::decay`]), and in `function` and `expression` the same plan
+//! ([`glint_plan`]). Polynomials and plan are compared with the formulas instead, by exhaustive checks or by proofs.
 
 pub mod blinn;
 pub mod contract;
@@ -57,11 +56,13 @@ pub trait Model: CloneModel + Send + Sync {
     /// and `<operand>` and `<operand>_write` for each operand. The order is the model's own.
     fn inputs(&self) -> &[String];
 
-    /// Returns the names of all signals that the model predicts, in any order.
+    /// Returns the names of all signals that the model predicts, in the order of [`Model::values`]; the model chooses this
+    /// order.
     ///
-    /// It must predict everything that a device shows: the outputs (`valid`, `busy`, `done`, results and flags); the sequencer's
-    /// registers `run` and `word_address`; the register `<operand>_reg` of each operand; and the registers and counters that the
-    /// description names. It may leave out registers inside a block, such as pipeline stages and synchronous ROMs.
+    /// A model must predict everything that a device shows: the outputs (`valid`, `busy`, `done`, results and flags); the
+    /// sequencer's registers `run` and `word_address`; the register `<operand>_reg` of each operand; and the registers and
+    /// counters that the description names. A model may leave out registers inside a block, such as pipeline stages and
+    /// synchronous ROMs.
     fn signals(&self) -> &[String];
 
     /// Performs one rising edge. `inputs` are the bit patterns of the inputs just before the edge, in the order of
@@ -89,7 +90,8 @@ pub trait Model: CloneModel + Send + Sync {
         None
     }
 
-    /// Returns the model if it was made from a [`frame::Frame`]. Only such a model can be a part of another one.
+    /// Returns the model if it was made from a [`frame::Frame`], and `None` otherwise. Only such a model can be a part of
+    /// another model.
     fn clocked(&self) -> Option<&frame::ClockedModel> {
         None
     }
@@ -129,7 +131,7 @@ pub struct Operand {
     pub name: String,
     /// The fixed-point format of the operand's port.
     pub format: Format,
-    /// The smallest and largest raw value for which the contract is stated.
+    /// The smallest and largest raw value for which the contract is stated; both are included.
     pub domain: (i64, i64),
     /// Whether this is a colour operand of a highlight device, which multiplies the reflectance `f`. The other operands determine
     /// `f`.
@@ -182,8 +184,9 @@ pub trait Contract: Send + Sync {
     /// certify` may then find one.
     fn bound(&self) -> Bound;
 
-    /// Returns the formula of each output as a Python expression ([`highlight::Reflectance::expressions`] has the rules), or
-    /// nothing if nobody has written them. A [`Highlight`] has its own.
+    /// Returns the formula of each output as a Python expression ([`highlight::Reflectance::expressions`] has the rules), or an
+    /// empty list if nobody has written them. For a highlight the list is empty; [`Highlight::expressions`] has the expressions
+    /// of f.
     fn expressions(&self) -> Vec<String> {
         Vec::new()
     }
@@ -194,30 +197,31 @@ pub trait Contract: Send + Sync {
         None
     }
 
-    /// Returns whether an output wraps: a value beyond its format loses its high bits, so that the formula alone does not say which
-    /// value is right.
+    /// Returns whether an output wraps: a value beyond its format loses its high bits, so that the formula alone does not say
+    /// which value is right.
     fn wraps(&self) -> bool {
         false
     }
 
-    /// Returns the contract as a [`Highlight`] if the device multiplies colours by a reflectance f.
+    /// Returns the contract as a [`Highlight`] if the device multiplies colours by a reflectance f, and `None` for any other
+    /// device.
     fn highlight(&self) -> Option<&Highlight> {
         None
     }
 
-    /// Returns operands at which an error is likely to show: where the formula is steep, bends or ends. Half of the points of a
-    /// test are such points. `unit` returns random numbers from 0 to below 1. A value outside the domain is moved to the nearest
-    /// end of the domain.
+    /// Returns raw operands at which an error is likely to show: where the formula is steep, bends or ends. Half of the points
+    /// of a test are such points. `unit` returns random numbers from 0 to below 1. A value outside the domain is moved to the
+    /// nearest end of the domain.
     ///
-    /// With `None`, tests draw points from the whole domain, its ends more often than other values. For a [`Highlight`] they draw
-    /// points by the value of its formula.
+    /// With `None`, tests draw points from the whole domain, its ends more often than other values. For a [`Highlight`] they
+    /// draw points by the value of its formula.
     fn hint(&self, unit: &mut dyn FnMut() -> f64) -> Option<Vec<i64>> {
         let _ = unit;
         None
     }
 
-    /// Returns the name of the operand that states how many results a computation has, if there is one. For example, it is
-    /// `length` in `quad-cosine`.
+    /// Returns the name of the operand that states how many results a computation has; `None` if a computation has one result.
+    /// For example, it is `length` in `quad-cosine`.
     fn length(&self) -> Option<&str> {
         None
     }
@@ -227,14 +231,14 @@ pub trait Contract: Send + Sync {
         Sweep::all(self.operands().iter())
     }
 
-    /// Returns the error in one case of [`Contract::sweep`]. By default a case is a set of operands, and the error is the largest
-    /// error of any output, in units.
+    /// Returns the error in one case of [`Contract::sweep`]. `place` has the value on each axis. By default a case is a set of
+    /// operands, and the error is the largest error of any output, in units.
     fn sweep_error(&self, place: &[i64]) -> f64 {
         self.largest_error(place)
     }
 
-    /// Returns the bound on the error of the output with this number, in units of the output's last bit. It never exceeds
-    /// [`Contract::bound`].
+    /// Returns the bound on the error of output number `output`, from 0, in units of the output's last bit. This bound never
+    /// exceeds [`Contract::bound`].
     fn output_bound(&self, output: usize) -> f64 {
         let _ = output;
         self.bound().units
@@ -254,7 +258,8 @@ pub trait Contract: Send + Sync {
         largest
     }
 
-    /// Returns the parts of the computation, in the order in which they are computed; nothing if the contract does not know them.
+    /// Returns the parts of the computation, in the order in which they are computed; an empty list if the contract does not
+    /// know them.
     fn parts(&self) -> Vec<ComputedPart> {
         Vec::new()
     }
@@ -266,9 +271,9 @@ pub trait Contract: Send + Sync {
     }
 }
 
-/// Returns the distance of `value` from the nearer one of the two values in `right`; both are correct results. It is
-/// infinite if one of them is not finite, since a formula without a value cannot confirm a result. It is 0 if `right` is
-/// [`ANY_VALUE`]. For example, 2.5 is 0.5 away from the nearer of 2.0 and 4.0.
+/// Returns the distance of `value` from the nearer one of the two values in `right`; both are correct results. The distance is
+/// infinite if a value in `right` is not finite, since a formula without a value cannot confirm a result. The distance is 0 if
+/// `right` is [`ANY_VALUE`]. For example, 2.5 is 0.5 away from the nearer of 2.0 and 4.0.
 #[inline]
 pub fn nearer(value: f64, right: [f64; 2]) -> f64 {
     let [a, b] = right.map(|right| (value - right).abs());
@@ -310,7 +315,7 @@ pub struct Axis {
 /// The values on an [`Axis`] that an exhaustive check visits.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Values {
-    /// All integers from the first to the last. For example, `Range(1, 1000)` has 1000 values.
+    /// All integers from the first to the last, both included. For example, `Range(1, 1000)` has 1000 values.
     Range(i64, i64),
     /// The values of this list.
     List(Vec<i64>),
@@ -351,7 +356,7 @@ impl fmt::Display for Axis {
 }
 
 impl Values {
-    /// Returns the number of values on the axis.
+    /// Returns the number of values on the axis. For example, `Range(1, 1000)` has 1000 values.
     pub fn count(&self) -> u64 {
         match self {
             Self::Range(low, high) => low.abs_diff(*high) + 1,
@@ -359,7 +364,10 @@ impl Values {
         }
     }
 
-    /// Returns value number `at`, counted from 0.
+    /// Returns value number `at`, counted from 0. For example, value 2 of `Range(5, 9)` is 7.
+    ///
+    /// # Panics
+    /// Panics if a list has no value with this number.
     #[inline]
     pub fn value(&self, at: u64) -> i64 {
         match self {
@@ -389,9 +397,9 @@ pub struct Bound {
 pub struct ComputedPart {
     /// The name of the net that carries the part's value. The part is one operation of the core's computation, such as `x · y`.
     pub name: String,
-    /// What it computes. For example, `x · y`.
+    /// The operation that the part computes, as text. For example, `x · y`.
     pub words: String,
-    /// Its format.
+    /// The format of the part's value.
     pub format: Format,
     /// The part's share in the error of each output, in units of the output's last bit; 0 for a part that is exact.
     pub shares: Vec<f64>,
@@ -437,8 +445,8 @@ impl Bound {
         self.units.is_finite()
     }
 
-    /// Returns the largest contribution, whose key a user should change first to reduce the error. For example, it is
-    /// `output.rounding` for `rough`, with 0.5 of 0.969 units.
+    /// Returns the largest contribution, whose key a user should change first to reduce the error, or `None` for a bound
+    /// without terms. For example, it is `output.rounding` for `rough`, with 0.5 of 0.969 units.
     pub fn limiting(&self) -> Option<&Term> {
         self.terms.iter().max_by(|a, b| a.units.total_cmp(&b.units))
     }

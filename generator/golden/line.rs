@@ -1,9 +1,8 @@
 //! Models two blocks that the devices `quad-cosine` and `cosine-squared` share: the accumulator that computes the angles of the
-//! points along a scan line, and the table of powers of a cosine. The patent that Glint calls seed 000 claims `quad-cosine` and
-//! cites `cosine-squared`.
+//! points along a scan line, and the table of powers of a cosine. The source is the patent that Glint calls seed 000.
 //!
-//! The accumulator starts at the operand `zeta_start` and adds `delta_zeta` for every further point of the line. Angles are in
-//! right angles: with F fraction bits, the raw value 2^F is 90°.
+//! The accumulator begins with the operand `zeta_start` and adds `delta_zeta` for every further point of the line. Angles are
+//! in right angles: with F fraction bits, the raw value 2^F is 90°.
 
 use std::f64::consts::FRAC_PI_2;
 
@@ -68,7 +67,8 @@ fn length_format(length_bits: u32) -> Format {
     Format::unsigned(length_bits as i32, 0)
 }
 
-/// Returns the raw angle `raw` wrapped to the width of `format`, as the accumulator holds it.
+/// Returns the raw angle `raw` wrapped to the width of `format`, as the accumulator does. For example, 32 wraps to −32 in
+/// `s1.4`, which has 6 bits.
 #[inline]
 fn wrapped(format: Format, raw: i64) -> i64 {
     let above = MAX_WIDTH - format.width();
@@ -82,8 +82,8 @@ pub fn angle_at(format: Format, start: i64, delta: i64, index: u64) -> i64 {
     wrapped(format, start.wrapping_add(delta.wrapping_mul(index as i64)))
 }
 
-/// Returns the step with which a line of `length` intervals goes from the angle `first` to the angle `last`; `given` if `length`
-/// is 0. For example, 3 intervals from 0 to 300 give 100.
+/// Returns the step with which a line of `length` intervals goes from the angle `first` to the angle `last`, rounded toward 0.
+/// If `length` is 0, the step is `given`. For example, 3 intervals from 0 to 300 give 100.
 pub fn interval(first: i64, last: i64, length: i64, given: i64) -> i64 {
     if length == 0 { given } else { (last - first) / length }
 }
@@ -114,9 +114,9 @@ pub fn length_operand(length_bits: u32) -> Operand {
     control("length", format, (0, format.max_raw() as i64), doc)
 }
 
-/// Returns the leading `kept` fraction bits of the magnitude of an angle, or `None` if the angle is not in −90° ≤ angle < 90°.
-/// The magnitude of a negative angle is its bitwise complement. For example, with `fraction` 4 and `kept` 4, 5 gives 5, −6 gives
-/// 5, and 16 gives `None`.
+/// Returns the leading `kept` fraction bits of the magnitude of a raw angle with `fraction` fraction bits. Returns `None` if
+/// the angle is not in −90° ≤ angle < 90°. The magnitude of a negative angle is its bitwise complement. For example, with
+/// `fraction` 4 and `kept` 4, 5 gives 5, −6 gives 5, and 16 gives `None`.
 #[inline]
 pub fn magnitude(angle: i64, fraction: u32, kept: u32) -> Option<i64> {
     let right = 1i64 << fraction;
@@ -130,11 +130,11 @@ pub fn magnitude(angle: i64, fraction: u32, kept: u32) -> Option<i64> {
 /// An upper limit of the errors of f64 in the values of a table; [`CosineTable::total`] includes it.
 const SLACK: f64 = 1.0 / (1u64 << 40) as f64;
 
-/// A table of `cosᵏ` over a right angle, ROM 12 of seed 000. The word of each step is the middle of the values of `cosᵏ` at both
-/// ends of the step; the last word is 0.
+/// A table of `cosᵏ` over a right angle, ROM 12 of seed 000. A step is an interval of angles with one word. The word of each
+/// step is the middle of the values of `cosᵏ` at both ends of the step; the last word is 0.
 #[derive(Clone, Debug)]
 pub struct CosineTable {
-    /// The raw words, as fractions of `fraction` bits.
+    /// The raw words, one for each step. Their number of fraction bits is the parameter `fraction` of [`CosineTable::new`].
     pub words: Vec<i64>,
     /// The largest distance of `cosᵏ` at the ends of a step from the middle of these two values.
     pub step: f64,

@@ -78,7 +78,7 @@ impl Keys {
     }
 }
 
-/// The arithmetic of the device, with one method for each operation.
+/// The integer arithmetic of the device, with one method for each operation. The methods take and return raw values.
 struct LyonArithmetic {
     keys: Keys,
     squarings: u32,
@@ -115,20 +115,22 @@ impl LyonArithmetic {
         }
     }
 
-    /// Returns the word of D²: the sum of the squared components, rounded to the format of the register.
+    /// Returns the raw D² in the register: the sum of the squared components of `vector`, rounded to the format of the
+    /// register.
     #[inline]
     fn distance(&self, vector: [i64; 3]) -> i64 {
         let [x, y, z] = vector;
         self.distance.apply(x * x + y * y + z * z)
     }
 
-    /// Returns the next value of the shift register: `word` shifted left by one place, and saturated.
+    /// Returns the next value of the shift register: `word`, its present value, shifted left by one bit and limited to its
+    /// largest value.
     #[inline]
     fn shifted(&self, word: i64) -> i64 {
         (2 * word).min(self.shifted_most)
     }
 
-    /// Returns β·D² from the word of D² and the operand `shift` or `exponent`.
+    /// Returns the raw β·D², rounded, from the raw D² and the operand `shift` or `exponent`.
     #[inline]
     fn beta_distance(&self, distance: i64, operand: i64) -> i64 {
         self.scaled.apply(match self.keys.scale {
@@ -137,7 +139,7 @@ impl LyonArithmetic {
         })
     }
 
-    /// Returns `1.0 − ulp − β·D²`, or 0 if β·D² is 1.0 or more. `scaled` is the raw β·D².
+    /// Returns the raw base `1.0 − ulp − β·D²`, or 0 if β·D² is 1.0 or more. `scaled` is the raw β·D².
     #[inline]
     fn base(&self, scaled: i64) -> i64 {
         (self.one - 1 - scaled).max(0)
@@ -148,7 +150,7 @@ impl LyonArithmetic {
         self.square.apply(x * x)
     }
 
-    /// Returns the raw f for the word of D² and the operand `shift` or `exponent`.
+    /// Returns the raw f for the raw D² in the register and the operand `shift` or `exponent`.
     #[inline]
     fn f_of(&self, distance: i64, operand: i64) -> i64 {
         let base = self.base(self.beta_distance(distance, operand));

@@ -1,6 +1,6 @@
-//! Rounds raw values to a format and saturates them.
+//! Rounds raw values to a format and limits them to the format's values.
 //!
-//! Golden models do this in their inner loop, so [`Narrow`] computes the constants of a conversion once.
+//! The golden models do this in their inner loop, so [`Narrow`] computes the constants of a conversion once.
 
 use glint_base::fixed::{Format, Rounding};
 

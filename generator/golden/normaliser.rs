@@ -108,9 +108,10 @@ impl Formula for Normaliser {
         unit_vector([vector[0], vector[1], vector[2]]).into()
     }
 
-    /// Derives the terms of a component's error. Let m be the mantissa of v·v, r the table's value of 1/√m, and x the shifted
-    /// component. Since x² ≤ m, an error of r changes the product x·r by at most √m times that error; [`Root::error`] bounds
-    /// it. The product is rounded once. The product does not saturate, because |x|/√m ≤ 1 and the other errors are far below 1.
+    /// Returns the terms of the error bound of a component, in units, and derives them. Let m be the mantissa of v·v, r the
+    /// table's value of 1/√m, and x the shifted component. Since x² ≤ m, an error of r changes the product x·r by at most √m
+    /// times that error; [`Root::error`] bounds it. The product is rounded once. The product does not saturate, because |x|/√m
+    /// ≤ 1 and the other errors are far below 1.
     ///
     /// The result for the zero vector is the zero vector, as the formula defines.
     fn terms(&self) -> Vec<Term> {

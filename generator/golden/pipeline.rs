@@ -1,10 +1,13 @@
-//! Models which point each stage of a pipeline holds, clock by clock. A point is one set of operands, on its way to its results.
+//! Models which point each stage of a pipeline contains, clock by clock. A point is one set of operands, on its way to its
+//! results.
+//!
+//! The model predicts the handshake of a pipeline. It computes no results.
 
 use std::collections::VecDeque;
 
 /// The points in the stages of a pipeline.
 ///
-/// At a rising edge either all points move to the next stage or none does. They stay if the last stage holds a point whose
+/// At a rising edge either all points move to the next stage or none does. They stay if the last stage contains a point whose
 /// results nobody takes (`out_ready` is low). A pipeline with an interval of more than 1 accepts a new point only at every
 /// `interval`-th move.
 #[derive(Clone, Debug)]
@@ -22,7 +25,7 @@ impl<P> Occupancy<P> {
         Self { stages: (0..latency).map(|_| None).collect(), interval, slot: 0 }
     }
 
-    /// Returns whether the pipeline accepts a point that is offered now: the value of `in_ready`.
+    /// Returns whether the pipeline accepts a point that is offered in this clock: the value of `in_ready`.
     pub fn takes(&self, out_ready: bool) -> bool {
         self.moves(out_ready) && self.slot == 0
     }
@@ -32,24 +35,25 @@ impl<P> Occupancy<P> {
         out_ready || self.last().is_none()
     }
 
-    /// Returns the point whose results are on the outputs. It is `None` exactly if `out_valid` is low.
+    /// Returns the point whose results are on the outputs, or `None` exactly if `out_valid` is low.
     pub fn last(&self) -> Option<&P> {
         self.stages.back().and_then(Option::as_ref)
     }
 
-    /// Returns the point in a stage. Stages are numbered from 1.
+    /// Returns the point in a stage, or `None` if the stage is empty or does not exist. Stages are numbered from 1.
     pub fn stage(&self, stage: usize) -> Option<&P> {
         self.stages.get(stage.checked_sub(1)?).and_then(Option::as_ref)
     }
 
-    /// Returns every point in the pipeline with the number of its stage, from 1 on.
+    /// Returns every point in the pipeline with the number of its stage, from 1 on. Empty stages are left out.
     pub fn points(&self) -> impl Iterator<Item = (usize, &P)> {
         let stages = self.stages.iter().enumerate();
         stages.filter_map(|(at, point)| point.as_ref().map(|point| (at + 1, point)))
     }
 
-    /// Performs a rising edge with `offered` as the offered point, if any. Returns the point whose results were taken at this
-    /// edge. If `rst_n` is low, the pipeline is empty after the edge.
+    /// Performs a rising edge with `offered` as the offered point, if any. The pipeline drops the offered point if it does not
+    /// accept it in this clock ([`Occupancy::takes`]). Returns the point whose results were taken at this edge, or `None`. If
+    /// `rst_n` is low, the pipeline is empty after the edge.
     pub fn clock(&mut self, rst_n: bool, offered: Option<P>, out_ready: bool) -> Option<P> {
         let taken = if self.moves(out_ready) {
             self.stages.push_front(offered.filter(|_| self.slot == 0));

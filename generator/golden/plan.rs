@@ -1,8 +1,8 @@
 //! The golden model of a plan, which is a list of fixed-point operations ([`glint_plan`]).
 //!
-//! The devices `function` and `expression` use it. It executes the operations in integers, with a register for each value that the
-//! schedule of the plan holds. It takes the plan from the planner, because a proof covers the plan: the proof compares the plan's
-//! results with the formulas.
+//! The devices `function` and `expression` use it. It executes the operations in integers, with a register for each value that
+//! the schedule of the plan stores. It takes the plan from the planner, because a proof covers the plan: the proof compares the
+//! plan's results with the formulas.
 
 use std::sync::Arc;
 
@@ -21,7 +21,7 @@ struct PlanModel {
 }
 
 impl PlanModel {
-    /// Returns the raw value of a node, from the registers before it.
+    /// Returns the raw value of a node: the value in its register, or the computed value of a node without a register.
     fn value(&self, id: NodeId, state: &State) -> i128 {
         match self.registers[id.0] {
             Some(slot) => state[slot].into(),
@@ -29,7 +29,8 @@ impl PlanModel {
         }
     }
 
-    /// Returns the raw value that a node has now: its register takes this value at the next clock.
+    /// Returns the raw value that a node has now, computed from its inputs. A register of the node takes this value at the next
+    /// edge.
     fn computed(&self, id: NodeId, state: &State) -> i128 {
         let operands: Vec<i64> = self.operands.iter().map(|slot| state[*slot]).collect();
         // Between a product and its register, nodes are computed anew.
@@ -37,8 +38,8 @@ impl PlanModel {
     }
 }
 
-/// Makes the device of a plan: a register for each value that the schedule of the plan holds. The result number k of the plan goes
-/// to the port with the name number k of `outputs`.
+/// Makes the device of a plan: a register for each value that the schedule of the plan stores. Result number k of the plan goes
+/// to the port with name number k of `outputs`.
 pub(super) fn plan_device(
     operands: &[StatedOperand],
     plan: &ExpressionPlan,
@@ -111,7 +112,7 @@ fn loads(model: &Arc<PlanModel>, nodes: Vec<NodeId>) -> FrameStep {
     })
 }
 
-/// Returns the microinstruction that adds one coefficient of a polynomial.
+/// Returns the microinstruction that adds coefficient number `coefficient` of the polynomial at node `id`, for Horner's rule.
 fn sum_step(
     model: &Arc<PlanModel>,
     id: NodeId,

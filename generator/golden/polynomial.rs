@@ -1,7 +1,7 @@
 //! Evaluates a piecewise polynomial in a golden model by Horner's rule in integers. Each partial sum has a register.
 //!
-//! The golden models of `function`, `blinn` and `gauss` use it. They read the same table of coefficients as the hardware, because
-//! a proof checks this table: it compares the result of every operand with the formula.
+//! The golden models of `blinn`, `gauss`, `function` and `expression` use it. They read the same table of coefficients as the
+//! hardware, because another check compares this table with the formula.
 
 use std::sync::Arc;
 
@@ -17,8 +17,8 @@ pub struct Polynomial {
 }
 
 impl Polynomial {
-    /// Adds the registers of the partial sums to `frame`. `names` starts with the name of the register of the whole polynomial;
-    /// names beyond the degree are not used.
+    /// Adds the registers of the partial sums of `it` to `frame`. `names` starts with the name of the register of the whole
+    /// polynomial; names beyond the degree are not used.
     pub fn new(frame: &mut Frame, names: &[&str], it: &Arc<Piecewise>) -> Self {
         let registers = names.iter().zip(&it.sums).take(it.degree().max(1));
         let sums = registers.map(|(name, format)| frame.register(name, *format)).collect();
@@ -30,8 +30,8 @@ impl Polynomial {
         self.sums[0]
     }
 
-    /// Returns the operation of Horner's rule that adds coefficient number `coefficient`, for one of the registers. `raw` computes
-    /// the raw operand of the polynomial from the state.
+    /// Returns the operation of Horner's rule that adds coefficient number `coefficient`, for one of the registers. `raw`
+    /// computes the raw operand of the polynomial from the state.
     pub fn step<R>(&self, coefficient: usize, raw: R) -> impl Fn(&mut State) + use<R>
     where
         R: Fn(&State) -> i64 + Send + Sync + 'static,

@@ -31,10 +31,10 @@ fn range_of(n: i64) -> usize {
     }
 }
 
-/// The power k of the table with each number.
+/// The power k of each table, by the number that [`range_of`] returns. For example, table 2 is of cos⁴.
 const POWERS: [i64; 4] = [1, 2, 4, 16];
 
-/// The arithmetic of the device, with one method for each operation.
+/// The integer arithmetic of the device, with one method for each operation. The methods take and return raw values.
 struct QuadCosineArithmetic {
     keys: Keys,
     /// The words of ROM 9, one for each n: the factor √(n/k).
@@ -62,15 +62,15 @@ impl QuadCosineArithmetic {
         magnitude(angle, self.keys.angle_fraction, self.keys.angle_multiplied)
     }
 
-    /// Returns the word of ROM 12 for the exponent n. `magnitude` is the operand of multiplier 11, or `None` if the surface
-    /// faces away, and `root` the word of ROM 9.
+    /// Returns the word of ROM 12, which is f as a raw value, for the exponent n. `magnitude` is the operand of multiplier 11,
+    /// or `None` if the surface faces away, and `root` the word of ROM 9.
     #[inline]
     fn cosine_of(&self, n: i64, magnitude: Option<i64>, root: i64) -> i64 {
         let scaled = magnitude.map_or(i64::MAX, |magnitude| magnitude * root);
         self.tables[range_of(n)].words[self.step_of(scaled)]
     }
 
-    /// Returns the step of a table, its address, for `scaled`, the product of multiplier 11.
+    /// Returns the address of a table of ROM 12 for `scaled`, the product of multiplier 11.
     #[inline]
     fn step_of(&self, scaled: i64) -> usize {
         let fraction = self.keys.angle_multiplied + self.keys.root_fraction;
@@ -83,8 +83,8 @@ impl QuadCosineArithmetic {
     }
 }
 
-/// Returns `√(n/k)` rounded to the nearest word with G = `fraction` fraction bits, by integer arithmetic. It is the r with (r −
-/// ½)² ≤ n·2^2G/k < (r + ½)².
+/// Returns `√(n/k)` rounded to the nearest raw value with G = `fraction` fraction bits, by integer arithmetic. It is the r with
+/// (r − ½)² ≤ n·2^2G/k < (r + ½)². For example, √(2/2) with 14 fraction bits is 16 384.
 fn root(n: i64, k: i64, fraction: u32) -> i64 {
     let square = n << (2 * fraction);
     let floor = (square / k).isqrt();
@@ -93,7 +93,7 @@ fn root(n: i64, k: i64, fraction: u32) -> i64 {
     floor + i64::from(middle * middle * i128::from(k) <= 4 * i128::from(square))
 }
 
-/// Returns the product of the word of ROM 12 with the amplitude.
+/// Returns the product of f, the word of ROM 12, with the operand `amplitude`.
 fn products(keys: &Keys) -> Products {
     Products::amplitude(keys.f_format(), keys.colour_bits, keys.output_rounding)
         .at_edges(keys.stages > 2)

@@ -20,7 +20,7 @@ use glint_base::fixed::{Format, exp2};
 use glint_config::Config;
 use glint_keys::quadratic::{Keys, Scheme};
 
-/// The arithmetic of the device, with one method for each operation.
+/// The integer arithmetic of the device, with one method for each operation. The methods take and return raw values.
 struct QuadraticArithmetic {
     keys: Keys,
     difference: Narrow,
@@ -50,7 +50,7 @@ impl QuadraticArithmetic {
         }
     }
 
-    /// Returns `c² − c`.
+    /// Returns the raw `c² − c`, rounded to the register `difference`.
     #[inline]
     fn difference(&self, cosine: i64) -> i64 {
         self.difference.apply(cosine * cosine - (cosine << self.keys.operands.cosine.fraction))
@@ -112,8 +112,8 @@ impl Reflectance for QuadraticArithmetic {
         Some(formulas::quadratic(cosine, self.exact[exponent as usize]))
     }
 
-    /// Limits the slope to 1 + |a|. Where the formula is not clamped, the slope is 1 − a + 2·a·c. The formula has no jump: at a
-    /// right angle it is 0.
+    /// Returns the slope 1 + |a|, as an upper limit, and no jump. If the formula is not clamped, its slope is 1 − a + 2·a·c. At
+    /// a right angle the formula is 0, so it has no jump.
     fn variation(&self) -> Option<Variation> {
         let (least, most) = self.keys.domain.exponents();
         let exact = self.exact[least as usize..=most as usize].iter();
@@ -131,8 +131,9 @@ impl Reflectance for QuadraticArithmetic {
         vec![contract::where_it_faces(&contract::clamped_at_0(&f))]
     }
 
-    /// Derives the terms of the error of `c − a·g`, with g = c − c² in 0 … 1/4. If formula and hardware are both clamped, the
-    /// error is 0. Otherwise `a·g ≤ c`, which means `1 − c ≤ 1/a`, holds for the exact a or for its word, and g is at most 1/a.
+    /// Returns the contributions to the error of f = `c − a·g`, with g = c − c² in 0 … 1/4, as values with their keys, and
+    /// derives them. If formula and hardware are both clamped, the error is 0. Otherwise `a·g ≤ c`, which means `1 − c ≤ 1/a`,
+    /// holds for the exact a or for its word, and g is at most 1/a.
     ///
     /// - An error of the word a(n) is multiplied by g.
     /// - The rounding of g is multiplied by the word a(n).

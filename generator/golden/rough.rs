@@ -44,8 +44,8 @@ impl Keys {
         exp2(-(self.operands.cosine.fraction as i32))
     }
 
-    /// Returns the domain of cos dγ, as raw values: from the smallest cosine whose angle is within the deviation to the largest
-    /// cosine.
+    /// Returns the domain of cos dγ, as raw values: from the smallest cosine whose angle is at most the largest deviation (the
+    /// key `domain.deviation`) to the largest cosine.
     fn cos_dgamma_domain(&self) -> (i64, i64) {
         let largest = self.largest_cosine();
         let cosine = libm::cos(self.deviation.to_radians());
@@ -103,12 +103,12 @@ impl Keys {
         Format::unsigned(int, self.operands.cosine.fraction as i32)
     }
 
-    /// Returns the largest raw cosine that a register holds: 1.0, or in the patent's words an ulp less.
+    /// Returns the largest raw cosine that a register contains: 1.0, or in the patent's arithmetic an ulp less.
     fn largest_cosine(&self) -> i64 {
         (1 << self.operands.cosine.fraction) - i64::from(self.patent())
     }
 
-    /// Returns the format of register 13.
+    /// Returns the format of register 13, which contains first n/2·(cos(γ ± dγ) − 1) and then the square.
     fn result_format(&self) -> Format {
         let frac = self.f.fraction as i32;
         match (self.arithmetic, self.clamp) {
@@ -119,7 +119,7 @@ impl Keys {
     }
 }
 
-/// The combinational blocks between the registers, with one method for each block. Words are raw values.
+/// The combinational blocks between the registers, with one method for each block. All arguments and results are raw values.
 struct RoughArithmetic {
     keys: Keys,
     sine: Sine,
@@ -128,7 +128,8 @@ struct RoughArithmetic {
 
 enum RoughBlocks {
     Exact {
-        /// 1.0 in the fraction bits of registers 11 and 12 (the products), and of register 13 (the base and its square).
+        /// The raw value 1.0 with the fraction bits of registers 11 and 12 (the products), and of register 13 (the base and its
+        /// square).
         product_one: i64,
         result_one: i64,
         clamp: bool,
@@ -170,7 +171,7 @@ impl RoughArithmetic {
         Self { sine: Sine::new(&keys.sine()), kind, keys }
     }
 
-    /// Returns the next value of register 11: cos γ·cos dγ.
+    /// Returns the next raw value of register 11: cos γ·cos dγ.
     #[inline]
     fn cos_cos(&self, cos_gamma: i64, cos_dgamma: i64) -> i64 {
         match &self.kind {
@@ -179,7 +180,7 @@ impl RoughArithmetic {
         }
     }
 
-    /// Returns the next value of register 12: sin γ·sin dγ.
+    /// Returns the next raw value of register 12: sin γ·sin dγ.
     #[inline]
     fn sin_sin(&self, sin_gamma: i64, sin_dgamma: i64) -> i64 {
         match &self.kind {
@@ -188,11 +189,11 @@ impl RoughArithmetic {
         }
     }
 
-    /// Computes adder 15: cos(γ ± dγ) − 1.0 from registers 11 and 12.
+    /// Returns the raw output of adder 15: cos(γ ± dγ) − 1.0 from registers 11 and 12.
     ///
-    /// The patent's words have no integer bit, so dropping this bit subtracts the 1.0. If `dgamma_negative` is 0, mux 14 offers
-    /// the inverse of register 12; without a carry this subtracts an ulp too much. Otherwise (trigger 4) mux 14 offers the
-    /// output of adder 31, which is an ulp too small. Trigger 4 is also the carry-in, which adds this ulp again.
+    /// The patent's numbers have no integer bit, so dropping this bit subtracts the 1.0. If `dgamma_negative` is 0, mux 14
+    /// offers the inverse of register 12; without a carry this subtracts an ulp too much. Otherwise (trigger 4) mux 14 offers
+    /// the output of adder 31, which is an ulp too small. Trigger 4 is also the carry-in, which adds this ulp again.
     #[inline]
     fn adder_15(&self, cos_cos: i64, sin_sin: i64, dgamma_negative: i64) -> i64 {
         match &self.kind {
@@ -208,7 +209,8 @@ impl RoughArithmetic {
         }
     }
 
-    /// Returns the first value of register 13: n/2·(cos(γ ± dγ) − 1), or −1.0 for a surface that faces away.
+    /// Returns the first raw value of register 13: n/2·(cos(γ ± dγ) − 1), or −1.0 for a surface that faces away, which has cos
+    /// γ = 0.
     #[inline]
     fn scaled(&self, adder_15: i64, exponent: i64, cos_gamma: i64) -> i64 {
         match &self.kind {
@@ -220,7 +222,7 @@ impl RoughArithmetic {
         }
     }
 
-    /// Returns the second value of register 13: the square of adder 16, which is register 13 + 1.0.
+    /// Returns the second raw value of register 13: the square of the output of adder 16, which is register 13 + 1.0.
     #[inline]
     fn squared(&self, result: i64, cos_gamma: i64) -> i64 {
         match &self.kind {
@@ -237,7 +239,7 @@ impl RoughArithmetic {
         }
     }
 
-    /// Returns the word f that the colour multipliers see in register 13.
+    /// Returns the raw f that the colour multipliers read from register 13.
     ///
     /// With the clamp, f is the low bits of register 13, because the square is below 1.0. Without the clamp, register 13 has an
     /// integer bit, and f is the register limited to 0 … 1.0 − ulp. In the patent's arithmetic, f is register 13 itself.

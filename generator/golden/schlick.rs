@@ -19,7 +19,7 @@ use glint_keys::schlick::Keys;
 struct SchlickArithmetic(Keys);
 
 impl SchlickArithmetic {
-    /// Returns `n − n·cos γ + cos γ`, plus an ulp if cos γ is 0, so that the divisor is never 0.
+    /// Returns the raw divisor `n − n·cos γ + cos γ`, plus an ulp if cos γ is 0, so that the divisor is never 0.
     #[inline]
     fn divisor(&self, cosine: i64, exponent: i64) -> i64 {
         exponent * self.0.operands.cosine.one() - exponent * cosine
@@ -28,8 +28,8 @@ impl SchlickArithmetic {
     }
 }
 
-/// Returns the first `bits` bits of the quotient, and the remainder that they leave. A quotient of 1.0 is the largest fraction.
-/// For example, 4 bits of 1/3 are 5, and the remainder is 1.
+/// Returns the first `bits` fraction bits of the quotient, and the remainder that they leave. A quotient of 1.0 gives all ones.
+/// For example, 4 bits of 1/3 are 5 (1/3 is about 5/16), and the remainder is 16 − 5·3 = 1.
 #[inline]
 fn divide(dividend: i64, divisor: i64, bits: u32) -> (i64, i64) {
     let quotient = ((dividend << bits) / divisor).min((1 << bits) - 1);
@@ -110,8 +110,9 @@ impl Reflectance for SchlickArithmetic {
         Some(formulas::schlick(cosine, exponent as f64))
     }
 
-    /// Limits the slope n/(n − n·c + c)², which is largest at an end: n at c = 1, and 1/n at c = 0. At c = 0 the formula is 0,
-    /// as it is beyond a right angle. With n = 0 the formula is 1 for every c above 0, and jumps to 0 at a right angle.
+    /// Returns the largest n as an upper limit of the slope n/(n − n·c + c)², which is largest at an end: n at c = 1, and 1/n
+    /// at c = 0. At c = 0 the formula is 0, as it is beyond a right angle. With n = 0 the formula is 1 for every c above 0, and
+    /// jumps to 0 at a right angle.
     fn variation(&self) -> Option<Variation> {
         let (least, most) = self.0.domain.exponents();
         Some(Variation { slope: most as f64, jump: if least > 0 { 0.0 } else { 1.0 } })

@@ -123,6 +123,7 @@ struct HighlightModels {
     contract: fn(&Config) -> Box<dyn Contract>,
 }
 
+/// Returns the golden model and the accuracy contract of the highlight device that the keys choose.
 fn part(keys: &Keys) -> HighlightModels {
     macro_rules! part {
         ($of:ident) => {
@@ -140,6 +141,7 @@ fn part(keys: &Keys) -> HighlightModels {
     }
 }
 
+/// Returns the configurations of the parts. Panics if a part's configuration is wrong, which the check of the schema refuses.
 fn parts(keys: &Keys) -> PartConfigs {
     keys.parts().unwrap_or_else(|(part, _)| panic!("`{part}` is checked"))
 }
@@ -191,7 +193,7 @@ struct PartErrors {
     cosine: f64,
     /// The error bound of the highlight of a colour, in units of a result.
     highlight: f64,
-    /// How much the formula of the highlight changes with the cosine, if that is known.
+    /// The limits on how much the formula of the highlight changes with the cosine; `None` if they are not known.
     variation: Option<Variation>,
 }
 
@@ -204,7 +206,8 @@ struct Shading {
 }
 
 impl Shading {
-    /// Returns the exact f of the highlight at a cosine that is not quantised. Returns NaN if the highlight cannot compute it.
+    /// Returns the exact f of the highlight at a cosine that is not quantised. Returns NaN if the highlight cannot compute f
+    /// from the cosine.
     fn f(&self, cosine: f64, exponent: i64) -> f64 {
         match self.highlight.highlight() {
             Some(highlight) => highlight.at_cosine(cosine, exponent).unwrap_or(f64::NAN),
@@ -212,7 +215,8 @@ impl Shading {
         }
     }
 
-    /// Returns the cosine between a unit normal and another unit vector, limited to 0 … 1.
+    /// Returns the cosine between a unit normal and another unit vector, limited to 0 … 1. With the key `two_sided`, a negative
+    /// cosine counts as positive.
     fn cosine(&self, unit_normal: &[f64], vector: &[f64]) -> f64 {
         let sum: f64 = unit_normal.iter().zip(vector).map(|(a, b)| a * b).sum();
         if self.keys.two_sided { sum.abs() } else { sum }.clamp(0.0, 1.0)
@@ -253,9 +257,9 @@ impl Formula for Shading {
         colours
     }
 
-    /// Derives the terms of a colour's error. An error of an operand of a part is multiplied by the slope of the part, and the
-    /// part adds its own error. The errors of all lights add up. If nobody has stated how f changes with the cosine, there are
-    /// no terms and the bound is not stated.
+    /// Returns the terms of the error bound of a colour, in units, and derives them. An error of an operand of a part is
+    /// multiplied by the slope of the part, and the part adds its own error. The errors of all lights add up. If nobody has
+    /// stated how f changes with the cosine, there are no terms and the bound is not stated.
     ///
     /// - A colour is diffuse·cosine + specular·f(cosine), saturated. Its slope by the cosine of the light is at most the
     ///   largest colour. Its slope by the cosine of the highlight is at most the largest colour times the slope of f.
@@ -325,7 +329,7 @@ impl Formula for Shading {
         f64::from(self.keys.lights) + 0.5
     }
 
-    /// Returns random operands. The lights are in any direction, and the half vectors are near the normal, the nearer the
+    /// Returns random raw operands. The lights are in any direction, and the half vectors are near the normal, the nearer the
     /// larger the exponent is. The colours are so dark that their sum does not saturate.
     fn hint(&self, unit: &mut dyn FnMut() -> f64) -> Option<Vec<i64>> {
         let Keys { normal, light, colour_bits, most, lights, .. } = self.keys;
@@ -389,7 +393,7 @@ impl Formula for Shading {
     }
 }
 
-/// Returns the raw number with `fraction` fraction bits that is nearest to `value`.
+/// Returns the raw number with `fraction` fraction bits that is nearest to `value`. For example, 0.3 with 4 fraction bits is 5.
 fn raw(value: f64, fraction: u32) -> i64 {
     (value * exp2(fraction as i32)).round() as i64
 }

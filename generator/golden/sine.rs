@@ -1,7 +1,9 @@
-//! Makes the table of sines of the device `rough`, ROM 18, for its golden model. The hardware description computes its own table.
+//! Makes the table of sines of the device `rough`, ROM 18, for its golden model. The hardware description computes its own
+//! table.
 //!
-//! The table maps a cosine x to the sine √(1 − x²). It has one entry for each bucket of x, or straight segments that become
-//! shorter toward x = 1. x is a raw value with C fraction bits from 0 to 2^C; a sine has the format u0.S.
+//! The table maps a cosine x to the sine √(1 − x²). It has one entry for each bucket (an interval of x), or straight segments
+//! that become shorter toward x = 1. x is a raw value with C fraction bits from 0 to 2^C; a sine has the format u0.S, with S
+//! fraction bits.
 
 use super::curve::{self, SegmentedCurve};
 use glint_base::fixed::exp2;
@@ -15,7 +17,7 @@ pub enum TableScheme {
         address: u32,
     },
     /// Straight segments over u = 1.0 − x, interpolated linearly. The upper three quarters of the values of u are the first
-    /// range. The upper three quarters of the remaining quarter are the second range, and so on. Each range is cut into
+    /// range. The upper three quarters of the remaining quarter are the second range, and so on. Each range is divided into
     /// segments of equal length; the values of u below all ranges have an entry each.
     Segmented {
         /// log₂ of the number of prefixes (leading bits of u) in each range; a quarter of the prefixes belongs to the values

@@ -21,7 +21,7 @@ use glint_base::fixed::{Format, exp2};
 use glint_config::Config;
 use glint_keys::threshold::Keys;
 
-/// The arithmetic of the device, with one method for each operation.
+/// The integer arithmetic of the device, with one method for each operation. These methods take and return raw values.
 struct ThresholdArithmetic {
     keys: Keys,
     /// The value 1.0 in the fraction bits of the base.
@@ -69,13 +69,14 @@ impl ThresholdArithmetic {
         words
     }
 
-    /// Returns `n/2·(cos γ − 1)`, rounded, and −1.0 if the product is less.
+    /// Returns the raw value of `n/2·(cos γ − 1)`, rounded, or −1.0 if the product is less.
     #[inline]
     fn scaled(&self, cosine: i64, exponent: i64) -> i64 {
         self.scaled.apply((cosine - self.keys.operands.cosine.one()) * exponent)
     }
 
-    /// Returns the word of ROM(n) for the octave of `exponent`. The last word serves all octaves beyond it.
+    /// Returns the word of ROM(n), a raw f, for the octave of `exponent`: the exponents from 2^k to below 2^(k + 1). The last
+    /// word serves all octaves beyond it.
     #[inline]
     fn threshold(&self, exponent: i64) -> i64 {
         let octave = exponent.max(1).ilog2() as usize;
@@ -146,9 +147,9 @@ impl Reflectance for ThresholdArithmetic {
         Some(formulas::threshold(formulas::parabola(cosine, exponent as f64), level))
     }
 
-    /// Limits the slope n·base to n, since the base is at most 1. The formula jumps to 0 once, since the base falls with the
-    /// cosine. It jumps from the level in ROM(n), where either side is right within the margin. If (1 − n/2)² is above that
-    /// level, the formula jumps from this value at a right angle instead.
+    /// Returns the largest n as an upper limit of the slope n·base, since the base is at most 1, and the largest jump. The
+    /// formula jumps to 0 once, since the base falls with the cosine. It jumps from the level in ROM(n), where either side is
+    /// right within the margin. If (1 − n/2)² is above that level, the formula jumps from this value at a right angle instead.
     fn variation(&self) -> Option<Variation> {
         let (least, most) = self.keys.domain.exponents();
         let mut jump: f64 = 0.0;
@@ -186,8 +187,8 @@ impl Reflectance for ThresholdArithmetic {
             .to_vec()
     }
 
-    /// Derives the terms of f's error. Base, square and formula lie in 0 … 1, so that an error ε of the base is at most 2·ε in
-    /// the square.
+    /// Returns the contributions to the error of f, as values with their keys, and derives them. Base, square and formula lie
+    /// in 0 … 1, so that an error ε of the base is at most 2·ε in the square.
     ///
     /// The product is rounded into the base, and limited to −1.0 where the formula is clamped. The square is rounded; the
     /// square of 1.0 is an ulp low. The comparison with ROM(n) adds no error: if the square differs from ROM(n) by at most the
@@ -205,7 +206,7 @@ impl Reflectance for ThresholdArithmetic {
         ]
     }
 
-    /// Warns of a level that hides outputs above 0. Such a level is visible as an edge around the highlight.
+    /// Returns a remark if a level hides outputs above 0. Such a level is visible as an edge around the highlight.
     fn remarks(&self) -> Vec<String> {
         let (f, colour_bits) = (&self.keys.f, self.keys.operands.colours.bits);
         let largest = (1 << colour_bits) - 1;

@@ -1,4 +1,7 @@
-//! Computes many points at once with the emitted Verilog of a core, under an outside simulator.
+//! Computes many points (sets of operands) at once with the emitted Verilog of a core, under Icarus Verilog or Verilator.
+//!
+//! The bench reads the points from a file and writes the results to another. The module only computes: it compares the results
+//! with nothing.
 
 use std::fmt::Write as _;
 use std::fs;
@@ -17,8 +20,8 @@ use glint_tools::{BuiltBench, VerilogSimulator, Waveform};
 const LIMIT: u32 = 1 << 16;
 
 /// An [`Engine`] that runs the emitted Verilog in an outside simulator, with a test bench that reads points from a file. Each
-/// line of the file has the operands of a point in hexadecimal. For example, the raw values 5 and −1 in 8 bits are the line `5
-/// ff`.
+/// line of the file has the operands of a point in hexadecimal, as bit patterns. For example, the raw values 5 and −1 in 8 bits
+/// are the line `5 ff`.
 pub struct Verilog {
     bench: BuiltBench,
     limit: Duration,
@@ -29,11 +32,12 @@ pub struct Verilog {
 }
 
 impl Verilog {
-    /// Builds the test bench from the emitted `files`, pairs of a file name and contents. `limit` is the time limit of the build,
-    /// and of the simulation of each list of points.
+    /// Builds the test bench from the emitted `files`, pairs of a file name and contents. `limit` is the time limit of the
+    /// build, and also of the simulation of each list of points.
     ///
     /// # Errors
-    /// Fails if [`BuiltBench::build`] fails, or if the contract names ports that the design does not have.
+    /// Fails if [`BuiltBench::build`] fails, if the design has an operand that the contract lacks, or if the contract has an
+    /// output that the design lacks.
     pub fn new(
         simulator: VerilogSimulator,
         design: &Design,

@@ -1,4 +1,6 @@
 //! Runs the golden model that a [`Frame`] describes, clock by clock: the handshake, the microinstructions and the registers.
+//!
+//! [`ClockedModel`] also makes variants of a model, with registers behind its results or with buffers in front of its operands.
 
 use std::mem;
 use std::sync::Arc;
@@ -19,7 +21,7 @@ pub(super) struct ModelConstants {
     pub(super) shown: Vec<(Slot, u64)>,
     /// The number of outputs in `shown`.
     pub(super) outputs: usize,
-    /// The outputs that are combinational logic, with the functions that compute them.
+    /// The outputs that are combinational logic, each with the function that computes it.
     pub(super) logic: Vec<(Slot, Value)>,
     pub(super) edges: Vec<Does>,
     /// Pairs of a result that is combinational logic and the register that loads it.
@@ -166,8 +168,8 @@ impl ClockedModel {
         Some(Self::at_power_up(it, slots))
     }
 
-    /// Updates the visible values. If `still`, it updates only the handshake, because neither registers nor outputs have
-    /// changed.
+    /// Computes the values of the signals after an edge. If `still`, it updates only the handshake, because neither registers
+    /// nor outputs have changed.
     #[inline]
     fn settle(&mut self, still: bool) {
         let it = &*self.fixed;
@@ -274,9 +276,9 @@ impl Model for ClockedModel {
     }
 }
 
-/// Returns the program of a device with output registers. Each microinstruction that raised `valid` now loads these registers,
-/// and an added one after it raises `valid`. Returns `None` if a microinstruction with `valid` decides by a condition what
-/// follows.
+/// Returns the program of a device with output registers. Each microinstruction that raised `valid` loads these registers
+/// instead, and an added microinstruction after it raises `valid`. Returns `None` if a microinstruction with `valid` decides by
+/// a condition what follows.
 fn taking(program: &[FrameStep]) -> Option<Vec<FrameStep>> {
     let mut longer = Vec::new();
     for (at, step) in program.iter().enumerate() {

@@ -110,7 +110,7 @@ pub fn step(does: impl Fn(&mut State) + Send + Sync + 'static) -> FrameStep {
 }
 
 /// Returns a microinstruction like [`step`], whose operation also gets `arithmetic`, data that several microinstructions share.
-/// For example, `arithmetic` holds the tables of the device.
+/// For example, `arithmetic` may have the tables of the device.
 pub fn step_by<A: Send + Sync + 'static>(
     arithmetic: &Arc<A>,
     does: impl Fn(&A, &mut State) + Send + Sync + 'static,
@@ -120,23 +120,24 @@ pub fn step_by<A: Send + Sync + 'static>(
 }
 
 impl FrameStep {
-    /// Returns the microinstruction, which now also raises `valid`: the outputs have a result.
+    /// Returns the microinstruction with `valid` raised in it: the outputs have a result.
     pub fn valid(self) -> Self {
         Self { valid: true, ..self }
     }
 
-    /// Returns the microinstruction, which now ends the program.
+    /// Returns the microinstruction as the end of the program: the device is idle after it.
     pub fn end(self) -> Self {
         Self { next: Next::End, ..self }
     }
 
-    /// Returns the microinstruction, which is now repeated as long as `holds` is true of the values before its rising edge.
+    /// Returns the microinstruction with a condition: it is repeated as long as `holds` is true of the values before its rising
+    /// edge.
     pub fn repeat_while(self, holds: impl Fn(&State) -> bool + Send + Sync + 'static) -> Self {
         Self { next: Next::RepeatWhile(Arc::new(holds)), ..self }
     }
 
-    /// Returns the microinstruction, which now skips the next `count` microinstructions if `holds` is true of the values before
-    /// its rising edge.
+    /// Returns the microinstruction with a condition: it skips the next `count` microinstructions if `holds` is true of the
+    /// values before its rising edge.
     pub fn skip_if(
         self,
         count: u32,
@@ -145,7 +146,7 @@ impl FrameStep {
         Self { next: Next::SkipIf(count, Arc::new(holds)), ..self }
     }
 
-    /// Returns the microinstruction, which now sets the flag to 1. [`Frame::flag`] declares the flag.
+    /// Returns the microinstruction with a flag that is 1 during it. [`Frame::flag`] declares the flag.
     pub fn asserts(mut self, flag: Slot) -> Self {
         self.asserts.push(flag);
         self
@@ -164,7 +165,7 @@ struct FrameOperand {
 }
 
 impl FrameOperand {
-    /// Returns the raw value that the register loads for the bits on the port, limited to `min ..= max`.
+    /// Returns the raw value that the register loads for the bit pattern on the port, limited to `min ..= max`.
     fn held(&self, bits: u64) -> i64 {
         (self.format.raw(bits) as i64).clamp(self.min, self.max)
     }
@@ -245,7 +246,7 @@ impl Frame {
         slot
     }
 
-    /// Adds an operand and its register, which holds every value of `format`. Returns the register's slot.
+    /// Adds an operand and its register, which can have every value of `format`. Returns the register's slot.
     pub fn operand(&mut self, name: &str, format: Format) -> Slot {
         self.clamped(name, format, format.min_raw() as i64, format.max_raw() as i64)
     }
@@ -265,7 +266,8 @@ impl Frame {
         self.edges.push(Arc::new(does));
     }
 
-    /// Returns the operands: the name, the format, and the smallest and largest raw value that the register holds.
+    /// Returns the operands, in the order in which they were added: the name, the format, and the smallest and largest raw
+    /// value of the register.
     pub fn operands(&self) -> impl Iterator<Item = (&str, Format, (i64, i64))> {
         self.operands.iter().map(|it| (it.name.as_str(), it.format, (it.min, it.max)))
     }

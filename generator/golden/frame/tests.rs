@@ -1,7 +1,7 @@
 use super::*;
 use crate::Model;
 
-/// Adds the operand `from` (s1.2, clamped to 0 … 1.0), the register `count` for a countdown, and the output `twice`, which is
+/// Adds the operand `from` (s1.2, limited to 0 … 1.0), the register `count` for a countdown, and the output `twice`, which is
 /// −2 · `count`. Returns the slots of `from` and `count`.
 fn countdown(frame: &mut Frame) -> (Slot, Slot) {
     let from = frame.clamped("from", Format::signed(1, 2), 0, 4);

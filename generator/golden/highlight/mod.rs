@@ -26,9 +26,9 @@ pub trait Reflectance: Send + Sync {
     /// Returns the exact f: the source's formula in f64, unrounded, at the values that the raw control operands represent.
     fn reference(&self, control: &[i64]) -> f64;
 
-    /// Returns the two values that count as correct for `f` at the raw control operands. Both are normally the exact f. If the
+    /// Returns the two values that count as correct for `f` at the raw control operands. Normally both are the exact f. If the
     /// formula jumps and rounding may lead to either side of the jump, they are the values on both sides. An error is measured
-    /// from the nearer one.
+    /// from the nearer value.
     fn references(&self, control: &[i64]) -> [f64; 2] {
         [self.reference(control); 2]
     }
@@ -42,20 +42,20 @@ pub trait Reflectance: Send + Sync {
         Vec::new()
     }
 
-    /// Changes the control operands of a computation to the control operands of its result number `index`, counted from 0.
+    /// Changes the raw control operands of a computation to the control operands of its result number `index`, counted from 0.
     ///
-    /// A device with one result for each `start` leaves them as they are. A device that walks along a line, such as
+    /// A device with one result for each `start` leaves them as they are. A device that computes a line of points, such as
     /// `quad-cosine`, must set the angle of that point.
     fn point(&self, control: &mut [i64], index: u64) {
         let _ = (control, index);
     }
 
-    /// Returns control operands at which the formula is largest, near `control`: for example, a cosine becomes 1, and an angle or
-    /// a vector becomes 0. Tests draw points between the peak and other operands, so the formula should not rise on the straight
-    /// way from the peak to `control`.
+    /// Returns raw control operands at which the formula is largest, near `control`: for example, a cosine becomes 1, and an
+    /// angle or a vector becomes 0. Tests draw points between the peak and other operands, so the formula should not rise on
+    /// the straight line from the peak to `control`.
     ///
-    /// With `None`, each operand with fraction bits is set to an end of its domain or to 0, whichever gives the largest value. A
-    /// device whose peak lies elsewhere must return it here.
+    /// With `None`, each operand with fraction bits is set to an end of its domain or to 0, whichever gives the largest value.
+    /// A device whose peak lies elsewhere must return it here.
     fn peak(&self, control: &[i64]) -> Option<Vec<i64>> {
         let _ = control;
         None
@@ -63,10 +63,11 @@ pub trait Reflectance: Send + Sync {
 
     /// Returns the control operands of a line that goes from a first point to a last point. `first` and `last` are the control
     /// operands at these two points, and `first` also has the length of the line. For example, a line from the angle 0 to the
-    /// angle 300 in 3 steps gets the step 100. A step that is no integer is rounded toward 0, so the line may end before `last`.
+    /// angle 300 in 3 steps gets the step 100. A step that is no integer is rounded toward 0, so the line may end before
+    /// `last`.
     ///
-    /// [`Reflectance::point`] goes the other way, from a line to one of its points. A device with one result for each `start`
-    /// returns `first`.
+    /// [`Reflectance::point`] is the reverse: it gives a point of a line. A device with one result for each `start` returns
+    /// `first`.
     fn line(&self, first: &[i64], last: &[i64]) -> Vec<i64> {
         let _ = last;
         first.to_vec()
@@ -79,12 +80,13 @@ pub trait Reflectance: Send + Sync {
         None
     }
 
-    /// Returns limits on how much the formula changes with the cosine over the domain, or `None` if nobody has stated them.
+    /// Returns proven limits on how much the formula changes with the cosine over the domain, or `None` if nobody has stated
+    /// them.
     fn variation(&self) -> Option<Variation> {
         None
     }
 
-    /// Returns the name of the operand that states how many results a computation has, as [`Contract::length`] does.
+    /// Returns the name of the operand that states how many results a computation has, as [`Contract::length`] does, or `None`.
     fn length(&self) -> Option<&str> {
         None
     }
@@ -99,8 +101,8 @@ pub trait Reflectance: Send + Sync {
         contract::operands_at(operands, gamma, n, &[])
     }
 
-    /// Returns cos γ, as the control operands represent it. By default it is the value of the operand `cos_gamma`, if the device
-    /// has one. `operands` are the operands of the contract.
+    /// Returns cos γ, as the raw control operands represent it, limited to 0 … 1. By default it is the value of the operand
+    /// `cos_gamma`; `None` if the device has no such operand. `operands` are the operands of the contract.
     fn cosine(&self, operands: &[Operand], control: &[i64]) -> Option<f64> {
         let (operand, raw) =
             operands.iter().zip(control).find(|(operand, _)| operand.name == COSINE)?;
@@ -112,14 +114,15 @@ pub trait Reflectance: Send + Sync {
         None
     }
 
-    /// Returns the absolute error of `f` in one case of the check, or `None` if a case is a set of control operands.
+    /// Returns the absolute error of `f`, as a value, in one case of the check. `place` has the value on each axis of the
+    /// sweep. Returns `None` if a case is a set of control operands; the caller then computes the error itself.
     #[inline]
     fn sweep_error(&self, place: &[i64]) -> Option<f64> {
         let _ = place;
         None
     }
 
-    /// Returns the contributions to the error of f, each a proven upper limit; nothing if the bound is not known yet.
+    /// Returns the contributions to the error of f, each a proven upper limit; an empty list if the bound is not known yet.
     fn shares(&self) -> Vec<ErrorShare> {
         Vec::new()
     }
@@ -143,7 +146,8 @@ pub struct Variation {
 /// The accuracy contract of a device that multiplies colours by a reflectance f.
 pub struct Highlight {
     reflectance: Box<dyn Reflectance>,
-    /// Whether a computation has one result, at the point that the operands state. A device that walks a line has several.
+    /// Whether a computation has one result, at the point that the operands state. A device that computes a line of points has
+    /// several.
     single: bool,
     products: Products,
     operands: Vec<Operand>,
@@ -161,8 +165,8 @@ impl Deref for Highlight {
 }
 
 impl Highlight {
-    /// Makes the contract of a device from its `Reflectance`, and from its control operands in the order in which the
-    /// `Reflectance` takes them.
+    /// Makes the contract of a device from its `Reflectance`, from its control operands in the order in which the `Reflectance`
+    /// takes them, and from the products of f with the colour operands, which come after the control operands.
     pub fn new(
         reflectance: impl Reflectance + 'static,
         control: Vec<Operand>,
@@ -175,7 +179,7 @@ impl Highlight {
         Self { reflectance: Box::new(reflectance), single, products, operands, bound }
     }
 
-    /// Returns the number of control operands. They come before the colour operands.
+    /// Returns the number of control operands, which come before the colour operands.
     pub fn control(&self) -> usize {
         self.operands.len() - self.products.operands.len()
     }
@@ -185,7 +189,8 @@ impl Highlight {
         self.products.f
     }
 
-    /// Returns the raw colour output for a raw reflectance f and a raw colour operand.
+    /// Returns the raw colour output for a raw reflectance f and a raw colour operand: the product, rounded to the output's
+    /// format.
     #[inline]
     pub fn colour(&self, f: i64, colour: i64) -> i64 {
         self.products.narrow.apply(f * colour)
@@ -207,8 +212,8 @@ impl Highlight {
         point
     }
 
-    /// Returns the raw f of result number `index` (from 0) for raw operands. It writes the exact values, as [`Contract::exact`]
-    /// gives them, into `exact`, and the control operands of that point into `point`.
+    /// Returns the raw f of result number `index` (from 0) for raw operands. It appends the exact values, as
+    /// [`Contract::exact`] gives them, to `exact`, and replaces the contents of `point` by the control operands of that result.
     #[inline]
     pub fn measured(
         &self,
@@ -236,12 +241,14 @@ impl Highlight {
         }));
     }
 
-    /// Returns the control operands for an angle and an exponent: [`Reflectance::at`] with the operands of this contract.
+    /// Returns the control operands for an angle `gamma` in radians and an exponent `n`: [`Reflectance::at`] with the operands
+    /// of this contract. Returns `None` if no operand in the domain represents `n`.
     pub fn at(&self, gamma: f64, n: f64) -> Option<Vec<i64>> {
         self.reflectance.at(&self.operands, gamma, n)
     }
 
-    /// Returns the cosine that the control operands represent: [`Reflectance::cosine`] with the operands of this contract.
+    /// Returns the cosine that the raw control operands represent: [`Reflectance::cosine`] with the operands of this contract.
+    /// Returns `None` if the cosine cannot be computed from them.
     pub fn cosine(&self, control: &[i64]) -> Option<f64> {
         self.reflectance.cosine(&self.operands, control)
     }
@@ -281,7 +288,7 @@ impl Contract for Highlight {
         self.reflectance.sweep().unwrap_or_else(|| Sweep::all(control.iter()))
     }
 
-    /// Returns the absolute error of f.
+    /// Returns the absolute error of f, as a value, in one case of the sweep.
     #[inline]
     fn sweep_error(&self, place: &[i64]) -> f64 {
         self.reflectance.sweep_error(place).unwrap_or_else(|| {

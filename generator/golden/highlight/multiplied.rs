@@ -1,4 +1,7 @@
 //! Multiplies the reflectance f by the colour operands, in the golden models and accuracy contracts of highlight devices.
+//!
+//! [`Products`] has the operands, the outputs and the rounding, and the order in which the hardware computes the products. It
+//! does not compute f.
 
 use crate::frame::{ClockedModel, Frame, FrameStep, Slot, State, idle, step};
 use crate::narrow::Narrow;
@@ -18,7 +21,7 @@ pub struct Products {
     schedule: ProductOrder,
 }
 
-/// When products are made.
+/// The clocks in which the hardware computes the products.
 #[derive(Clone, Copy, Debug)]
 enum ProductOrder {
     /// All products are combinational logic behind f and the colours.
@@ -96,8 +99,8 @@ impl Products {
     }
 
     /// Adds the colour operands and the outputs to a golden model that has the raw f in the slot `f`. Returns the
-    /// microinstructions that compute the products before the microinstruction with the result; none if the products are
-    /// combinational logic.
+    /// microinstructions that compute the products before the microinstruction with the result. The list is empty unless the
+    /// products are computed one after the other.
     pub fn slots(&self, frame: &mut Frame, f: Slot) -> Vec<FrameStep> {
         let mut program = Vec::new();
         for (operand, output) in self.operands.iter().zip(&self.outputs) {
@@ -121,8 +124,8 @@ impl Products {
         program
     }
 
-    /// Returns the golden model that executes `program` and then computes the products. `program` must leave f in the slot `f`; the
-    /// last microinstruction shows the products.
+    /// Returns the golden model that executes `program` and then computes the products. `program` must leave f in the slot `f`;
+    /// the last microinstruction shows the products.
     pub fn behind(&self, mut frame: Frame, f: Slot, mut program: Vec<FrameStep>) -> ClockedModel {
         program.extend(self.slots(&mut frame, f));
         program.push(idle().valid().end());

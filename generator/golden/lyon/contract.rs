@@ -13,7 +13,7 @@ use crate::{Contract, Operand, Sweep};
 use glint_base::fixed::{Rounding, exp2};
 use glint_config::Config;
 
-/// The largest D² as a value: each of the three components is at least −2.0, so its square is at most 4.
+/// The largest D², as a value: each of the three components is at least −2.0, so its square is at most 4.
 const FARTHEST: i64 = 12;
 
 /// Returns the accuracy contract of the device `lyon`. Its control operands are `dx`, `dy`, `dz`, and `shift` or `exponent`.
@@ -102,8 +102,8 @@ impl Reflectance for LyonArithmetic {
         Some((1.0 - self.exact_distance(control) / 2.0).max(0.0))
     }
 
-    /// Returns every word of D² with every operand `shift` or `exponent`. They determine f, since adders 1 and 2 and
-    /// multipliers 1 to 3 are exact.
+    /// Returns every raw D² in the register (a word of D²) with every operand `shift` or `exponent`. They determine f, since
+    /// adders 1 and 2 and multipliers 1 to 3 are exact.
     fn sweep(&self) -> Option<Sweep> {
         let most = FARTHEST << self.keys.distance_fraction;
         Some(Sweep::ranges([
@@ -112,8 +112,8 @@ impl Reflectance for LyonArithmetic {
         ]))
     }
 
-    /// Returns the largest error over every D² that is rounded to the word. The formula falls as D² grows, so the error is
-    /// largest at an end of this interval.
+    /// Returns the largest error of f over every exact D² that is rounded to the word. The formula falls as D² grows, so the
+    /// error is largest at an end of this interval.
     #[inline]
     fn sweep_error(&self, place: &[i64]) -> Option<f64> {
         let (operand, word) = (place[0], place[1]);
@@ -135,8 +135,8 @@ impl Reflectance for LyonArithmetic {
         Some((f - nearest).abs().max((f - formula(high)).abs()))
     }
 
-    /// Derives the terms of f's error. Base and powers lie in 0 … 1, hardware's and formula's alike, so by the mean value theorem
-    /// an error ε before a power p grows to at most p·ε.
+    /// Returns the contributions to the error of f, as values with their keys, and derives them. Base and powers lie in 0 … 1,
+    /// hardware's and formula's alike, so by the mean value theorem an error ε before a power p grows to at most p·ε.
     ///
     /// - An error of D² is multiplied by β = n/(2·m), and by at most m when the base is raised to m: n/2 in all.
     /// - Base: as in `cosine-power`, the hardware uses the inverse, 1.0 − ulp − t, instead of 1.0 − t. If t is truncated, the

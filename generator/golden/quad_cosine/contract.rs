@@ -31,12 +31,12 @@ pub fn contract(config: &Config) -> Box<dyn Contract> {
 }
 
 impl QuadCosineArithmetic {
-    /// Returns two upper limits of the error of the stretched angle for n, in right angles. The first error comes from the low
-    /// bits that multiplier 11 does not read. The second comes from the rounding of ROM 9.
+    /// Returns two upper limits of the error of the stretched angle √(n/k)·δ for n, in right angles. The first error comes from
+    /// the low bits that multiplier 11 does not read. The second comes from the rounding of ROM 9.
     ///
-    /// The magnitude m denotes angles from m to m + u. With s = √(n/k) and s' = ROM 9's word, s'·m is less than s·(m + u) by
-    /// at most s·u + (s − s')·m, and more than s·m by at most (s' − s)·m. An angle beyond 1/s is in the table's last word
-    /// anyway, and so is an angle beyond 1/s'.
+    /// The magnitude m denotes angles from m to m + u. With s = √(n/k) and s' = ROM 9's word, s'·m is less than s·(m + u) by at
+    /// most s·u + (s − s')·m, and more than s·m by at most (s' − s)·m. An angle beyond 1/s is in the table's last word anyway,
+    /// and so is an angle beyond 1/s'.
     fn stretching(&self, n: i64) -> (f64, f64) {
         let s = (n as f64 / POWERS[range_of(n)] as f64).sqrt();
         let word = self.root(n) as f64 * exp2(-(self.keys.root_fraction as i32));
@@ -82,7 +82,8 @@ impl Reflectance for QuadCosineArithmetic {
         vec![line::interval(angle, last[1], length, first[0]), angle, first[2], length]
     }
 
-    /// Returns the operands of a line of one point, at the angle `gamma`.
+    /// Returns the operands of a line of one point, at the angle `gamma`. Returns `None` if no operand in the domain represents
+    /// `n`.
     fn at(&self, operands: &[Operand], gamma: f64, n: f64) -> Option<Vec<i64>> {
         let angle = line::raw_angle(&operands[1], gamma);
         Some(vec![0, angle, shared::exponent_at(&operands[2], n)?, 0])
@@ -118,9 +119,9 @@ impl Reflectance for QuadCosineArithmetic {
         Some((end(magnitude) - f).max(f - end(magnitude + 1)))
     }
 
-    /// Returns the contributions for the n with the largest sum. They are the distance of ROM 12 from the formula within a
-    /// step, the rounding of ROM 12, and two errors of the stretched angle. The latter are multiplied by the steepest slope of
-    /// the power.
+    /// Returns the contributions to the error of f, for the n with the largest sum: the distance of ROM 12 from the formula
+    /// within a step, the rounding of ROM 12, and two errors of the stretched angle. These two errors are multiplied by the
+    /// steepest slope of the power.
     fn shares(&self) -> Vec<ErrorShare> {
         let keys = &self.keys;
         let (low, high) = keys.domain.exponents();

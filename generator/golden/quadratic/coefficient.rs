@@ -6,7 +6,8 @@
 
 use glint_keys::quadratic::Scheme;
 
-/// Returns the exact a(n) for n = 0 … `count` − 1. The entry for n = 0 equals the entry for n = 1.
+/// Returns the exact a(n) for n = 0 … `count` − 1: n − 1 for the scheme `taylor`, and the minimax coefficient for `minimax`.
+/// The entry for n = 0 equals the entry for n = 1, which is 0.
 pub fn table(scheme: Scheme, count: u32) -> Vec<f64> {
     (0..count)
         .map(|n| match scheme {

@@ -1,8 +1,8 @@
-//! Bounds the error of f of the device `rough` for every pair of bins of the angles γ and dγ. The device computes f = (n/2·(cos(γ ±
-//! dγ) − 1) + 1)².
+//! Bounds the error of f of the device `rough` for every pair of bins of the angles γ and dγ. The device computes f =
+//! (n/2·(cos(γ ± dγ) − 1) + 1)².
 //!
-//! The quarter circle is cut into 512 bins of equal size; a bin is an interval of angles. [`super::bound`] takes the largest of
-//! these bounds, and explains the symbols.
+//! The quarter circle is divided into 512 bins of equal size; a bin is an interval of angles. [`super::bound`] takes the
+//! largest of these bounds, and explains the symbols. The analysis is for exact arithmetic, not for the patent's arithmetic.
 
 use std::f64::consts::FRAC_PI_2;
 
@@ -45,8 +45,8 @@ impl Errors {
         Self { errors, sines }
     }
 
-    /// Returns the largest error that the table of sines causes in register 12, the product of both sines, for γ in bin
-    /// `i` and dγ in bin `j`.
+    /// Returns the largest error that the table of sines causes in register 12, the product of both sines, for γ in bin `i` and
+    /// dγ in bin `j`, as a value.
     fn product(&self, i: usize, j: usize) -> f64 {
         self.part(i, j, |error, _| error)
     }
@@ -156,7 +156,7 @@ impl Analysis {
         it
     }
 
-    /// Returns all pairs of a bin of γ and a bin of dγ.
+    /// Returns all pairs of a bin of γ and a bin of dγ. The bins of dγ end at the largest deviation of the domain.
     pub fn pairs(&self) -> impl Iterator<Item = (usize, usize)> + use<> {
         let deviation = self.deviation;
         (0..BINS).flat_map(move |i| (0..=deviation).map(move |j| (i, j)))
@@ -172,14 +172,15 @@ impl Analysis {
         self.bound_of(i, j, negative, self.errors.product(i, j))
     }
 
-    /// Returns a bound on the error of f as [`Self::bound`] does. In place of the bins' own table errors, `error` is the amount by
-    /// which the table errors change the product of the sines in register 12.
+    /// Returns a bound on the error of f as [`Self::bound`] does. In place of the bins' own table errors, `error` is the amount
+    /// by which the table errors change the product of the sines in register 12.
     pub fn bound_of(&self, i: usize, j: usize, negative: bool, error: f64) -> f64 {
         let apart = if negative { i.abs_diff(j) } else { i + j };
         self.rounded(self.weights[apart].linear * (error + self.products))
     }
 
-    /// Returns the bound on the error of f with all roundings, for a given `linear`: the weight n·b times the error of cos(γ ± dγ).
+    /// Returns the bound on the error of f with all roundings, for a given `linear`: the weight n·b times the error of cos(γ ±
+    /// dγ).
     pub fn rounded(&self, linear: f64) -> f64 {
         let base = self.square + self.base;
         linear + 2.0 * self.base + self.ulp + base * base

@@ -1,5 +1,5 @@
-//! Builds the golden model of the device `rough`, which computes f = (n/2·(cos(γ ± dγ) − 1) + 1)². The model has the registers and
-//! microinstructions of the device, and predicts them clock by clock.
+//! Builds the golden model of the device `rough`, which computes f = (n/2·(cos(γ ± dγ) − 1) + 1)². The model has the registers
+//! and microinstructions of the device, and predicts them clock by clock.
 
 use std::sync::Arc;
 

@@ -1,8 +1,8 @@
 //! The accuracy contract of the device `rough`, which computes f = (n/2·(cos(γ ± dγ) − 1) + 1)². γ is the angle between surface
 //! normal and half vector, and dγ the deviation of the normal on a rough surface.
 //!
-//! The contract states the exact formula, the operands at which f is largest, the error bound, and the operands that an exhaustive
-//! check visits.
+//! The contract states the exact formula, the operands at which f is largest, the error bound, and the operands that an
+//! exhaustive check visits.
 
 use super::{Derived as _, Kind, RoughArithmetic, bound, keys_of};
 use crate::contract::{self as shared, ErrorShare};
@@ -11,8 +11,8 @@ use crate::highlight::{Highlight, Reflectance};
 use crate::{Axis, Contract, Operand, Sweep, Values};
 use glint_config::Config;
 
-/// The values of dγ, in degrees, that an exhaustive check visits in addition to the largest dγ of the domain. It visits only
-/// values below that.
+/// The values of dγ, in degrees, that an exhaustive check visits in addition to the largest dγ of the domain. Values that are
+/// not below the largest dγ are left out.
 const SWEPT_DEVIATIONS: [f64; 4] = [0.0, 1.0, 5.0, 15.0];
 
 /// Returns the accuracy contract of the device `rough`. Its control operands are `cos_gamma`, `cos_dgamma`, `exponent` and
@@ -60,13 +60,14 @@ impl Reflectance for RoughArithmetic {
         })]
     }
 
-    /// Returns the operands of γ and n with dγ = 0.
+    /// Returns the operands of γ and n with dγ = 0. Returns `None` if no operand in the domain represents `n`.
     fn at(&self, operands: &[Operand], gamma: f64, n: f64) -> Option<Vec<i64>> {
         let no_deviation = [("cos_dgamma", self.keys.largest_cosine())];
         shared::operands_at(operands, gamma, n, &no_deviation)
     }
 
-    /// Returns the operands at which cos(γ ± dγ) is largest. If dγ is subtracted, γ is dγ; if dγ is added, both are 0.
+    /// Returns the raw operands at which cos(γ ± dγ) is largest. If dγ is subtracted, γ becomes dγ; if dγ is added, both become
+    /// 0.
     fn peak(&self, control: &[i64]) -> Option<Vec<i64>> {
         let deviation = if control[3] == 1 { control[1] } else { self.keys.largest_cosine() };
         Some(vec![deviation, deviation, control[2], control[3]])

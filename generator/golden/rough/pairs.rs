@@ -1,16 +1,17 @@
-//! Finds a bound on the error of f of the device `rough` by branch and bound over pairs of angles γ and dγ. The device computes f =
-//! (n/2·(cos(γ ± dγ) − 1) + 1)².
+//! Finds a bound on the error of f of the device `rough` by branch and bound over pairs of angles γ and dγ. The device computes
+//! f = (n/2·(cos(γ ± dγ) − 1) + 1)².
 //!
-//! **Bounds.** A bin is a small interval of angles. The analysis in [`super::bound`] gives a bound for each pair of bins, one for γ
-//! and one for dγ. For a pair of operands in these bins, the same formula gives a smaller bound, because the errors of the table of
-//! sines are known at these operands. If the output of the hardware's adder 15 is computed too, its distance D from cos(γ ± dγ) − 1
-//! is known, and the error of f is at most n·b·D plus the roundings of register 13. Here b is the base of the square, and n·b is
-//! largest at n = 1/(1 − cos(γ − dγ)) or at an end of the domain of n. For a pair of operands and one n, the error itself is
-//! computed, with the hardware's roundings.
+//! **Bounds.** A bin is a small interval of angles. The analysis in [`super::bound`] gives a bound for each pair of bins, one
+//! for γ and one for dγ. For a pair of operands in these bins, the same formula gives a smaller bound, because the errors of
+//! the table of sines are known at these operands. If the output of the hardware's adder 15 is computed too, its distance D
+//! from cos(γ ± dγ) − 1 is known, and the error of f is at most n·b·D plus the roundings of register 13. Here b is the base of
+//! the square, and n·b is largest at n = 1/(1 − cos(γ − dγ)) or at an end of the domain of n. For a pair of operands and one n,
+//! the error itself is computed, with the hardware's roundings.
 //!
-//! **The search.** The search keeps the largest error that it has computed. It skips every pair whose bound is no larger, because
-//! no larger error is there, and looks into all other pairs. If that takes too many steps, the answer is the largest bound of the
-//! remaining pairs. The answer is never below half of the first bound, so that the search spends no time on smaller errors.
+//! **The search.** The search remembers the largest error that it has computed. It skips every pair whose bound is no larger,
+//! because such a pair has no larger error, and examines all other pairs. If that takes more than 2²¹ steps, the result is the
+//! largest bound of the remaining pairs. The result is never below half of the bound of the worst pair of bins, so that the
+//! search spends no time on smaller errors.
 
 use std::collections::BTreeMap;
 
@@ -55,7 +56,8 @@ struct PairSearch<'a> {
     steps: u64,
 }
 
-/// Returns a proven bound on the error of the reflectance f, for all pairs of angles γ and dγ.
+/// Returns a proven bound on the error of the reflectance f, as a value, for all pairs of angles γ and dγ and all exponents of
+/// the domain.
 pub fn largest_error(it: &RoughArithmetic, analysis: &Analysis) -> f64 {
     let mut bins: Vec<(f64, usize, usize, i64)> = Vec::new();
     let mut first = 0.0_f64;
@@ -95,8 +97,8 @@ pub fn largest_error(it: &RoughArithmetic, analysis: &Analysis) -> f64 {
 }
 
 impl PairSearch<'_> {
-    /// Examines all pairs of operands in bin `i` of γ and bin `j` of dγ. Appends the pairs to `open` for which other exponents
-    /// may give a larger error. Returns false if this takes too many steps.
+    /// Examines all pairs of operands with γ in bin `i` and dγ in bin `j`; `negative` is the operand `dgamma_negative`. Appends
+    /// the pairs to `open` for which other exponents may give a larger error. Returns false if this takes too many steps.
     fn look_into(
         &mut self,
         i: usize,
@@ -130,8 +132,8 @@ impl PairSearch<'_> {
         within
     }
 
-    /// Returns the pair if its bound is larger than the largest error found so far. It also computes the error at the exponent
-    /// with the largest weight, and updates the largest error.
+    /// Returns the pair if its bound is larger than the largest error found so far, and `None` otherwise. For such a pair, it
+    /// also computes the error at the exponent with the largest weight, and updates the largest error.
     fn pair(&mut self, x: &RawCosine, y: &RawCosine, negative: i64) -> Option<OperandPair> {
         let (it, keys) = (self.it, &self.it.keys);
         let ulp = exp2(-(keys.operands.cosine.fraction as i32));
@@ -152,8 +154,8 @@ impl PairSearch<'_> {
         Some(OperandPair { bound, control, distance, below })
     }
 
-    /// Computes the error of the pair for every n whose bound is above the largest error found so far. Returns false if this
-    /// takes too many steps.
+    /// Computes the error of the pair for every n of the domain whose bound is above the largest error found so far, and
+    /// updates that error. Returns false if this takes too many steps.
     fn go_through_exponents(&mut self, pair: &OperandPair) -> bool {
         let (least, most) = self.it.keys.domain.exponents();
         let [x, y, _, negative] = pair.control;
@@ -175,8 +177,8 @@ impl PairSearch<'_> {
         (f - self.it.reference(control)).abs()
     }
 
-    /// Returns the raw cosines of the angles in a bin, and a few more at each end, from the largest error of their sine to the
-    /// smallest.
+    /// Returns the raw cosines of the angles in a bin, and one or two more at each end, from the largest error of their sine to
+    /// the smallest.
     fn cosines_of(&self, bin: usize) -> Vec<RawCosine> {
         let keys = &self.it.keys;
         let one = 1_i64 << keys.operands.cosine.fraction;
@@ -194,7 +196,8 @@ impl PairSearch<'_> {
     }
 }
 
-/// Returns the weight n·b for the exponent `n` if cos(γ ± dγ) is `below` less than 1.
+/// Returns the weight n·b for the exponent `n`, if cos(γ ± dγ) is less than 1 by `below`: n·(1 − n·`below`/2), or 0 if that is
+/// negative.
 fn weight(n: f64, below: f64) -> f64 {
     n * (1.0 - n * below / 2.0).max(0.0)
 }

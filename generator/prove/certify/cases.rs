@@ -1,7 +1,9 @@
-//! Splits a computation into cases, one for each combination of outcomes of its conditions.
+//! Splits a computation into cases, one for each combination of outcomes of its conditions: the selects of multiplexers, and
+//! the carries of sums.
 //!
-//! For example, a saturation has two cases: the value is inside its limits, or it is cut off. For each case, the module finds the
-//! interval of raw values of every node of the computation. `certify` then proves the error bound case by case.
+//! For example, a saturation has two cases: the value is inside its limits, or it is replaced by a limit. For each case, the
+//! module finds the interval of raw values of every node of the computation. Statements about the error bound are then written
+//! case by case. The module gives up at more than 4096 cases.
 
 use std::collections::BTreeMap;
 
@@ -15,18 +17,19 @@ use glint_rtl::pipeline::{Cell, Graph, NodeId, NodeOp};
 /// The largest number of cases that are examined, including cases that turn out to be impossible.
 const MOST: usize = 4096;
 
-/// Intervals of raw values for some nodes of a computation's graph. They narrow the intervals that follow from the operands alone.
+/// Intervals of raw values for some nodes of a computation's graph. They narrow the intervals that follow from the operands
+/// alone.
 pub type NodeIntervals = BTreeMap<NodeId, Interval>;
 
-/// A case of a computation: one combination of outcomes of its conditions. For example, one case of a saturation is that the value
-/// exceeds the upper limit.
+/// A case of a computation: one combination of outcomes of its conditions. For example, one case of a saturation is that the
+/// value exceeds the upper limit.
 #[derive(Clone, Debug)]
 pub struct Case {
     /// The hypotheses of the case: intervals of nodes that follow from the outcomes of the conditions.
     pub known: NodeIntervals,
     /// The interval of raw values of every node in this case.
     pub ranges: Vec<Interval>,
-    /// The nodes whose values are the values of a parabola. Intervals alone would allow more values.
+    /// The nodes whose value is a quadratic polynomial in one operand, if the polynomial narrows the node's interval.
     pub parabolas: BTreeMap<NodeId, RawPolynomial>,
 }
 
@@ -62,11 +65,11 @@ impl UnrolledComputation<'_> {
     }
 }
 
-/// Returns all cases of the computation of `results`, with the intervals `known` of the operands. Together the cases cover every
-/// combination of operands. For example, a saturation that may or may not happen makes two cases.
+/// Returns all cases of the computation of `results`, with the intervals `known` of the operands. Together the cases cover
+/// every combination of operands. For example, a saturation that may or may not happen makes two cases.
 ///
 /// # Errors
-/// Fails if the computation has too many cases.
+/// Fails if more than 4096 cases are examined, or if a condition has more than 64 values.
 pub fn cases(
     view: UnrolledComputation,
     results: &[NodeId],
@@ -107,8 +110,8 @@ pub fn cases(
     Ok(found)
 }
 
-/// Returns the interval of raw values of a node, with the intervals `known` of the operands. Returns `None` if the value depends
-/// on a condition whose outcome is not known.
+/// Returns the interval of raw values of a node, with the intervals `known` of the operands. Returns `None` if the value
+/// depends on a condition whose outcome is not decided, or if no operands lie in the intervals `known`.
 pub fn range(view: UnrolledComputation, node: NodeId, known: &NodeIntervals) -> Option<Interval> {
     let ranges = view.graph.nodes.iter().map(|node| node.range).collect();
     let mut case = Case { known: known.clone(), ranges, parabolas: BTreeMap::new() };
@@ -129,8 +132,8 @@ enum Decision {
 }
 
 impl Case {
-    /// Computes the intervals of the nodes in `cone` and stores them in `ranges`, up to the first selection that is not
-    /// decided.
+    /// Computes the intervals of the nodes in `cone`, in order, and stores them in `ranges`. It ends at the first selection
+    /// that is not decided, or at the first node that has no possible value.
     fn follow(&mut self, view: UnrolledComputation, cone: &[NodeId]) -> Decision {
         let graph = view.graph;
         let mut polynomials: BTreeMap<NodeId, RawPolynomial> = BTreeMap::new();
@@ -218,8 +221,9 @@ fn selected(select: NodeId, inputs: &[NodeId], ranges: &[Interval]) -> NodeId {
     inputs[(number as usize).min(inputs.len() - 1)]
 }
 
-/// Returns the value of a node as a polynomial in an operand. Returns `None` if the node has another form, or if bits are
-/// dropped on the way.
+/// Returns the raw value of a node as a polynomial in the raw value of an operand. `polynomials` has the polynomials of earlier
+/// nodes. Returns `None` if the node has another form, or if a node drops bits in a way that is not the same for its whole
+/// interval.
 fn polynomial(
     graph: &Graph,
     id: NodeId,
@@ -271,8 +275,8 @@ fn polynomial(
     }
 }
 
-/// Returns the node to split first, so that the undecided selection `id` becomes decided: a condition on which the selection
-/// depends. For example, if the select is `a & b` of one bit, and only `b` is undecided, it is `b`.
+/// Returns the condition whose values must be distinguished first, so that the undecided selection `id` becomes decided. For
+/// example, if the select is `a & b` of one bit, and only `b` is undecided, it is `b`.
 fn decider(graph: &Graph, id: NodeId, ranges: &[Interval]) -> NodeId {
     let operands =
         match &graph.node(id).cell {
@@ -289,9 +293,9 @@ fn decider(graph: &Graph, id: NodeId, ranges: &[Interval]) -> NodeId {
     id
 }
 
-/// Narrows the interval of node `id` to a given interval, and narrows the intervals of the nodes from which it is computed
-/// accordingly. Returns false if no value is left. `ranges` are the intervals without this restriction. For example, if the inverse
-/// of an 8-bit node `a` is restricted to 0, then `a` is restricted to 255.
+/// Narrows the interval of node `id` in `known` to `range`, and narrows the intervals of the nodes from which it is computed
+/// accordingly. Returns false if no value is left. `ranges` are the intervals without this restriction. For example, if the
+/// inverse of an 8-bit node `a` is restricted to 0, then `a` is restricted to 255.
 pub fn learn(
     graph: &Graph,
     known: &mut NodeIntervals,
@@ -381,7 +385,7 @@ pub fn learn(
     }
 }
 
-/// Returns whether all bits of a value from bit `from` up are 0, or do not exist.
+/// Returns whether all bits of a node from bit `from` up are always 0, or do not exist.
 fn reaches_top(graph: &Graph, id: NodeId, from: u32) -> bool {
     let node = graph.node(id);
     from == graph.width(id) || !node.format.signed && node.range.1 < 1 << from

@@ -1,8 +1,9 @@
 //! Translates the formula of a contract to real expressions for the prover Gappa.
 //!
 //! A formula with `max`, `min` or `if` becomes several branches, each with conditions under which it applies. For example,
-//! `max(a, b)` has two branches: `a` where a − b ≥ 0, and `b` where a − b ≤ 0. The range of the operands may decide a condition,
-//! and then only one branch is left.
+//! `max(a, b)` has two branches: `a` where a − b ≥ 0, and `b` where a − b ≤ 0. The range of the operands may decide the
+//! condition of an `if`, and then only one branch is left. A function such as `sqrt`, the operator `%` and a variable exponent
+//! have no translation.
 
 use std::collections::{BTreeMap, HashMap};
 
@@ -11,8 +12,8 @@ use glint_base::fixed::exp2;
 use glint_formula::{Comparison, Expression, Function, Kind, Literal, Operator};
 use glint_golden::Operand;
 
-/// A branch of a contract's formula, which a condition such as `x < 0` splits: a term, and the conditions under which it is the
-/// formula's value. The terms `at_least` must not be negative, and the terms `at_most` must not be positive.
+/// One branch of a contract's formula that has conditions, such as `if x < 0`: a term, and the conditions under which this term
+/// is the formula's value. The terms `at_least` must not be negative, and the terms `at_most` must not be positive.
 #[derive(Clone, Debug, Default)]
 pub struct Branch {
     /// Conditions of the branch: terms that must be at least 0 for the branch to apply.
@@ -21,12 +22,13 @@ pub struct Branch {
     pub at_most: Vec<RealTermId>,
     /// The term that is the value of the formula if the branch applies.
     pub term: RealTermId,
-    /// For every choice, whether the condition holds: the key is the term that is compared with 0, and the kind of comparison.
+    /// For every choice that the branch has made, whether its condition holds. The key is the term that is compared with 0, and
+    /// the kind of comparison.
     chosen: BTreeMap<(RealTermId, Choice), bool>,
 }
 
-/// The kind of a comparison between two sides of the formula. A kind and a term are decided once: all choices with both have
-/// the same side.
+/// The kind of a comparison of a term with 0. A branch never decides the same kind for the same term in two ways, so two uses
+/// of `max(a, b)` in a formula take the same side.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum Choice {
     Larger,
@@ -89,7 +91,8 @@ impl Branch {
 
 /// The variables, ranges and ROM words with which Glint translates a contract's formula to a Gappa script.
 pub struct FormulaContext<'a> {
-    /// For each operand, the name of its variable in the script, and the power of two by which the variable is divided.
+    /// For each operand, the name of its variable in the script, and the power of two by which the operand is divided. For
+    /// example, the variable `exponent_over_8` has the power 3.
     pub variables: &'a HashMap<String, (String, i32)>,
     /// The smallest and the largest value of each operand in this case.
     pub ranges: &'a HashMap<String, (f64, f64)>,
@@ -99,14 +102,14 @@ pub struct FormulaContext<'a> {
     pub operands: &'a [Operand],
 }
 
-/// Returns the name of the variable for a ROM's word, from the ROM and the variable of the operand that addresses it. For
-/// example, the ROM `coefficient` at `exponent` has the variable `coefficient_at_exponent`.
+/// Returns the name of the variable for a word of the ROM `rom`. `variable` is the variable of the operand that addresses the
+/// ROM. For example, the ROM `coefficient` at `exponent` has the variable `coefficient_at_exponent`.
 pub fn word_variable(rom: &str, variable: &str) -> String {
     format!("{rom}_at_{variable}")
 }
 
-/// Notes in `found` the power of two by which the formula divides each operand, or 0 if it is not the same everywhere. For
-/// example, `exponent` has 3 in `exponent / 8`, and 0 in `exponent / 8 + exponent`.
+/// Stores in `found` the power of two by which the formula divides each operand, or 0 if the power is not the same everywhere.
+/// For example, `exponent` has 3 in `exponent / 8`, and 0 in `exponent / 8 + exponent`.
 pub fn divisors(formula: &Expression, found: &mut HashMap<String, Option<i32>>) {
     if let Some((name, power)) = quotient(formula) {
         return note_divisor(name, power, found);
@@ -123,7 +126,7 @@ pub fn divisors(formula: &Expression, found: &mut HashMap<String, Option<i32>>) 
     }
 }
 
-/// Notes a power by which an operand is divided, or 0 if another power was noted before.
+/// Stores in `found` a power by which an operand is divided, or 0 if another power is already stored.
 fn note_divisor(name: &str, power: i32, found: &mut HashMap<String, Option<i32>>) {
     let noted = found.entry(name.to_owned()).or_insert(Some(power));
     if *noted != Some(power) {
@@ -131,8 +134,8 @@ fn note_divisor(name: &str, power: i32, found: &mut HashMap<String, Option<i32>>
     }
 }
 
-/// Returns the operand and the power if a formula is an operand divided by a power of two. For example, `exponent / 8` gives
-/// `exponent` and 3.
+/// Returns the operand and the power if a formula is an operand divided by a power of two from 2⁰ to 2³⁰. For example,
+/// `exponent / 8` gives `exponent` and 3. Returns `None` for any other formula.
 fn quotient(formula: &Expression) -> Option<(&str, i32)> {
     let Kind::Binary(Operator::Div, a, b) = &formula.kind else { return None };
     let (Kind::Operand(name), Kind::Number(by)) = (&a.kind, &b.kind) else { return None };
@@ -148,10 +151,10 @@ pub fn untranslated(function: Function) -> String {
     format!("the function `{}` has no translation", function.name())
 }
 
-/// Returns all branches of a contract's formula, as terms for a Gappa script.
+/// Returns all branches of a contract's formula, as terms for a Gappa script. A formula without conditions has one branch.
 ///
 /// # Errors
-/// Fails if the formula has a part without a translation.
+/// Fails if the formula has a part without a translation, an unknown operand or table, or an exponent that varies in this case.
 pub fn branches(
     formula: &Expression,
     setting: &FormulaContext,
@@ -231,7 +234,8 @@ fn unconditional(term: RealTermId) -> Vec<Branch> {
     vec![Branch { term, ..Branch::default() }]
 }
 
-/// Returns every combination of a branch of each formula whose choices do not contradict each other, with the terms of both.
+/// Returns every combination of a branch of `a` with a branch of `b` whose choices do not contradict each other: the conditions
+/// of both branches, the term of `a` and the term of `b`. Fails if a formula has a part without a translation.
 fn pairs(
     [a, b]: [&Expression; 2],
     setting: &FormulaContext,
@@ -264,7 +268,8 @@ fn operation(
     Ok(found)
 }
 
-/// Returns the branches in which a comparison holds, or does not hold if `taken` is false.
+/// Returns the branches in which a comparison is true, or is false if `taken` is false. Fails if a side of the comparison has
+/// no translation.
 fn conditions(
     comparison: &Comparison,
     taken: bool,
@@ -280,10 +285,11 @@ fn conditions(
     Ok(conditions)
 }
 
-/// Returns the word of a table as a number if it is the same at all addresses of this case, otherwise as a variable.
+/// Returns the word of a table at an address, as a number if the word is the same at all addresses of this case, and otherwise
+/// as a variable.
 ///
 /// # Errors
-/// Fails if the address is no number or operand with integer values, or if the table has no such word.
+/// Fails if the address is neither a number nor an operand without fraction bits, or if the table has no such word.
 fn word(
     rom: &str,
     place: &Expression,
@@ -358,8 +364,9 @@ fn known_range(formula: &Expression, setting: &FormulaContext) -> Option<(f64, f
     }
 }
 
-/// Returns whether a comparison of numbers and operands holds for all values of this case, or for none. Returns `None` if it
-/// holds for some. For example, `x < 4` holds if x is from 0 to 3, and is undecided if x is from 0 to 5.
+/// Returns whether a comparison of numbers and operands is true for all values of this case, or for none. Returns `None` if it
+/// is true for some values, or if a side is neither a number nor an operand. For example, `x < 4` is true if x is from 0 to 3,
+/// and is undecided if x is from 0 to 5.
 fn decided(comparison: &Comparison, setting: &FormulaContext) -> Option<bool> {
     let left = known_range(&comparison.left, setting)?;
     let right = known_range(&comparison.right, setting)?;
@@ -391,8 +398,8 @@ fn power(terms: &mut RealTerms, base: RealTermId, exponent: u32) -> RealTermId {
     result.unwrap_or_else(|| terms.number(1.0))
 }
 
-/// Returns the number of a term after simplification: `x + 0` becomes `x`, and a sum or product of constants becomes its value if
-/// an f64 can represent it exactly. For example, 0.5 + 0.25 becomes 0.75.
+/// Adds a term in simplified form and returns its number: `x + 0` becomes `x`, and an operation on constants becomes its value
+/// if an f64 can represent it exactly. For example, 0.5 + 0.25 becomes 0.75.
 pub fn folded(terms: &mut RealTerms, term: RealTerm) -> RealTermId {
     match term {
         RealTerm::Add(a, b) | RealTerm::Sub(a, b) if is_number(terms, b, 0.0) => return a,
@@ -422,7 +429,8 @@ fn is_number(terms: &RealTerms, id: RealTermId, value: f64) -> bool {
     number_of(terms, id) == Some(value)
 }
 
-/// Returns the value of an operation on numbers, if an f64 can represent the value exactly.
+/// Returns the value of an operation on numbers. Returns `None` if an operand is no number, or if an f64 cannot represent the
+/// value exactly.
 fn exact_value(terms: &RealTerms, term: &RealTerm) -> Option<f64> {
     let (RealTerm::Add(a, b) | RealTerm::Sub(a, b) | RealTerm::Mul(a, b) | RealTerm::Div(a, b)) =
         *term

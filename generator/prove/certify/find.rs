@@ -1,8 +1,8 @@
-//! Finds an error bound that Gappa can prove, for a contract that states none.
+//! Finds an error bound that Gappa can prove, for statements without a bound.
 //!
-//! Gappa answers each statement about an output with an upper bound. The search lowers the largest of these bounds by bisection, in
-//! steps of 1/2048 units. It goes on as long as Gappa proves a smaller bound within two seconds. The result is one bound for all
-//! statements, or a reason in words if Gappa finds no bound for a statement.
+//! Gappa first answers each statement with an upper bound. A bisection in steps of 1/2048 units then searches a smaller bound
+//! that Gappa proves; a proof during the search may take two seconds. The result is one bound for all statements, or a reason
+//! in words if Gappa finds no bound for a statement. It need not be the smallest bound that is true.
 
 use std::fs;
 use std::time::Duration;
@@ -18,15 +18,16 @@ use glint_tools::{LimitReached, Tool};
 /// The factor for six digits after the point, to which an answer is rounded up.
 const MILLIONTHS: f64 = 1e6;
 
-/// The precision of the search for a bound, in output units. `TRY` is the time limit of each proof during the search.
+/// The precision of the search for a bound, in output units.
 const STEP: f64 = 1.0 / 2048.0;
 const TRY: Duration = Duration::from_secs(2);
 
-/// Returns an error bound that Gappa proves for all statements. Gappa answers each statement with an upper bound. The function
-/// then lowers the largest of these bounds by halving, as long as Gappa proves the smaller one.
+/// Returns an error bound, in output units, that Gappa proves for all statements `asked`, or a reason in words why Gappa finds
+/// none. Gappa answers each statement with an upper bound within the time limit `limit`. A bisection then searches a smaller
+/// bound, to 1/2048 units.
 ///
 /// # Errors
-/// Fails if Gappa does not do its work. The inner error says in words why Gappa finds no bound.
+/// Fails if Gappa cannot be run. The inner `Err` is the reason in words.
 pub fn bound(gappa: &Tool, asked: &[Statement], limit: Duration) -> Result<Result<f64, String>> {
     let answers = asked.par_iter().map(|one| answer(gappa, one, limit));
     let answers: Result<Vec<_>, String> =
@@ -60,8 +61,9 @@ pub fn bound(gappa: &Tool, asked: &[Statement], limit: Duration) -> Result<Resul
     Ok(Ok(bound))
 }
 
-/// Returns the bound that Gappa finds for a statement: the smallest bound among its scripts. Returns `None` inside if the
-/// statement does not ask for a bound, and a reason in words if Gappa finds none.
+/// Returns the bound that Gappa finds for a statement: the smallest bound among its scripts, in output units. The inner value
+/// is `None` if the statement does not ask for a bound, and a reason in words if Gappa finds none. Fails if Gappa cannot be
+/// run.
 fn answer(
     gappa: &Tool,
     statement: &Statement,
@@ -92,8 +94,8 @@ fn answer(
 }
 
 /// Returns the upper end of the interval in Gappa's output, rounded up to six digits after the point. Returns 0 if Gappa says
-/// that the hypotheses contradict each other. For example, `|d_1| in [0, 43998467b-26 {0.655628, 2^(-0.60905)}]` gives
-/// 0.655629.
+/// that the hypotheses contradict each other, and `None` if the output has no interval. For example, `|d_1| in [0, 43998467b-26
+/// {0.655628, 2^(-0.60905)}]` gives 0.655629.
 fn largest(output: &str) -> Option<f64> {
     if output.contains("anything can be proved") {
         return Some(0.0);

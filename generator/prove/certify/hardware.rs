@@ -1,7 +1,8 @@
 //! Translates the hardware's computation to real expressions with roundings for the prover Gappa, one case at a time.
 //!
 //! A case is one combination of outcomes of all conditions in the computation ([`super::cases`]). For example, in one case a
-//! saturation cuts the value off, and the result is a constant. In the other case the result is a term with the value's rounding.
+//! saturation limits the value, and the result is a constant. In another case the result is a term with the value's rounding.
+//! Bitwise logic whose result is used as a number has no translation.
 
 use std::collections::{BTreeMap, HashMap};
 
@@ -47,7 +48,8 @@ pub struct Hardware<'a> {
 }
 
 impl<'a> Hardware<'a> {
-    /// Prepares the translation of a case. `variables` are the operands.
+    /// Prepares the translation of a case. `variables` are the operands, in the order of the computation, and `tables` the
+    /// names of the ROMs, by index.
     pub fn new(
         view: UnrolledComputation<'a>,
         case: &'a Case,
@@ -63,7 +65,8 @@ impl<'a> Hardware<'a> {
         self.case.ranges[id.index()]
     }
 
-    /// Returns a new variable with the values that the node has.
+    /// Adds a variable for a node to the script, with `scale` fraction bits and with the node's interval as a fact, and returns
+    /// it.
     fn variable(
         &mut self,
         terms: &mut RealTerms,
@@ -81,8 +84,8 @@ impl<'a> Hardware<'a> {
         NodeValue::Term { id, scale }
     }
 
-    /// Returns the value of a read from a table, as a variable. If an operand addresses the table, it is the same variable that
-    /// a formula has for the word.
+    /// Returns the value of a read from a table, as a variable. If an operand addresses the table, the variable is the same as
+    /// for this word in a formula.
     fn read(
         &mut self,
         terms: &mut RealTerms,
@@ -100,7 +103,7 @@ impl<'a> Hardware<'a> {
     }
 
     /// Returns the result of a divider, as a variable. A fact says that the real quotient is larger than the variable by at
-    /// most one unit of its last bit.
+    /// most one unit of its last bit. Fails if the dividend or the divisor has no translation.
     fn quotient(
         &mut self,
         terms: &mut RealTerms,
@@ -119,12 +122,12 @@ impl<'a> Hardware<'a> {
         Ok(value)
     }
 
-    /// Returns the difference a − b of two nodes as a term, and the interval that contains this difference. The caller must
-    /// know that a < b if `less` is true, and that a ≥ b if it is false. For example, if `less` is true and the nodes have 4
-    /// fraction bits, the interval ends at −1/16.
+    /// Returns the difference a − b of two nodes as a term, and the interval that contains this difference, in real values. The
+    /// caller must know that a < b if `less` is true, and that a ≥ b if it is false. For example, if `less` is true and the
+    /// nodes have 4 fraction bits, the interval ends at −1/16.
     ///
-    /// Returns `None` if a node is constant in this case, if a node cannot be written as a term, or if the nodes have
-    /// different numbers of fraction bits.
+    /// Returns `None` if a node is constant in this case, if a node cannot be written as a term, or if the nodes have different
+    /// numbers of fraction bits.
     pub fn compared(
         &mut self,
         terms: &mut RealTerms,
@@ -152,7 +155,10 @@ impl<'a> Hardware<'a> {
         Some((id, range))
     }
 
-    /// Returns the dividend and the divisor of the divider `of` as terms with the same binary point.
+    /// Returns the dividend and the divisor of the divider `of` as terms with the same number of fraction bits.
+    ///
+    /// # Errors
+    /// Fails if one of them has no translation.
     pub fn fraction(
         &mut self,
         terms: &mut RealTerms,
@@ -328,14 +334,15 @@ impl<'a> Hardware<'a> {
         }
     }
 
-    /// Returns the number y whose rounding `a` + `b` computes, and the number of bits that it drops. One node has the bits of y
-    /// from `low` up, and the other has the bit below. Their sum is y rounded to the nearest, halves up: ⌊y⌋ + (⌊2y⌋ − 2⌊y⌋) =
-    /// ⌊y + 1/2⌋. Returns `None` if the nodes have another form, or if y may be negative.
+    /// Returns the node of a number y and a number of bits, if `a` + `b` is y without these bits, rounded to the nearest,
+    /// halves up. One node has the bits of y from `low` up, and the other has the bit below: ⌊y⌋ + (⌊2y⌋ − 2⌊y⌋) = ⌊y + 1/2⌋,
+    /// if y is divided by 2^low. Returns `None` if the nodes have another form, or if y may be negative.
     fn rounded(&self, a: NodeId, b: NodeId) -> Option<(NodeId, u32)> {
         self.upper_and_half(a, b).or_else(|| self.upper_and_half(b, a))
     }
 
-    /// Returns y and `low` if `upper` has the bits of y from `low` up, and `half` has the bit below.
+    /// Returns y and the position `low` if `upper` has the bits of y from `low` up, and `half` has the bit below. Returns
+    /// `None` otherwise.
     fn upper_and_half(&self, upper: NodeId, half: NodeId) -> Option<(NodeId, u32)> {
         let (upper, half) = (unextended(self.graph, upper), unextended(self.graph, half));
         let (of, low) = sliced(self.graph, upper)?;
@@ -350,8 +357,9 @@ impl<'a> Hardware<'a> {
     }
 }
 
-/// Returns the amount to add to a node's value because bits above the format are dropped. Fails if the amount is not the same
-/// for the whole range.
+/// Returns the amount to add to a computed raw value to get the node's raw value, because bits above the node's format are
+/// dropped. For example, sums from 16 to 20 in an unsigned format of 4 bits have the amount −16. Fails if the amount is not the
+/// same for the whole interval `range`.
 fn wrap_of(node: &Node, range: Interval) -> Result<i128, String> {
     let Some(amount) = wrap(range, node.format) else {
         let ((low, high), format, name) = (range, node.format, &node.label.name);
@@ -370,7 +378,7 @@ fn unextended(graph: &Graph, id: NodeId) -> NodeId {
     }
 }
 
-/// Returns the node from which a slice is cut, and the lowest bit of the slice. Returns `None` if the node is no slice.
+/// Returns the node from which a slice takes its bits, and the lowest bit of the slice. Returns `None` if the node is no slice.
 fn sliced(graph: &Graph, id: NodeId) -> Option<(NodeId, u32)> {
     match &graph.node(id).cell {
         Cell::Op(NodeOp::Slice { of, low }) => Some((widened(graph, *of), *low)),
@@ -378,8 +386,8 @@ fn sliced(graph: &Graph, id: NodeId) -> Option<(NodeId, u32)> {
     }
 }
 
-/// Returns a value without its lowest `low` bits. For example, the constant 14 without 2 bits is 3 rounded down, and 4 to the
-/// nearest.
+/// Returns a value without its lowest `low` bits, rounded in a direction. For example, the constant 14 without 2 bits is 3
+/// rounded down, and 4 to the nearest.
 fn cut(
     terms: &mut RealTerms,
     value: NodeValue,
@@ -401,7 +409,7 @@ fn cut(
     }
 }
 
-/// Returns the value with `position` zeros below. For example, the constant 3 with 2 zeros below is 12.
+/// Returns the value shifted left by `position` bits. For example, the constant 3 shifted by 2 bits is 12.
 fn raised(value: NodeValue, position: i32) -> NodeValue {
     match value {
         NodeValue::Constant(raw) => NodeValue::Constant(raw << position),

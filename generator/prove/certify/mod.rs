@@ -1,9 +1,11 @@
-//! Translates the error bound of a contract to statements that the prover Gappa can prove. `glint certify` runs Gappa on them.
+//! Translates the error bound of a contract to statements for the prover Gappa, and runs Gappa on them. `glint certify` uses
+//! it.
 //!
-//! The computation of a core is unrolled into a graph of values, and split into [`cases`] at saturations, clamps and ROMs. The
-//! cases together cover the domain of the contract. In each case, [`hardware`] writes the hardware's result as an expression with
-//! roundings, and [`exact`] writes the formula as an expression without roundings. A statement says that the two differ by at
-//! most the bound. If the formula reads a ROM, it reads the same words as the hardware.
+//! [`statements`] unrolls the computation of a core into a graph of values, and splits it into [`cases`] at every condition,
+//! such as a saturation. In each case, [`hardware`] writes the hardware's result as an expression with roundings, and [`exact`]
+//! writes the formula as an expression without roundings. A statement says that the two differ by at most the bound, and the
+//! cases together cover the domain of the contract. If the formula reads a ROM, the statements take the hardware's words as
+//! they are, and do not prove them right.
 
 pub mod cases;
 pub mod exact;
@@ -34,12 +36,13 @@ pub use statement::Statement;
 use statement::Statements;
 use task::Task;
 
-/// Returns the statements for the prover Gappa that together prove the error bound of a sequential design's contract. For example,
-/// an output that may saturate has one statement for each of the two cases.
+/// Returns the statements for the prover Gappa that together prove the error bound of a sequential design's contract. For
+/// example, an output that may saturate has one statement for each of the two cases.
 ///
 /// # Errors
-/// Fails if a step has no translation, if the contract states no bound, or if it takes longer than `limit` to write all statements.
-/// The error says so in words.
+/// The error is a reason in words. Fails if an operation of the hardware or of the formula has no translation, if the contract
+/// states no bound or no formula, or if there are too many cases. Fails also if it takes longer than `limit` to write the
+/// statements of a device that computes single points.
 pub fn statements(
     design: &Design,
     contract: &dyn Contract,
@@ -57,7 +60,8 @@ pub fn statements(
 /// output units. [`bound`] finds the answer, and [`Statement::within`] inserts it.
 ///
 /// # Errors
-/// Fails as [`statements`] does.
+/// Fails as [`statements`] does, except that the contract needs no bound. Fails always for a device that computes a line of
+/// points.
 pub fn questions(
     design: &Design,
     contract: &dyn Contract,
@@ -119,6 +123,8 @@ fn within(
     Ok(statements.list)
 }
 
+/// Parses the formulas of a contract: for a highlight the formulas of f, otherwise one for each output. Fails if a formula is
+/// missing, cannot be parsed, or has a function without a translation.
 fn formulas(contract: &dyn Contract) -> Result<Vec<Expression>, String> {
     let (expressions, wanted) = match contract.highlight() {
         Some(highlight) => (highlight.expressions(), 1),
@@ -145,7 +151,7 @@ fn formulas(contract: &dyn Contract) -> Result<Vec<Expression>, String> {
     parsed.collect()
 }
 
-/// Returns the SHA-256 of the scripts for the prover Gappa of all statements, in their order. Two certificates with the same digest
+/// Returns the SHA-256 of the scripts of all statements, in their order, in hexadecimal. Two certificates with the same digest
 /// prove the same statements.
 pub fn digest(statements: &[Statement]) -> String {
     let scripts = statements.iter().flat_map(|statement| &statement.scripts);

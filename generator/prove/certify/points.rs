@@ -1,5 +1,8 @@
-//! Writes the Gappa statements of one case, for a device that computes a single point: each output differs from the formula by at
-//! most the bound.
+//! Writes the Gappa statements of one case, for a device that computes a single point (one set of operands) after each start:
+//! each output differs from the formula by at most the bound.
+//!
+//! If the formula has branches, such as `max`, each combination of branches is a statement. The module `segments` does the same
+//! for devices that compute a line of points.
 
 use std::collections::{BTreeMap, HashMap};
 
@@ -16,9 +19,9 @@ use glint_formula::Expression;
 use glint_rtl::pipeline::{Cell, NodeId, NodeOp};
 
 impl Task<'_> {
-    /// Returns the variable of each operand, and the power of two by which it is divided. If the formula always divides an
-    /// operand by the same power of two, the variable is the quotient. For example, a formula that has `exponent` only in
-    /// `exponent / 8` has the variable `exponent_over_8` and the power 3.
+    /// Returns, for each operand by name, its variable in the script, and the power of two by which the operand is divided. If
+    /// the formula always divides an operand by the same power of two, the variable is the quotient. For example, a formula
+    /// that has `exponent` only in `exponent / 8` has the variable `exponent_over_8` and the power 3.
     fn variables(&self) -> HashMap<String, (String, i32)> {
         let mut divisors = HashMap::new();
         for formula in self.formulas {
@@ -48,8 +51,12 @@ impl Task<'_> {
         words
     }
 
-    /// Adds the Gappa statements for one case of the computation: for each output, that it differs from the formula by at most the
-    /// bound.
+    /// Adds the Gappa statements for one case of the computation to `statements`: the premises, and for each output, that the
+    /// output differs from the formula by at most the bound.
+    ///
+    /// # Errors
+    /// Fails if a value of the hardware or a part of the formula has no translation, or if the contract lacks an operand of the
+    /// design.
     pub(super) fn state(&self, case: &Case, statements: &mut Statements) -> Result<(), String> {
         let variables = self.variables();
         let mut ranges = HashMap::new();
@@ -129,8 +136,8 @@ impl Task<'_> {
         Ok(())
     }
 
-    /// Returns the hypotheses of a case: the interval of each value that can be written as a term. It leaves out the other
-    /// values, which is safe, because a statement with fewer hypotheses is stronger.
+    /// Returns the hypotheses of a case: the interval of values of each term that is known. It leaves out values that cannot be
+    /// written as a term, which is safe, because a statement with fewer hypotheses is stronger.
     fn presupposed(
         &self,
         case: &Case,

@@ -1,6 +1,7 @@
 //! Computes the range of polynomials of degree at most 2 in one operand, which interval arithmetic overestimates.
 //!
-//! For example, x² − 16·x for x from 0 to 16 lies between −64 and 0; interval arithmetic gives −256 to 256.
+//! For example, x² − 16·x for x from 0 to 16 lies between −64 and 0; interval arithmetic gives −256 to 256. Coefficients and
+//! operands are raw integers. A polynomial in two operands, of a higher degree or with too large coefficients is `None`.
 
 use glint_base::interval::Interval;
 use glint_rtl::pipeline::NodeId;

@@ -21,7 +21,8 @@ pub struct Premise {
     pub script: String,
 }
 
-/// Returns the premises of a case's statements.
+/// Returns the premises of a case's statements: one for each parabola of the case, and three for each divider whose operands'
+/// intervals do not already imply the conditions. `operands` has each variable of the script with its interval of values.
 ///
 /// # Errors
 /// Fails if a value has no translation.
@@ -61,8 +62,9 @@ struct PremiseTask<'a> {
 }
 
 impl PremiseTask<'_> {
-    /// Writes the statement that the value of a node lies from `low` to `high`. The value is a quadratic polynomial, and a hint
-    /// completes its square. Returns `None` if the node or the variable of the polynomial is a constant.
+    /// Writes the statement that the value of a node lies from `low` to `high`, both raw. The value is a quadratic polynomial,
+    /// and a hint completes its square. Returns `None` if the node or the variable of the polynomial is a constant. Fails if a
+    /// value has no translation.
     fn parabola(
         &mut self,
         node: NodeId,
@@ -89,7 +91,7 @@ impl PremiseTask<'_> {
     }
 
     /// Writes the statement that the divisor of a divider is positive, and that the dividend is neither negative nor above the
-    /// divisor.
+    /// divisor. Fails if one of them has no translation.
     fn dividend(&mut self, quotient: Quotient) -> Result<String, String> {
         let (dividend, divisor) = self.hardware.fraction(&mut self.terms, quotient)?;
         let rest = self.terms.insert(RealTerm::Sub(divisor, dividend), "rest");
@@ -126,9 +128,9 @@ impl PremiseTask<'_> {
     }
 }
 
-/// Writes the statement that a step of a divider leaves a remainder from 0 to the divisor. `fits` is whether the divisor fits
-/// into twice the remainder. All numbers are multiples of the divisor. For example, a remainder of 0.75 is doubled to 1.5, and
-/// leaves 0.5.
+/// Writes the statement that a step of a divider leaves a remainder from 0 to the divisor. `fits` says whether the divisor fits
+/// into twice the remainder. All numbers are in multiples of the divisor. For example, a remainder of 0.75 is doubled to 1.5,
+/// and leaves 0.5.
 fn step(fits: bool) -> String {
     let (condition, left) =
         if fits { ("doubled - 1 >= 0", "doubled - 1") } else { ("doubled - 1 <= 0", "doubled") };

@@ -1,4 +1,7 @@
 //! Runs Gappa on a statement, and optionally lets Coq check the proof that Gappa found.
+//!
+//! For a statement that is proved, the module also searches a point at which all hypotheses hold. Without such a point, a proof
+//! could rest on hypotheses that contradict each other.
 
 use std::fs;
 use std::time::Duration;
@@ -23,17 +26,21 @@ pub enum ProofSubject {
 
 /// The outcome when Gappa tries to prove a statement about an error bound.
 pub enum ProofOutcome {
-    /// A tool accepted the proof. The fields are the index of the accepted script and the subject of the statement.
+    /// Gappa accepted a script and, if Coq was given, Coq accepted the proof. The fields are the index of this script in
+    /// [`Statement::scripts`], and whether its hypotheses can hold.
     Proved(usize, ProofSubject),
-    /// The statement is not proved. The text is Gappa's answer to the last script.
+    /// The statement is not proved. The text says why: Gappa's or Coq's answer to the last script, or the time limit that Gappa
+    /// reached.
     Open(String),
 }
 
-/// Proves a statement: runs Gappa on its scripts until Gappa accepts one. With `coq`, Coq's kernel also checks the proof.
+/// Proves a statement: runs Gappa on its scripts, in order, until Gappa accepts one. With `coq`, Coq must accept the proof,
+/// too. `limit` is the time limit of each run of Gappa; Coq has ten times as long.
 ///
 /// # Errors
-/// Fails if a tool does not do its work. If the statement is not proved within the time limit, the outcome says so, and there is no
-/// error.
+/// Fails if Gappa or Coq cannot be run or is killed, or if Gappa cannot write its proof for Coq. Fails also if Coq takes too
+/// long. If Gappa does not prove the statement within the limit, or if Coq refuses the proof, the outcome is
+/// [`ProofOutcome::Open`].
 pub fn prove(
     gappa: &Tool,
     coq: Option<&Tool>,
@@ -86,7 +93,8 @@ pub fn prove(
     Ok(ProofOutcome::Open(why))
 }
 
-/// Returns whether the hypotheses of an accepted script can hold. If no point is found, it asks Gappa for a contradiction.
+/// Returns whether the hypotheses of an accepted script can hold. If the search finds no point at which they hold, the function
+/// asks Gappa whether they contradict each other. Fails if Gappa cannot be run.
 fn subject(gappa: &Tool, script: &str, limit: Duration) -> Result<ProofSubject> {
     if let Some(point) = witness::witness(script) {
         return Ok(ProofSubject::Point(point));

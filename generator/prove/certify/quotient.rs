@@ -1,16 +1,16 @@
 //! Finds restoring dividers in an unrolled computation: chains of steps that each compute one bit of a quotient.
 //!
-//! A step doubles the remainder r and subtracts the divisor d if it fits: r' = 2·r − b·d with b = (2·r ≥ d). If 0 ≤ r ≤ d and d >
-//! 0, the same holds for r'. After k steps from r₀, the bits are the number q = Σ bᵢ·2^(k−i), and the last remainder is 2^k·r₀ −
-//! q·d, between 0 and d. Therefore q·2^−k is at most r₀/d, and less than it by at most 2^−k. Gappa also proves the premises: 0 ≤
-//! r₀ ≤ d, d > 0, and the invariant of a step.
+//! A step doubles the remainder r and subtracts the divisor d if it fits: r' = 2·r − b·d with b = (2·r ≥ d). If 0 ≤ r ≤ d and d
+//! > 0, the same holds for r'. After k steps from r₀, the bits are the number q = Σ bᵢ·2^(k−i), and the last remainder is
+//! 2^k·r₀ − q·d, between 0 and d. Therefore q·2^−k is at most r₀/d, and less than r₀/d by at most 2^−k. The module `premises`
+//! lets Gappa prove the conditions: 0 ≤ r₀ ≤ d, d > 0, and that a step keeps 0 ≤ r ≤ d.
 
 use std::collections::BTreeMap;
 
 use glint_rtl::pipeline::{Cell, Graph, NodeId, NodeOp};
 
-/// A quotient that the hardware computes bit by bit. For example, 1 by 3 in two bits is q = 1: 0.25 is below 1/3 by less than
-/// 2⁻².
+/// A divider: the nodes from which the hardware computes a quotient bit by bit. For example, 1 by 3 in two bits is q = 1: 0.25
+/// is below 1/3 by less than 2⁻².
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Quotient {
     /// The dividend, which is the first remainder.
@@ -41,7 +41,8 @@ pub fn quotients(graph: &Graph, results: &[NodeId]) -> BTreeMap<NodeId, Quotient
     found
 }
 
-/// Returns the divider whose quotient bits a node concatenates, the top bit first. Returns `None` if the node is no such node.
+/// Returns the divider whose quotient bits a node concatenates, the top bit first. Returns `None` if the node is no
+/// concatenation of at least two such bits.
 fn quotient(graph: &Graph, id: NodeId) -> Option<Quotient> {
     let Cell::Op(NodeOp::Concat(_)) = graph.node(id).cell else { return None };
     let mut bits = Vec::new();
@@ -65,8 +66,8 @@ fn joined(graph: &Graph, id: NodeId, parts: &mut Vec<NodeId>) {
     }
 }
 
-/// A step: `doubled` is twice the remainder, `trial` is `doubled` minus the divisor, and `bit` says whether the
-/// divisor fits.
+/// A step of a restoring divider: `doubled` is twice the remainder, `trial` is `doubled` minus the divisor, and `bit` is 1 if
+/// the divisor fits into `doubled`.
 struct DivisionStep {
     remainder: NodeId,
     divisor: NodeId,
@@ -75,6 +76,7 @@ struct DivisionStep {
     bit: NodeId,
 }
 
+/// Returns the step that computes the quotient bit `bit`, or `None` if the node has another form.
 fn step(graph: &Graph, bit: NodeId) -> Option<DivisionStep> {
     let op = |id: NodeId| match &graph.node(id).cell {
         Cell::Op(op) => Some(op),
@@ -107,7 +109,7 @@ fn step(graph: &Graph, bit: NodeId) -> Option<DivisionStep> {
     })
 }
 
-/// Returns whether a node is the remainder after a step, and has at least as many bits as the divisor.
+/// Returns whether a node is the remainder that `step` leaves, and has at least as many bits as the divisor.
 fn is_left(graph: &Graph, id: NodeId, step: &DivisionStep) -> bool {
     let Cell::Op(NodeOp::Slice { of, low: 0 }) = graph.node(id).cell else { return false };
     let left = NodeOp::Mux { select: step.bit, inputs: vec![step.doubled, step.trial] };

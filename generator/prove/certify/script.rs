@@ -1,4 +1,7 @@
-//! Writes the text of a Gappa statement: definitions, hypotheses, the goal, and hints for the prover.
+//! Writes the text of a Gappa script: definitions, hypotheses, the goal, and hints for the prover.
+//!
+//! Gappa needs hints that relate terms of the formula to terms of the hardware. The module finds them by comparing the terms'
+//! values at random points. A wrong hint cannot lead to a wrong proof, because Gappa proves each hint that it uses.
 
 use std::collections::{BTreeMap, HashMap};
 use std::fmt::Write as _;
@@ -11,7 +14,7 @@ use super::hardware::Variables;
 use super::terms::{RealTerm, RealTermId, RealTerms, number};
 use glint_base::fixed::exp2;
 
-/// The number of points at which terms are compared. `TRIES` is the number of random points among which they are searched.
+/// The number of points at which terms are compared.
 const SAMPLES: usize = 24;
 const TRIES: usize = 2_000;
 
@@ -19,7 +22,7 @@ const TRIES: usize = 2_000;
 pub struct GappaScript<'a> {
     /// The terms of hardware and formula.
     pub terms: &'a RealTerms,
-    /// The number of terms that belong to the hardware. They come before the terms of the formula.
+    /// The number of terms that belong to the hardware. They are the first terms of `terms`, before the terms of the formula.
     pub hardware_terms: usize,
     /// The variables of the script, with their numbers of fraction bits.
     pub placed: &'a Variables,
@@ -30,8 +33,8 @@ pub struct GappaScript<'a> {
 }
 
 impl GappaScript<'_> {
-    /// Returns the script for one output, with the output `out` and the formula `f` times `factor`. The script states that the two
-    /// differ by at most the bound, or asks for the bound.
+    /// Returns the script for one output, with the output `out` and the formula `f` times `factor`. The script states that both
+    /// differ by at most `bound`, in output units; without a bound, it asks Gappa for it.
     pub fn text(
         &self,
         out: RealTermId,
@@ -46,8 +49,8 @@ impl GappaScript<'_> {
         self.statement(terms, difference, &goal, &[])
     }
 
-    /// Returns the Gappa script that states `goal` about a term. `hints` are added to the hints that follow from hardware and
-    /// formula.
+    /// Returns the Gappa script that states `goal` about the term `about`. `hints` are lines that come before the hints that
+    /// follow from hardware and formula.
     pub fn statement(
         &self,
         mut terms: RealTerms,
@@ -78,7 +81,8 @@ impl GappaScript<'_> {
         text
     }
 
-    /// Writes the hypotheses: the formats of variables, the values of terms, and the signs of differences.
+    /// Returns the hypotheses, one text for each: the formats of variables, the intervals of terms, and the signs of
+    /// differences. Terms that are not `needed` are left out. For example, `@FIX(x,-4)`, `x in [0,1]` and `exact_9 >= 0`.
     fn hypotheses(&self, terms: &RealTerms, needed: &[bool]) -> Vec<String> {
         let mut hypotheses = Vec::new();
         for (name, scale) in self.placed {
@@ -109,10 +113,11 @@ impl GappaScript<'_> {
         hypotheses
     }
 
-    /// Writes hints of four kinds. A sum a + (1 − a)·x gets a form that shows its range (`blend`). A term of the formula may be
-    /// a factor times a term of the hardware, plus an offset. It may equal a term of the hardware without its roundings. It may
-    /// be near a term of the hardware with roundings. The comparison of samples finds the last three kinds, and Gappa proves
-    /// each hint that it uses.
+    /// Returns hints of four kinds: a list of equalities, and a list of pairs of terms that are near each other. A sum a + (1 −
+    /// a)·x gets a form that shows its range (`blend`). A term of the formula may be a factor times a term of the hardware,
+    /// plus an offset. Or it equals a term of the hardware without its roundings; these terms are added to `roots`. Or it is
+    /// near a term of the hardware with roundings. The comparison of samples finds the last three kinds, and Gappa proves each
+    /// hint that it uses.
     fn hints(
         &self,
         terms: &mut RealTerms,
@@ -172,8 +177,8 @@ impl GappaScript<'_> {
         (equal, near)
     }
 
-    /// Returns the values of all terms at operands of this case, followed by their values at other operands of the
-    /// domain.
+    /// Returns the values of all terms at random points: first at up to 24 points of this case, then at up to 24 other points
+    /// of the domain. An entry has the values of all terms at one point.
     fn samples(&self, terms: &RealTerms) -> Vec<Vec<f64>> {
         let mut random = ChaCha8Rng::seed_from_u64(1);
         let (mut samples, mut others) = (Vec::new(), Vec::new());
@@ -300,7 +305,7 @@ fn largest_size(values: &[f64]) -> f64 {
     values.iter().fold(0.0, |most, value| most.max(value.abs()))
 }
 
-/// Returns whether two columns differ by at most a 64th of the largest value of the first.
+/// Returns whether all values of `x` and `y` differ by at most 1/64 of the largest absolute value in `x`.
 fn is_near(x: &[f64], y: &[f64]) -> bool {
     let limit = largest_size(x) / 64.0;
     let mut apart: f64 = 0.0;
@@ -310,14 +315,15 @@ fn is_near(x: &[f64], y: &[f64]) -> bool {
     apart <= limit
 }
 
-/// Returns whether two columns are equal except for the rounding of f64.
+/// Returns whether all values of `x` and `y` are equal except for the rounding of f64.
 fn is_same(x: &[f64], y: &[f64]) -> bool {
     let limit = largest_size(y) * exp2(-44);
     x.iter().zip(y).all(|(x, y)| (x - y).abs() <= limit)
 }
 
-/// Returns the factor and the offset with which `y` is a linear function of `x`, both short numbers. Returns `None` if there
-/// are none. For example, 0, 1, 2 and 1, 3, 5 give the factor 2 and the offset 1.
+/// Returns the factor and the offset with which `y` is a linear function of `x`, rounded to 16 and 44 fraction bits. For
+/// example, 0, 1, 2 and 1, 3, 5 give the factor 2 and the offset 1. Returns `None` if no such function fits, or if the factor
+/// is 0.
 fn line_through(x: &[f64], y: &[f64]) -> Option<(f64, f64)> {
     let other = x.iter().position(|value| *value != x[0])?;
     let factor = rounded((y[other] - y[0]) / (x[other] - x[0]), 16);
@@ -349,8 +355,8 @@ pub fn goal(difference: &str, bound: Option<f64>) -> String {
     }
 }
 
-/// Returns the script with numbered names in the order of their first use. Two scripts that become equal state the same. For
-/// example, `sum_2 = 0.5 + x;` becomes `n0 = 0.5 + n1;`.
+/// Returns the script with its names replaced by `n0`, `n1`, … in the order of their first use. Two scripts that become equal
+/// state the same. For example, `sum_2 = 0.5 + x;` becomes `n0 = 0.5 + n1;`.
 pub fn nameless(script: &str) -> String {
     let mut numbers: HashMap<&str, usize> = HashMap::new();
     let is_part = |c: char| c.is_ascii_alphanumeric() || c == '_' || c == '.';

@@ -1,5 +1,5 @@
-//! Writes the Gappa statements for devices that compute a line of points (many points after one `start`) from a ROM with powers of
-//! a cosine. At each point, the device reads a ROM word for the angle and multiplies it by a colour.
+//! Writes the Gappa statements for devices that compute a line of points (many points after one `start`) from a ROM with powers
+//! of a cosine. At each point, the device reads a ROM word for the angle and multiplies it by a colour.
 //!
 //! A ROM word serves all angles of a segment. The contract follows from two kinds of statements:
 //!
@@ -8,14 +8,14 @@
 //! - For each output: if a word w and a real f differ by at most that bound, then the output differs from f times the colour by at
 //!   most the contract's bound.
 //!
-//! Gappa has no cosine, so the script uses Taylor's formula cos y = 1 − y²/2! + y⁴/4! − … ± y²ᵐ/(2m)! + ρ·y²ᵐ⁺²/(2m+2)! with |ρ| ≤
-//! 1, which holds for every real y. Gappa proves the statement for every ρ from −1 to 1, and for every number within 10⁻²⁰ of π/2
-//! in place of π/2.
+//! Gappa has no cosine, so the script uses Taylor's formula cos y = 1 − y²/2! + y⁴/4! − … ± y²ᵐ/(2m)! + ρ·y²ᵐ⁺²/(2m+2)! with
+//! |ρ| ≤ 1, which holds for every real y. Gappa proves the statement for every ρ from −1 to 1, and for every number within
+//! 10⁻²⁰ of π/2 in place of π/2.
 //!
-//! The module finds the angles of each word by bisection: it halves an interval of angles until the netlist reads the same word for
-//! the whole interval, as in [`super::cases`]. The device computes each point of a line as it computes the first, but at another
-//! angle; [`glint_rtl::pipeline::unroll_line`] proves this by induction. The formula's angle at a point is the value of the
-//! register that adds up the angle along the line ([`AngleWalk::angle`]).
+//! The module finds the angles of each word by bisection: it halves an interval of angles until the netlist reads the same word
+//! for the whole interval, as in [`super::cases`]. The device computes each point of a line as it computes the first, but at
+//! another angle; [`glint_rtl::pipeline::unroll_line`] proves this by induction. The formula's angle at a point is the value of
+//! the register that adds up the angle along the line ([`AngleWalk::angle`]).
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
@@ -30,18 +30,18 @@ use glint_base::fixed::exp2;
 use glint_formula::{Enclosure, Expression, Function, Kind, Operator, parse};
 use glint_rtl::pipeline::{Cell, Graph, NodeId, NodeOp, WalkRegister};
 
-/// The number of words in a script: Gappa's time grows with its square.
+/// The number of ROM words in a script: Gappa's time grows with its square.
 const WORDS: usize = 8;
 
-/// Twice this number is the exponent of y in the last term of the polynomial for the cosine. At a right angle, the remainder is
-/// below 10⁻¹⁶.
+/// The number m in Taylor's formula: the polynomial for the cosine ends with the term in y²ᵐ. At a right angle, the remainder
+/// is below 10⁻¹⁶.
 const TERMS: u32 = 10;
 
 /// Two numbers between which π/2 lies.
 const RIGHT: (&str, &str) = ("1.57079632679489661923", "1.57079632679489661924");
 
-/// The statements use the bound of f, rounded down to this number of fraction bits. It is a short number, so that its
-/// sum with a word is exact in f64.
+/// The number of fraction bits to which the statements round the bound of f down. The rounded bound is a short number, so that
+/// its sum with a word is exact in f64.
 const PLACES: i32 = 42;
 
 /// The name of the angle of a point in a formula. It is no operand, because the operand has only the angle of the first point.
@@ -54,12 +54,12 @@ struct WordSegment {
     to: f64,
 }
 
-/// Returns the statements for a device that computes a line of points. `walk` are the registers that change from point to point,
-/// such as the angle.
+/// Returns the statements for a device that computes a line of points. `walk` are the registers that change from point to
+/// point, such as the angle.
 ///
 /// # Errors
-/// Fails if the formula or the netlist does not have the expected form: a table with a power of a cosine, whose address is an angle
-/// that grows from point to point.
+/// Fails if the task has no bound, or if the contract is no highlight. Fails also if the formula or the netlist does not have
+/// the expected form: a table with a power of a cosine, whose address is an angle that grows from point to point.
 pub fn statements(task: &Task, walk: &[WalkRegister]) -> Result<Vec<Statement>, String> {
     let bound = task.bound.ok_or("a table is stated by segment with a stated bound alone")?;
     if task.contract.highlight().is_none() {
@@ -112,8 +112,8 @@ struct AngleWalk {
 }
 
 impl AngleWalk {
-    /// Returns the angle along a line if it is the only register that changes from point to point. The register must begin with
-    /// one operand, and another operand must be added to it modulo its format. Fails otherwise.
+    /// Returns the angle along a line of points. The angle must be the only register that changes from point to point. The
+    /// register must begin with one operand, and another operand must be added to it modulo its format. Fails otherwise.
     fn new(task: &Task, walk: &[WalkRegister]) -> Result<Self, String> {
         let graph = task.graph();
         let is_more_than_a_sum = "its points walk on by more than a sum";
@@ -138,8 +138,8 @@ impl AngleWalk {
         Ok(Self { start: start.to_owned(), wrapped })
     }
 
-    /// Returns `formula` with [`POINT`] in place of the angle of a point, start + index·step, wrapped around. By induction, the
-    /// register of the angle has this value.
+    /// Returns `formula` with the name [`POINT`] in place of the angle of a point, which is start + index·step, wrapped around.
+    /// By induction, the register of the angle has this value.
     fn angle(&self, formula: &Expression) -> Expression {
         formula.substitute(&self.wrapped, &Expression::operand(POINT), &formula.span)
     }
@@ -153,9 +153,12 @@ fn operand_name<'t>(task: &'t Task, id: NodeId) -> Option<&'t str> {
     }
 }
 
-/// The colour operand of each output, the table word by which all outputs are multiplied, and the outputs.
+/// The names of the colour operands, the node of the table word by which all outputs are multiplied, and the outputs with their
+/// nodes.
 type ProductsByColour = (Vec<String>, NodeId, Vec<(String, NodeId)>);
 
+/// Finds the one table word on which all outputs depend. Fails if the outputs depend on several words, if they depend on
+/// anything but this word and the colours, or if the numbers of colours and outputs differ.
 fn table(task: &Task) -> Result<ProductsByColour, String> {
     let graph = task.graph();
     let outputs = task.outputs()?;
@@ -205,7 +208,8 @@ fn is_open(graph: &Graph, id: NodeId) -> bool {
 }
 
 /// Returns the words of the table that are read, in the order of their addresses, each with the interval of the angles that
-/// read it.
+/// read it, in right angles. Fails if the address depends on anything but the angle, or if an angle leaves the range from 0 to
+/// 1.
 fn words(
     task: &Task,
     table: NodeId,
@@ -272,13 +276,14 @@ fn decided_address(
     if low == high { Some(low) } else { None }
 }
 
-/// Returns an interval that contains the formula's angle if the angle of the point is in the given range. Returns `None` if the
-/// formula's angle depends on anything else.
+/// Returns an interval, in right angles, that contains the formula's angle if the angle of the point is from `low` to `high`.
+/// Returns `None` if the formula's angle depends on anything but the angle of the point.
 fn enclosed(angle: &Expression, (low, high): (f64, f64)) -> Option<Enclosure> {
     angle.enclose(&[(POINT, Enclosure::between(low, high))]).ok()
 }
 
-/// Writes the statement that the formula is within `bound` of each word at both ends of the word's segment.
+/// Writes the statement that the formula is within `bound` of each word at both ends of the word's segment. `first` is the
+/// index of the first word, and `power` the exponent of the cosine.
 fn about_words(words: &[WordSegment], first: usize, power: u32, bound: f64) -> String {
     let degree = 2 * TERMS + 2;
     let mut text = format!(
@@ -330,7 +335,8 @@ fn cosine(name: &str, angle: f64, power: u32) -> String {
     text
 }
 
-/// Writes the statement that an output is within `bound` of `colour` times f, for every f within `of_f` of the table word.
+/// Writes the statement that the output `out` is within `bound`, in output units, of `colour` times f, for every f within
+/// `of_f` of the table word. Fails if the output has no translation or the table has a single word.
 fn about_output(
     task: &Task,
     (out, table): (NodeId, NodeId),

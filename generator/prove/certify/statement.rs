@@ -1,4 +1,7 @@
 //! Collects the Gappa statements of a proof, and keeps equal statements only once.
+//!
+//! Statements are equal if their scripts are the same except for names. For example, the outputs red and green often share a
+//! statement. The module writes no script and runs no prover.
 
 use std::collections::HashMap;
 
@@ -23,8 +26,8 @@ pub struct Statement {
 }
 
 impl Statement {
-    /// Returns the statement with a stated bound instead of a question for the bound. For example, `|difference_7| in ? }` becomes
-    /// `|difference_7| <= 0.5 }`.
+    /// Returns the statement with a stated bound instead of a question for the bound. For example, `|difference_7| in ? }`
+    /// becomes `|difference_7| <= 0.5 }`.
     #[must_use]
     pub fn within(&self, bound: f64) -> Self {
         let stated = format!("| <= {} }}", number(bound));

@@ -1,7 +1,8 @@
-//! Holds the subject of a proof by Gappa: the design, its contract and the unrolled computation.
+//! Defines the subject of a proof by Gappa: the design, its contract and the unrolled computation. The modules that write
+//! statements share it.
 //!
-//! It also splits the domain of the contract into parts where the formula or a ROM requires it. For example, `x ** exponent`
-//! becomes one part for each exponent.
+//! The module also splits the domain of the contract into parts, at operands that are exponents of the formula or that address
+//! ROMs. For example, `x ** exponent` becomes one part for each exponent.
 
 use super::cases::{self, NodeIntervals, UnrolledComputation};
 use glint_formula::{Expression, Kind, Operator};
@@ -9,11 +10,11 @@ use glint_golden::Contract;
 use glint_rtl::netlist::{Design, RomId};
 use glint_rtl::pipeline::{Cell, Graph, NodeId, Unrolled};
 
-/// The largest number of values of an operand whose domain is split. An operand is split if it is an exponent of the formula,
-/// or if it addresses tables.
+/// The largest number of values of an operand whose domain is split. A larger domain is not split.
 const SPLIT: i64 = 1024;
 
-/// The largest number of runs of equal words for which a table is always split word by word.
+/// The largest number of runs of equal words for which the domain is always split at a single table, one part for each run. For
+/// example, the words 5, 5, 7 are two runs.
 const RUNS: usize = 16;
 
 /// The subject of a proof by Gappa: a design, its contract with the error bound, and the unrolled computation as a graph.
@@ -35,8 +36,8 @@ impl Task<'_> {
         &self.unrolled.graph
     }
 
-    /// Narrows the interval of a node to `range`, as [`cases::learn`] does, from the intervals that the nodes of the graph have
-    /// before any case is distinguished.
+    /// Narrows the interval of a node to `range`, and stores the result in `known`, as [`cases::learn`] does. All other nodes
+    /// have the intervals of the graph, before any case is distinguished. Returns false if no value is left.
     pub(super) fn learn(
         &self,
         known: &mut NodeIntervals,
@@ -47,7 +48,7 @@ impl Task<'_> {
         cases::learn(self.graph(), known, &ranges, node, range)
     }
 
-    /// Returns the node of the operand `name`, if any result depends on it.
+    /// Returns the node of the operand `name`, or `None` if no result depends on it.
     pub(super) fn operand(&self, name: &str) -> Option<NodeId> {
         let mut ports = self.unrolled.operands.iter();
         let at = ports.position(|&port| self.design.net(port).name == name)?;
@@ -56,7 +57,8 @@ impl Task<'_> {
         Some(NodeId(id as u32))
     }
 
-    /// Returns the interval of each operand in the contract's domain.
+    /// Returns the interval of raw values of each operand in the contract's domain. Fails if a domain is not in the operand's
+    /// format.
     pub(super) fn domain(&self) -> Result<NodeIntervals, String> {
         let mut known = NodeIntervals::new();
         for operand in self.contract.operands() {
@@ -70,7 +72,7 @@ impl Task<'_> {
         Ok(known)
     }
 
-    /// Returns each output of the contract, with the node whose value it shows as the result.
+    /// Returns each output of the contract, with the node that computes it. Fails if the design has no port of this name.
     pub(super) fn outputs(&self) -> Result<Vec<(String, NodeId)>, String> {
         let mut outputs = Vec::new();
         for output in self.contract.outputs() {
@@ -84,10 +86,10 @@ impl Task<'_> {
         Ok(outputs)
     }
 
-    /// Splits the domain into parts. An operand in an exponent makes a part for each of its values. An operand that addresses
-    /// tables makes a part for each run of values with the same words. A single table with many words that the formula reads
-    /// too is not split, because its word can be a variable. Several tables are always split, because their words depend on
-    /// each other. For example, `x ** exponent` with exponents from 1 to 64 has 64 parts.
+    /// Splits the domain `known` into parts. An operand that is an exponent makes a part for each of its values, and an operand
+    /// that addresses tables a part for each run of values with the same words. An operand with more than 1024 values is not
+    /// split. A single table with more than 16 runs that the formula reads too is not split, because its word can be a
+    /// variable. For example, `x ** exponent` with exponents from 1 to 64 has 64 parts.
     pub(super) fn split(&self, known: &NodeIntervals) -> Vec<NodeIntervals> {
         let mut split = vec![known.clone()];
         for operand in self.contract.operands() {

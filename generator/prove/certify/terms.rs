@@ -1,4 +1,6 @@
-//! Stores the real expressions of a formula and of the hardware, and writes them in the syntax of Gappa.
+//! Stores expressions over the real numbers, of a formula and of the hardware, and writes them in the syntax of Gappa.
+//!
+//! The expressions of the hardware contain roundings. Every term is stored once. The module can also evaluate all terms in f64.
 
 use std::collections::HashMap;
 use std::fmt::Write as _;
@@ -13,7 +15,7 @@ pub type RealTermId = usize;
 pub enum RoundingDirection {
     /// Rounds down, as hardware does that drops bits.
     Down,
-    /// Rounds to the nearest, halves away from 0.
+    /// Rounds to the nearest, halves away from 0. Only values that are not negative are rounded in this way, so halves go up.
     Nearest,
 }
 
@@ -120,7 +122,8 @@ impl RealTerms {
         &self.terms[id].0
     }
 
-    /// Returns the name of a term in the script.
+    /// Returns the text of a term in the script: the name of its definition, the name of a variable, or a number. For example,
+    /// `sum_2`, `x` or `(-0.5)`.
     pub fn name(&self, id: RealTermId) -> String {
         match self.get(id) {
             RealTerm::Number(value) if *value < 0.0 => format!("({})", number(*value)),
@@ -148,8 +151,8 @@ impl RealTerms {
         }
     }
 
-    /// Returns the values of all terms if the variables have these values. A variable without a value, and every term that depends
-    /// on it, is NaN.
+    /// Returns the values of all terms if the variables have these values. A variable without a value, and every term that
+    /// depends on it, is NaN.
     pub fn evaluate(&self, variables: &HashMap<String, f64>) -> Vec<f64> {
         let mut values: Vec<f64> = Vec::with_capacity(self.terms.len());
         for (term, _) in &self.terms {
@@ -179,7 +182,8 @@ impl RealTerms {
         cone::needed(self.terms.len(), roots.iter().copied(), |id| self.operands(id))
     }
 
-    /// Returns the number of the term for the same expression without its roundings. `known` caches the results of earlier calls.
+    /// Returns the number of the term for the same expression without its roundings, and adds this term if it is new. `known`
+    /// caches the results of earlier calls.
     pub fn unrounded(
         &mut self,
         id: RealTermId,
@@ -210,8 +214,8 @@ impl RealTerms {
         self.insert(make(a, b), "unrounded")
     }
 
-    /// Returns the lines of a Gappa script that define the terms marked in `needed`, in order. For example, a sum and its rounding
-    /// to 4 fraction bits are `sum_2 = 0.5 + x;` and `cut_3 = fixed<-4,dn>(sum_2);`.
+    /// Returns the lines of a Gappa script that define the terms for which `needed` is true, in order. For example, a sum and
+    /// its rounding to 4 fraction bits are `sum_2 = 0.5 + x;` and `cut_3 = fixed<-4,dn>(sum_2);`.
     pub fn definitions(&self, needed: &[bool]) -> String {
         let mut text = String::new();
         for (id, (term, name)) in self.terms.iter().enumerate() {
@@ -248,7 +252,7 @@ impl RealTerms {
     }
 }
 
-/// Returns a number in decimal with all its digits. For example, 2⁻²⁰ is `0.00000095367431640625`.
+/// Returns a number in decimal with all its digits and without an exponent. For example, 2⁻²⁰ is `0.00000095367431640625`.
 pub fn number(value: f64) -> String {
     let text = format!("{value:.1100}");
     let text = text.trim_end_matches('0').trim_end_matches('.');

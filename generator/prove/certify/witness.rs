@@ -1,8 +1,8 @@
 //! Finds a point at which all hypotheses of a Gappa script hold.
 //!
 //! Such a point shows that the statement is not vacuous: hypotheses that contradict each other would prove anything. The search
-//! reads the text of the script, and moves a point step by step until no hypothesis is violated. A point counts if all hypotheses
-//! hold in f64.
+//! reads the text of the script, begins at 64 random points, and moves each step by step until no hypothesis is violated. The
+//! hypotheses are computed in f64. If no point is found, the hypotheses may still be satisfiable.
 
 use std::collections::HashMap;
 
@@ -53,7 +53,7 @@ struct Hypotheses {
 }
 
 impl Hypotheses {
-    /// Parses a script; returns `None` if a part of its text is not understood.
+    /// Parses a script; returns `None` if a part of its text has an unknown form.
     fn of(script: &str) -> Option<Self> {
         let (definitions, statement) = script.split_once("\n{ ")?;
         let mut terms = RealTerms::default();
@@ -143,8 +143,9 @@ impl Hypotheses {
     }
 }
 
-/// Returns a point at which all hypotheses of a Gappa script hold, as text, or `None` if the search finds no point. For example, `x
-/// = -0.5`.
+/// Returns a point at which all hypotheses of a Gappa script hold, as text. For example, `x = -0.5, y = 3`. The text is `every
+/// point` for a script without hypotheses. Returns `None` if the search finds no point, or if the text of the script has an
+/// unknown form.
 pub fn witness(script: &str) -> Option<String> {
     if !script.contains(IMPLIES) {
         return Some("every point".to_owned());
@@ -174,9 +175,8 @@ pub fn witness(script: &str) -> Option<String> {
     None
 }
 
-/// Parses an expression of a script into `terms` and returns its term; `None` if it is not understood.
-///
-/// A name is its term in `names`, or else a new variable.
+/// Parses an expression of a script into `terms` and returns its term. A name has its term in `names`, or else becomes a new
+/// variable. Returns `None` if the expression has an unknown form.
 fn expression(
     text: &str,
     terms: &mut RealTerms,

@@ -1,13 +1,15 @@
 //! Computes the results of Yosys's cells on symbolic terms instead of numbers, as Yosys documents the cells.
 //!
-//! For example, a `$add` cell with the terms a and b has the result a + b.
+//! For example, a `$add` cell with the terms a and b has the result a + b. The module knows the cells that occur in the emitted
+//! Verilog. Any other kind of cell is an error, and so is a cell of more than 64 bits, unless it is a multiplexer.
 
 use anyhow::{Context, Result, bail, ensure};
 
 use super::term::{ADDRESS, VectorTerm, VectorTermId, VectorTerms};
 use glint_base::fixed::MAX_WIDTH;
 
-/// A bit that is connected to a cell in a netlist from Yosys: a wire or a constant.
+/// A bit that is connected to a cell in a netlist from Yosys: a wire with its number, a known constant, or an undetermined bit
+/// (`x` or `z`).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Bit {
     Wire(usize),
@@ -26,7 +28,8 @@ impl WireValues {
         Self(vec![None; wires])
     }
 
-    /// Sets the values of some wires to the bits of the terms `columns`, the lowest bits first.
+    /// Sets the values of some wires to the bits of the terms `columns`, the lowest bits first. Each term except the last has
+    /// 64 bits.
     pub fn set(&mut self, bits: &Connection, columns: &[VectorTermId]) {
         for (at, bit) in bits.iter().enumerate() {
             if let Bit::Wire(wire) = *bit {
@@ -66,8 +69,8 @@ impl WireValues {
         word.unwrap_or_else(|| terms.constant(0, 1))
     }
 
-    /// Returns one term for the longest run of bits from the lowest one up that has a single source, and the number of its
-    /// bits. The sources are neighbouring bits of one term, constants, and unknown bits.
+    /// Returns one term for the longest run of bits from `bits[0]` up that have the same source, and the number of these bits.
+    /// A source is a range of neighbouring bits of one term, constants, or undetermined bits.
     fn run(&self, terms: &mut VectorTerms, bits: &[Bit]) -> (VectorTermId, usize) {
         let first = self.source(bits[0]);
         let mut width = 0;
@@ -103,7 +106,8 @@ impl WireValues {
         }
     }
 
-    /// Returns the term of a read from a memory that the module never writes. `at` is the address, and `words` are the contents.
+    /// Returns the term of a read from a memory that the module never writes. `at` is the address, and `words` are the
+    /// contents. A read beyond the contents gives an unknown word.
     pub fn rom(
         &self,
         terms: &mut VectorTerms,
@@ -124,11 +128,11 @@ impl WireValues {
         terms.choice(inside, word, beyond)
     }
 
-    /// Returns the symbolic result of a Yosys cell of the kind `kind`, such as `$add`, with the inputs A, B and S. The result has
-    /// `width` bits.
+    /// Returns the symbolic result of a Yosys cell of the kind `kind`, such as `$add`, with the inputs A, B and S. `signed`
+    /// says whether A and B are signed. The result has `width` bits, as terms of at most 64 bits, the lowest bits first.
     ///
     /// # Errors
-    /// Fails if the module does not know the cell, or if the cell is wider than 64 bits.
+    /// Fails if the kind is unknown, or if a cell other than `$mux` and `$pmux` is wider than 64 bits.
     pub fn cell(
         &self,
         terms: &mut VectorTerms,
@@ -226,7 +230,8 @@ impl WireValues {
         Ok(vec![terms.resized(bit, width as u32)])
     }
 
-    /// Returns the term of some bits with `width` bits, extended by the sign or by zeros.
+    /// Returns the term of some bits with `width` bits, extended by the sign if `signed`, and otherwise by zeros. High bits are
+    /// dropped if `width` is smaller. Fails for more than 64 bits.
     fn extended(
         &self,
         terms: &mut VectorTerms,
@@ -242,7 +247,7 @@ impl WireValues {
         })
     }
 
-    /// Returns two operands with `width` bits each, as [`Self::extended`] does.
+    /// Returns two operands with `width` bits each, extended as [`Self::extended`] does. Fails for more than 64 bits.
     fn both_extended(
         &self,
         terms: &mut VectorTerms,

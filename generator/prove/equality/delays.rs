@@ -20,13 +20,14 @@ const MOST_CLOCKS: usize = 1024;
 /// The roles of the ports, by their names.
 pub type Roles = HashMap<String, Role>;
 
-/// The values of some registers, by their numbers in the module. The order of a `BTreeMap` makes the result the same in every run.
+/// The values of some registers, by their numbers in the module. The order of a `BTreeMap` makes the result the same in every
+/// run.
 type RegisterValues = BTreeMap<usize, u64>;
 
 /// The counters of a pipeline's Verilog, in the clocks in which all points move.
 pub struct Counters {
-    /// For each slot, the values of the registers that count the slots. The list has one entry for each clock of the interval. The
-    /// registers are empty if the interval is 1.
+    /// For each slot, which is a clock of the interval from one point to the next, the values of the registers that count the
+    /// slots. The list has one entry for each clock of the interval. An entry is an empty map if the interval is 1.
     pub slots: Vec<RegisterValues>,
     /// For each memory, each of its read ports and each slot, the number of clocks from a write to the read. It is `None` if this
     /// number is not fixed.
@@ -43,7 +44,7 @@ struct MemoryClock {
 
 /// The constants of one clock.
 struct ClockConstants {
-    /// The registers that hold a constant after the clock.
+    /// The registers that are constant after the clock, with their values.
     registers: RegisterValues,
     /// The accesses to each memory; `None` if it is not known which word is written.
     memories: Vec<Option<MemoryClock>>,
@@ -83,8 +84,8 @@ impl Counters {
         Ok(Self { slots, delays })
     }
 
-    /// Returns the number of clocks from a write to the read at a port of a memory, for a read `clock` clocks after a point entered.
-    /// Returns `None` if this number is not fixed.
+    /// Returns the number of clocks from a write to the read of the same word at a port of a memory, for a read `clock` clocks
+    /// after a point entered. Returns `None` if this number is not fixed.
     pub fn delay(&self, read: Read, clock: usize) -> Option<usize> {
         self.delays[read.memory][read.port][clock % self.slots.len()]
     }
@@ -99,7 +100,9 @@ impl Counters {
     }
 }
 
-/// Returns the values of the registers that count the slots, for each slot. `reset` are the constants after a reset.
+/// Returns the values of the registers that count the slots, for each slot. `reset` has the registers that are constant after a
+/// reset. Fails if the interval is longer than 1 and these registers do not make `in_ready` 1 in slot 0 and 0 in all other
+/// slots.
 fn slots(
     module: &Module,
     roles: &Roles,
@@ -137,7 +140,8 @@ fn slots(
 }
 
 /// Returns the constants of each clock until all counters have their first values again. The counters are the slot counter and
-/// `counter`, a register with its value after a reset. Returns `None` if `counter` does not return to this value.
+/// `counter`, a register with its value after a reset. Returns `None` if `counter` has no constant value in a clock, or if the
+/// first values do not return within 1024 clocks. Fails if the module has an unknown cell.
 fn course(
     module: &Module,
     roles: &Roles,
@@ -165,9 +169,9 @@ fn course(
     Ok(None)
 }
 
-/// Returns the number of clocks from write to read, for each read port and each slot. `course` has the accesses in each clock of a
-/// period, which repeats. A number is `None` if it is not the same in all clocks of the slot. For example, with one slot, write
-/// addresses 0, 1, 2, 3 and read addresses 2, 3, 0, 1 give 2 clocks.
+/// Returns the number of clocks from write to read, for each read port and each slot. `course` has the accesses in each clock
+/// of a period, which repeats. A number is `None` if it is not the same in all clocks of the slot. For example, with one slot,
+/// write addresses 0, 1, 2, 3 and read addresses 2, 3, 0, 1 give 2 clocks.
 fn lags(course: &[&MemoryClock], reads: usize, interval: usize) -> Vec<Vec<Option<usize>>> {
     let period = course.len();
     let lag = |read: usize, now: usize| {
@@ -188,8 +192,8 @@ fn lags(course: &[&MemoryClock], reads: usize, interval: usize) -> Vec<Vec<Optio
     lags
 }
 
-/// Returns the constants of a clock. The clock is a reset (`rst_n` = 0), or a clock in which the results are taken. `known` are the
-/// values of some registers before the clock; everything else is unknown.
+/// Returns the constants of a clock: a reset if `rst_n` is 0, and otherwise a clock in which the results are taken. `known` are
+/// the values of some registers before the clock; everything else is unknown. Fails if the module has an unknown cell.
 fn constants(
     module: &Module,
     roles: &Roles,
@@ -227,8 +231,8 @@ fn constants(
     Ok(ClockConstants { registers, memories, ready })
 }
 
-/// Returns the accesses to a memory. `ports` are the terms of [`Memory::control`]. Returns `None` if it is not known which word is
-/// written, or if only some bits of it are.
+/// Returns the accesses to a memory. `ports` are the terms of [`Memory::control`]. Returns `None` if it is not known which word
+/// is written, or if only some bits of it are.
 fn accesses(terms: &VectorTerms, memory: &Memory, ports: &[VectorTermId]) -> Option<MemoryClock> {
     let (addresses, enables) = ports.split_at(1 + memory.reads.len());
     let all_are = |wanted: fn(u32) -> u64| {

@@ -17,9 +17,9 @@ const ROWS: u32 = 8;
 /// The largest number of words of a memory whose contents are written out word by word.
 const WORDS: usize = 16;
 
-/// Returns arithmetic facts about the products and memory words on which the terms `roots` depend. Each fact is a term of one bit
-/// that is always 1. If `parts` is set, the facts also say that a product is the sum of the products of a factor's parts. This adds
-/// new products.
+/// Returns arithmetic facts about the products and memory words on which the terms `roots` depend. Each fact is a term of one
+/// bit that is always 1. If `parts` is set, the facts also say that a product is the sum of the products of a factor's parts.
+/// This adds new products.
 pub fn about(
     terms: &mut VectorTerms,
     roots: &[VectorTermId],
@@ -84,7 +84,7 @@ fn by_one_or_none(
 }
 
 /// Finds products that a design computes as a sum of partial products, among the terms on which `roots` depend. Returns each
-/// product with the term of its sum.
+/// product with the term of its sum. The map is empty if no product is computed in this way.
 pub fn divided(
     terms: &mut VectorTerms,
     roots: impl IntoIterator<Item = VectorTermId>,
@@ -106,7 +106,8 @@ pub fn divided(
     divided
 }
 
-/// Returns the term that `factor` extends, and whether the extension copies the sign bit; `None` if `factor` is no extension.
+/// Returns the narrower term that `factor` extends, and whether the extension copies the sign bit (`true`) or adds zeros
+/// (`false`). Returns `None` if `factor` is no extension.
 pub fn extended(terms: &VectorTerms, factor: VectorTermId) -> Option<(VectorTermId, bool)> {
     match *terms.term(factor) {
         VectorTerm::SignExtend(bits) => Some((bits, true)),
@@ -123,9 +124,9 @@ struct ProductSum {
     there: bool,
 }
 
-/// Returns a sum of partial products if `factor` is the upper bits of a larger term. The larger term times `other` is the
-/// product of `factor` and `other`, shifted, plus the product of the lower bits and `other`. For example, if u is the bits from
-/// 4 up of w, then w·x is 16·(u·x) plus the lowest 4 bits of w times x.
+/// Returns a sum of partial products if `factor` is the upper bits of a larger term, and `None` otherwise. The larger term
+/// times `other` is the product of `factor` and `other`, shifted, plus the product of the lower bits and `other`. For example,
+/// if u is the bits from 4 up of w, then w·x is 16·(u·x) plus the lowest 4 bits of w times x.
 fn in_parts(
     terms: &mut VectorTerms,
     factor: VectorTermId,
@@ -160,8 +161,9 @@ fn in_parts(
     Some(ProductSum { product, sum, there })
 }
 
-/// Returns the square of `u·2^r + l` as a sum, if the terms contain the product of `l` and `u·2^(r+1) + l`. The sum is this
-/// product plus the square of u, shifted by 2r. For example, 13² with u = 3, l = 1 and r = 2 is 1·25 plus 9·16.
+/// Returns the square of `u·2^r + l` as a sum, if the terms contain the product of `l` and `u·2^(r+1) + l`, and `None`
+/// otherwise. The sum is this product plus the square of u, shifted by 2r. For example, 13² with u = 3, l = 1 and r = 2 is 1·25
+/// plus 9·16.
 fn square_in_parts(
     terms: &mut VectorTerms,
     factor: VectorTermId,
@@ -195,8 +197,9 @@ fn square_in_parts(
     Some(ProductSum { product, sum, there: true })
 }
 
-/// Returns the larger term whose upper bits are `bits`, and the number of its bits below `bits`. Returns `None` if `bits` is
-/// not cut from a larger term. For example, bits 4 to 7 of a term give bits 0 to 7, and 4.
+/// Returns the larger term whose upper bits are `bits`, and the number of its bits below `bits`. Returns `None` if `bits` is no
+/// slice above bit 0 of a larger term. For example, if `bits` is bits 4 to 7 of a term, the result is the term's bits 0 to 7,
+/// and 4.
 fn whole(terms: &mut VectorTerms, bits: VectorTermId) -> Option<(VectorTermId, u32)> {
     match *terms.term(bits) {
         VectorTerm::Slice { of, low } if low > 0 => {
@@ -211,8 +214,8 @@ fn whole(terms: &mut VectorTerms, bits: VectorTermId) -> Option<(VectorTermId, u
     }
 }
 
-/// Returns whether the terms contain the first row of the product of `bits` and `other`: `other` if the lowest bit is 1,
-/// otherwise 0.
+/// Returns whether the terms contain the first partial product of `bits` and `other`: `other` if the lowest bit of `bits` is 1,
+/// and otherwise 0. If so, the design multiplies `bits` by `other` with adders.
 fn has_row(terms: &mut VectorTerms, bits: VectorTermId, other: VectorTermId) -> bool {
     let narrow = match *terms.term(other) {
         VectorTerm::SignExtend(narrow) => narrow,
@@ -264,8 +267,9 @@ fn range_by_width(terms: &VectorTerms, factor: VectorTermId) -> Interval {
     }
 }
 
-/// Returns the fact that a product lies in the product of the ranges, if its factors lie in their ranges. Returns `None` if a
-/// range does not fit into 64 bits.
+/// Returns the fact that a product lies in the product of its factors' ranges if both factors lie in their ranges. For example,
+/// factors within 0 to 3 and 0 to 5 have a product within 0 to 15. Returns `None` if an end of a range does not fit into 64
+/// bits.
 fn within(terms: &mut VectorTerms, product: &Product) -> Option<VectorTermId> {
     let [a, b] = product.factors;
     let [x, y] = product.ranges;

@@ -1,10 +1,9 @@
 //! Proves with an SMT solver that a pipeline and its sequential core compute the same outputs for every point (one set of
-//! operands).
+//! operands). [`compare_text`] proves the same of the emitted Verilog of a pipeline and its netlist.
 //!
-//! The module executes both netlists symbolically, one clock at a time: the core from `start` to its results, and the pipeline
-//! with one point between arbitrary others. Multiplications and memory reads are uninterpreted functions with some arithmetic
-//! facts (`facts`). If the pipeline also carries the value of a core register, the solver proves this first, and both then
-//! share one term. The code shares nothing with `hdl/pipeline`, which built the pipeline.
+//! [`compare`] first simulates both designs at random points. It then executes both netlists symbolically, one clock at a time:
+//! the core from `start` to its results, and the pipeline with one point between arbitrary others. The solver knows products
+//! and memory reads only as uninterpreted functions with some arithmetic facts (`facts`), so a verdict can be "open".
 
 mod cells;
 mod delays;
@@ -42,7 +41,8 @@ pub use text::{TextProof, TextVerdict, compare_text};
 /// The number of random points at which both designs are compared before anything is proved.
 const TRIALS: usize = 400;
 
-/// The largest number of clocks for which the sequential core is executed. If a computation takes more, the comparison fails.
+/// The largest number of clocks for which the sequential core is executed symbolically. If a computation takes more clocks,
+/// [`compare`] fails.
 const MOST_CLOCKS: usize = 8192;
 
 /// The verdict on whether a pipeline computes the same as its sequential core.
@@ -59,14 +59,15 @@ pub enum Verdict {
 /// The reason why the solver does not decide a question.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Open {
-    /// The solver answers that it does not know. Or its counterexample assumes values of products and memory words that no point
-    /// has.
+    /// The solver answers `unknown`. Or it answers with a counterexample, but no simulated point shows a difference: the
+    /// counterexample assumes values of products and memory words that no point has.
     Unknown,
     /// The solver reached its time limit.
     Limit,
 }
 
-/// The numbers of proved facts in a proof that a pipeline equals its sequential core.
+/// The size of a proof that a pipeline equals its sequential core: the numbers of outputs, checkpoints, paths, products and
+/// questions.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct EqualityProof {
     /// The number of outputs that are proved equal.
@@ -110,12 +111,14 @@ impl fmt::Display for OutputDifference {
     }
 }
 
-/// Proves that a pipeline computes the same as its sequential core, or finds a point for which they differ. `limit` is the time
-/// limit of the solver.
+/// Proves that a pipeline computes the same outputs as its sequential core, or finds a point for which an output differs. The
+/// designs are simulated at 400 random points before the solver is asked. `limit` is the time limit of all answers of the
+/// solver together.
 ///
 /// # Errors
-/// Fails if the designs have different operands, or if the core lacks an output of the pipeline. Fails also if a design shows
-/// no result, or if the solver fails.
+/// Fails if `pipeline` is no pipeline, if the designs have different operands, or if the core lacks an output of the pipeline.
+/// Fails also if a design shows no result (the core within 8192 clocks), if a design has a combinational loop, or if the solver
+/// cannot be run.
 pub fn compare(
     sequential: &Design,
     pipeline: &Design,
@@ -129,8 +132,9 @@ pub fn compare(
     PipelineComparison::new(&pair, solver, limit)?.run()
 }
 
-/// Compares the designs at random points, and returns the first difference. If `near` is given, each operand of a random point
-/// takes its value in `near` with a probability of one half.
+/// Simulates both designs at 400 random points, and returns the first difference, or `None` if all outputs are equal. If
+/// `near`, the bit patterns of one point's operands, is given, each operand of a random point takes its value in `near` with a
+/// probability of one half.
 fn tried(pair: &DesignPair<'_>, near: Option<&[u64]>) -> Result<Option<OutputDifference>> {
     let mut random = ChaCha8Rng::seed_from_u64(1);
     for _ in 0..TRIALS {
@@ -148,8 +152,8 @@ fn tried(pair: &DesignPair<'_>, near: Option<&[u64]>) -> Result<Option<OutputDif
     Ok(None)
 }
 
-/// Returns a random bit pattern: one in four is any pattern, and the others are near a power of two. The value 1.0 of an
-/// operand is a power of two, too.
+/// Returns a random bit pattern. One in four is any pattern of 64 bits. The others are a power of two up to 2^23, plus or minus
+/// a random number, because the value 1.0 of an operand is a power of two, too.
 fn drawn(random: &mut ChaCha8Rng) -> u64 {
     let bits = random.next_u64();
     let power = 1u64 << (random.next_u32() % 24);
@@ -161,7 +165,8 @@ fn drawn(random: &mut ChaCha8Rng) -> u64 {
     }
 }
 
-/// Returns the first output that differs between the designs at a point, or `None` if all are equal.
+/// Returns the first output that differs between the designs at a point, or `None` if all are equal. `operands` are bit
+/// patterns; bits above the width of an operand are dropped. Fails if a design cannot be simulated to a result.
 fn differs(pair: &DesignPair<'_>, operands: &[u64]) -> Result<Option<OutputDifference>> {
     let mut masked: Vec<u64> = Vec::new();
     for (name, bits) in pair.operands.iter().zip(operands) {
@@ -185,7 +190,7 @@ fn differs(pair: &DesignPair<'_>, operands: &[u64]) -> Result<Option<OutputDiffe
     Ok(None)
 }
 
-/// A path through the microprogram, up to the present clock.
+/// The state of the sequential core on one path through the microprogram, up to a clock of the symbolic execution.
 struct MicroprogramPath {
     /// The one-bit terms that decided the path at its jumps, each with the value that leads along this path.
     conditions: Vec<(VectorTermId, bool)>,
@@ -200,11 +205,12 @@ struct PipelineComparison<'p> {
     terms: VectorTerms,
     solver: Solver<'p>,
     products: Vec<Product>,
-    /// For each product that the pipeline computes in parts, the sum of the parts.
+    /// For each product that a pipeline computes in parts, the sum of the parts. For example, a·b may be the sum of 16·(u·b)
+    /// and l·b, if u has the upper bits of a and l the lowest 4 bits.
     divided: HashMap<VectorTermId, VectorTermId>,
     /// The products that the pipeline computes, as a whole or in parts, in ascending order.
     parts: Vec<VectorTermId>,
-    /// The operands of the point.
+    /// The terms of the operands of the point, which are unknowns.
     operands: Vec<VectorTermId>,
     proof: EqualityProof,
 }
@@ -258,7 +264,8 @@ impl<'p> PipelineComparison<'p> {
         Ok(Verdict::Equal(self.proof))
     }
 
-    /// Returns the term of every net of the pipeline in each clock. Entry 0 is the clock in which the pipeline takes the point.
+    /// Returns the term of every net of the pipeline in each clock, as an entry for each clock with a term for each net. Entry
+    /// 0 is the clock in which the pipeline takes the point. Fails if the pipeline does not show the results after its latency.
     fn pipeline(&mut self) -> Result<Vec<Vec<VectorTermId>>> {
         let pair = self.pair;
         let execution = Execution::new(&mut self.terms, pair.pipeline);
@@ -293,8 +300,8 @@ impl<'p> PipelineComparison<'p> {
         Ok(stages)
     }
 
-    /// Returns the term of every net in a clock. An input for which `known` returns a number has this constant. If `point` is
-    /// set, the operands have the terms of the point. Every other input is a new unknown.
+    /// Returns the term of every net in a clock, at the index of the net. An input for which `known` returns a number has this
+    /// constant. If `point` is set, the operands have the terms of the point. Every other input is a new unknown.
     fn settle(
         &mut self,
         execution: &Execution<'_>,
@@ -342,9 +349,9 @@ impl<'p> PipelineComparison<'p> {
         MicroprogramPath { conditions: Vec::new(), state, visits, clocks: 0 }
     }
 
-    /// Executes the microprogram along one path, up to the results or to a jump that depends on operands. It adds the paths
-    /// that continue from such a jump to `ways`. For example, a loop whose trip count depends on an operand makes a path for
-    /// each trip count.
+    /// Executes the microprogram along one path, until the results are shown or a jump depends on operands. If the results are
+    /// shown, the function compares them. At such a jump, it adds the paths that continue to `ways`. For example, a loop whose
+    /// trip count depends on an operand makes a path for each trip count. Fails if the core shows no result within 8192 clocks.
     fn follow(
         &mut self,
         core: &Execution<'_>,
@@ -386,8 +393,9 @@ impl<'p> PipelineComparison<'p> {
         bail!("the sequential core shows no result")
     }
 
-    /// Splits a path at a register of the sequencer that depends on operands, and adds both paths to `ways`. It leaves out a
-    /// path that the solver proves impossible.
+    /// Splits a path at a register of the sequencer whose value depends on operands, and adds both continuations to `ways`. A
+    /// continuation that the solver proves impossible is left out. Returns always `Equal`: the continuations are compared
+    /// later. Fails if the value is neither one bit nor a choice between two values.
     fn fork(
         &mut self,
         way: MicroprogramPath,
@@ -414,7 +422,7 @@ impl<'p> PipelineComparison<'p> {
         Ok(EqualityAnswer::Equal)
     }
 
-    /// Returns one-bit terms that are all 1 if and only if the conditions hold.
+    /// Returns one-bit terms that are all 1 if and only if each condition has its value.
     fn holding(&mut self, conditions: &[(VectorTermId, bool)]) -> Vec<VectorTermId> {
         let mut holding = Vec::new();
         for &(condition, value) in conditions {
@@ -423,8 +431,10 @@ impl<'p> PipelineComparison<'p> {
         holding
     }
 
-    /// Proves the checkpoints at the beginning of a microinstruction: a register of the core equals a value of the pipeline.
-    /// Every register that is proved equal then holds the pipeline's term.
+    /// Proves the checkpoints of microinstruction number `address`. A checkpoint states that a register of the core equals a
+    /// net of the pipeline when this microinstruction begins. Each register that is proved equal takes the pipeline's term. A
+    /// checkpoint that the solver does not decide is skipped. Returns `Different` for a real difference in an output, and
+    /// otherwise `Equal`.
     fn lemmas(
         &mut self,
         core: &Execution<'_>,
@@ -477,14 +487,14 @@ impl<'p> PipelineComparison<'p> {
         Ok(EqualityAnswer::Equal)
     }
 
-    /// Returns the outputs of the pipeline for the point.
+    /// Returns the terms of the pipeline's outputs in the clock in which the results of the point are shown.
     fn results_of(&self, stages: &[Vec<VectorTermId>]) -> Vec<VectorTermId> {
         let last = &stages[self.pair.latency];
         self.pair.outputs.iter().map(|&(_, net, _)| last[net.index()]).collect()
     }
 
-    /// Finds the products that the pipeline computes in parts, and notes the sum of the parts of each in `divided`. If a net of
-    /// the pipeline contains the whole product too, the note uses this net for the low bits.
+    /// Finds the products that the pipeline computes in parts, and stores the sum of the parts of each in `divided`. If a net
+    /// of the pipeline provably has the low bits of such a sum, the term of this net replaces these low bits.
     fn divide(&mut self, stages: &[Vec<VectorTermId>]) -> Result<()> {
         let mut roots = self.results_of(stages);
         if let Some(pipeline) = &self.pair.pipeline.pipeline {
@@ -536,8 +546,9 @@ impl<'p> PipelineComparison<'p> {
         Ok(())
     }
 
-    /// Asks the solver whether the one-bit terms `wanted` can all be 1. It first replaces products by the sums in `divided`. If
-    /// that does not prove it impossible, it asks again with the original products and all facts about parts.
+    /// Asks the solver whether the one-bit terms `wanted` can all be 1. The first question has the sums in `divided` in place
+    /// of products. If its answer is not "never", a second question has the original products and all facts about partial
+    /// products.
     fn ask(&mut self, wanted: Vec<VectorTermId>) -> Result<SolverAnswer> {
         self.divide_by_lowest(&wanted)?;
         let mut divided = wanted.clone();

@@ -1,7 +1,7 @@
-//! Executes a Verilog module, which Yosys has flattened, clock by clock on symbolic terms.
+//! Parses the JSON netlist of a Verilog module, which Yosys has flattened, and executes it clock by clock on symbolic terms.
 //!
 //! Every undetermined bit (`x` or `z`) becomes a new unknown at each read. A read beyond the contents of a memory gives an
-//! unknown word.
+//! unknown word. The module accepts only registers and memories that change at the rising edge of `clk`.
 
 use std::collections::HashMap;
 
@@ -12,7 +12,7 @@ use super::cells::{Bit, Connection, WireValues};
 use super::term::{VectorTermId, VectorTerms};
 use glint_base::fixed::MAX_WIDTH;
 
-/// The function of a combinational cell: an operation, or a read from a memory.
+/// The computation of a combinational cell: an operation, or a read from a memory.
 enum What {
     Cell {
         kind: String,
@@ -24,7 +24,8 @@ enum What {
     Read(Read),
 }
 
-/// A read port of a memory in a flat Verilog module.
+/// A read port of a memory in a flat Verilog module: the index of the memory in [`Module::memories`], and the number of the
+/// port.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Read {
     pub memory: usize,
@@ -68,8 +69,8 @@ pub struct Module {
     wires: usize,
 }
 
-/// The symbolic values of all registers of a flat Verilog module. Each register has a list of terms of at most 64 bits, the lowest
-/// bits first.
+/// The symbolic values of all registers of a flat Verilog module. Each register has a list of terms of at most 64 bits, the
+/// lowest bits first.
 pub type RegisterContents = Vec<Vec<VectorTermId>>;
 
 fn bits(value: &Value) -> Result<Connection> {
@@ -87,7 +88,8 @@ fn bits(value: &Value) -> Result<Connection> {
     Ok(bits)
 }
 
-/// Returns a parameter of a cell as a number. Yosys writes parameters in binary. For example, `00000101` is 5.
+/// Returns a parameter of a cell as a number. Yosys writes parameters in binary. For example, `00000101` is 5. Fails if the
+/// parameter is missing or is no number.
 fn parameter(cell: &Value, name: &str) -> Result<usize> {
     let value = &cell["parameters"][name];
     if let Some(text) = value.as_str()
@@ -99,7 +101,7 @@ fn parameter(cell: &Value, name: &str) -> Result<usize> {
     Ok(number as usize)
 }
 
-/// Returns the bits at a port of a cell.
+/// Returns the bits at a port of a cell. Fails if the cell lacks the port.
 fn connection(cell: &Value, port: &str) -> Result<Connection> {
     bits(&cell["connections"][port])
 }
@@ -307,8 +309,8 @@ impl Module {
         self.registers.iter().map(|it| unknown(terms, it.output.len())).collect()
     }
 
-    /// Returns the value of every wire of the module in one clock, given the inputs, the registers and the words at the read ports
-    /// of memories.
+    /// Returns the value of every wire of the module in one clock, given the inputs, the registers and the words at the read
+    /// ports of memories.
     ///
     /// # Errors
     /// Fails if the module does not know a cell, or if a cell or a port is wider than 64 bits.
@@ -363,8 +365,8 @@ impl Module {
     }
 }
 
-/// Returns the index of the first cell that drives an input of `cell` and has no position in the order yet. Such a cell has the
-/// position 0.
+/// Returns the index of the first cell that drives an input of `cell` and has no position in the order yet, or `None` if all
+/// have one. A cell without a position has the position 0.
 fn unplaced_driver(cell: &ModuleCell, driver: &[Option<usize>], place: &[usize]) -> Option<usize> {
     for bit in cell.inputs.iter().flatten() {
         if let Bit::Wire(wire) = *bit
@@ -388,7 +390,8 @@ impl Memory {
         values.columns(terms, &self.write.data)
     }
 
-    /// Returns the addresses of the write port and of each read port, and the enable of the write port.
+    /// Returns the address at the write port, then the address at each read port, then the enables of the written bits, as
+    /// terms of at most 64 bits, the lowest bits first.
     pub fn control(&self, terms: &mut VectorTerms, values: &WireValues) -> Vec<VectorTermId> {
         let enable = values.columns(terms, &self.write.enable);
         let mut control = vec![values.word(terms, &self.write.address)];
@@ -411,7 +414,8 @@ fn unknown(terms: &mut VectorTerms, width: usize) -> Vec<VectorTermId> {
 }
 
 /// Returns the contents of a memory that is never written. The last digits of the parameter `INIT` are word 0. For example,
-/// `1101` with words of 2 bits has word 0 = 1 and word 1 = 3.
+/// `1101` with words of 2 bits has word 0 = 1 and word 1 = 3. Fails if a word is wider than 64 bits or has undetermined bits,
+/// or if the number of words is wrong.
 fn words(cell: &Value, width: usize) -> Result<Vec<u64>> {
     let contents = cell["parameters"]["INIT"].as_str().unwrap_or_default();
     ensure!(width <= MAX_WIDTH as usize, "its words have more than 64 bits");

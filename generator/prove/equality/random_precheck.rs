@@ -1,6 +1,7 @@
-//! Compares a pipeline and its sequential core on single points (sets of operands), with numbers instead of symbolic terms.
+//! Simulates a pipeline and its sequential core for one point (one set of operands), with numbers instead of symbolic terms.
 //!
-//! This finds most differences quickly, before the SMT solver is asked.
+//! [`DesignPair`] pairs the operands and outputs of both designs by name, and returns the outputs of each. The parent module
+//! draws the points and compares the outputs. It finds most differences in this way before the SMT solver is asked.
 
 use anyhow::{Context, Result, bail};
 
@@ -67,12 +68,12 @@ impl<'a> DesignPair<'a> {
         })
     }
 
-    /// Simulates both designs for one point, given by the bit patterns of its `operands`. Returns the bit patterns of the
-    /// outputs: first of the sequential core, then of the pipeline. For example, `[[31, 7], [31, 7]]` are two outputs that
-    /// are equal.
+    /// Simulates both designs for one point. `operands` are the bit patterns of the operands, in the order of the field
+    /// `operands`. Returns the bit patterns of the outputs, in the order of the field `outputs`: first of the sequential core,
+    /// then of the pipeline. For example, `[[31, 7], [31, 7]]` are two outputs that are equal.
     ///
     /// # Errors
-    /// Fails if no result is shown.
+    /// Fails if the sequential core shows no result within 8192 clocks, or if a design has a combinational loop.
     pub fn outputs(&self, operands: &[u64]) -> Result<[Vec<u64>; 2]> {
         Ok([self.of_sequential(operands)?, self.of_pipeline(operands)?])
     }
@@ -108,8 +109,9 @@ impl<'a> DesignPair<'a> {
         Ok(self.outputs.iter().map(|&(_, net, _)| core.value(net)).collect())
     }
 
-    /// Returns the values of a design's inputs in one clock. `now` is the value of `start`, `in_valid` and the strobes: 1 in
-    /// the clock that takes the point.
+    /// Returns the values of a design's inputs in one clock, in the order of the ports. `now` is the value of `start`,
+    /// `in_valid` and the strobes: 1 in the clock that takes the point. `out_ready` is always 1, and an input without a known
+    /// role is 0.
     fn inputs(&self, design: &Design, operands: &[u64], rst_n: u64, now: u64) -> Vec<u64> {
         let mut inputs = Vec::new();
         for port in design.inputs() {

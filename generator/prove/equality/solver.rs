@@ -1,4 +1,7 @@
 //! Asks an SMT solver whether some one-bit terms can all be 1 at once, and reads its answer.
+//!
+//! Each question is a file in SMT-LIB 2 with the terms, and with the arithmetic facts of `facts`. Products and memory reads are
+//! uninterpreted functions in it. All questions of one [`Solver`] share a time limit.
 
 use std::fmt::Write as _;
 use std::fs;
@@ -24,7 +27,7 @@ pub enum SolverAnswer {
     Undecided(Open),
 }
 
-/// An SMT solver, and the time that it may still take.
+/// An SMT solver, with a directory for its files, and with the end of the time that all its answers together may take.
 pub struct Solver<'a> {
     tool: &'a Tool,
     end: Instant,
@@ -81,7 +84,8 @@ fn name(id: VectorTermId) -> String {
     format!("t{}", id.number())
 }
 
-/// Returns the question as SMT-LIB 2.
+/// Returns the question as SMT-LIB 2, in the logic `QF_UFBV`: whether all `facts` and all `wanted` terms can be 1. The solver
+/// also prints the values of the unknowns.
 fn script(terms: &VectorTerms, wanted: &[VectorTermId], facts: &[VectorTermId]) -> String {
     let cone = terms.cone(wanted.iter().chain(facts).copied());
     let mut text = String::from(

@@ -1,7 +1,7 @@
-//! Finds nets of a design that may carry a product which the hardware adds up from the products of parts.
+//! Finds nets that probably carry a product which a pipeline adds up from the products of parts.
 //!
-//! The module evaluates all terms with random numbers. A net with the same values as the product is a candidate; the solver must
-//! prove it.
+//! The module evaluates all terms with random values of the unknowns. A net is a candidate if it has the same values as the
+//! product. The caller must prove with the solver that they are equal.
 
 use std::collections::HashMap;
 
@@ -14,7 +14,8 @@ use glint_base::fixed::MAX_WIDTH;
 /// The number of sets of random values at which terms are compared.
 const SAMPLES: usize = 24;
 
-/// The values of all terms when the unknowns are random numbers. Terms with the same values may be equal, and the solver decides.
+/// The values of all terms at 24 sets of random values of the unknowns. Terms with the same values may be equal, and the solver
+/// decides.
 pub struct Candidates {
     values: Vec<HashMap<VectorTermId, u64>>,
     /// For each list of values, the first net that has them, after the net is extended to 64 bits by zeros or by its sign bit.
@@ -22,6 +23,8 @@ pub struct Candidates {
 }
 
 impl Candidates {
+    /// Evaluates the terms `nets` and `others`, and everything on which they depend. Only `nets` can be returned by
+    /// [`Self::of`].
     pub fn new<'i>(
         terms: &VectorTerms,
         nets: &'i [VectorTermId],
@@ -50,7 +53,7 @@ impl Candidates {
     }
 }
 
-/// Returns whether two terms have the same width, and the same values at random values of the unknowns.
+/// Returns whether two terms have the same width, and the same values at 24 sets of random values of the unknowns.
 pub fn agree(terms: &VectorTerms, one: VectorTermId, other: VectorTermId) -> bool {
     let cone = terms.cone([one, other]);
     terms.width(one) == terms.width(other)

@@ -1,14 +1,16 @@
-//! Executes a netlist clock by clock on symbolic terms: the operands are unknowns, and every net is an expression of them.
+//! Executes a netlist clock by clock on symbolic terms: every net has an expression of unknowns in place of a number.
 //!
-//! For example, a net that adds the operands a and b has the term a + b instead of a number.
+//! For example, a net that adds the operands a and b has the term a + b. The caller chooses the terms of the inputs, constants
+//! or unknowns, and calls `settle` and `edge` once for each clock. The module decides nothing; the parent module compares the
+//! terms.
 
 use super::term::{ADDRESS, VectorTerm, VectorTermId, VectorTerms};
 use glint_base::fixed::MAX_WIDTH;
 use glint_base::interval::Interval;
 use glint_rtl::netlist::{Design, Driver, NetId, Op, Role};
 
-/// A product of two factors of 64 bits, and the ranges that the design states for the factors. The product may lie in the
-/// product of the ranges only if both factors lie in theirs, which the solver must prove first.
+/// A product of two factors of 64 bits, and the intervals of raw values that the design states for the factors. The solver may
+/// conclude a range of the product only after it has proved that both factors lie in these intervals.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Product {
     pub factors: [VectorTermId; 2],
@@ -23,7 +25,7 @@ pub struct SymbolicState {
 }
 
 impl SymbolicState {
-    /// Assumes that a condition, a one-bit term, has the value `value`: replaces it in all terms of the state.
+    /// Replaces the one-bit term `condition` by the constant `value` in all terms of the state.
     pub fn assume(&mut self, terms: &mut VectorTerms, condition: VectorTermId, value: bool) {
         let mut all = [self.registers.as_slice(), &self.words].concat();
         terms.assuming(condition, value, &mut all);
@@ -63,7 +65,8 @@ impl<'a> Execution<'a> {
         state
     }
 
-    /// Returns the term of every net for the given inputs and state, and adds the products among them to `products`.
+    /// Returns the term of every net, at the index of the net, for the given state. `input` gives the term of each input port.
+    /// Products that are new are added to `products`.
     pub fn settle(
         &self,
         terms: &mut VectorTerms,
@@ -95,7 +98,7 @@ impl<'a> Execution<'a> {
         values
     }
 
-    /// Returns the state after a rising edge of the clock.
+    /// Returns the state after a rising edge of the clock. `state` and `values`, the terms of all nets, are before the edge.
     pub fn edge(
         &self,
         terms: &mut VectorTerms,

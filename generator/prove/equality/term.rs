@@ -1,4 +1,4 @@
-//! Stores and simplifies bit-vector terms, the values of nets when the operands are unknown.
+//! Stores and simplifies bit-vector terms: expressions for the values of nets when the operands are unknown.
 //!
 //! Equal terms are stored once. Constants are folded, so that a microprogram with unknown operands still runs. Concatenations,
 //! slices and extensions are brought into one normal form, so that many equal values become the same term without the solver.
@@ -38,11 +38,13 @@ pub enum VectorTerm {
     Product(VectorTermId, VectorTermId),
     /// A bit that is 1 if two terms of the same width are equal.
     Equal(VectorTermId, VectorTermId),
-    /// A bit that is 1 if the first of two terms of the same width is less than the second, as unsigned numbers.
+    /// A bit that is 1 if the left operand is less than the right operand, as unsigned numbers. Both have the same width.
     Less(VectorTermId, VectorTermId),
-    /// A bit that is 1 if the first of two terms of the same width is less than the second, as two's complement numbers.
+    /// A bit that is 1 if the left operand is less than the right operand, as two's complement numbers. Both have the same
+    /// width.
     SignedLess(VectorTermId, VectorTermId),
-    /// The second term if the first, which has one bit, is 1; otherwise the third.
+    /// A choice: if the first operand, which has one bit, is 1, the value of the second operand, and otherwise the value of the
+    /// third operand.
     Choice(VectorTermId, VectorTermId, VectorTermId),
     /// Bits of a term from `low` up, as many as the result has.
     Slice {
@@ -53,7 +55,8 @@ pub enum VectorTerm {
     Join(VectorTermId, VectorTermId),
     /// A narrower term with copies of its top bit above it.
     SignExtend(VectorTermId),
-    /// A word of a memory, which is 0 for an address beyond its contents. The address has [`ADDRESS`] bits.
+    /// A word of a memory: `memory` is an index into [`VectorTerms::memories`]. The word is 0 for an address beyond the
+    /// contents. The address has [`ADDRESS`] bits.
     Word {
         memory: usize,
         address: VectorTermId,
@@ -174,8 +177,8 @@ impl VectorTerms {
         self.memories.len() - 1
     }
 
-    /// Returns the term for a read at an address beyond the contents of a memory. It is an unknown that is the same for every read
-    /// at the same address.
+    /// Returns the term of `width` bits for a read at an address beyond the contents of a memory. The term is an unknown, and
+    /// it is the same for every read of this memory at the same address.
     pub fn beyond(&mut self, memory: usize, address: VectorTermId, width: u32) -> VectorTermId {
         if let Some(&word) = self.beyond.get(&(memory, address)) {
             return word;
@@ -237,8 +240,8 @@ impl VectorTerms {
         self.known.contains_key(&(ordered(term.clone()), width))
     }
 
-    /// Replaces a condition, a one-bit term, by the constant `value` in all of `terms`. The execution does so where a path assumes
-    /// the condition.
+    /// Replaces `condition`, a one-bit term, by the constant `value` in all of `terms`. The symbolic execution calls this
+    /// function on a path that exists only if the condition has this value.
     pub fn assuming(&mut self, condition: VectorTermId, value: bool, terms: &mut [VectorTermId]) {
         let constant = self.constant(value.into(), 1);
         self.replace(&HashMap::from([(condition, constant)]), terms);
@@ -266,7 +269,8 @@ impl VectorTerms {
         terms.iter_mut().for_each(|term| *term = new[term]);
     }
 
-    /// Returns a term in its simplified form. Terms that simple rules show to be equal have the same form.
+    /// Returns the id of a term, after simplification. Operations on constants become constants. Terms that simple rules show
+    /// to be equal have the same id. For example, a + 0 is a.
     pub fn make(&mut self, term: VectorTerm, width: u32) -> VectorTermId {
         let constants: Option<HashMap<VectorTermId, u64>> =
             term.operands().into_iter().map(|id| Some((id, self.constant_of(id)?))).collect();
@@ -423,8 +427,9 @@ impl VectorTerms {
         }
     }
 
-    /// Returns a simpler form of `op(a, b)`, a sum or a difference, if the lowest bits of `b` are 0. These bits of the result
-    /// are the bits of `a`, so only the upper bits are added. Returns `None` if no such bits are known.
+    /// Returns a simpler form of `op(a, b)`, a sum or a difference, if the lowest bits of `b` are known to be 0. These bits of
+    /// the result are the bits of `a`, so only the upper bits are added or subtracted. Returns `None` if no bits or all bits of
+    /// `b` are known to be 0.
     fn passed_by(
         &mut self,
         a: VectorTermId,
@@ -550,7 +555,7 @@ fn ordered(mut term: VectorTerm) -> VectorTerm {
     term
 }
 
-/// Returns the term with other operands.
+/// Returns the term with each operand replaced by the result of `of`.
 fn renamed(term: &VectorTerm, mut of: impl FnMut(VectorTermId) -> VectorTermId) -> VectorTerm {
     let mut term = term.clone();
     term.operands_mut().into_iter().for_each(|id| *id = of(*id));

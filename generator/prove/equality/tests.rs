@@ -78,7 +78,7 @@ fn simpler_terms_have_the_values_of_those_that_were_asked_for() {
     }
 }
 
-/// The test makes products of factors that are cut, extended, or both, and reads from memories.
+/// Checks the facts about products of factors that are sliced, extended, or both, and about reads from memories.
 #[test]
 fn facts_hold_whatever_the_operands_are() {
     let mut random = ChaCha8Rng::seed_from_u64(5);

@@ -1,10 +1,11 @@
 //! Proves that the emitted Verilog of a pipeline and its netlist have the same outputs, for every point (one set of operands)
 //! and from any state.
 //!
-//! Yosys reads the Verilog, and the module executes netlist and Verilog on symbolic terms, with unknown registers and memories
-//! at the beginning. [`Counters`] finds the slot counter, and proves that every memory is a delay line; `stays` proves that a
-//! clock in which the pipeline waits changes nothing. It is therefore enough to compare both in the clocks from a point to its
-//! results. A register of the Verilog that equals a net takes the net's term, so the solver only has to compare one clock at a time.
+//! Yosys has read the Verilog, and the module executes netlist and Verilog on symbolic terms, with unknown registers and
+//! memories at the beginning. [`Counters`] finds the slot counter, which counts the clocks between two points, and proves that
+//! every memory is a delay line. The module proves that a clock in which the pipeline waits changes nothing, and then compares
+//! the clocks from a point to its results. A register of the Verilog that equals a net takes the net's term, so a question
+//! concerns little more than one clock.
 
 use std::collections::{HashMap, HashSet};
 use std::time::Duration;
@@ -37,7 +38,8 @@ pub enum TextVerdict {
     Unread(String),
 }
 
-/// The numbers of proved facts in a proof that the emitted Verilog of a pipeline equals its netlist.
+/// The size of a proof that the emitted Verilog of a pipeline equals its netlist: the numbers of outputs, registers and
+/// questions, and the delays of the memories.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct TextProof {
     /// The number of outputs that are proved equal.
@@ -50,11 +52,11 @@ pub struct TextProof {
     pub questions: usize,
 }
 
-/// Proves that the emitted Verilog of a pipeline, as [`glint_tools::elaborate`] reads it, equals the pipeline's netlist. `limit`
-/// is the time limit of the solver.
+/// Proves that the emitted Verilog of a pipeline equals the pipeline's netlist, or finds a difference. `text` is the JSON of
+/// [`glint_tools::elaborate`] for this Verilog. `limit` is the time limit of all answers of the solver together.
 ///
 /// # Errors
-/// Fails if the design is no pipeline, or if the solver does not do its work.
+/// Fails if the design is no pipeline, if the Verilog lacks an output of the netlist, or if the solver cannot be run.
 pub fn compare_text(
     design: &Design,
     text: &Value,
@@ -132,8 +134,9 @@ struct TextComparison<'p> {
     proof: TextProof,
 }
 
-/// Returns the term of an input in a clock after the point enters in clock 0. The handshake is fixed: no reset, `out_ready` is
-/// 1, and `in_valid` is 1 in clock 0. Every other input is an unknown.
+/// Returns the term of an input in clock number `clock`; the point enters in clock 0. The handshake is fixed: no reset,
+/// `out_ready` is 1, and `in_valid` is 1 in clock 0. Every other input is an unknown, and it is the same for the same `name`
+/// and `clock`.
 fn input(
     terms: &mut VectorTerms,
     inputs: &mut HashMap<(String, usize), VectorTermId>,
@@ -150,9 +153,9 @@ fn input(
 }
 
 impl TextComparison<'_> {
-    /// Proves, for every value of the slot counter, that a clock in which the pipeline waits changes no register and no memory. The
-    /// slot counter counts the clocks from one point to the next. A pipeline without `out_ready` never waits, so that nothing is
-    /// proved for it.
+    /// Proves, for every value of the slot counter, that a clock in which the pipeline waits changes no register and no memory.
+    /// The slot counter counts the clocks from one point to the next. A pipeline without `out_ready` never waits, so that
+    /// nothing is proved for it.
     ///
     /// # Errors
     /// Returns [`EarlyEnd`] if a clock does not have this property, if the solver does not decide, or if the proof cannot be made.
@@ -177,8 +180,8 @@ impl TextComparison<'_> {
     }
 
     /// Proves that a clock in the slot either moves all points or changes nothing. A clock that moves no point must change no
-    /// register and no memory. A clock that moves the points must do the same as a clock with `out_ready` = 1. With an interval of
-    /// 1, the points move if `in_ready` is 1. With a longer interval, they move if the slot counter counts.
+    /// register and no memory. A clock that moves the points must do the same as a clock with `out_ready` = 1. With an interval
+    /// of 1, the points move if `in_ready` is 1. With a longer interval, they move if the slot counter counts.
     fn stays_in_slot(&mut self, slot: usize) -> Result<(), EarlyEnd> {
         let module = self.module;
         let held = self.registers_in_slot(slot);
@@ -277,7 +280,7 @@ impl TextComparison<'_> {
         }
     }
 
-    /// Proves that the outputs of netlist and Verilog are the same when the results of a point are shown.
+    /// Proves that the outputs of netlist and Verilog are the same in the clock in which the results of a point are shown.
     fn follows_a_point(&mut self) -> Result<(), EarlyEnd> {
         let nets = self.netlist()?;
         let module = self.module;
@@ -342,7 +345,8 @@ impl TextComparison<'_> {
         Ok(nets)
     }
 
-    /// Makes an unknown for the term of every register of the netlist. `nets` are the terms of the nets in the present clock.
+    /// Fills `unknown_registers` for the present clock: an unknown for the term of every register of the netlist, unless the
+    /// term is a constant or an unknown already. `nets` are the terms of the nets in this clock.
     fn forget_registers(&mut self, nets: &[VectorTermId]) {
         self.unknown_registers.clear();
         for register in &self.design.registers {
@@ -356,7 +360,8 @@ impl TextComparison<'_> {
         }
     }
 
-    /// Replaces the terms in registers of the Verilog by the terms of nets that the solver proves equal.
+    /// Replaces the terms in registers of the Verilog by terms of nets that the solver proves equal. `nets` are the terms of
+    /// the netlist's nets in the same clock. A register without an equal net keeps its term.
     fn register(&mut self, held: &mut RegisterContents, nets: &[VectorTermId]) -> Result<()> {
         let known: HashSet<VectorTermId> = nets.iter().copied().collect();
         let cone = self.terms.cone(held.iter().flatten().chain(nets).copied());
@@ -409,8 +414,11 @@ impl TextComparison<'_> {
         Ok(())
     }
 
-    /// Ends the comparison with a verdict unless two terms are proved equal. With a `condition`, they need to be equal only if
-    /// its bit has its value. For example, a register must keep its value if `in_ready` is 0.
+    /// Proves that two terms are equal. With a `condition`, they need to be equal only if its bit has its value. For example, a
+    /// register must keep its value if `in_ready` is 0. `what` names the terms in a message.
+    ///
+    /// # Errors
+    /// Returns [`EarlyEnd`] if the widths differ, if a difference is found, or if the solver does not decide.
     fn must_equal(
         &mut self,
         condition: Option<(VectorTermId, bool)>,
@@ -449,9 +457,10 @@ impl TextComparison<'_> {
         }
     }
 
-    /// Asks the solver whether the one-bit terms `wanted` can all be 1. The first question has unknowns in place of the registers, so
-    /// that it is about the logic of one clock alone. If these terms cannot all be 1 for any values of the registers, they cannot be
-    /// 1 for the values that the registers have. The other questions have these values, and then all facts about partial products.
+    /// Asks the solver whether the one-bit terms `wanted` can all be 1. The first question has unknowns in place of the
+    /// registers, so that it concerns the logic of one clock alone. If these terms cannot all be 1 for any values of the
+    /// registers, they cannot be 1 for the values that the registers have. The second question has these values. The third has
+    /// also the facts about partial products.
     fn ask(&mut self, wanted: &[VectorTermId]) -> Result<SolverAnswer> {
         let mut of_one_clock = wanted.to_vec();
         self.terms.replace(&self.unknown_registers, &mut of_one_clock);
@@ -467,8 +476,9 @@ impl TextComparison<'_> {
         }
     }
 
-    /// Finds values of the unknowns for which all `wanted` terms are 1, and describes them in words. It tries random values,
-    /// and the values `found` by the solver. Returns `None` if the terms are not all 1 for any of them.
+    /// Finds values of the unknowns for which all `wanted` terms are 1, and describes in words the two terms that then differ.
+    /// It tries 24 sets of random values, and the values `found` by the solver. Returns `None` if some `wanted` term is 0 for
+    /// each of them.
     fn difference(
         &self,
         wanted: &[VectorTermId],

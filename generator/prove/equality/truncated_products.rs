@@ -1,7 +1,9 @@
-//! Finds products that a pipeline computes from only the low bits of the factors of a product in the sequential core.
+//! Expresses a product of the sequential core by a product of the pipeline whose factors have only the low bits of the core's
+//! factors.
 //!
-//! A pipeline treats the highest bit of a factor separately if it is a sign, or if it can be set only when all other bits are 0.
-//! The core may contain the low bits as different terms; the solver then decides whether the terms are equal.
+//! A pipeline treats the highest bit of a factor separately if it is a sign, or if it can be set only when all other bits are
+//! 0. The core's product is then the pipeline's product plus the other factor times the highest bits. The core may contain the
+//! low bits as different terms; the solver then decides whether the terms are equal.
 
 use anyhow::Result;
 
@@ -12,8 +14,8 @@ use super::split_products::agree;
 use super::term::{VectorTerm, VectorTermId};
 use glint_base::fixed::MAX_WIDTH;
 
-/// How a factor of the core follows from a factor of the pipeline: both are the same, or the pipeline's factor is this number
-/// of the lowest bits of the core's factor.
+/// How a factor of the core follows from a factor of the pipeline: both are the same, or the pipeline's factor is the lowest
+/// bits of the core's factor, as many as the number says.
 #[derive(Clone, Copy)]
 enum Factor {
     Same,
@@ -21,7 +23,8 @@ enum Factor {
 }
 
 impl PipelineComparison<'_> {
-    /// Notes for each product on which `wanted` depends how it follows from a product of the pipeline, if it does.
+    /// Finds, for each product on which `wanted` depends, a product of the pipeline from which it follows. If there is one,
+    /// stores in `divided` how the product follows from it. Fails if the solver cannot be run.
     pub(super) fn divide_by_lowest(&mut self, wanted: &[VectorTermId]) -> Result<()> {
         for id in self.terms.cone(wanted.iter().copied()) {
             let VectorTerm::Product(a, b) = *self.terms.term(id) else { continue };
@@ -38,8 +41,8 @@ impl PipelineComparison<'_> {
         Ok(())
     }
 
-    /// Notes how the product a·b follows from the pipeline's product c·d, if a follows from c and b from d. Returns whether
-    /// both do.
+    /// Stores in `divided` how the product a·b follows from the pipeline's product c·d, if a follows from c and b from d.
+    /// Returns whether both do.
     fn by_parts(&mut self, [a, b]: [VectorTermId; 2], [c, d]: [VectorTermId; 2]) -> Result<bool> {
         let (Some(first), Some(second)) = (self.made(a, c)?, self.made(b, d)?) else {
             return Ok(false);
@@ -49,6 +52,7 @@ impl PipelineComparison<'_> {
         Ok(true)
     }
 
+    /// Returns how `factor` follows from `of`, a factor of the pipeline, or `None` if the solver does not prove that it does.
     fn made(&mut self, factor: VectorTermId, of: VectorTermId) -> Result<Option<Factor>> {
         if self.same(factor, of)? {
             return Ok(Some(Factor::Same));
@@ -59,7 +63,8 @@ impl PipelineComparison<'_> {
         Ok(self.same(low, bits)?.then_some(Factor::Lowest(width)))
     }
 
-    /// Returns whether the solver proves that two terms are equal for all operands.
+    /// Returns whether the solver proves that two terms are equal for all operands. Terms that differ at random values are not
+    /// asked about.
     fn same(&mut self, one: VectorTermId, other: VectorTermId) -> Result<bool> {
         if one == other || !agree(&self.terms, one, other) {
             return Ok(one == other);
@@ -71,9 +76,9 @@ impl PipelineComparison<'_> {
         Ok(matches!(said, SolverAnswer::Unsatisfiable))
     }
 
-    /// Notes how the product of `factor` and `other` follows from the product of `part` and `other`. Either both are equal, or
-    /// they differ by the product of `other` and the bits of `factor` above `part`. If only the highest bit is above, this is a
-    /// product by 0, 1 or −1.
+    /// Stores in `divided` how the product of `factor` and `other` follows from the product of `part` and `other`. Either both
+    /// are equal, or they differ by the product of `other` and the bits of `factor` above `part`. If only the highest bit is
+    /// above, this is a product by 0, 1 or −1.
     fn note(
         &mut self,
         factor: VectorTermId,

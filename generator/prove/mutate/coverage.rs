@@ -1,7 +1,8 @@
-//! Records at which clocks of a test each ROM word is read. Mutation testing plants faults in ROM words and uses the record to save
-//! time.
+//! Records at which positions of a test the simulated hardware reads each ROM word, up to six positions for a word, with the
+//! operands.
 //!
-//! A fault in a word can only show after a read of the word, so a check of the fault need not run the whole test.
+//! Mutation testing plants faults in ROM words. A fault in a word can only show after a read of the word, so a check of the
+//! fault needs to run only the parts of the test that read the word.
 
 use anyhow::Result;
 
@@ -16,8 +17,8 @@ const PLACES: usize = 6;
 /// Raw values of operands, by name.
 pub(super) type OperandValues = Vec<(String, i64)>;
 
-/// A position in a test: a stream, and the number of results before the position. For example, seed 1 and 40 points are the clock
-/// in the stream with seed 1 before which 40 results have come.
+/// A position in a test: the stimulus of one simulation (a stream), and the number of results that came before the position.
+/// For example, seed 1 and 40 points are the position in the stream with seed 1 after its first 40 results.
 #[derive(Clone)]
 pub(super) struct TestPlace {
     /// The seed of the stream.
@@ -28,7 +29,7 @@ pub(super) struct TestPlace {
     operands: Vec<u64>,
 }
 
-/// For each word of each ROM, the first positions in a test at which the simulated hardware reads it.
+/// For each ROM and each of its words, the first positions in a test at which the simulated hardware reads it; at most six.
 pub(super) struct Coverage {
     places: Vec<Vec<Vec<TestPlace>>>,
     /// The outputs of the operand registers.
@@ -50,6 +51,7 @@ impl<'a> PlaceWatch<'a> {
         Self { seed, addresses, operands, places: no_places(design) }
     }
 
+    /// Records the words at new addresses in the present clock. `points` is the number of results so far.
     fn note(&mut self, points: u64, simulator: &Simulator) {
         for ((address, latest), places) in self.addresses.iter_mut().zip(&mut self.places) {
             let word = simulator.value(*address);
@@ -73,7 +75,7 @@ fn no_places(design: &Design) -> Vec<Vec<Vec<TestPlace>>> {
 }
 
 impl Coverage {
-    /// Runs a test of `points` results, and records the positions at which it reads each ROM word.
+    /// Runs a test of `points` results on the fault-free design, and records the positions at which it reads each ROM word.
     ///
     /// # Errors
     /// Fails if the design cannot be simulated.
@@ -100,12 +102,13 @@ impl Coverage {
         Ok(Self { places: all, operands })
     }
 
-    /// Returns the positions at which the test reads a ROM word.
+    /// Returns the positions at which the test reads a ROM word; empty if the test never reads it.
     pub(super) fn places(&self, rom: RomId, word: usize) -> &[TestPlace] {
         &self.places[rom.index()][word]
     }
 
-    /// Returns, for each position at which the test reads a ROM word, the operands of the computation that reads it.
+    /// Returns, for each position at which the test reads a ROM word, the operands that were in the operand registers, as raw
+    /// values by name.
     pub(super) fn operands(
         &self,
         design: &Design,
@@ -126,8 +129,8 @@ impl Coverage {
     }
 }
 
-/// Returns the operand whose value a register holds, if it loads a port or an operand buffer. For example, the operand register
-/// of `cos_gamma` gives the name of the port, `cos_gamma`.
+/// Returns the name of the operand whose value a register holds, if it loads a port or an operand buffer, and `None` otherwise.
+/// For example, the operand register of `cos_gamma` gives the name of the port, `cos_gamma`.
 pub(super) fn operand_of<'d>(design: &'d Design, register: &NetlistRegister) -> Option<&'d str> {
     let taken = cone::reached(register.data, |net| match &design.net(net).driver {
         Driver::Op(op) => op.operands(),

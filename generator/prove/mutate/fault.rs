@@ -1,6 +1,7 @@
 //! Lists the faults that mutation testing plants in a netlist, each with a name that stays the same from run to run.
 //!
-//! For example, `adder15[3]:stuck-at-0` is bit 3 of the net `adder15`, stuck at 0.
+//! For example, `adder15[3]:stuck-at-0` is bit 3 of the net `adder15`, stuck at 0. For a large ROM, the list has only a sample
+//! of the faulty words. The module plants nothing.
 
 use std::collections::BTreeSet;
 
@@ -10,8 +11,8 @@ use glint_base::fixed::mask;
 use glint_core::cosim::Random;
 use glint_rtl::netlist::{Design, Driver, Net, NetId, Op, RegId, Role, RomId};
 
-/// The largest number of words of a ROM for which all pairs of words are swapped. `ALL_BITS` is the largest number of bits of a
-/// ROM for which every bit is inverted.
+/// The largest number of words of a ROM for which all pairs of words are swapped, and the largest number of bits of a ROM for
+/// which every bit is inverted.
 const ALL_WORDS: usize = 32;
 const ALL_BITS: usize = 1024;
 
@@ -64,8 +65,9 @@ pub enum Site {
 /// A fault in a netlist: one change at one place, with a name. For example, bit 3 of the net `adder15` stuck at 0.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NetlistFault {
-    /// The name of the fault, which no other fault of the design has. It is made of names in the design: `adder15[3]:stuck-at-0`. A
-    /// fault of a ROM names the word: `coefficient@1005[2]` is a bit of word 1005, and `coefficient@1004,1005` swaps two words.
+    /// The name of the fault, which no other fault of the design has. It is made of names in the design:
+    /// `adder15[3]:stuck-at-0`. A fault of a ROM names the word: `coefficient@1005[2]` is a bit of word 1005, and
+    /// `coefficient@1004,1005` swaps two words.
     pub id: String,
     /// The kind of the fault, such as a stuck bit.
     pub kind: FaultKind,
@@ -73,7 +75,7 @@ pub struct NetlistFault {
     pub site: Site,
 }
 
-/// A list of faults that can be planted in a netlist, each in a mutant of its own. For large ROMs the list has only a sample of the
+/// A list of faults that can be planted in a netlist, each in a mutant of its own. For large ROMs the list has a sample of the
 /// possible faults.
 #[derive(Clone, Debug, Default)]
 pub struct Faults(Vec<NetlistFault>);
@@ -248,7 +250,7 @@ fn pairs(words: &[u64], random: &mut Random) -> BTreeSet<(usize, usize)> {
     pairs
 }
 
-/// Returns the field of the control word that holds a bit, and the number of the bit in the field. For example, the
+/// Returns the field of the control ROM's words that contains a bit, and the number of the bit in the field. For example, the
 /// result is `difference_load[0]` for the field `difference_load` of one bit.
 fn field_bit(design: &Design, bit: u32) -> String {
     let fields = design.control.fields.iter().zip(design.field_positions());

@@ -1,5 +1,7 @@
-//! Proves with Yosys that a Verilog module and the same module with a fault behave alike. Such a fault is equivalent, and no test
-//! has to notice it.
+//! Proves with Yosys that a Verilog module and the same module with a fault have the same values in all ports and registers.
+//! Such a fault is equivalent, and no test has to notice it.
+//!
+//! A failed proof does not mean that the fault changes anything.
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -12,10 +14,11 @@ use regex::Regex;
 
 use glint_tools::Tool;
 
-/// The file of the module with a fault, beside the fault-free one.
+/// The name of the file with the faulty module, in the same directory as the fault-free file.
 pub(super) const MUTANT: &str = "glint_mutant.v";
 
-/// The file with the names of the nets that may differ, one in each line. [`STATUS`] is the file with Yosys's final answer.
+/// The name of the file with the names of the nets that may differ, one in each line. [`STATUS`] is the file with Yosys's final
+/// answer.
 const FREE: &str = "glint_free.txt";
 const STATUS: &str = "glint_status.txt";
 
@@ -40,7 +43,7 @@ fn pattern(text: &str) -> Regex {
 /// The proof is temporal induction from a state in which both modules agree. Yosys first merges cells with the same inputs,
 /// including multipliers and ROMs. The first attempt proves all nets with the same name equal, which makes the proof short.
 /// Nets that differ are left out of the next attempt. The files of both modules are in `directory`: `gold` are the fault-free
-/// files, and in `gate` one file is [`MUTANT`]. Instances of a module in any other file are taken as they are.
+/// files, and in `gate` one file is [`MUTANT`].
 ///
 /// # Errors
 /// Fails if Yosys is missing, or if a file cannot be read or written.

@@ -1,4 +1,6 @@
-//! Lists the kinds of faults, and their names in tables.
+//! Lists the kinds of faults that mutation testing plants in a netlist, and their names in tables.
+//!
+//! The modules `fault` and `operators` make the faults themselves.
 
 use std::fmt;
 

@@ -1,10 +1,14 @@
-//! Lists the faults that replace a whole cell: another operator, swapped operands or mux inputs, or a mux stuck at one input.
+//! Lists the faults that replace a whole cell by another cell: another operator, swapped operands or mux inputs, a mux stuck at
+//! one input, a sum without its rounding, or a slice one bit too low or too high.
+//!
+//! Faults of single bits, constants, registers and ROMs are listed in `fault`.
 
 use super::kind::FaultKind;
 use glint_rtl::netlist::{Design, Driver, NetId, Op};
 
-/// Returns the faulty cells that can replace the cell `op`, the driver of net `id`: another operator, swapped operands, and so
-/// on. Each has a name and a kind of fault.
+/// Returns the faulty cells that can replace the cell `op`, the driver of net `id`. Each has a name and a kind of fault. For
+/// example, `a & b` gives the fault `or`, which is `a | b`. The list is empty for a cell without such faults, such as a
+/// product.
 pub(super) fn of(design: &Design, id: NetId, op: &Op) -> Vec<(String, FaultKind, Op)> {
     let width = design.width(id);
     match op {
@@ -82,8 +86,8 @@ fn add(design: &Design, a: NetId, b: NetId, carry: Option<NetId>) -> Vec<(String
     faults
 }
 
-/// Returns the faults of a slice: the bits one position lower or higher are taken. For example, bits 2 to 5 of a net become
-/// bits 1 to 4 or bits 3 to 6.
+/// Returns the faults of a slice: it takes the bits one position lower or higher, if the net of `have` bits has them. For
+/// example, bits 2 to 5 of a net become bits 1 to 4 or bits 3 to 6.
 fn slice(of: NetId, low: u32, width: u32, have: u32) -> Vec<(String, FaultKind, Op)> {
     let mut faults = Vec::new();
     let mut shifted = |name: &str, low| {

@@ -1,8 +1,8 @@
-//! Tests a mutant (a design with one fault) whose faulty ROM word is read only for a few operand values.
+//! Compares a mutant (a design with one fault) with the golden model while some operands keep fixed values.
 //!
-//! Random operands would rarely read the word. The test therefore fixes the operands that lead to the word, and draws the others at
-//! random. If an operand is the address of the ROM, the test tries all values of the other operands that determine the reflectance
-//! `f`.
+//! Random operands would rarely read a faulty ROM word. A caller therefore fixes the operands that lead to the word. The module
+//! draws the other operands at random ([`drawn`], [`alone`]), or tries all values of the operands that determine the
+//! reflectance `f` ([`all`]).
 
 use anyhow::Result;
 
@@ -21,14 +21,16 @@ const FEW_POINTS: u64 = 64;
 /// The seed for drawing the operands that are not fixed.
 const SEED: u64 = 3;
 
-/// The largest number of operand bits for which all values of the remaining operands are tried.
+/// If the operand that addresses the ROM is fixed: the largest number of operand bits for which all values of the others are
+/// tried.
 pub(super) const MOST_BITS: u32 = 22;
 
-/// The largest number of operand bits for which all values of all operands are tried for each fault.
+/// If no operand is fixed: the largest number of operand bits for which all values are tried, once for each faulty word.
 pub(super) const NARROW: u32 = 16;
 
-/// Returns the operand that addresses a ROM, with the raw value that selects a word. For example, for word 5 of a ROM that the
-/// operand `exponent` addresses, it returns `exponent` with the raw value 5.
+/// Returns the operand that addresses a ROM directly, with the raw value that selects a word. For example, for word 5 of a ROM
+/// that the operand `exponent` addresses, it returns `exponent` with the raw value 5. Returns `None` if the address is
+/// computed.
 pub(super) fn addressing(core: &Core, rom: RomId, word: usize) -> Option<OperandValues> {
     let design = &core.design;
     let net = design.net(design.rom(rom).address);
@@ -39,8 +41,8 @@ pub(super) fn addressing(core: &Core, rom: RomId, word: usize) -> Option<Operand
     Some(vec![(operand_of(design, register)?.to_owned(), word as i64)])
 }
 
-/// Compares a mutant with the golden model for random points, in which the operands `held` keep their values. Returns the first
-/// difference.
+/// Compares a mutant with the golden model for 131 072 random points, in which the operands `held` keep their values. Returns
+/// the first difference, or `None` if there is no difference.
 ///
 /// # Errors
 /// Fails if the mutant cannot be simulated.
@@ -54,8 +56,8 @@ pub(super) fn drawn(
     Ok(mismatch.map(|mismatch| SignalDifference { held, mismatch }))
 }
 
-/// Compares a mutant with the golden model for a few points in which the operands `held` keep their values. Returns the first
-/// difference.
+/// Compares a mutant with the golden model for 64 points in which the operands `held` keep their values; the others are random.
+/// Returns the first difference, or `None` if there is no difference.
 ///
 /// # Errors
 /// Fails if the mutant cannot be simulated.
@@ -69,9 +71,10 @@ pub(super) fn alone(
     Ok(mismatch.map(|mismatch| SignalDifference { held, mismatch }))
 }
 
-/// The result of comparing a mutant with the golden model for all values of the operands that determine `f` and are not held.
+/// The result of comparing a mutant with the golden model for all values of the operands that determine `f` and have no fixed
+/// value.
 pub(super) enum Tried {
-    /// Nothing was tried: the operands have too many values, or the device computes lines.
+    /// Nothing was tried: the operands have too many values, or the device computes lines of points.
     Nothing,
     /// The mutant was tried with all values, and no register and no output differs on any clock.
     All,
@@ -80,7 +83,7 @@ pub(super) enum Tried {
 }
 
 /// Compares a mutant with the golden model for all values of the operands that determine `f`, if these have at most `most_bits`
-/// bits. The operands `held` keep their values.
+/// bits together. The operands `held` keep their raw values, and each colour operand has its largest value.
 ///
 /// # Errors
 /// Fails if the mutant cannot be simulated.

@@ -1,4 +1,4 @@
-//! Makes a mutant, which is a copy of a netlist with one fault.
+//! Makes a mutant, which is a copy of a netlist with one fault. The copy can be simulated and emitted as any other netlist.
 
 use std::borrow::Cow;
 
@@ -9,8 +9,8 @@ use glint_rtl::netlist::{Design, Driver, Net, NetId, Op, RegId, RomId};
 impl NetlistFault {
     /// Returns a copy of the design in which this fault is planted.
     ///
-    /// The copy can be simulated and emitted. Its nets keep the intervals of the fault-free design, which their values in the copy
-    /// may leave.
+    /// The copy can be simulated and emitted. Its nets keep the intervals of the fault-free design, which their values in the
+    /// copy may leave.
     pub fn planted(&self, design: &Design) -> Design {
         let mut mutant = design.clone();
         match &self.site {
@@ -25,7 +25,7 @@ impl NetlistFault {
     }
 }
 
-/// Returns a copy of the design without the comments on nets and ROMs, which is cheaper to copy for each fault.
+/// Returns a copy of the design without the comments on nets and ROMs. It is cheaper to copy for each fault.
 pub(super) fn bare(design: &Design) -> Design {
     let mut bare = design.clone();
     for rom in &mut bare.roms {
@@ -50,7 +50,8 @@ fn add(design: &mut Design, like: NetId, suffix: &str, driver: Driver) -> NetId 
     design.add_net(Net { name, driver, block: None, doc, named: false, ..like })
 }
 
-/// Returns the driver of a net that carries `sound` with a fault in one bit.
+/// Adds a constant, and returns the driver for a net that has the value of `sound` with the fault `how` in one bit. For
+/// example, a bit stuck at 1 is an OR with a constant.
 fn at_fault(design: &mut Design, sound: NetId, bit: u32, how: BitChange) -> Driver {
     let ones = match how {
         BitChange::Stuck0 => glint_base::fixed::mask(design.width(sound)) & !(1 << bit),
@@ -64,6 +65,7 @@ fn at_fault(design: &mut Design, sound: NetId, bit: u32, how: BitChange) -> Driv
     })
 }
 
+/// Plants a fault in bit `bit` of a net: in the data of a register, in what the design reads from a port, or in the net itself.
 fn plant_bit(design: &mut Design, net: NetId, bit: u32, how: BitChange) {
     match design.net(net).driver.clone() {
         // The checks compare the register's output, so the fault is in the value that the register takes.
@@ -97,7 +99,8 @@ fn plant_bit(design: &mut Design, net: NetId, bit: u32, how: BitChange) {
     }
 }
 
-/// Makes every reader of the net `from` read the net `to`, except the nets in `except`.
+/// Makes every cell, register input, register enable and ROM address that reads the net `from` read the net `to`, except the
+/// cells that drive the nets in `except`.
 fn redirect(design: &mut Design, from: NetId, to: NetId, except: &[NetId]) {
     let redirect = |net: &mut NetId| {
         if *net == from {
@@ -126,6 +129,7 @@ fn never(design: &mut Design, id: RegId) {
     register.data = Some(register.q);
 }
 
+/// Replaces words of a ROM, given by address. For the control ROM, the microinstructions change too.
 fn plant_words(design: &mut Design, id: RomId, words: &[(usize, u64)]) {
     for &(at, word) in words {
         design.roms[id.index()].words[at] = word;

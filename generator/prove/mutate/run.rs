@@ -1,5 +1,8 @@
-//! Plants the faults of mutation testing one at a time in the netlist of a core, and finds the verdict on each: caught by a check,
-//! proved equivalent, or undecided. The checks and proofs of a fault end with the first that decides.
+//! Plants faults one at a time in the netlist of a core, and finds the verdict on each: caught by a check, proved equivalent,
+//! or undecided.
+//!
+//! For each fault, the module tries in turn a short test, the proofs, the default test, and directed tests. It ends with the
+//! first that decides. In addition it finds whether the shipped bench notices the fault.
 
 use std::sync::OnceLock;
 
@@ -19,8 +22,8 @@ use glint_core::cosim::{Lockstep, Mismatch};
 use glint_golden::Model;
 use glint_rtl::netlist::{Design, RomId};
 
-/// The number of points of the first check. They are the first points of the default test's first stream, so a difference in
-/// them is a difference in the default test.
+/// The number of points of the short test, which runs first. They are the first points of the default test's first stream, so a
+/// difference in them is a difference in the default test.
 const FIRST_POINTS: u64 = 256;
 
 /// The number of results of a longer test, and its seed. The longer test is searched for reads of words that the default test
@@ -28,11 +31,12 @@ const FIRST_POINTS: u64 = 256;
 const BEYOND_POINTS: u64 = 1_000_000;
 const BEYOND_SEED: u64 = 2;
 
-/// Plants each of the faults in turn, runs the checks on the mutant (the design with the fault), and returns the verdicts. It calls
-/// `progress` after each fault.
+/// Plants each of the faults in turn, runs the checks on the mutant (the design with the fault), and returns the verdicts, in
+/// the order of `faults`. It calls `progress` after each fault.
 ///
 /// # Errors
-/// Fails if a mutant cannot be simulated.
+/// Fails if a mutant cannot be simulated, or if golden model and fault-free simulation disagree. The message may have the id of
+/// the fault.
 pub fn run<'f>(
     core: &Core,
     faults: impl IntoIterator<Item = &'f NetlistFault>,
@@ -65,7 +69,8 @@ pub fn run<'f>(
         .collect()
 }
 
-/// The shared state of all faults of a configuration.
+/// The shared data of the checks of all faults of a configuration: the fault-free design, the golden model, and prepared
+/// searches and proofs.
 struct Bench<'a> {
     core: &'a Core,
     sound: Design,
@@ -74,7 +79,7 @@ struct Bench<'a> {
     prover: Option<Prover<'a>>,
     /// The positions at which the default test reads each ROM word.
     tested: Coverage,
-    /// The positions at which a longer test reads each ROM word. It is computed at the first need.
+    /// The positions at which a longer test reads each ROM word, computed when they are first used.
     beyond: OnceLock<Coverage>,
     shipped: Shipped,
     /// The number of stages of a pipeline, and so the largest number of points in it; 0 for a sequential core.
@@ -91,6 +96,7 @@ impl Bench<'_> {
         Ok(FaultResult { fault: fault.clone(), verdict, shipped })
     }
 
+    /// Returns the verdict of the first check or proof that decides. Fails if the mutant cannot be simulated.
     fn verdict(&self, fault: &NetlistFault, mutant: &Design) -> Result<MutantVerdict> {
         if let Some(mismatch) = self.first_look(mutant, &fault.site)? {
             return Ok(caught(mismatch));
@@ -113,7 +119,7 @@ impl Bench<'_> {
     }
 
     /// Searches for a point at which the mutant of a pipeline differs from the fault-free pipeline, and confirms it with the
-    /// golden model. A sequential core is undecided.
+    /// golden model. Without such a point, or for a sequential core, the verdict is `Undecided`.
     fn searched(&self, mutant: &Design) -> Result<MutantVerdict> {
         let Some(beside) = &self.beside else {
             return Ok(MutantVerdict::Undecided);
@@ -124,8 +130,8 @@ impl Bench<'_> {
             .map_or(MutantVerdict::Undecided, |it| MutantVerdict::Caught(Detector::Directed, it)))
     }
 
-    /// Returns the first difference in a short part of the default test. If words of a table are faulty, the part consists of
-    /// the streams that read these words, because the fault can show only there.
+    /// Returns the first difference in a short part of the default test, or `None` if there is no difference. If words of a
+    /// table are faulty, the part consists of the streams that read these words, because the fault can show only there.
     fn first_look(&self, mutant: &Design, site: &Site) -> Result<Option<Mismatch>> {
         let looks = match self.words(site) {
             Some(_) => self.places(site),
@@ -134,7 +140,8 @@ impl Bench<'_> {
         self.shown(mutant, looks)
     }
 
-    /// Returns the first difference in some streams. Each stream is a seed and the number of results to compare.
+    /// Returns the first difference in some streams, or `None` if there is no difference. Each stream is a seed and the number
+    /// of results to compare.
     fn shown(&self, mutant: &Design, streams: Vec<(u64, u64)>) -> Result<Option<Mismatch>> {
         for (seed, points) in streams {
             let mismatch = self.lockstep(mutant, seed)?.run_alone(points)?.mismatch;
@@ -146,7 +153,7 @@ impl Bench<'_> {
     }
 
     /// Runs a mutant whose faulty table words are read only for a few operands, with these operands fixed. It then tries all
-    /// operands if they are few enough.
+    /// operands if they have few enough bits. If no combination differs for any of the words, the verdict is `Equivalent`.
     fn directed(
         &self,
         mutant: &Design,
@@ -192,8 +199,8 @@ impl Bench<'_> {
         })
     }
 
-    /// Returns the control operands of computations that read a word. They come from the default test, or from a longer test if
-    /// the default test does not read the word.
+    /// Returns the control operands of computations that read a word, one list of raw values by name for each. The computations
+    /// are part of the default test, or of a longer test if the default test does not read the word.
     fn readings(&self, rom: RomId, word: usize) -> Result<Vec<OperandValues>> {
         let design = &self.sound;
         let mut readings: Vec<OperandValues> = self.tested.operands(design, rom, word).collect();
@@ -208,8 +215,8 @@ impl Bench<'_> {
         Ok(readings)
     }
 
-    /// Returns the first difference in the streams of a longer test that read a word, if the default test does not read it. It
-    /// does so only for pipelines, which have no registers that keep the operands of a read.
+    /// Returns the first difference in the streams of a longer test that read a word, if the default test does not read it.
+    /// Returns `None` for a sequential core, whose operand registers give directed operands for the word instead.
     fn beyond_shows(&self, mutant: &Design, rom: RomId, word: usize) -> Result<Option<Mismatch>> {
         if self.latency == 0 || !self.tested.places(rom, word).is_empty() {
             return Ok(None);
@@ -229,7 +236,8 @@ impl Bench<'_> {
         Lockstep::new(mutant, self.model.boxed_clone(), contract, seed)
     }
 
-    /// Returns the faulty words if the fault is in a table, but not if it is in the control ROM.
+    /// Returns the table and its faulty words, each with its address, if the fault is in a table. Returns `None` for any other
+    /// fault, also for a fault in the control ROM.
     fn words<'s>(&self, site: &'s Site) -> Option<(RomId, &'s [(usize, u64)])> {
         match site {
             Site::Words(rom, words) if *rom != self.sound.control.rom => Some((*rom, words)),

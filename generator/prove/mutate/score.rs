@@ -1,4 +1,7 @@
 //! Counts the verdicts on the faults of a run, and decides whether the run passes.
+//!
+//! [`Score`] counts faults in the netlist; it passes if at most 1 % of them are undecided. [`TextScore`] counts faults in the
+//! emitted Verilog. The goals for the shipped bench are constants here, and callers compare the counts with them.
 
 use std::collections::BTreeMap;
 
@@ -46,9 +49,9 @@ pub struct Tally {
     pub equivalent: BTreeMap<How, usize>,
     /// The number of faults that no check noticed and no proof showed to be equivalent.
     pub undecided: usize,
-    /// The number of faults that the shipped bench notices. `missed` is the number that it does not notice although another check
-    /// does.
+    /// The number of faults that the shipped bench notices.
     pub shipped: usize,
+    /// The number of faults that the shipped bench does not notice although another check does.
     pub missed: usize,
 }
 
@@ -86,7 +89,7 @@ impl Tally {
     }
 }
 
-/// The verdicts on the faults of one configuration, or of one part of it.
+/// The numbers of faults in the netlist of one configuration, or of one part of it, by verdict and by kind.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Score {
     /// The numbers for all faults together.
@@ -118,13 +121,13 @@ impl Score {
     }
 
     /// Returns the share of inverted bits, in the upper half of ROM words, that the shipped bench notices, among the inversions
-    /// that any check notices. Returns `None` for a design without ROMs.
+    /// that any check notices. Returns `None` if no such fault was planted, for example in a design without ROMs.
     pub fn of_memory(&self) -> Option<Share> {
         self.kinds.get(&FaultKind::RomHighBit).map(Tally::of_shipped)
     }
 }
 
-/// The verdicts on the faults in the emitted Verilog of one configuration.
+/// The numbers of faults in the emitted Verilog of one configuration, by verdict.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct TextScore {
     /// The number of faults that were planted.
@@ -139,7 +142,7 @@ pub struct TextScore {
     pub undecided: Vec<String>,
     /// The share of the faults that the shipped bench notices, among the faults that it or a longer bench notices.
     pub shipped: Share,
-    /// The ids of the faults that the shipped bench does not notice.
+    /// The ids of the faults that the shipped bench does not notice although a longer bench does.
     pub missed: Vec<String>,
 }
 

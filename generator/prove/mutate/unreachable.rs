@@ -1,4 +1,7 @@
-//! Finds faults that a test cannot notice because its stimulus never exercises them, for example a ROM word that it never reads.
+//! Finds faults that the default test cannot notice because its stimulus never exercises them, for example a ROM word that it
+//! never reads.
+//!
+//! It recognises stuck bits of registers and faults in ROM words. Any other fault may be unexercised, too.
 
 use anyhow::Result;
 
@@ -8,7 +11,7 @@ use glint_core::core::{Core, TEST_POINTS, TEST_SEED};
 use glint_rtl::netlist::NetId;
 use glint_rtl::sim::Simulator;
 
-/// Records the values that the bits of some nets have had in a test.
+/// Records, for each bit of some nets, whether it was 0 and whether it was 1 in a test.
 struct BitWatch<'a> {
     nets: &'a [NetId],
     /// For each net, the bits that were 0, and the bits that were 1.
@@ -60,7 +63,8 @@ pub fn unreached<'f>(core: &Core, faults: &[&'f NetlistFault]) -> Result<Vec<&'f
     Ok(unreached)
 }
 
-/// Returns whether a bit of a net has had the value 0 or 1. It is true for a net that was not watched.
+/// Returns whether a bit of a net was `value`, 0 or 1, at some time in a stream. The result is true for a net that was not
+/// watched.
 fn has_had(nets: &[NetId], streams: &[BitWatch], net: NetId, value: usize, bit: u32) -> bool {
     let Some(at) = nets.iter().position(|&other| other == net) else {
         return true;

@@ -1,4 +1,5 @@
-//! Defines the verdicts on faults: caught by a check, proved equivalent, or undecided.
+//! Defines the verdicts on faults in a netlist: caught by a check, proved equivalent, or undecided. A verdict also names the
+//! check or the proof that decided.
 
 use std::fmt;
 
@@ -7,17 +8,18 @@ use serde::{Deserialize, Serialize};
 use super::fault::NetlistFault;
 use glint_core::cosim::Mismatch;
 
-/// The check that noticed a fault first.
+/// The check that noticed a fault in the netlist first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Detector {
     /// The default test noticed the fault: it compares golden model and simulated hardware for random operands.
     Cosim,
-    /// A directed test noticed the fault: it fixes some operands at values with which the hardware reads the faulty ROM words.
+    /// A directed test noticed the fault: it fixes operands at values with which the hardware reads faulty ROM words, or at a
+    /// point that a search has found.
     Directed,
 }
 
-/// The way in which a fault was proved equivalent.
+/// The method by which a fault was proved equivalent.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum How {
@@ -25,7 +27,8 @@ pub enum How {
     Induction,
     /// The fault was proved equivalent by trying every combination of values on the nets around it.
     Exhaustion,
-    /// The fault was proved equivalent by trying every combination of the operands with which the hardware uses the faulty word.
+    /// The fault, in words of a ROM, was proved equivalent by trying every combination of the operands with which the hardware
+    /// reads the words.
     Operands,
 }
 

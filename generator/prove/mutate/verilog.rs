@@ -1,9 +1,8 @@
 //! Plants faults in the text of the emitted Verilog, and finds out whether lint or a test bench notices them.
 //!
 //! Each mutant has one fault, such as a bug in the emitter could cause. For example, `4'd9` becomes `4'd8`. Lint, the shipped
-//! bench or a longer bench must notice it; the faults that the shipped bench notices are also counted separately. No fault
-//! moves a register to the other clock edge, because in simulation its input is stable by then and only timing analysis could
-//! tell.
+//! bench or a longer bench must notice it; otherwise Yosys tries to prove that the fault changes nothing. No fault moves a
+//! register to the other clock edge, because in simulation its input is stable by then and only timing analysis could tell.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -32,8 +31,8 @@ const PROOF_LIMIT: Duration = Duration::from_secs(120);
 /// A fault in the text of the emitted Verilog. For example, `4'd9` becomes `4'd8`.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct TextFault {
-    /// The name of the fault: the file, the line number, the kind of fault, and a number among the faults of this kind in the line.
-    /// For example, `blinn_datapath.v:127:operator:1` is the first wrong operator in line 127.
+    /// The name of the fault: the file, the line number, the kind of fault, and a number among the faults of this kind in the
+    /// line. For example, `blinn_datapath.v:127:operator:1` is the first wrong operator in line 127.
     pub id: String,
     /// The name of the kind of fault, such as `operator`.
     pub kind: &'static str,
@@ -51,7 +50,7 @@ pub enum TextMutantVerdict {
     Lint,
     /// A test bench fails.
     Bench,
-    /// Yosys proves that the module behaves as before.
+    /// Yosys proves that the faulty module behaves as the fault-free module.
     Equivalent,
     /// No check notices the fault, and no proof shows it to be equivalent.
     Undecided,
@@ -95,8 +94,8 @@ pub struct VerilogText {
     modules: Vec<usize>,
 }
 
-/// A kind of fault: `with` returns the text that replaces a match of `pattern`. If the replacement equals the original text,
-/// there is no fault. For example, the kind `constant` replaces `4'd9` by `4'd8`.
+/// A kind of fault: the function `with` returns the text that replaces a match of `pattern`. If the replacement equals the
+/// original text, there is no fault. For example, the kind `constant` replaces `4'd9` by `4'd8`.
 struct TextOperator {
     kind: &'static str,
     pattern: Regex,
@@ -172,10 +171,11 @@ static OPERATORS: LazyLock<Vec<TextOperator>> = LazyLock::new(|| {
 });
 
 impl VerilogText {
-    /// Collects the Verilog files of a core and its shipped bench.
+    /// Collects the Verilog files of a core, its shipped bench, and a longer bench. Faults are planted in the modules of the
+    /// core.
     ///
     /// # Errors
-    /// Fails if a tool is missing, if golden model and simulation differ, or if the design cannot be written.
+    /// Fails if `iverilog`, `vvp`, `verilator` or `yosys` is missing, or if golden model and simulation differ.
     pub fn of(core: &Core) -> Result<Self> {
         TOOLS.iter().try_for_each(|tool| Tool::find(tool).map(drop))?;
         let name = &core.config.name;
@@ -189,10 +189,11 @@ impl VerilogText {
         Ok(text)
     }
 
-    /// Collects the Verilog files of the wrappers around a core, with their shipped benches and proofs.
+    /// Collects the Verilog files of the wrappers around a core, with their shipped benches and proofs. Faults are planted in
+    /// the wrappers.
     ///
     /// # Errors
-    /// Fails if golden model and simulation differ, or if the design cannot be written.
+    /// Fails if golden model and simulation differ, or if the files cannot be made.
     pub fn of_wrappers(core: &Core) -> Result<Self> {
         let name = &core.config.name;
         let files = core.files(&format!("{name}.toml"), core.shipped_vectors()?)?;
@@ -237,7 +238,7 @@ impl VerilogText {
         files
     }
 
-    /// Returns the name of the module of the core's shipped bench.
+    /// Returns the name of the module of the core's shipped bench, or an empty text without a bench.
     fn bench(&self) -> &str {
         let bench = self.files.iter().find(|file| file.kind == FileKind::Bench);
         bench.map_or("", OutputFile::main_module)
@@ -264,10 +265,12 @@ impl VerilogText {
         faults
     }
 
-    /// Plants each of the faults and returns the verdicts of lint and test benches on it.
+    /// Plants each of the faults in turn, and returns the verdicts on it, in the order of `faults`. `limit` is the time limit
+    /// of each run of a tool. It calls `progress` after each fault.
     ///
     /// # Errors
-    /// Fails if Verilator is missing, or does not end within `limit`.
+    /// Fails if Verilator is missing, does not start, or does not end within `limit`; or if Yosys is missing. The message has
+    /// the id of the fault.
     pub fn run(
         &self,
         faults: &[TextFault],
@@ -308,7 +311,8 @@ impl VerilogText {
         Ok(TextFaultResult { verdict, shipped })
     }
 
-    /// Returns whether Verilator's lint refuses the modules or warns of them.
+    /// Returns whether Verilator's lint refuses the modules or warns of them. Fails if Verilator does not start or does not end
+    /// within `limit`.
     fn is_linted(&self, files: &[OutputFile], verilator: &Tool, limit: Duration) -> Result<bool> {
         let dir = Directory::new().context("cannot make a temporary directory")?;
         for file in files {
@@ -323,7 +327,8 @@ impl VerilogText {
         Ok(!lint.status.success() || !lint.output.is_empty())
     }
 
-    /// Returns the verdict of the benches on a mutant. If both benches pass, it also returns the shipped bench as it was built.
+    /// Returns the verdict of the benches on a mutant. If both benches pass, it also returns the built shipped bench, whose
+    /// directory has all files; otherwise `None`.
     fn benches(
         &self,
         mutant: &[OutputFile],
@@ -355,8 +360,9 @@ impl VerilogText {
         })
     }
 
-    /// Returns whether Yosys proves that the module in a file behaves as it does without the fault. `dir` must contain all
-    /// files. If the core is a pipeline, the module is the whole pipeline with its multiplier.
+    /// Returns whether Yosys proves that the module in file number `file` behaves as it does without the fault. The directory
+    /// `dir` must contain all files. If the core is a pipeline, the module is the whole pipeline with its multiplier. Fails if
+    /// Yosys is missing.
     fn proves(
         &self,
         mutant: &[OutputFile],
@@ -385,7 +391,8 @@ impl VerilogText {
     }
 }
 
-/// Adds the faults of one line to `faults`. `whole` is the line, and `code` the part of it before a comment.
+/// Adds the faults of one line to `faults`. `whole` is the line, `code` the part of it before a comment, `line` its number from
+/// 0, and `file` the index of the file.
 fn in_line(
     name: &str,
     file: usize,

@@ -1,9 +1,9 @@
-//! Searches for an operand combination at which a mutant of a pipeline (the pipeline with one fault) gives a wrong result.
+//! Searches for a combination of operands at which a mutant of a pipeline (the pipeline with one fault) gives a wrong value.
 //!
-//! Some hardware exists in a pipeline but not in its sequential core, such as the parts of a split product. A fault there may show
-//! only if a carry runs through all bits that are later dropped, which random points rarely cause. The search simulates pipeline
-//! and mutant together. It keeps points that make some register differ, preferably in a late stage, and changes one operand at a
-//! time. If it finds nothing, that proves nothing.
+//! Some hardware exists in a pipeline but not in its sequential core, such as the parts of a split product. A fault there may
+//! show only if a carry runs through all bits that are later dropped, which random points rarely cause. The search simulates
+//! pipeline and mutant together. It keeps points that make some register differ, preferably in a late stage, and changes one of
+//! their operands at a time. A search without a result proves nothing.
 
 use std::sync::Arc;
 
@@ -16,13 +16,14 @@ use glint_golden::{Contract, Operand};
 use glint_rtl::netlist::{Design, NetId, Pipeline, Role};
 use glint_rtl::sim::{CompiledDesign, Machine};
 
+/// The number of points that enter the pipelines in the same clock, in simulations that run in parallel.
 const LANES: usize = 64;
 
 /// The number of clocks of a search.
 const CLOCKS: usize = 1 << 16;
 
-/// The number of points after which the search ends although `confirm` has confirmed none. The golden model predicts a
-/// checkpoint only for points that come to its microinstruction, so some differences are not confirmed.
+/// The number of calls of `confirm` after which the search ends although none has confirmed a point. The golden model predicts
+/// a checkpoint only for points that execute its microinstruction, so some differences are not confirmed.
 const TRIES: usize = 32;
 
 /// The largest number of points that are kept and changed further.
@@ -33,8 +34,8 @@ const SEED: u64 = 4;
 /// A fault-free pipeline, prepared for searching points at which mutants differ from it.
 pub(super) struct PointSearch {
     sound: Arc<CompiledDesign>,
-    /// The number of inputs. `high` are the inputs that are 1 after a clock of reset, so that a point enters and leaves
-    /// whenever it can.
+    /// The number of inputs. `high` has the indices of the inputs that are 1 after a clock of reset (reset, `in_valid`,
+    /// `out_ready`), so that a point enters and leaves whenever it can.
     inputs: usize,
     high: Vec<usize>,
     /// The operands of the contract, each with its index among the inputs.
@@ -94,8 +95,9 @@ impl PointSearch {
         })
     }
 
-    /// Searches for a point at which a mutant differs in a value that the golden model predicts, and returns the result of
-    /// `confirm` for it. Returns `None` if the search finds no such point, or if `confirm` confirms none.
+    /// Searches for a point at which a mutant differs in a value that the golden model predicts, and calls `confirm` with its
+    /// operands, by name as raw values. Returns the first result of `confirm` that is not `None`. Returns `None` if the search
+    /// finds no such point in 65 536 clocks, or if `confirm` returns `None` 32 times.
     ///
     /// # Errors
     /// Fails if `confirm` fails, or if the mutant cannot be simulated.

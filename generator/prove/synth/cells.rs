@@ -1,8 +1,8 @@
 //! Measures a core in standard cells of 0.18 µm before layout, with Yosys for the area and OpenSTA for the delay.
 //!
-//! Yosys buffers nets with a large fan-out and sizes the cells; otherwise the clock enable of a pipeline would be slower than all
-//! logic that it enables. The cell library is from Oklahoma State University, in the typical corner, as Debian's package
-//! `qflow-tech-osu018` has it. One gate is the area of its NAND2X1.
+//! Yosys buffers nets with a large fan-out and sizes the cells; otherwise the clock enable of a pipeline would be slower than
+//! all logic that it enables. The cell library is from Oklahoma State University, in the typical corner, as Debian's package
+//! `qflow-tech-osu018` has it. The number of gates is the area of all cells, divided by the area of the cell NAND2X1.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -55,6 +55,11 @@ impl CellLibrary {
     }
 }
 
+/// Measures the area of a core alone, and the longest path of the core in its harness. Calls `done` after synthesis and after
+/// timing.
+///
+/// # Errors
+/// Fails if a tool fails, takes too long or does not report a figure, or if the library has no area of the cell NAND2X1.
 pub fn measure(
     yosys: &Tool,
     sta: &Tool,
@@ -93,15 +98,16 @@ pub fn measure(
     Ok(Figures::new(Target::Osu018, DEVICE, area).with_runs(vec![(1000.0 / period, path)]))
 }
 
-/// Returns the area of the cell [`GATE`] in the text of a cell library, in µm². It is the unit of the number of gates.
+/// Returns the area of the cell [`GATE`] in the text of a cell library, in µm². Returns `None` if the text does not state it.
 fn gate(liberty: &str) -> Option<f64> {
     let (_, cell) = liberty.split_once(&format!("cell ({GATE})"))?;
     let (_, area) = cell.split_once("area :")?;
     area.split(';').next()?.trim().parse().ok()
 }
 
-/// Returns the area of the cells, with the flip-flops counted. For example, Yosys's line `Chip area for module 'rsqrt':
-/// 24000.0` gives 24 000 µm².
+/// Returns the area of the cells in µm² and in gates, and the number of flip-flops, from the text of Yosys's `stat`. `gate` is
+/// the area of a gate in µm². For example, the line `Chip area for module 'rsqrt': 24000.0` gives 24 000 µm². Returns `None` if
+/// no such line exists.
 fn area(statistics: &str, gate: f64) -> Option<Area> {
     let total = statistics.lines().find_map(|line| {
         let (before, area) = line.split_once(": ")?;
@@ -119,7 +125,7 @@ fn area(statistics: &str, gate: f64) -> Option<Area> {
     })
 }
 
-/// Returns the shortest period in nanoseconds, and the longest path.
+/// Returns the shortest period in nanoseconds, and the longest path. Fails if OpenSTA fails, takes too long or states no path.
 fn timing(
     sta: &Tool,
     subject: &SynthesisSubject,
@@ -147,7 +153,8 @@ fn timing(
     Ok((PERIOD - slack, steps(netlist, &said)))
 }
 
-/// Returns the points of the longest path in OpenSTA's report, by their names in the description, with the register at the end.
+/// Returns the points of the longest path in OpenSTA's report, each with its name in the description and its time in
+/// nanoseconds. The last point is the register at the end of the path. Nets that the description does not name are left out.
 fn steps(netlist: &Netlist, said: &str) -> Vec<PathPoint> {
     let mut points = Vec::new();
     let mut time = 0.0;
@@ -176,7 +183,7 @@ fn steps(netlist: &Netlist, said: &str) -> Vec<PathPoint> {
 mod tests {
     use super::*;
 
-    /// The figures in the cache are of one library: a library that differs in one number gets figures of its own.
+    /// Figures are cached by the library's digest, so a library that differs in one number must have another digest.
     #[test]
     fn libraries_with_other_contents_have_other_digests() {
         let library = |area: &str| CellLibrary {

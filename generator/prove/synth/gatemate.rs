@@ -1,5 +1,7 @@
-//! How nextpnr-himbaechel measures a core on the FPGA family GateMate. It times every cell: products are arrays of logic cells, and
-//! it knows the delays of block RAMs.
+//! Defines how nextpnr-himbaechel measures a core on the FPGA family GateMate: the requested frequency, and no further options.
+//!
+//! Products are arrays of logic cells. nextpnr-himbaechel knows the delays of logic cells and of block RAMs, so the module
+//! checks no cell. The module `nextpnr` runs the measurement.
 
 use super::nextpnr::Recipe;
 use glint_show::figures::Target;

@@ -1,6 +1,7 @@
-//! Generates a Verilog module with a register on each side of every port of a core.
+//! Generates the harness of a core: a Verilog module that contains the core, with a register on each side of every port.
 //!
-//! With the registers, timing analysis covers the paths at the ports, and the FPGA's pins do not limit the frequency.
+//! With the registers, timing analysis covers the paths at the ports, and the FPGA's pins do not limit the frequency. The
+//! registers are shift registers, so the harness has only four pins: `clk`, `in`, `take` and `out`.
 
 use anyhow::Result;
 use glint_base::fill;
@@ -9,10 +10,11 @@ use glint_rtl::netlist::{Design, Port};
 
 /// The name of the harness module.
 pub const TOP: &str = "glint_harness";
+/// The name of the core's instance in the harness module.
 pub const CORE: &str = "core";
 
-/// The bits of a port in the register beside it, from `low` to `high`. For example, ports of 1, 8 and 12 bits have bit 0, bits
-/// 1 to 8 and bits 9 to 20.
+/// The bits of a port in the shift register that feeds all inputs or captures all outputs, from `low` to `high`, both
+/// inclusive. For example, ports of 1, 8 and 12 bits have bit 0, bits 1 to 8 and bits 9 to 20.
 struct Slice<'a> {
     port: &'a str,
     high: u32,
@@ -21,6 +23,9 @@ struct Slice<'a> {
 
 /// Returns the Verilog of the harness. A shift register feeds all inputs of the core. Each output is captured in a register and
 /// then shifted out, so that the harness has four pins, whatever the ports of the core.
+///
+/// # Errors
+/// Fails if the template fails.
 pub fn harness(design: &Design) -> Result<String> {
     let (inputs, fed) = slices(design, design.inputs());
     let (outputs, captured) = slices(design, design.outputs());
@@ -35,6 +40,7 @@ pub fn harness(design: &Design) -> Result<String> {
     })
 }
 
+/// Returns the bits of each port in one shift register, in the order of `ports`, and the total number of bits.
 fn slices<'a>(design: &'a Design, ports: impl Iterator<Item = &'a Port>) -> (Vec<Slice<'a>>, u32) {
     let mut low = 0;
     let slices = ports.map(|port| {

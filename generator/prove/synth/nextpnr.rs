@@ -1,5 +1,8 @@
 //! Measures a core with Yosys and a nextpnr that writes its timing as a report in JSON: nextpnr-ecp5, nextpnr-nexus and
 //! nextpnr-himbaechel.
+//!
+//! The settings of each FPGA family are a [`Recipe`]. The core is placed on the first chip of the family that is large enough;
+//! a core that fits on no chip gets its area, and no frequency.
 
 use anyhow::{Context, Result};
 use serde_json::Value;
@@ -20,16 +23,17 @@ pub struct Recipe {
     pub speed: &'static str,
     /// Further options of nextpnr; the chip and the frequency have options of their own.
     pub options: &'static str,
-    /// The frequency that nextpnr is asked for, in MHz. It must be out of reach, so that the placer tries hardest.
+    /// The frequency that nextpnr is asked for, in MHz. No core may reach this frequency, so that the placer tries hardest.
     pub goal: u32,
     /// Checks that nextpnr times every cell of the netlist, and prepares the files that nextpnr reads.
     pub prepare: fn(&Workspace, &Netlist) -> Result<()>,
 }
 
-/// Measures area and frequency of a core as a recipe says. It calls `done` after each step.
+/// Measures the area of a core alone, and the frequency of the core in its harness for each seed, as a recipe says. It calls
+/// `done` after synthesis and after each seed.
 ///
 /// # Errors
-/// Fails if a tool fails or takes too long, or if the recipe's `prepare` fails.
+/// Fails if a tool fails, takes too long or reports no frequency, or if the recipe's `prepare` fails.
 pub fn measure(
     recipe: &Recipe,
     yosys: &Tool,
@@ -54,6 +58,8 @@ pub fn measure(
     routed(figures, subject, done, |seed| route(recipe, nextpnr, &workspace, &netlist, chip, seed))
 }
 
+/// Places, routes and times the core with one seed. Returns the frequency in MHz and the longest path. Fails if nextpnr fails,
+/// takes too long, or reports no frequency.
 fn route(
     recipe: &Recipe,
     nextpnr: &Tool,
@@ -82,7 +88,9 @@ fn route(
     Ok((frequency, steps(netlist, &report, &format!("posedge {clock}"))))
 }
 
-/// Returns the points of the longest path between two registers, by their names in the description.
+/// Returns the points of the longest path between two registers, each with its name in the description and its time in
+/// nanoseconds. `clock` is the clock edge in the report, such as `posedge clk`. The list is empty if the report has no such
+/// path.
 fn steps(netlist: &Netlist, report: &Value, clock: &str) -> Vec<PathPoint> {
     let paths = report["critical_paths"].as_array().into_iter().flatten();
     let path = paths.into_iter().find(|path| path["from"] == clock && path["to"] == clock);

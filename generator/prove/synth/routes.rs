@@ -1,12 +1,16 @@
-//! Runs placement and routing several times, each with another seed of the tool's random numbers.
+//! Runs the measurement of a frequency in parallel, once for each seed of the placement tool's random numbers, and collects the
+//! results.
+//!
+//! A caller gives the function that runs the tools for one seed. The module starts no tool itself.
 
 use anyhow::{Context, Result};
 use rayon::prelude::*;
 
 use super::{Figures, PathPoint, SynthesisSubject};
 
-/// Runs `route` (placement, routing and timing analysis) once for each seed, and adds the results to `figures`: frequencies in MHz,
-/// and longest paths. Does nothing if `figures` already has a reason why the core cannot be timed.
+/// Runs `route` (placement, routing and timing analysis) once for each seed from 1 to `subject.seeds`, and adds the results to
+/// `figures`: frequencies in MHz, and longest paths. Calls `done` for each seed. If `figures` already has a reason why the core
+/// cannot be timed, `route` is not run.
 ///
 /// # Errors
 /// Fails if a run fails; the message has its seed, for example `seed 2`.

@@ -1,4 +1,6 @@
-//! Prepares a directory with the files of a core, and runs Yosys and nextpnr in it.
+//! Prepares a temporary directory with the Verilog of a core and of its harness, and runs Yosys and nextpnr in it.
+//!
+//! Yosys synthesises the core twice: alone for the area, and in the harness for the timing.
 
 use anyhow::{Context, Result};
 
@@ -15,25 +17,25 @@ pub struct Workspace<'a> {
     subject: &'a SynthesisSubject<'a>,
 }
 
-/// The name of the Verilog file with the harness, the registers around the core. Yosys does not read it when it synthesises the
-/// core alone.
+/// The name of the Verilog file with the harness, a module with registers around the core. Yosys does not read it when it
+/// synthesises the core alone.
 pub const HARNESS: &str = "glint_harness.v";
 /// The name of the file with the netlist after synthesis, as JSON.
 pub const NETLIST: &str = "harness.json";
 
 impl<'a> Workspace<'a> {
-    /// Writes the Verilog of the core and of its harness into a new directory.
+    /// Writes the Verilog of the core and of its harness into a new temporary directory.
     ///
     /// # Errors
-    /// Fails if the sources cannot be written.
+    /// Fails if a file cannot be written.
     pub fn new(yosys: &'a Tool, subject: &'a SynthesisSubject<'a>) -> Result<Self> {
         let sources = YosysSources::new(yosys, subject.files, subject.limit)?;
         sources.write(HARNESS, &harness::harness(subject.design)?)?;
         Ok(Self { sources, subject })
     }
 
-    /// Runs nextpnr on the netlist with a seed. `options` are the options of the FPGA family, separated by spaces. For example,
-    /// they begin with `--up5k --package sg48` for iCE40.
+    /// Runs nextpnr on the netlist in the file [`NETLIST`], with a seed. `options` are the options of the FPGA family,
+    /// separated by single spaces. For example, they begin with `--up5k --package sg48` for iCE40.
     ///
     /// # Errors
     /// Fails if nextpnr fails or takes too long.
@@ -48,7 +50,8 @@ impl<'a> Workspace<'a> {
     /// in its harness, and leaves this netlist in the file [`NETLIST`].
     ///
     /// # Errors
-    /// Fails if [`YosysSources::run`] fails.
+    /// Fails if Yosys fails or takes too long, if Yosys does not know the family of `target`, or if its output lacks the area
+    /// or the netlist.
     pub fn synthesise(&self, target: Target) -> Result<(Usage, Netlist)> {
         let family = target.family().context("Yosys knows no such family")?;
         let top = &self.subject.design.name;
@@ -68,7 +71,7 @@ impl<'a> Workspace<'a> {
     /// Parses the netlist in the file [`NETLIST`].
     ///
     /// # Errors
-    /// Fails if the file is no netlist.
+    /// Fails if the file is missing, or if it has no nets and cells of the harness.
     pub fn netlist(&self) -> Result<Netlist> {
         Netlist::new(self.subject.design, &self.sources.json(NETLIST)?)
     }

@@ -1,5 +1,8 @@
-//! Estimates the cost of a configuration in each of its architectures: the sequential core, and pipelines with different
-//! intervals.
+//! Builds a configuration in each of its architectures and estimates the cost: the sequential core, and pipelines with
+//! different intervals, which are the numbers of clocks from one point to the next.
+//!
+//! Nothing is synthesised. A pipeline of a sequential configuration is scheduled for the target, at the default clock or, if
+//! that is out of reach, at the fastest clock that can be reached.
 
 use anyhow::{Context, Result};
 use rayon::prelude::*;
@@ -37,7 +40,7 @@ impl Architecture {
         Ok(Self { core, interval, clocks_per_point: clocks, multipliers, cost })
     }
 
-    /// Returns the rate in million points a second, at the estimated clock.
+    /// Returns the rate in million points a second, at the estimated clock frequency.
     pub fn rate(&self) -> f64 {
         self.cost.mhz / self.clocks_per_point
     }
@@ -66,8 +69,8 @@ impl Architecture {
         format!("{blocks}, {:.1} million points a second", self.rate())
     }
 
-    /// Returns whether this architecture has at least the rate of another with at most as many DSP blocks, and is better in one
-    /// of both.
+    /// Returns whether this architecture has at least the rate of `other` and at most as many DSP blocks, and is better in the
+    /// rate or in the number of DSP blocks.
     pub fn dominates(&self, other: &Self) -> bool {
         let (rate, dsps) = (self.rate(), self.cost.dsps);
         let is_as_good = rate >= other.rate() && dsps <= other.cost.dsps;
@@ -92,8 +95,9 @@ pub fn sequential(device: &Device, base: &Config, target: Target) -> Result<Arch
     Architecture::new(Core::new(*device, config)?, target)
 }
 
-/// Returns a configuration as a pipeline with the longest interval, or `None` if the device cannot be a pipeline. `sequential` is
-/// the configuration as a sequential core. For example, `cosine-power` has an interval of 8, the clocks of its sequential core.
+/// Returns a configuration as a pipeline with the longest interval that can be built, at most the clocks of its sequential core
+/// and at most 64. `sequential` is the configuration as a sequential core. Returns `None` if the device cannot be a pipeline.
+/// For example, `cosine-power` has an interval of 8, the clocks of its sequential core.
 pub fn longest_interval(
     device: &Device,
     sequential: &Architecture,
@@ -114,6 +118,7 @@ fn intervals(sequential: &Architecture) -> std::ops::RangeInclusive<u32> {
 
 /// Returns a configuration as a pipeline with an interval. If the configuration is sequential, the pipeline is scheduled for
 /// the target. If such a pipeline cannot reach the default clock, it is scheduled for the fastest clock that it can reach.
+/// Fails if the device cannot be a pipeline with this interval.
 fn pipeline(device: &Device, base: &Config, target: Target, interval: u32) -> Result<Architecture> {
     let mut config = base.clone();
     config.set("architecture", Value::Text("pipelined".to_owned()));
@@ -130,12 +135,13 @@ fn pipeline(device: &Device, base: &Config, target: Target, interval: u32) -> Re
     Architecture::new(core, target)
 }
 
-/// Returns the sequential core of a configuration, and its pipelines from the longest interval to 1. It leaves out a pipeline
-/// if one with a shorter interval has no more multipliers, unless its interval is `kept`. For example, `cosine-power` has the
-/// intervals 8, 4, 3, 2 and 1: with 5, 6 and 7 it needs two multipliers, as with 4.
+/// Returns the sequential core of a configuration, and then its pipelines from the longest interval to 1. It leaves out a
+/// pipeline if a pipeline with a shorter interval has no more multipliers, unless its interval is `kept`. For example,
+/// `cosine-power` has the intervals 8, 4, 3, 2 and 1: with 5, 6 and 7 it needs two multipliers, as with 4.
 ///
 /// # Errors
-/// Fails if the configuration makes no sequential core, or no pipeline.
+/// Fails if the configuration makes no sequential core, or no pipeline. The message then has the reason for the shortest
+/// interval.
 pub fn all(
     device: &Device,
     base: &Config,

@@ -1,9 +1,9 @@
-//! Finds the smallest configuration of a device whose error stays below a limit that the user gives.
+//! Finds the configuration of a device with the smallest estimated cost whose error is at most a limit that the user gives.
 //!
 //! The error is the proved bound of the accuracy contract, so the answer of [`tune`] holds for every operand of the domain. The
-//! cost is estimated from the netlist ([`model`]). The search changes only keys that change neither a port nor the formula
-//! (`space`). It also changes keys that add microinstructions if the user states a rate that is enough, if DSP blocks are
-//! weighted heavily, or if nothing else fits the chip.
+//! cost is estimated from the netlist ([`model`]), without synthesis. The search changes only keys that change neither a port
+//! nor the formula (`space`). Keys that add microinstructions, and so clocks, are changed only if the user states a rate or a
+//! largest number of DSP blocks, minimises DSP blocks, or if no other configuration fits the chip.
 
 pub mod architectures;
 pub mod model;
@@ -25,13 +25,14 @@ use space::SearchSpace;
 
 use crate::synth::Target;
 
-/// The unit in which the user of `glint tune` states the largest error.
+/// The unit in which the user of `glint tune` states the largest error: the reflectance f of a highlight, or an output's last
+/// bit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum ErrorUnit {
-    /// The reflectance f, from 0 to 1.
+    /// The reflectance f, from 0 to 1: an error is a difference of f.
     F,
-    /// An output's least significant bit.
+    /// The weight of an output's least significant bit.
     Output,
 }
 
@@ -86,21 +87,24 @@ pub struct TuningGoal {
     pub most_dsps: Option<u64>,
 }
 
-/// Beyond the clocks of every sequential core.
+/// The longest interval, in clocks, that is tried for a pipeline. No sequential core of the catalogue takes more clocks for a
+/// point.
 const LONGEST: i64 = 64;
 
-/// The keys by which a pipeline has a rate.
+/// The keys that decide the rate of a pipeline. The answer lists them as keys that the search has changed.
 const ARCHITECTURE: [&str; 2] = ["architecture", "pipeline.interval"];
 
-/// Searches for the smallest configuration that meets `goal`.
+/// Searches for the configuration with the smallest cost that meets `goal`. The search is local, so a smaller configuration may
+/// exist.
 ///
-/// `base` has the keys that are part of the user's question. The search changes the other keys, except those in `fixed`. It also
-/// tries pipelines if a rate is wanted or DSP blocks are limited, and `fixed` does not contain the architecture. Such a pipeline
-/// accepts a point (a set of operands) as seldom as the goal allows, so that several products can share a multiplier. `progress`
-/// is called with the number of configurations that were evaluated.
+/// `base` has the keys that are part of the user's question. The search changes the other keys, except the keys in `fixed`. It
+/// also tries pipelines if a rate is wanted or DSP blocks are limited, and `fixed` does not contain the architecture. Such a
+/// pipeline accepts a point (a set of operands) as seldom as the goal allows, so that several products can share a multiplier.
+/// `progress` is called with the number of configurations that were evaluated.
 ///
 /// # Errors
-/// Fails if no configuration meets the goal. The message says which term of the bound, or the clock, is in the way.
+/// Fails if `base` makes no design, or if the search finds no configuration that meets the goal. The message then says which
+/// term of the bound, the clock, or the DSP blocks prevent this.
 pub fn tune(
     device: &Device,
     base: &Config,
@@ -140,8 +144,9 @@ pub fn tune(
     Ok(Answer { best, front, free, looked_at })
 }
 
-/// Returns the pipelines that could have the rate, and no more multipliers than are allowed, the longest interval
-/// first. For example, a clock of 50 MHz and a rate of 10 million points a second allow the intervals 5, 4, 3, 2 and 1.
+/// Returns the pipelines that [`tune`] tries, the longest interval first. The list is empty if the goal has neither a rate nor
+/// a limit of DSP blocks, if the target is no FPGA family, or if `fixed` forbids another architecture. For example, a clock of
+/// 50 MHz and a rate of 10 million points a second allow the intervals 5, 4, 3, 2 and 1.
 fn pipelines(device: &Device, base: &Config, fixed: &[&str], goal: &TuningGoal) -> Vec<Config> {
     let Some(family) = goal.target.family() else { return Vec::new() };
     if goal.rate.is_none() && goal.most_dsps.is_none() {
@@ -176,7 +181,8 @@ fn pipelines(device: &Device, base: &Config, fixed: &[&str], goal: &TuningGoal) 
     pipelines
 }
 
-/// Does what [`tune`] does, for one architecture.
+/// Searches as [`tune`] does, in the architecture of `base` alone. Fails if `base` makes no design, or if the search does not
+/// meet the goal.
 fn of_architecture(
     device: &Device,
     base: &Config,
@@ -200,8 +206,8 @@ fn of_architecture(
     Ok(if fits(&shared) { shared } else { answer })
 }
 
-/// Tries all combinations of the `values` of keys, and returns the smallest configuration that meets the goal, or `None`. Use it
-/// for tests of the search, and for small spaces.
+/// Tries all combinations of the `values` of keys, and returns the configuration with the smallest cost that meets the goal, or
+/// `None` if no combination does. Use it for tests of the search, and for small spaces.
 ///
 /// # Errors
 /// Fails if `base` makes no design, or if a key does not exist.

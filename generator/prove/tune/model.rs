@@ -21,12 +21,14 @@ pub struct Features {
     pub adder: f64,
     /// The number of bits of muxes, for each input beyond the first. For example, a mux of 3 inputs of 8 bits counts 16.
     pub mux: f64,
-    /// The number of bits of gates. A reduction or an equality takes a look-up table for three bits.
+    /// The number of bits of gates. A reduction counts a third of its operand's bits, and an equality a third of the bits of
+    /// both operands.
     pub logic: f64,
     /// The number of bits of the ROMs that are made of look-up tables, divided by 16.
     pub rom: f64,
-    /// The number of bits that must be added up in products made of look-up tables. For a family without DSP blocks, the number of
-    /// look-up tables that its products take.
+    /// The number of bits in the sums of partial products, for products that take several multipliers: half the width of the
+    /// product for each multiplier beyond the first. For a family without DSP blocks, the number of look-up tables that its
+    /// products take.
     pub product: f64,
 }
 
@@ -103,8 +105,9 @@ impl Cost {
     }
 }
 
-/// Returns an area in look-up tables. A DSP block or block RAM counts as many look-up tables as a usual chip of the target has for
-/// each such block.
+/// Returns an area in look-up tables. A DSP block or block RAM counts as many look-up tables as the usual chip of the target
+/// has for each such block. For example, iCE40 UP5K has 5280 look-up tables and 8 DSP blocks, so that a DSP block counts as
+/// 660.
 pub fn area(target: Target, luts: f64, dsps: u64, block_rams: u64) -> f64 {
     let [all_luts, all_dsps, all_blocks] = family(target).chips[0].has.map(|has| has as f64);
     // On a chip without DSP blocks, a core takes none, so they cost nothing.
@@ -149,7 +152,7 @@ impl Features {
     }
 }
 
-/// Returns the number of DSP blocks for a product. The operands are in the order that takes fewer blocks.
+/// Returns the number of DSP blocks for the product of `a` and `b`, with the operands in the order that takes fewer blocks.
 fn dsps_of_product(design: &Design, family: &Family, a: NetId, b: NetId) -> u64 {
     let [a, b] = [a, b].map(|net| {
         let sign = if design.net(net).format.signed { family.estimate.sign } else { 0 };
@@ -158,7 +161,8 @@ fn dsps_of_product(design: &Design, family: &Family, a: NetId, b: NetId) -> u64 
     dsps_one_way(family, a, b).min(dsps_one_way(family, b, a))
 }
 
-/// Returns the number of DSP blocks if the first operand is at the wider input of the blocks.
+/// Returns the number of DSP blocks for a product of two widths in bits, if the operand `first` is at the wider input of the
+/// blocks. Partial products that Yosys makes of look-up tables do not count.
 fn dsps_one_way(family: &Family, first: u32, second: u32) -> u64 {
     let (wide, narrow) = family.timing.multiplier;
     let second_slices = slices(second, narrow);
@@ -173,9 +177,9 @@ fn dsps_one_way(family: &Family, first: u32, second: u32) -> u64 {
     blocks
 }
 
-/// Returns the widths of the slices into which Yosys cuts an operand: slices of the width of a block, and a rest. A rest of a
-/// single bit is left out, because it becomes a row of gates. For example, 35 bits for blocks of 16 are 16, 16 and 3, and 33
-/// bits are 16 and 16.
+/// Returns the widths of the slices into which Yosys divides an operand of `operand` bits: slices of the width of a block, and
+/// a rest. A rest of a single bit is left out, because it becomes a row of gates. For example, 35 bits for blocks of 16 are 16,
+/// 16 and 3, and 33 bits are 16 and 16.
 fn slices(operand: u32, block: u32) -> Vec<u32> {
     let mut slices = vec![block; (operand / block) as usize];
     let rest = operand % block;
@@ -199,6 +203,8 @@ fn count_slices(operand: u32, block: u32) -> u64 {
     u64::from(operand.div_ceil(block).max(1))
 }
 
+/// Returns the number of block RAMs. A synchronous ROM takes block RAMs if it is large enough and does not share the block of
+/// another ROM.
 fn block_rams(design: &Design, family: &Family) -> u64 {
     let mut blocks = 0;
     for rom in &design.roms {

@@ -1,5 +1,8 @@
-//! Searches for the smallest configuration that keeps an error limit: it widens values until the limit is kept, and then
-//! narrows them as long as it stays kept.
+//! Searches for the configuration with the smallest cost whose error, clock, rate and DSP blocks meet a goal.
+//!
+//! The search moves from a configuration to a neighbour, which has another value of one key. It first moves toward the goal
+//! until the goal is met, and then to smaller configurations that still meet it. At the end it also tries changes of two keys.
+//! The result may be a local minimum.
 
 use std::cmp::Ordering;
 use std::collections::BTreeMap;
@@ -21,7 +24,7 @@ use glint_show::evidence::comparison::{EXPONENT, clocks_per_point};
 pub struct Candidate {
     /// The configuration that was evaluated.
     pub config: Config,
-    /// The proved error bound of the configuration.
+    /// The proved error bound of the configuration's accuracy contract.
     pub bound: Bound,
     /// The estimated cost of the configuration.
     pub cost: Cost,
@@ -30,7 +33,8 @@ pub struct Candidate {
 }
 
 impl Candidate {
-    /// Returns the number of points per second in millions, at the estimated clock frequency.
+    /// Returns the number of points per second in millions, at the estimated clock frequency, or `None` if the device never
+    /// shows a result.
     pub fn rate(&self) -> Option<f64> {
         self.clocks.map(|clocks| self.cost.mhz / clocks)
     }
@@ -39,19 +43,20 @@ impl Candidate {
 /// The result of `glint tune`: the best configuration that it found, and the alternatives.
 #[derive(Clone, Debug)]
 pub struct Answer {
-    /// The smallest configuration that was found.
+    /// The configuration with the smallest cost that was found and meets the goal.
     pub best: Candidate,
-    /// The Pareto front: the configurations for which no other has both a smaller error and a smaller cost, by rising error. It
-    /// covers only configurations that the search has evaluated.
+    /// The Pareto front, by rising error: the configurations for which no other has both a smaller error and a smaller cost. It
+    /// covers only configurations that the search has evaluated and that have the wanted clock, rate and DSP blocks. Their
+    /// errors may exceed the limit.
     pub front: Vec<Candidate>,
-    /// The keys of the configuration (parameters such as bit widths) that the search of `glint tune` may change.
+    /// The keys of the configuration (parameters such as bit widths) that the search was allowed to change.
     pub free: Vec<&'static str>,
     /// The number of configurations that the search evaluated.
     pub looked_at: usize,
 }
 
-/// A search in progress. `seen` caches the candidates by the text of their configurations; `None` marks a configuration that
-/// makes no design.
+/// A search in progress. The map `seen` caches the candidates by the text of their configurations; `None` is for a
+/// configuration that makes no design with the same interface.
 pub struct Search<'a> {
     device: &'a Device,
     space: &'a SearchSpace,
@@ -70,7 +75,10 @@ impl<'a> Search<'a> {
         Self { device, space, goal, progress, seen: Mutex::default() }
     }
 
-    /// Searches from `base` upward until the goal is met, and then downward. The result may be a local minimum.
+    /// Searches from `base` until the goal is met, and then for smaller configurations. The result may be a local minimum.
+    ///
+    /// # Errors
+    /// Fails if `base` makes no design, or if no neighbour comes nearer to the goal before it is met.
     pub fn run(&self, base: &Config) -> Result<Answer> {
         let base = self.look(base).context("the configuration to start from makes no design")?;
         let mut best = self.reach(base)?;
@@ -93,7 +101,11 @@ impl<'a> Search<'a> {
         self.seen.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Evaluates all combinations of values, and returns the smallest configuration that meets the goal.
+    /// Evaluates all combinations of values, and returns the configuration with the smallest cost that meets the goal, or
+    /// `None` if no combination does.
+    ///
+    /// # Errors
+    /// Fails if a key does not exist.
     pub fn exhaustive(
         &self,
         base: &Config,
@@ -118,8 +130,8 @@ impl<'a> Search<'a> {
         Ok(self.smallest(found))
     }
 
-    /// Returns the candidate of a configuration, or `None` if it makes no design with the same interface. It computes a
-    /// candidate once.
+    /// Returns the candidate of a configuration, or `None` if the configuration makes no design with the same interface. It
+    /// computes a candidate once, and then takes it from the cache.
     fn look(&self, config: &Config) -> Option<Candidate> {
         let text = config.to_toml(self.space.schema());
         if let Some(known) = self.lock_seen().get(&text) {
@@ -152,6 +164,7 @@ impl<'a> Search<'a> {
         self.goal.error(candidate)
     }
 
+    /// Returns whether a candidate meets the goal: its error bound, its DSP blocks and its clock.
     fn keeps(&self, candidate: &Candidate) -> bool {
         self.error(candidate) <= self.goal.error && self.is_possible(candidate)
     }
@@ -197,7 +210,8 @@ impl<'a> Search<'a> {
         smallest.map(|(_, candidate)| candidate)
     }
 
-    /// Returns the candidates that differ from a candidate by the number `changes` of changed keys, 1 or 2.
+    /// Returns the candidates that differ from `candidate` by `changes` changed keys, 1 or 2. Changes that make no design are
+    /// left out.
     fn around(&self, candidate: &Candidate, changes: usize) -> Vec<Candidate> {
         let moves = self.space.moves(&candidate.config);
         let mut changed: Vec<Vec<(&'static str, Value)>> = Vec::new();
@@ -216,7 +230,7 @@ impl<'a> Search<'a> {
         all.filter_map(|values| self.look(&self.space.with(&candidate.config, values)?)).collect()
     }
 
-    /// Moves from `base` to the neighbour that is nearest to the goal, again and again, until the goal is kept.
+    /// Moves from `base` to the neighbour that is nearest to the goal, again and again, until the goal is met.
     ///
     /// # Errors
     /// Fails if no neighbour is nearer to the goal.
@@ -243,8 +257,9 @@ impl<'a> Search<'a> {
         Ok(here)
     }
 
-    /// Returns a number that is smaller for a candidate nearer to the goal. If `wants_error` is set, it is the error. Otherwise
-    /// it is infinite if the error is too large, the number of DSP blocks if they are too many, and else the negative clock.
+    /// Returns a number that is smaller for a candidate nearer to the goal. If `wants_error` is set, the number is the error.
+    /// Otherwise it is infinite if the error is too large, the number of DSP blocks if they are too many, and else minus the
+    /// clock, as a share of the wanted clock.
     fn distance(&self, candidate: &Candidate, wants_error: bool) -> f64 {
         if wants_error {
             self.error(candidate)
@@ -307,7 +322,8 @@ impl<'a> Search<'a> {
         )
     }
 
-    /// Returns the smallest neighbour that keeps the goal, or `None` if it is not smaller than `here`.
+    /// Returns the neighbour with the smallest cost that meets the goal, by `changes` changed keys, or `None` if it is not
+    /// smaller than `here`.
     fn descend(&self, here: &Candidate, changes: usize) -> Option<Candidate> {
         let smallest = self.smallest(self.around(here, changes))?;
         let is_smaller = self.goal.order(&smallest) < self.goal.order(here);
@@ -339,7 +355,8 @@ impl TuningGoal {
         [excess, first, second, self.error(candidate), cost.rom_bits as f64]
     }
 
-    /// Returns the candidates that no other candidate betters both in error and in the objective, by rising error.
+    /// Returns the candidates for which no other candidate has both a smaller or equal error and a smaller or equal objective,
+    /// by rising error.
     pub(super) fn front(&self, mut all: Vec<Candidate>) -> Vec<Candidate> {
         all.sort_by(|one, other| {
             let by_error = self.error(one).total_cmp(&self.error(other));

@@ -1,8 +1,8 @@
 //! Finds the keys that `glint tune` may change, and the steps from a configuration to its neighbours.
 //!
 //! A key is free if no value that is tried for it changes the ports of the core or its formula. The number of microinstructions
-//! must stay the same too, unless the user allows slower cores. The keys of the tables `domain` and `function` are never free,
-//! because they are part of the user's question.
+//! must stay the same too, unless the search may make slower cores. The keys of the tables `domain` and `function` are never
+//! free, because they are part of the user's question.
 //!
 //! A step gives one free key a value next to its own. For example, the integer 8 becomes 7, 9, 6, 10, 4 or 12.
 
@@ -36,7 +36,7 @@ pub struct SearchSpace {
 
 impl SearchSpace {
     /// Finds the keys of `base` that change neither ports nor formula. Keys that add microinstructions are included only if
-    /// `slower`. Keys in `fixed` are left out.
+    /// `slower` is set. Keys in `fixed` are left out.
     ///
     /// # Errors
     /// Fails if `base` makes no design.
@@ -78,7 +78,7 @@ impl SearchSpace {
     }
 
     /// Returns whether a core has the same ports and the same formula as the base configuration. It must also have the same
-    /// number of microinstructions, unless the search may add some.
+    /// number of microinstructions, unless `slower` was set for this search space.
     pub fn holds(&self, design: &Design, contract: &dyn Contract) -> bool {
         let own = &self.outside;
         own.ports == ports(design)
@@ -96,7 +96,8 @@ impl SearchSpace {
         &self.schema
     }
 
-    /// Returns the possible steps of the search from a configuration: each changes one key of it to a neighbouring value.
+    /// Returns the possible steps of the search from a configuration: each is a free key that applies, and a neighbouring value
+    /// of it.
     pub fn moves(&self, config: &Config) -> Vec<(&'static str, Value)> {
         let mut moves = Vec::new();
         for key in &self.schema.keys {
@@ -109,13 +110,15 @@ impl SearchSpace {
         moves
     }
 
-    /// Returns the configuration with some values replaced, or `None` if the device refuses the result.
+    /// Returns the configuration with some values replaced, or `None` if the device refuses the result or if a replaced key
+    /// does not apply.
     pub fn with(&self, config: &Config, values: &[(&'static str, Value)]) -> Option<Config> {
         with(&self.schema, config, values)
     }
 }
 
-/// Returns a configuration with some values replaced, or `None` if the device does not accept the result.
+/// Returns a configuration with some values replaced, or `None` if the schema refuses the result or if a replaced key does not
+/// apply.
 fn with(schema: &Schema, config: &Config, values: &[(&'static str, Value)]) -> Option<Config> {
     let mut all: Vec<(String, Value)> = Vec::new();
     for (name, before) in config.values() {
@@ -152,7 +155,7 @@ fn applies(schema: &Schema, values: &[(String, Value)], name: &str) -> bool {
     true
 }
 
-/// The interface of a core: its ports, its number of microinstructions, and the values of its formula at some points.
+/// The interface of a core: its ports, its number of microinstructions, and the values of its formula at 600 random points.
 struct CoreInterface {
     ports: Vec<String>,
     microinstructions: usize,

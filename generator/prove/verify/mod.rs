@@ -1,10 +1,10 @@
-//! Defines the checks of `glint verify`, and makes the record and the page about their results. The command itself runs the checks
-//! and writes the files.
+//! Defines the checks of `glint verify`, and makes the record and the page about their results. The command line chooses the
+//! checks to run, and writes the files.
 //!
 //! A [`Check`] asks one question about a configuration, for example whether golden model and simulation agree. [`Check::run`]
-//! returns a [`CheckAnswer`] with a [`Finding`]: the verdict, the domain for which it holds, and the questions that remain open.
-//! A missing tool is a verdict too, and no error. Checks do not depend on each other's findings. The same tools give the same
-//! findings; run times are separate, in [`CheckTime`].
+//! returns a [`CheckAnswer`] with a [`Finding`]: the verdict, the domain for which it holds, and the questions that remain
+//! open. A missing tool is a verdict too, and no error. Run times, which differ from run to run, are separate, in
+//! [`CheckTime`].
 
 mod inside;
 mod outside;
@@ -46,7 +46,8 @@ impl<'a> CheckSubject<'a> {
         Self { path, core, effort, proofs, files: OnceLock::new() }
     }
 
-    /// Returns every file that `glint generate` writes. They are made at the first call.
+    /// Returns every file that `glint generate` writes. The first call makes the files; later calls return the same. Fails if
+    /// the files cannot be made, for example because golden model and simulation disagree on the test bench.
     fn files(&self) -> Result<&OutputFiles> {
         if let Some(files) = self.files.get() {
             return Ok(files);
@@ -56,6 +57,7 @@ impl<'a> CheckSubject<'a> {
     }
 
     /// Returns the files of the core that tools read for a target, as pairs of a file name without directories and contents.
+    /// `target` is the name of an FPGA family, or empty for files that suit every target.
     fn sources(&self, target: &str) -> Result<Vec<(String, String)>> {
         Ok(self.files()?.sources_for(FileKind::CORE_SOURCES, target))
     }
@@ -73,7 +75,7 @@ pub struct FileDigest {
 /// How much work a run of `glint verify` may do.
 #[derive(Clone, Copy, Debug)]
 pub struct Effort {
-    /// Whether to do all the work, however long it takes.
+    /// Whether to do all the work, however long it takes. Otherwise long checks do a part of their work, or are left out.
     pub full: bool,
     /// Whether to run only the checks that need no tool outside Glint.
     pub without_tools: bool,
@@ -91,14 +93,17 @@ pub enum CheckVerdict {
     Passed,
     /// The checked property does not hold.
     Failed,
-    /// The check ran to its end but cannot decide: the test is too weak, or the solver answers that it does not know.
+    /// The check ran to its end but cannot decide: the test is too weak, the solver answers that it does not know, or Glint
+    /// cannot interpret the Verilog.
     Undecided,
     /// The check reached a limit of time or memory.
     LimitReached,
-    /// The check could not be run: a tool is missing, or it takes more than this effort allows.
+    /// The check could not be run: a tool is missing, or the record of a long check is missing and this effort does not allow
+    /// the check itself.
     #[default]
     NotRun,
-    /// The check is a second proof of a fact that another check shows, and it did not succeed. The finding says why.
+    /// The check is a second proof of a fact that another check shows, and did not succeed. For example, Gappa finds no proof
+    /// of the error bound. The finding says why.
     Unconfirmed,
     /// The check was left out on purpose, by the user or because it would take long without `--full`.
     LeftOut,
@@ -122,7 +127,7 @@ impl CheckVerdict {
         }
     }
 
-    /// Returns the conclusion of all checks if this verdict decides. For example, a missing tool is
+    /// Returns the conclusion of a verification whose worst verdict is this one. For example, a missing tool is
     /// [`CheckVerdict::NotRun`], which makes the verification incomplete.
     pub fn conclusion(self) -> Conclusion {
         match self {
@@ -147,10 +152,10 @@ pub struct Finding {
     pub words: String,
     /// The questions that the check leaves open; may be empty.
     pub open: String,
-    /// The file of a record that replaces a part of the work.
+    /// The path of a record that replaces a part of the work; `None` if the check did all the work itself.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub record: Option<String>,
-    /// The command that would run the parts that were left out.
+    /// The command that would run the parts that were left out; `None` if nothing was left out.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub complete_with: Option<String>,
     /// The failures, each with a command that reproduces it.
@@ -159,7 +164,7 @@ pub struct Finding {
 }
 
 impl Finding {
-    /// Makes the finding of a verdict on a domain.
+    /// Makes a finding with a verdict, the domain for which it holds, and the outcome in words.
     fn new(verdict: CheckVerdict, domain: impl Into<String>, words: impl Into<String>) -> Self {
         Self { domain: domain.into(), ..Self::without(verdict, words) }
     }
@@ -169,7 +174,7 @@ impl Finding {
         Self { verdict, words: why.into(), ..Self::default() }
     }
 
-    /// Adds failures. If there are any, the verdict becomes [`CheckVerdict::Failed`].
+    /// Sets the list of failures. If it is not empty, the verdict becomes [`CheckVerdict::Failed`].
     fn failures(self, failures: Vec<String>) -> Self {
         let verdict = if failures.is_empty() { self.verdict } else { CheckVerdict::Failed };
         Self { verdict, failures, ..self }
@@ -180,8 +185,8 @@ impl Finding {
     }
 }
 
-/// The function that runs a check. It gets the subject, the check's tools and a function to call with the number of finished
-/// steps.
+/// The function that runs a check. It gets the subject, the check's tools in the order of their names, and a function that it
+/// calls with the number of steps that it has finished since the last call.
 type CheckFunction = fn(&CheckSubject<'_>, &[Tool], &(dyn Fn(u64) + Sync)) -> Result<Finding>;
 
 /// A check of a configuration, which asks one question.
@@ -228,19 +233,21 @@ impl Check {
         !self.tools.is_empty()
     }
 
-    /// Returns the number of steps that the progress of the check will have.
+    /// Returns the number of steps that the check will report to `progress` of [`Check::run`].
     pub fn steps(&self, subject: &CheckSubject<'_>) -> u64 {
         (self.steps)(subject)
     }
 
-    /// Runs the check. It always returns an answer: if a tool is missing or fails, the finding says so.
+    /// Runs the check, and calls `progress` with the number of newly finished steps. It always returns an answer: if a tool is
+    /// missing, the verdict is [`CheckVerdict::NotRun`]. If a tool fails, the verdict is [`CheckVerdict::Failed`], or
+    /// [`CheckVerdict::LimitReached`] if the tool was stopped at its time limit.
     pub fn run(&self, subject: &CheckSubject<'_>, progress: &(dyn Fn(u64) + Sync)) -> CheckAnswer {
         let begin = Instant::now();
         let (tools, finding) = self.find(subject, progress);
         self.answer(tools, finding, begin.elapsed())
     }
 
-    /// Returns the answer of a check that is not run on purpose, with the reason.
+    /// Returns the answer of a check that is left out on purpose. `why` is the reason. The check is not run.
     pub fn left_out(&self, why: &str) -> CheckAnswer {
         let finding = Finding::without(CheckVerdict::LeftOut, why);
         self.answer(Vec::new(), finding, Duration::ZERO)
@@ -301,7 +308,7 @@ pub struct CheckAnswer {
     pub question: &'static str,
     /// The files or structures that the check read: [`Check::reads`].
     pub reads: &'static str,
-    /// The versions of the outside tools that the check used.
+    /// The versions of the outside tools that the check used; empty if a tool is missing, or if the check needs none.
     pub tools: Vec<String>,
     /// The finding of the check: its verdict and reasons.
     #[serde(flatten)]
@@ -335,8 +342,8 @@ pub enum Conclusion {
 }
 
 impl Conclusion {
-    /// Returns the conclusion from the answers of checks. For example, if one check failed, the conclusion is
-    /// [`Conclusion::Failed`], whatever the others found.
+    /// Returns the conclusion from the answers of checks: the worst one. For example, if one check failed, the conclusion is
+    /// [`Conclusion::Failed`], whatever the others found. Without answers it is [`Conclusion::Incomplete`].
     pub fn of(answers: &[CheckAnswer]) -> Self {
         let verdicts = answers.iter().map(|answer| answer.finding.verdict.conclusion());
         verdicts.max().unwrap_or(Self::Incomplete)
@@ -366,14 +373,14 @@ pub struct VerificationRecord {
     pub device: &'static str,
     /// A digest of the configuration with all its keys, SHA-256 in hexadecimal.
     pub configuration: String,
-    /// Each Verilog file and memory file that `generate` writes, with its digest. It is empty if golden model and simulation do not
-    /// agree on the test bench.
+    /// Each Verilog file and memory file that `generate` writes, with its digest. It is empty if these files cannot be made,
+    /// for example because golden model and simulation disagree on the test bench.
     pub files: Vec<FileDigest>,
     /// Whether all the work was done, however long it took.
     pub full: bool,
     /// The conclusion from all checks together.
     pub conclusion: Conclusion,
-    /// The number of checks with each verdict.
+    /// The number of checks with each verdict. A verdict that no check has is left out.
     pub counts: BTreeMap<CheckVerdict, usize>,
     /// The answers of the checks, in the order in which they ran.
     pub checks: Vec<CheckAnswer>,

@@ -1,5 +1,7 @@
-//! Defines the checks of `glint verify` that run outside tools, such as simulators and provers. Most of them read the emitted files.
-//! [`CERTIFICATE`] reads the netlist and the microprogram, and [`EQUALITY`] the netlists of a pipeline and its sequential core.
+//! Defines the checks of `glint verify` that run outside tools: provers, solvers, linters, simulators and synthesis.
+//!
+//! Most of the checks read the emitted files. [`CERTIFICATE`] reads the netlist and the microprogram, [`EQUALITY`] the netlists
+//! of a pipeline and its sequential core. The check that runs a C compiler is in `recomputation`.
 
 use std::fs;
 use std::path::Path;
@@ -24,7 +26,7 @@ use glint_tools::synthesis::synthesise;
 use glint_tools::transient::Directory;
 use glint_tools::{Limits, PROOF_LIMITS, VerilogSimulator, elaborate, lint, prove, run_bench};
 
-/// The number of results of a bench: without full effort, and with it.
+/// The number of results that a bench compares: without full effort, and with it.
 const POINTS: [u64; 2] = [200, 20_000];
 
 /// Without full effort, the time limit for writing the statements for Gappa, and for proving one of them.
@@ -39,7 +41,8 @@ const COCOTB_VERSION: &str = "2.1.0";
 /// The number of results of a bench around a netlist.
 const GATE_POINTS: u64 = 40;
 
-/// Proves the error bound of the contract with Gappa.
+/// Lets Gappa prove the error bound of the contract of a sequential core. A statement that Gappa does not prove makes the check
+/// unconfirmed, and not failed, because another check shows the bound too. A pipeline has no such check.
 pub const CERTIFICATE: Check = Check {
     id: "certificate",
     title: "Proof of the error bound",
@@ -101,7 +104,8 @@ pub const CERTIFICATE: Check = Check {
     },
 };
 
-/// Proves that a pipeline and the sequential core of the same description compute the same.
+/// Lets the solver z3 prove that a pipeline and the sequential core of the same description compute the same outputs for every
+/// point. A sequential core has no such check.
 pub const EQUALITY: Check = Check {
     id: "equality",
     title: "Equal to the sequential core",
@@ -137,7 +141,8 @@ pub const EQUALITY: Check = Check {
     },
 };
 
-/// Proves that the emitted Verilog of a pipeline equals its netlist.
+/// Lets Yosys read the emitted Verilog of a pipeline, and z3 prove that it equals the netlist. A sequential core has no such
+/// check.
 pub const TEXT: Check = Check {
     id: "text",
     title: "Emitted Verilog equal to the netlist",
@@ -180,7 +185,8 @@ pub const TEXT: Check = Check {
     },
 };
 
-/// Returns the finding if the solver does not decide, and no point with a difference is found.
+/// Returns the finding for a solver that does not decide: [`CheckVerdict::Undecided`], or [`CheckVerdict::LimitReached`] after
+/// `limit`.
 fn undecided(subject: &CheckSubject<'_>, open: equality::Open, limit: Duration) -> Finding {
     let limit = limit.as_secs();
     match open {
@@ -202,7 +208,7 @@ fn undecided(subject: &CheckSubject<'_>, open: equality::Open, limit: Duration) 
     }
 }
 
-/// Runs linters on the emitted Verilog.
+/// Runs the linters of Icarus Verilog and Verilator on the emitted Verilog. Any remark is a failure.
 pub const LINT: Check = Check {
     id: "lint",
     title: "Lint",
@@ -241,7 +247,7 @@ pub const LINT: Check = Check {
     },
 };
 
-/// Simulates the emitted Verilog in Icarus Verilog.
+/// Simulates the emitted Verilog in Icarus Verilog with the shipped bench and new random points.
 pub const ICARUS: Check = Check {
     id: "icarus",
     title: "Emitted Verilog in Icarus Verilog",
@@ -252,7 +258,7 @@ pub const ICARUS: Check = Check {
     run: |subject, _, _| bench(subject, VerilogSimulator::Icarus),
 };
 
-/// Simulates the emitted Verilog in Verilator.
+/// Simulates the emitted Verilog in Verilator with the shipped bench and new random points.
 pub const VERILATOR: Check = Check {
     id: "verilator",
     title: "Emitted Verilog in Verilator",
@@ -263,6 +269,8 @@ pub const VERILATOR: Check = Check {
     run: |subject, _, _| bench(subject, VerilogSimulator::Verilator),
 };
 
+/// Simulates the emitted Verilog with each shipped bench, for 200 results, or 20 000 with full effort. Fails if a simulator
+/// cannot be run.
 fn bench(subject: &CheckSubject<'_>, simulator: VerilogSimulator) -> Result<Finding> {
     let (core, effort) = (subject.core, subject.effort);
     let points = POINTS[usize::from(effort.full)];
@@ -286,7 +294,8 @@ fn bench(subject: &CheckSubject<'_>, simulator: VerilogSimulator) -> Result<Find
     .open("Operands that were not drawn."))
 }
 
-/// Synthesises the core for the FPGA families with Yosys, and checks that this succeeds.
+/// Synthesises the core with Yosys for each FPGA family that Glint compares, and states the cells that it takes. The check
+/// fails if Yosys fails for a family.
 pub const SYNTHESIS: Check = Check {
     id: "synthesis",
     title: "Synthesis",
@@ -316,7 +325,8 @@ pub const SYNTHESIS: Check = Check {
     },
 };
 
-/// Proves the formal properties of the emitted Verilog.
+/// Proves the formal properties of the emitted Verilog, about the handshake, by k-induction. Products and ROMs are replaced by
+/// arbitrary values, so the check says nothing about results.
 pub const FORMAL: Check = Check {
     id: "formal",
     title: "Proof of the handshake",
@@ -350,7 +360,7 @@ pub const FORMAL: Check = Check {
     },
 };
 
-/// Tests the emitted Verilog from Python with cocotb.
+/// Runs the emitted benches in Python with cocotb. They know the core only from its manifest.
 pub const COCOTB: Check = Check {
     id: "cocotb",
     title: "Emitted Verilog driven from Python",
@@ -393,12 +403,13 @@ pub const COCOTB: Check = Check {
     },
 };
 
-/// Writes all emitted files into a new temporary directory.
+/// Writes all emitted files, and the Python driver, into a new temporary directory, each at its path. Fails if a file cannot be
+/// made or written.
 fn written(subject: &CheckSubject<'_>) -> Result<Directory> {
     directory_of(subject.files()?.iter().chain([&package::driver()]))
 }
 
-/// Writes files into a new temporary directory, each at its path.
+/// Writes files into a new temporary directory, each at its path. Fails if a file cannot be written.
 pub(super) fn directory_of<'f>(
     files: impl IntoIterator<Item = &'f OutputFile>,
 ) -> Result<Directory> {
@@ -413,7 +424,8 @@ pub(super) fn directory_of<'f>(
     Ok(dir)
 }
 
-/// Simulates the netlists that synthesis makes.
+/// Synthesises the core, and simulates the netlists with the shipped bench in Icarus Verilog. The netlists are of the FPGA
+/// families whose cells have models, and of cells of 0.18 µm if their library is installed.
 pub const GATES: Check = Check {
     id: "gates",
     title: "Netlists at gate level",
@@ -477,7 +489,7 @@ pub const GATES: Check = Check {
     },
 };
 
-/// Returns the families whose netlists can be simulated.
+/// Returns the FPGA families that Glint compares and whose netlists can be simulated.
 fn simulated() -> impl Iterator<Item = &'static Family> {
     COMPARED.iter().filter(|family| gates::is_simulated(family))
 }

@@ -21,7 +21,7 @@ struct Page<'a> {
     timings: Vec<(&'static str, String)>,
 }
 
-/// A check with its texts as HTML.
+/// A check and its answer, with the texts as HTML.
 struct CheckView<'a> {
     answer: &'a CheckAnswer,
     class: String,
@@ -49,7 +49,8 @@ impl<'a> CheckView<'a> {
     }
 }
 
-/// Returns the HTML page of a verification. Only the last section depends on the run times.
+/// Returns the HTML page of a verification. `timings` has the time of each check, in the order of the record's checks. Only the
+/// last section of the page depends on it.
 ///
 /// # Errors
 /// Fails if the template fails.

@@ -3,7 +3,8 @@
 //! C model.
 //!
 //! For example, the program for `x / y` with operands of 12 bits compares 2^24 results with the formula in about a second. It
-//! uses MPFR only if doubles, with a margin for their rounding, cannot decide.
+//! uses MPFR only if doubles, with a margin for their rounding, cannot decide. Too many combinations are left out without
+//! `--full`.
 
 use std::fs;
 use std::path::Path;
@@ -28,7 +29,7 @@ const MOST_OPERANDS: u128 = 1 << 20;
 /// of them.
 const MOST_COMBINATIONS: u128 = 1 << 24;
 
-/// The exit code of the program if it finds no error but cannot decide some combinations.
+/// The exit code of the program if it finds no error, but cannot decide whether the results of some combinations are right.
 const SOME_UNDECIDED: i32 = 3;
 
 /// Checks the error bound with a generated C program, which computes every combination of operands and compares the results with
@@ -65,7 +66,8 @@ pub const RECOMPUTATION: Check = Check {
     },
 };
 
-/// Returns the finding if the operands have more combinations than this effort allows.
+/// Returns the finding [`CheckVerdict::LeftOut`] if the operands have more combinations than this effort allows, and `None`
+/// otherwise.
 fn left_out(subject: &CheckSubject<'_>) -> Option<Finding> {
     let contract = &subject.core.contract;
     let most = if contract.conditions().is_some() { MOST_COMBINATIONS } else { MOST_OPERANDS };
@@ -92,7 +94,8 @@ struct ProgramCompiler<'a> {
 }
 
 impl ProgramCompiler<'_> {
-    /// Compiles the source file `source`. Returns whether the compiler accepts it, and the output of the compiler.
+    /// Compiles the source file `source`. Returns whether the compiler accepts it, and the output of the compiler. Fails if the
+    /// compiler cannot be run, or reaches the time limit.
     fn compile(&self, source: &str) -> Result<(bool, String)> {
         let arguments = ["-std=c99", "-O2", "-o", "recompute", source, "-lmpfr", "-lgmp", "-lm"];
         let run = self.tool.run(arguments, self.dir, self.subject.effort.time_limit)?;
@@ -114,7 +117,8 @@ impl ProgramCompiler<'_> {
     }
 }
 
-/// Runs the compiled program, and returns the finding from its exit code and its last lines.
+/// Runs the compiled program, and returns the finding from its exit code and its output. Fails if the program cannot be started
+/// or reaches the time limit.
 fn run(subject: &CheckSubject<'_>, program: &OutputFile, dir: &Path) -> Result<Finding> {
     let recompute = Tool::find_in("recompute", dir.as_os_str())?;
     // A program that has no memory to check takes no argument.

@@ -1,17 +1,19 @@
-//! Finds a minimum cut in a netlist: the nets with the fewest bits that together determine some wanted nets.
+//! Finds a minimum cut in a netlist: a set of nets with the fewest bits that together determine some wanted nets.
 //!
-//! For example, a sum of 5 bits is a smaller cut than its two operands of 4 bits each.
+//! For example, a sum of 5 bits is a smaller cut than its two operands of 4 bits each. The method is a maximum flow whose
+//! capacities are the bits of the nets.
 
 use std::collections::{BTreeMap, BTreeSet};
 
 use glint_rtl::netlist::{Design, Driver, NetId};
 
-/// Vertices of the flow: each net is divided in two, and the flow into it goes through its bits.
+/// A vertex of the flow graph: a net and one of its two ends. The edge from (net, `false`) to (net, `true`) has the bits of the
+/// net as its capacity.
 type Vertex = (NetId, bool);
 
 /// Returns a minimum cut of the netlist: the nets with the fewest bits, as `bits` counts them, that together determine the nets
-/// `wanted`. No net of `affected` may be in the cut. Returns `None` if the cut has more than `most` bits, or if a net of `affected`
-/// is driven by something else than a cell.
+/// `wanted`. No net of `affected` may be in the cut. Returns `None` if the cut has more than `most` bits, or if a net of
+/// `affected` is driven by neither a cell nor a constant.
 pub(super) fn smallest_cut(
     design: &Design,
     wanted: &BTreeSet<NetId>,
@@ -22,11 +24,11 @@ pub(super) fn smallest_cut(
     if affected.iter().any(|net| is_source(design, *net)) {
         return None;
     }
-    // The flow goes back from the wanted nets: freely through affected nets, and through others limited by their
-    // bits. The amounts are by where they flow to first.
+    // The flow goes from the wanted nets back to the sources: freely through affected nets, and through other nets limited by
+    // their bits. An entry has the amount from the second vertex to the first.
     let mut flow: BTreeMap<(Vertex, Vertex), u32> = BTreeMap::new();
     for _ in 0..=most {
-        // Whence each vertex was reached; itself where the way begins.
+        // The vertex from which each vertex was reached; a wanted net has itself.
         let mut came: Vec<Option<Vertex>> = vec![None; 2 * design.nets.len()];
         let mut todo: Vec<Vertex> = wanted.iter().map(|net| (*net, false)).collect();
         for &vertex in &todo {
@@ -55,7 +57,7 @@ pub(super) fn smallest_cut(
                 if free || used < bits(net) {
                     reached.push(far);
                 }
-                // Back along the flow that is already there.
+                // An amount that already flows may be taken back.
                 let (first, last) = ((NetId(0), false), (NetId(u32::MAX), true));
                 for ((_, from), amount) in flow.range((near, first)..=(near, last)) {
                     if *amount > 0 {
@@ -72,7 +74,7 @@ pub(super) fn smallest_cut(
             }
         }
         let Some(mut end) = end else {
-            // The cut is the nets that were seen on this side only.
+            // The cut has the nets of which only the first vertex was reached.
             let mut cut = BTreeSet::new();
             for (net, through) in seen {
                 if !through && came[place((net, true))].is_none() {
@@ -100,7 +102,7 @@ fn is_source(design: &Design, net: NetId) -> bool {
     !matches!(design.net(net).driver, Driver::Op(_) | Driver::Constant(_))
 }
 
-/// Returns the index of a vertex: each net has two.
+/// Returns the index of a vertex: a net has two, `false` at the even index and `true` at the odd one.
 fn place((net, through): Vertex) -> usize {
     2 * net.index() + usize::from(through)
 }

@@ -1,8 +1,8 @@
 //! Computes the interval of values of each net from the cell that drives it and the intervals of the cell's operands. The proofs
 //! about faults try only values within these intervals.
 //!
-//! The device's description also states intervals. The module uses them only for registers: the stated interval of an operand of a
-//! shared multiplier may hold for some of its products only.
+//! The device's description also states intervals. The module uses them only for registers: the stated interval of an operand
+//! of a shared multiplier may hold for some of its products only.
 
 use super::pairs::{self, Pairs};
 use glint_base::interval::{Interval, fits, hull, of_values};
@@ -43,7 +43,7 @@ pub(super) fn of(
     match &net.driver {
         Driver::Constant(bits) => (net.format.raw(*bits), net.format.raw(*bits)),
         Driver::Register(register) if trusted(design, design.register(*register)) => net.range,
-        // The stage before comes before it in the order of evaluation; at power-up and after a reset it holds 0.
+        // The register's data is evaluated before the register; at power-up and after a reset, the register holds 0.
         Driver::Register(register) if design.pipeline.is_some() => {
             let data = design.register(*register).data;
             data.and_then(|data| hull([of(data), (0, 0)])).map_or(all, within)
@@ -59,7 +59,7 @@ pub(super) fn of(
             for input in pairs::choices(known(*select), design.width(*select), inputs) {
                 let (low, high) = of(input);
                 taken.push(match sign {
-                    // Where its own sign chooses it, it has one sign.
+                    // If the sign of a net chooses between two inputs, the net itself has only one sign when it is chosen.
                     Some((signed_net, negative))
                         if design.net(input).format.signed
                             && pairs::named(design, input) == signed_net =>
@@ -75,14 +75,14 @@ pub(super) fn of(
             }
             hull(taken).map_or(all, within)
         }
-        // The same net under another name too.
+        // Both operands may be one net under two names.
         Driver::Op(Op::Mul(a, b)) if pairs::square(design, *a, *b) => cell(&Op::Mul(*a, *a)),
         Driver::Op(op) => cell(op),
         _ => all,
     }
 }
 
-/// Returns the net whose sign is `bit`, and whether the bit is 1 for a negative value.
+/// Returns the net whose sign is `bit`, and whether the bit is 1 for a negative value. Returns `None` if the bit is no sign.
 fn sign(design: &Design, bit: NetId) -> Option<(NetId, bool)> {
     match &design.net(pairs::named(design, bit)).driver {
         Driver::Op(Op::Not(a)) => {

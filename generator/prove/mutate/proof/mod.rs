@@ -30,7 +30,7 @@ pub(super) struct Prover<'a> {
     nets: Vec<Vec<Pairs>>,
     /// For each microinstruction, the microinstructions that may follow it.
     following: Vec<Vec<usize>>,
-    /// For each microinstruction the bits of each net that are compared in it.
+    /// For each microinstruction, the bits of each net that are compared in it, as a mask.
     compared: Vec<Vec<u64>>,
     windows: Windows<'a>,
 }
@@ -62,6 +62,7 @@ impl<'a> Prover<'a> {
         }
     }
 
+    /// Returns whether the induction over clocks proves the fault at `site` equivalent.
     fn by_induction(&self, site: &Site) -> bool {
         if self.changes_reset(site) {
             return false;
@@ -115,13 +116,14 @@ impl<'a> Prover<'a> {
         }
     }
 
-    /// Returns the state that is part of the values of all nets.
+    /// Returns the values of registers and synchronous ROMs among the values of all nets.
     fn held_in(&self, nets: &[Pairs]) -> PairState {
         self.order.held().map(|net| nets[net.index()]).collect()
     }
 }
 
-/// Returns for each microinstruction the bits of each net that are compared in it.
+/// Returns, for each microinstruction, a mask for each net: the bits that are compared in this microinstruction. They are the
+/// bits of outputs and of predicted registers, and in a pipeline also of checkpoints.
 fn compared_bits(design: &Design, length: usize) -> Vec<Vec<u64>> {
     let mut always: Vec<NetId> = design.outputs().map(|port| port.net).collect();
     for register in &design.registers {
@@ -137,7 +139,7 @@ fn compared_bits(design: &Design, length: usize) -> Vec<Vec<u64>> {
     }
     if let Some(pipeline) = &design.pipeline {
         for checkpoint in &pipeline.checkpoints {
-            // There is a point in a stage in one slot alone.
+            // A stage has a point in only one slot of the interval.
             let slot = pipeline.clock_of(checkpoint.net) % pipeline.interval;
             compared[slot][checkpoint.net.index()] = mask(design.width(checkpoint.net));
         }
@@ -145,12 +147,12 @@ fn compared_bits(design: &Design, length: usize) -> Vec<Vec<u64>> {
     compared
 }
 
-/// Returns for each microinstruction the state before it, with all values that are possible from power-up on. The state
-/// is `None` if the design never gets there.
+/// Returns, for each microinstruction, the state before it, with all values that are possible from power-up on. The state is
+/// `None` for a microinstruction that the design never reaches.
 fn reached_states(order: &Order, following: &[Vec<usize>]) -> Vec<Option<PairState>> {
     let design = order.design;
     let mut reached: Vec<Option<PairState>> = vec![None; following.len()];
-    // At power-up everything that is held is 0, in microinstruction 0.
+    // At power-up every register and ROM output is 0, in microinstruction 0.
     reached[0] = Some(order.held().map(|net| Pairs::constant(0, design.width(net))).collect());
     let mut todo = vec![0];
     while let Some(at) = todo.pop() {
@@ -170,8 +172,8 @@ fn reached_states(order: &Order, following: &[Vec<usize>]) -> Vec<Option<PairSta
     reached
 }
 
-/// Joins two states: each bit may be as in either. For example, a bit that is 0 in one state and 1 in the other may be
-/// both.
+/// Returns the union of two states: each bit may have a value of either. For example, a bit that is 0 in one state and 1 in the
+/// other may be 0 or 1.
 fn join(one: &PairState, other: &PairState) -> PairState {
     one.iter().zip(other).map(|(one, other)| one.or(*other)).collect()
 }

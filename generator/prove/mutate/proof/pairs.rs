@@ -10,10 +10,10 @@ use glint_base::fixed::{Format, mask};
 use glint_base::interval::Interval;
 use glint_rtl::netlist::{Design, Driver, NetId, Op};
 
-/// The pairs that each bit of a net can be. The four masks are the bits that can be 0 in both, 1 in the fault-free
-/// design alone, 1 in the mutant alone, and 1 in both. The number of a pair is the fault-free bit with the mutant's
-/// above it, so that an operation on bits is the same operation on numbers of pairs. For example, pair 2 is a bit that
-/// is 0 in the fault-free design and 1 in the mutant.
+/// For each bit of a net, the pairs (fault-free bit, mutant's bit) that are possible. The four masks are the bits that can be 0
+/// in both, 1 in the fault-free design alone, 1 in the mutant alone, and 1 in both. The number of a pair is the fault-free bit
+/// plus twice the mutant's bit, so that an operation on bits is the same operation on numbers of pairs. For example, pair 2 is
+/// a bit that is 0 in the fault-free design and 1 in the mutant.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Pairs([u64; 4]);
 
@@ -29,12 +29,12 @@ impl Pairs {
     }
 
     /// Makes the pairs for a net with an interval of values, the same in the fault-free design and in the mutant: the bits that
-    /// every value from `low` to `high` has, and any others. For example, the interval from 4 to 6 in 4 bits has bit 2 at 1 and bit
-    /// 3 at 0. Bits 0 and 1 may have any value.
+    /// every value from `low` to `high` has, and any others. For example, the interval from 4 to 6 in 4 bits has bit 2 at 1 and
+    /// bit 3 at 0. Bits 0 and 1 may have any value.
     pub(super) fn of_interval((low, high): Interval, width: u32) -> Self {
         let (low, high) = (low as u64 & mask(width), high as u64 & mask(width));
         let differ = low ^ high;
-        // From the highest bit that differs down; where the interval goes through 0 that is the sign.
+        // All bits from the highest bit that differs down are open. If the interval contains −1 and 0, this is the sign.
         let open = if differ == 0 { 0 } else { u64::MAX >> differ.leading_zeros() };
         Self::constant(low, width).or(Self::same(width).cut(0, open))
     }
@@ -81,12 +81,12 @@ impl Pairs {
         self.0[1] | self.0[2]
     }
 
-    /// Returns the bits that the fault-free design can have as 0, and as 1.
+    /// Returns two masks: the bits that can be 0 in the fault-free design, and the bits that can be 1.
     fn fault_free(self) -> [u64; 2] {
         [self.0[0] | self.0[2], self.0[1] | self.0[3]]
     }
 
-    /// Returns the bits that the mutant can have as 0, and as 1.
+    /// Returns two masks: the bits that can be 0 in the mutant, and the bits that can be 1.
     fn mutant(self) -> [u64; 2] {
         [self.0[0] | self.0[1], self.0[2] | self.0[3]]
     }
@@ -97,7 +97,7 @@ impl Pairs {
         bits & !ones == 0 && !bits & !zeros & (zeros | ones) == 0
     }
 
-    /// Returns the pattern, if it is one, in both.
+    /// Returns the bit pattern if only one is possible, the same in both designs. Returns `None` otherwise.
     fn whole(self, width: u32) -> Option<u64> {
         let is_one_pattern = self.differ() == 0 && self.0[0] ^ self.0[3] == mask(width);
         if is_one_pattern { Some(self.0[3]) } else { None }
@@ -108,17 +108,18 @@ impl Pairs {
         Self(self.0.map(|pair| pair >> low & all))
     }
 
-    /// Inverts some bits, in both.
+    /// Inverts the bits of the mask `bits`, in the fault-free design and in the mutant.
     fn inverted(self, bits: u64) -> Self {
         Self(from_fn(|pair| self.0[pair] & !bits | self.0[pair ^ 3] & bits))
     }
 
-    /// Returns the numbers of the pairs that a bit can be.
+    /// Returns the numbers of the pairs that are possible for bit number `bit`.
     fn at(self, bit: u32) -> impl Iterator<Item = usize> + Clone {
         (0..4).filter(move |&pair| self.0[pair] >> bit & 1 == 1)
     }
 
-    /// Returns every pair of one bit of each that both can be, by an operation on bits.
+    /// Returns the pairs that an operation on bits can give. `result` computes the number of a pair from the numbers of the
+    /// operands' pairs.
     fn bitwise(self, other: Self, result: impl Fn(usize, usize) -> usize) -> Self {
         let mut all = [0; 4];
         for (a, left) in self.0.into_iter().enumerate() {
@@ -129,8 +130,9 @@ impl Pairs {
         Self(all)
     }
 
-    /// Goes from the lowest bit up. In each bit, `step` takes a bit of each operand and a carry from below, and gives
-    /// a bit of the result and the carry to the next bit. Returns the result and the last carry.
+    /// Computes bit by bit, from the lowest of `width` bits up. In each bit, `step` takes a bit of each operand and the carry
+    /// from below (`from` at the lowest bit), and gives a bit of the result and the next carry. Returns the pairs of the result
+    /// and of the last carry.
     fn rippled(
         self,
         other: Self,
@@ -155,12 +157,13 @@ impl Pairs {
         (result, carry)
     }
 
-    /// Returns the sum of both and a carry.
+    /// Returns the pairs of the sum of `self`, `other` and the carry bit `carry`, in `width` bits.
     fn plus(self, other: Self, carry: Self, width: u32) -> Self {
         self.rippled(other, width, carry, |a, b, c| (a ^ b ^ c, a & b | a & c | b & c)).0
     }
 
-    /// Returns the bit at the top of the fold.
+    /// Returns the last carry of a fold from the lowest bit up. `from` is the first carry, and `step` computes each carry from
+    /// a bit of each operand and the carry before.
     fn folded(
         self,
         other: Self,
@@ -172,8 +175,8 @@ impl Pairs {
     }
 }
 
-/// Returns the pairs of a cell's result. For the inputs of a mux, `same` says which nets are alike in the fault-free
-/// design.
+/// Returns the pairs of the result of the cell `op`, with `width` bits. `value` gives the pairs of an operand. `same` has, for
+/// each net, the first net with the same value in the fault-free design; the inputs of a mux need it.
 pub(super) fn cell(
     design: &Design,
     op: &Op,
@@ -233,13 +236,14 @@ pub(super) fn cell(
     }
 }
 
-/// Returns the pairs of a mux. Inputs with the same number are alike in the fault-free design. For example, if the
-/// mutant selects another input that is alike, the result has only the pairs of that input.
+/// Returns the pairs of a mux with a select of `lines` bits. Each input has its pairs and a net; inputs with the same net have
+/// the same value in the fault-free design. For example, if the mutant selects another input with the same net, the result has
+/// only the pairs of that input.
 pub(super) fn chosen(select: Pairs, lines: u32, inputs: &[(Pairs, NetId)]) -> Pairs {
     let input = |number: u64| inputs[(number as usize).min(inputs.len() - 1)];
     let mut all = Pairs([0; 4]);
     for sound in 0..1 << lines {
-        // The bits that the mutant can have beside this pattern, as 0 and as 1.
+        // The bits that can be 0 and 1 in the mutant if the fault-free select is this pattern.
         let beside =
             |pair: usize| (select.0[pair] & !sound | select.0[pair + 1] & sound) & mask(lines);
         let [zeros, ones] = [beside(0), beside(2)];
@@ -260,14 +264,15 @@ pub(super) fn chosen(select: Pairs, lines: u32, inputs: &[(Pairs, NetId)]) -> Pa
     all
 }
 
-/// Returns the inputs that a mux may select in the mutant, from the possible bits of its `select`.
+/// Returns the inputs that a mux with a select of `lines` bits may select in the mutant, from the possible pairs of its
+/// `select`.
 pub(super) fn choices(select: Pairs, lines: u32, inputs: &[NetId]) -> impl Iterator<Item = NetId> {
     let possible = (0..1 << lines).filter(move |&number| select.may_be(number));
     possible.map(|number: u64| inputs[(number as usize).min(inputs.len() - 1)])
 }
 
-/// Returns the known pairs of a product. An unsigned product and a square have known leading and trailing zeros. From
-/// the lowest bit that may differ in a factor on, any bit of the product may differ.
+/// Returns the pairs of a product that are known. An unsigned product has leading zeros, and a product or square has trailing
+/// zeros. From the lowest bit that may differ in a factor on, any bit of the product may differ.
 fn product(
     design: &Design,
     a: NetId,
@@ -300,7 +305,7 @@ fn product(
     Pairs([mask(width), differ, differ & ones, ones])
 }
 
-/// Returns a number that no value of the mutant exceeds. Returns `None` if a value may be negative.
+/// Returns a number that no value of the mutant exceeds, from its possible bits. Returns `None` if a value may be negative.
 fn largest_unsigned(format: Format, pairs: Pairs) -> Option<u128> {
     let [_, most] = pairs.mutant();
     let may_be_negative = format.signed && most >> (format.width() - 1) & 1 == 1;

@@ -1,7 +1,7 @@
-//! Evaluates one microinstruction on bits that may be unknown, for the fault-free design alone or for a mutant and the fault-free
-//! design together. The proofs of `mutate` use it.
+//! Evaluates one microinstruction on pairs of bits that may be unknown, for the fault-free design alone or for a mutant and the
+//! fault-free design together. The proof by induction uses the module.
 //!
-//! A pipeline has no microinstructions; each of its time slots counts as one.
+//! A pipeline has no microinstructions; each slot, a clock of the interval from one point to the next, counts as one.
 
 use super::interval;
 use super::pairs::{self, Pairs};
@@ -16,15 +16,15 @@ pub(super) type PairState = Vec<Pairs>;
 /// A design, with the order in which its nets are evaluated for a proof about a fault.
 pub(super) struct Order<'a> {
     pub(super) design: &'a Design,
-    /// An order of evaluation.
+    /// The nets in an order in which each comes after the nets that it reads.
     order: Vec<NetId>,
-    /// For each net the first that has the same driver: the same value.
+    /// For each net, the first net with the same driver, and so with the same value.
     same: Vec<NetId>,
     /// The register with the number of the microinstruction; none in a pipeline that takes a point every clock.
     counter: Option<RegId>,
-    /// The interval of each net in every slot, of a pipeline with several.
+    /// For a pipeline whose interval is longer than 1: the interval of raw values of each net over all slots. Otherwise empty.
     in_all_slots: Vec<Interval>,
-    /// For each ROM the bits that its words have.
+    /// For each ROM, the union of its words: for each bit, whether it can be 0 and 1.
     words: Vec<Pairs>,
 }
 
@@ -37,7 +37,7 @@ impl<'a> Order<'a> {
         let mut order = design.levelise().ok()?;
         let mut in_all_slots = Vec::new();
         if let Some(pipeline) = &design.pipeline {
-            // Registers behind the logic of the stage before.
+            // Each stage comes after the stage before it.
             let mut by_stage = order.clone();
             by_stage.sort_by_key(|net| pipeline.clock_of(*net));
             if pipeline.interval == 1 {
@@ -68,7 +68,8 @@ impl<'a> Order<'a> {
         registers.chain(self.design.roms.iter().map(|rom| rom.data))
     }
 
-    /// Returns the pairs of all nets in a microinstruction, for the fault-free design or for the mutant beside it.
+    /// Returns the pairs of all nets in microinstruction number `at`. Without a `fault`, both bits of each pair are of the
+    /// fault-free design. With a fault, the pairs compare the fault-free design with the mutant.
     pub(super) fn settle(
         &self,
         at: usize,
@@ -117,7 +118,7 @@ impl<'a> Order<'a> {
             nets[id.index()] = match fault {
                 None => {
                     let interval = match (&net.driver, self.in_all_slots.get(id.index())) {
-                        // The register has the value that was made in the slot before.
+                        // The register has the value that was computed in the slot before.
                         (Driver::Register(_), Some(interval)) => *interval,
                         _ => interval::of(design, id, &|net| intervals[net.index()], &|net| {
                             nets[net.index()]
@@ -128,7 +129,7 @@ impl<'a> Order<'a> {
                 }
                 Some((site, sound)) => {
                     let of_mutant = match (site, &net.driver) {
-                        // The fault is in the value that the register takes.
+                        // The fault changes the value that the register takes at the edge, in `next`.
                         (_, Driver::Register(_)) => value,
                         (Site::Bit(at_fault, bit, how), _) if *at_fault == id => {
                             value.at_fault(*bit, *how)
@@ -142,7 +143,8 @@ impl<'a> Order<'a> {
         nets
     }
 
-    /// Returns a net with another driver than in the fault-free design.
+    /// Returns the pairs of net `id` if the mutant has another driver for it. `nets` are the pairs of the nets that are already
+    /// evaluated.
     fn replaced(&self, id: NetId, driver: &Driver, nets: &[Pairs], sound: &[Pairs]) -> Pairs {
         let design = self.design;
         let width = design.width(id);
@@ -160,8 +162,7 @@ impl<'a> Order<'a> {
         }
     }
 
-    /// Returns the word that a ROM has at its address. The first state has the 0 that a synchronous ROM shows at
-    /// power-up, before it reads any word.
+    /// Returns the pairs of the word that a ROM reads at its address. A fault may change the address or the words.
     fn read(&self, id: RomId, nets: &[Pairs], fault: Option<Injected>) -> Pairs {
         let rom = self.design.rom(id);
         let width = self.design.width(rom.data);
@@ -172,7 +173,7 @@ impl<'a> Order<'a> {
         let address = nets[rom.address.index()];
         let mut differ = match address.differ() {
             0 => 0,
-            // No more than the words do, where every address has one.
+            // If every address has a word, only bits that differ between words can differ.
             _ if rom.words.len() == 1 << self.design.width(rom.address) => {
                 let mut between_words = 0;
                 for word in &rom.words {
@@ -245,7 +246,8 @@ impl<'a> Order<'a> {
     }
 }
 
-/// Returns the net whose value a net takes, if it takes one.
+/// Returns the net whose value a driver passes on: the input of a renaming, or the one input that a mux can select. Returns
+/// `None` otherwise.
 fn taken(design: &Design, driver: &Driver, value: &impl Fn(NetId) -> Pairs) -> Option<NetId> {
     match driver {
         Driver::Op(Op::Relabel(a)) => Some(*a),
@@ -258,7 +260,7 @@ fn taken(design: &Design, driver: &Driver, value: &impl Fn(NetId) -> Pairs) -> O
     }
 }
 
-/// Returns how many microinstructions a design has; a pipeline has its slots.
+/// Returns the number of microinstructions of a design; for a pipeline, the number of its slots.
 pub(super) fn count(design: &Design) -> usize {
     match &design.pipeline {
         Some(pipeline) => pipeline.interval,
@@ -266,9 +268,9 @@ pub(super) fn count(design: &Design) -> usize {
     }
 }
 
-/// Returns the microinstructions that may follow one, reset included, which leads to microinstruction 0 from any. A
-/// pipeline stays in a slot while it is held back. For example, in a pipeline of interval 4, slots 0, 1 and 2 may
-/// follow slot 1.
+/// Returns the microinstructions that may follow microinstruction `at`, in ascending order. A reset leads to microinstruction 0
+/// from any. A pipeline stays in a slot while it waits. For example, in a pipeline of interval 4, slots 0, 1 and 2 may follow
+/// slot 1.
 pub(super) fn following(design: &Design, at: usize) -> Vec<usize> {
     let mut following = vec![0];
     match &design.pipeline {
@@ -283,8 +285,8 @@ pub(super) fn following(design: &Design, at: usize) -> Vec<usize> {
     following
 }
 
-/// Finds for each net of the design the first net with the same driver. For example, two nets that both add `a` and `b` at one
-/// width are the same.
+/// Finds, for each net of the design, the first net in `order` with the same driver. For example, two nets that both add `a`
+/// and `b` at one width are the same.
 pub(super) fn same(design: &Design, order: &[NetId]) -> Vec<NetId> {
     let mut same: Vec<NetId> = design.iter().map(|(id, _)| id).collect();
     let mut drivers: Vec<(Driver, u32, bool, NetId)> = Vec::new();
@@ -298,7 +300,7 @@ pub(super) fn same(design: &Design, order: &[NetId]) -> Vec<NetId> {
                 continue;
             }
             Driver::Op(op) => {
-                // Whether an operand is signed counts where it is extended, compared or multiplied.
+                // Whether an operand is signed matters for extensions, comparisons and products.
                 signed = op.operands().iter().any(|net| design.net(*net).format.signed);
                 *op = op.map(|operand| same[operand.index()]);
             }

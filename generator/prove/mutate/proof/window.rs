@@ -1,8 +1,9 @@
 //! Proves a fault equivalent by trying every combination of values on the nets around it.
 //!
-//! A window is a part of the netlist. It reaches forward from the fault over some cells, at most to multipliers, registers, ROMs
-//! and outputs. It reaches backward to a minimum cut: the fewest bits that determine the window. The proof tries every value in
-//! the intervals of these nets. For example, the window of an inverted bit may end at an AND that masks the bit.
+//! A window is a part of the netlist. It reaches forward from the fault over some cells, at most to registers, ROMs and
+//! outputs. It reaches backward to a minimum cut: the fewest bits that determine the window. The proof tries every value in the
+//! intervals of these nets, at most 2^22 combinations. For example, the window of an inverted bit may end at an AND that masks
+//! the bit.
 
 use std::borrow::Cow;
 use std::collections::{BTreeMap, BTreeSet};
@@ -17,20 +18,20 @@ use crate::mutate::fault::Site;
 use glint_base::interval::Interval;
 use glint_rtl::netlist::{Design, Driver, NetId, Op, RomId, eval};
 
-/// Values that are evaluated together.
+/// The number of combinations that are evaluated together.
 const LANES: usize = 128;
 
-/// A net in all lanes.
+/// The bit patterns of a net in all lanes. A lane is one of the combinations that are evaluated together.
 type NetLanes = [u64; LANES];
 
-/// The lanes of nets, by their numbers; for a mutant, only its own nets have lanes.
+/// The lanes of nets, by the numbers of the nets. For a mutant, only nets that the fault may change have lanes.
 type LanesByNet = Vec<Option<Box<NetLanes>>>;
 
-/// The most combinations that are tried, as a power of two.
+/// The largest number of combinations that are tried, as a power of two.
 const BITS: u32 = 22;
 
-/// The distance between lanes that are tried one after the other. It is prime, so that all are tried. It is large,
-/// because neighbouring values tend to show the same.
+/// The distance between the chunks of combinations that are tried one after the other. It is prime, so that all chunks are
+/// tried. It is large, because neighbouring combinations tend to give the same answer.
 const STRIDE: u64 = 40_009;
 
 /// A prover for one design that tries every combination of values in a window, a small part of the netlist around a fault.
@@ -40,13 +41,14 @@ pub(super) struct Windows<'a> {
     intervals: Vec<Interval>,
     /// The cells that read a net.
     readers: Vec<Vec<NetId>>,
-    /// Whether something else reads it: a register, a ROM, a port, a comparison with the golden model.
+    /// For each net, whether anything but a cell reads it: a register, a ROM, a port, or the comparison with the golden model.
     sinks: Vec<bool>,
-    /// Whether a multiplier reads it.
+    /// For each net, whether a multiplier reads it.
     multiplied: Vec<bool>,
-    /// For each net of a multiplier that products share, one net for each product.
+    /// For each net of a multiplier that several products share, its copies: one net for each product.
     copies: BTreeMap<NetId, Vec<NetId>>,
-    /// For each ROM, the words that may be read, once they are asked for; `None` if there are too many.
+    /// For each ROM, the addresses of the words that may be read, once they are computed; `None` inside if there are too many
+    /// combinations.
     read: Vec<OnceLock<Option<BTreeSet<u64>>>>,
 }
 
@@ -109,14 +111,14 @@ impl<'a> Windows<'a> {
             Site::Words(rom, words) if *rom != self.design.control.rom => {
                 !self.reads_any(*rom, words) || self.stays_inside(self.design.rom(*rom).data, site)
             }
-            // The fault is in each product.
+            // A fault in a shared multiplier is in each of its products.
             Site::Bit(net, ..) if self.copies.contains_key(net) => {
                 self.copies[net].iter().all(|copy| self.stays_inside(*copy, site))
             }
             Site::Driver(net, _) if self.copies.contains_key(net) => false,
             Site::Bit(net, ..) | Site::Driver(net, _) => {
                 let driver = &self.design.net(*net).driver;
-                // The value that a register takes, or that an input brings, is at fault in another net.
+                // A fault of a register or an input is in a net that the window does not have.
                 !matches!(driver, Driver::Register(_) | Driver::Input)
                     && self.stays_inside(*net, site)
             }
@@ -124,11 +126,12 @@ impl<'a> Windows<'a> {
         }
     }
 
-    /// Returns whether one of these words of a ROM, given with their addresses, may be read.
+    /// Returns whether one of these words of a ROM, given with their addresses, may be read. Returns true if this cannot be
+    /// decided.
     fn reads_any(&self, rom: RomId, words: &[(usize, u64)]) -> bool {
         let known = &self.read[rom.index()];
-        // Not inside `get_or_init`, which would make others wait: work that is tried at the same time may ask
-        // for it too.
+        // The addresses are computed outside `get_or_init`, which would make other threads wait. Two threads may compute them
+        // at once.
         let addresses = match known.get() {
             Some(addresses) => addresses,
             None => {
@@ -142,7 +145,7 @@ impl<'a> Windows<'a> {
         }
     }
 
-    /// Returns the addresses of the words of a ROM that may be read.
+    /// Returns the addresses of the words of a ROM that may be read, or `None` if there are too many combinations to try.
     fn words_read(&self, rom: RomId) -> Option<BTreeSet<u64>> {
         let address = self.design.rom(rom).address;
         let read = Mutex::new(BTreeSet::new());
@@ -154,15 +157,15 @@ impl<'a> Windows<'a> {
         read.into_inner().ok()
     }
 
-    /// Returns whether all nets that leave some neighbourhood of the net are the same with the fault.
+    /// Returns whether the fault at `net` changes no net at the end of some window around it.
     fn stays_inside(&self, net: NetId, site: &Site) -> bool {
-        // Short of multipliers first: beyond them is more to try.
+        // Windows that end at multipliers come first, because others need more combinations.
         let mut tried = Vec::new();
         [false, true].into_iter().any(|through| self.stays_within(net, site, through, &mut tried))
     }
 
-    /// Tries the sets of nets that the net reaches within some number of cells, smaller sets first, except the sets
-    /// that were `tried`. With `through`, they reach through multipliers.
+    /// Tries windows of growing size: the nets that `net` reaches within 0, 1, 2, … cells. Windows in `tried` are skipped. With
+    /// `through`, a window reaches through multipliers. Returns whether one of them hides the fault.
     fn stays_within(
         &self,
         net: NetId,
@@ -198,8 +201,8 @@ impl<'a> Windows<'a> {
         }
     }
 
-    /// Returns whether the nets of `leaving` are the same with the fault for every combination of values that
-    /// determines the `affected` nets. Returns false if there are too many combinations.
+    /// Returns whether the fault changes no net of `leaving`, for every combination of values that determines the `affected`
+    /// nets. Returns false if there are too many combinations.
     fn hides(&self, affected: &BTreeSet<NetId>, leaving: &[NetId], fault: (NetId, &Site)) -> bool {
         let is_same = self.try_all(affected, affected, Some(fault), |sound, mutant, count| {
             leaving.iter().all(|&net| {
@@ -209,7 +212,7 @@ impl<'a> Windows<'a> {
         is_same == Some(true)
     }
 
-    /// Returns the cells that read a net, with multipliers or without.
+    /// Returns the cells that read a net; multipliers are included only with `through`.
     fn cells_reading(&self, net: NetId, through: bool) -> impl Iterator<Item = NetId> {
         let readers = self.readers[net.index()].iter().copied();
         readers.filter(move |reader| through || !self.is_product(*reader))
@@ -219,9 +222,9 @@ impl<'a> Windows<'a> {
         matches!(self.design.net(net).driver, Driver::Op(Op::Mul(..)))
     }
 
-    /// Evaluates `wanted`, without and with the fault, for every combination of the values that determine it. None of
-    /// these values is in `affected`. Returns whether `holds` always returned true; it gets both results and the
-    /// number of lanes that count. Returns `None` if there are too many combinations.
+    /// Evaluates the nets `wanted`, without and with the fault, for every combination of the values that determine them. These
+    /// values are on nets outside `affected`. `holds` gets the lanes without and with the fault, and the number of lanes that
+    /// count. Returns whether `holds` always returned true, or `None` if there are too many combinations.
     fn try_all(
         &self,
         wanted: &BTreeSet<NetId>,
@@ -278,8 +281,8 @@ impl<'a> Windows<'a> {
         Some(all.all(|holds| holds))
     }
 
-    /// Returns the number of values that are tried of a net of the cut. The words at fault are all that their net
-    /// brings that matters.
+    /// Returns the number of values that are tried for a net of the cut. For the output of a ROM with faulty `words`, only
+    /// these words count.
     fn count_values(&self, net: NetId, words: Option<FaultyWords>) -> i128 {
         match words {
             Some(words) if words.net == net => words.faulty.len() as i128,
@@ -290,7 +293,7 @@ impl<'a> Windows<'a> {
         }
     }
 
-    /// Returns the nets that determine `wanted` from a cut, in the order of evaluation.
+    /// Returns the nets between a cut and `wanted`, including `wanted`, in the order of evaluation.
     fn cells_behind(&self, cut: &BTreeSet<NetId>, wanted: &BTreeSet<NetId>) -> Vec<NetId> {
         let mut behind = BTreeSet::new();
         let mut todo: Vec<NetId> = wanted.iter().copied().collect();
@@ -302,7 +305,7 @@ impl<'a> Windows<'a> {
         self.order.iter().copied().filter(|net| behind.contains(net)).collect()
     }
 
-    /// Puts the combinations from the number `from` on into the lanes of the cut. The first net of the cut changes
+    /// Writes the combinations from number `from` on into the lanes of the nets of the cut. The first net of the cut changes
     /// from lane to lane, like the last digit of a number.
     fn put_combinations(
         &self,
@@ -333,7 +336,7 @@ impl<'a> Windows<'a> {
         }
     }
 
-    /// Returns a net of the mutant in all lanes.
+    /// Returns the lanes of a net in the mutant.
     fn evaluate_at_fault(
         &self,
         net: NetId,
@@ -359,7 +362,8 @@ impl<'a> Windows<'a> {
         }
     }
 
-    /// Returns a net in all lanes. The mutant's own lanes come before the lanes of the fault-free design.
+    /// Returns the lanes of a net with the driver `driver`. An operand has the mutant's lanes if it has such lanes, and
+    /// otherwise the lanes of the fault-free design.
     fn evaluate(
         &self,
         net: NetId,
@@ -375,20 +379,20 @@ impl<'a> Windows<'a> {
                 &|operand| self.design.net(operand).format,
                 &|operand| lanes_of(sound, mutant, operand),
             ),
-            // A source is in the cut, and has its values.
+            // A net without a cell is in the cut, and already has its lanes.
             _ => *lanes_of(sound, mutant, net),
         }
     }
 }
 
-/// The words at fault of a ROM.
+/// The faulty words of a ROM.
 #[derive(Clone, Copy)]
 struct FaultyWords<'s> {
-    /// The net that brings the words.
+    /// The net that is the output of the ROM.
     net: NetId,
     /// All words of the fault-free ROM.
     sound: &'s [u64],
-    /// Each word at fault, with its address.
+    /// The address and the faulty contents of each faulty word.
     faulty: &'s [(usize, u64)],
 }
 
@@ -401,7 +405,7 @@ fn reads_known_nets(net: NetId, site: &Site, cut: &BTreeSet<NetId>, steps: &[Net
     op.operands().iter().all(|operand| cut.contains(operand) || earlier.contains(operand))
 }
 
-/// Keeps the lanes of a net.
+/// Stores the lanes of a net.
 fn put(values: &mut LanesByNet, net: NetId, lanes: NetLanes) {
     match &mut values[net.index()] {
         Some(held) => **held = lanes,
