@@ -43,8 +43,8 @@ impl Spread {
     }
 }
 
-/// The error of a device's reflectance `f` against `cosⁿγ`, in total and by cause. At every angle the total error is the sum of the
-/// signed errors by cause. The largest values of two causes may be at different angles.
+/// The error of a device's reflectance `f` against `cosⁿγ`, in total and by cause. At every angle the total error is the sum
+/// of the signed errors by cause. The largest values of two causes may be at different angles.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Accuracy {
     /// The total error: the reflectance f that the hardware computes, against `cosⁿγ`.
@@ -53,11 +53,11 @@ pub struct Accuracy {
     /// The error of the device's formula in f64, at the quantised operands, against `cosⁿ` of the angle that these operands
     /// denote.
     pub formula: Spread,
-    /// The error of quantising the operands: `cosⁿ` of the angle that the quantised operands denote, against `cosⁿγ`. It is 0 if a
-    /// contract does not tell that angle ([`Highlight::cosine`]); the formula's error then includes it.
+    /// The error of quantising the operands: `cosⁿ` of the angle that the quantised operands denote, against `cosⁿγ`. It is 0
+    /// if a contract does not tell that angle ([`Highlight::cosine`]); the formula's error then includes it.
     pub operands: Spread,
-    /// The error of the fixed-point arithmetic: the reflectance f that the hardware computes, against the formula at the quantised
-    /// operands.
+    /// The error of the fixed-point arithmetic: the reflectance f that the hardware computes, against the formula at the
+    /// quantised operands.
     pub fixed_point: Spread,
 }
 

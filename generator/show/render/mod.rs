@@ -1,8 +1,8 @@
 //! Renders pictures whose specular highlights are bit-exact results of a device.
 //!
-//! The host is the software around the device. It computes visibility, normals, half vectors, and the ambient and diffuse light in
-//! f64. An [`Engine`] computes the specular term of every sample and light, point by point or along lines of points. A device that
-//! takes normals as operands, such as `shading`, also computes the ambient and diffuse light of a lit surface.
+//! The host is the software around the device. It computes visibility, normals, half vectors, and the ambient and diffuse
+//! light in f64. An [`Engine`] computes the specular term of every sample and light, point by point or along lines of points.
+//! A device that takes normals as operands, such as `shading`, also computes the ambient and diffuse light of a lit surface.
 //!
 //! The same picture has the same bytes on every machine, because `libm` computes the transcendental functions. The bytes depend
 //! neither on the engine nor on the number of threads.

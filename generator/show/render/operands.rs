@@ -25,8 +25,8 @@ pub struct Point {
     pub dgamma_negative: bool,
     /// The vector N − H from the half vector to the normal N. N is the perturbed normal if the surface has a height map.
     pub difference: Vector,
-    /// The cosine N·H of the angle between the half vector and the normal N. N is the perturbed normal if the surface has a height
-    /// map.
+    /// The cosine N·H of the angle between the half vector and the normal N. N is the perturbed normal if the surface has a
+    /// height map.
     pub cos_shaded: f64,
     /// The colour of the light times the specular coefficient, from 0 to 1.
     pub colour: Vector,
@@ -154,8 +154,8 @@ pub fn walks_lines(contract: &dyn Contract) -> bool {
 }
 
 impl Feed {
-    /// Finds for each operand of a device the quantity of a scene that supplies its value. `device` is the name of the device, for
-    /// messages.
+    /// Finds for each operand of a device the quantity of a scene that supplies its value. `device` is the name of the
+    /// device, for messages.
     ///
     /// # Errors
     /// Fails if a picture cannot supply an operand, or if the device lacks the colour operands or their outputs.
@@ -301,8 +301,8 @@ impl Feed {
         operands.find(|operand| operand.0 == wanted).copied()
     }
 
-    /// Returns the operand values for a point with the exponent `exponent`, before they are quantised. Each value is in the unit of
-    /// its operand.
+    /// Returns the operand values for a point with the exponent `exponent`, before they are quantised. Each value is in the
+    /// unit of its operand.
     pub fn values<'a>(&'a self, point: &'a Point, exponent: u32) -> impl Iterator<Item = f64> + 'a {
         let split = self.takes_deviation();
         self.operands.iter().map(move |&(quantity, format, (_, high))| match quantity {

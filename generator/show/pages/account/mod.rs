@@ -203,8 +203,8 @@ fn lines(lines: &[u16]) -> String {
     numbers.join(" ")
 }
 
-/// Returns a table of the fields of the control word. For example, the column "bits" has `4:2` for a field of three bits from bit 2
-/// on.
+/// Returns a table of the fields of the control word. For example, the column "bits" has `4:2` for a field of three bits from
+/// bit 2 on.
 pub fn fields(design: &Design) -> TextTable {
     let mut table = TextTable::of("field | lines | bits | controls");
     for field in facts::fields(design) {
@@ -318,8 +318,8 @@ pub fn terms(bound: &Bound) -> TextTable {
     table
 }
 
-/// Returns a table of the parts of the computation, with the share of each in the error of each output and in the area. The last row
-/// has the sums of the area. Returns `None` if the contract does not know the parts.
+/// Returns a table of the parts of the computation, with the share of each in the error of each output and in the area. The
+/// last row has the sums of the area. Returns `None` if the contract does not know the parts.
 pub fn parts(contract: &dyn Contract) -> Option<TextTable> {
     let parts = contract.parts();
     if parts.is_empty() {

@@ -42,9 +42,9 @@ impl RecordView {
     }
 }
 
-/// Returns the measurement on one FPGA, with its frequency and its rate, for the summary at the head of the datasheet. The FPGA is
-/// `target` if the record has it, otherwise the FPGA with the most points per second. For example, a pipeline for ECP5 shows its
-/// numbers on ECP5, even if another FPGA is faster.
+/// Returns the measurement on one FPGA, with its frequency and its rate, for the summary at the head of the datasheet. The
+/// FPGA is `target` if the record has it, otherwise the FPGA with the most points per second. For example, a pipeline for
+/// ECP5 shows its numbers on ECP5, even if another FPGA is faster.
 pub fn leading<'r>(
     record: &'r SynthesisRecord,
     target: Option<&str>,

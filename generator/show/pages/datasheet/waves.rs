@@ -80,8 +80,8 @@ enum Meaning {
 }
 
 impl Waves {
-    /// Simulates the worked example and records its waveform. A pipeline gets several points one after another, and the first point
-    /// is the example.
+    /// Simulates the worked example and records its waveform. A pipeline gets several points one after another, and the first
+    /// point is the example.
     ///
     /// # Errors
     /// Fails if a simulated computation of the device never ends.

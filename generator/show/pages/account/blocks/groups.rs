@@ -18,8 +18,8 @@ pub struct Groups<'a> {
     /// For each net, whether it makes its group a block: it is a register, a ROM or an operator, or the description documents or
     /// numbers it.
     pub cell: Vec<bool>,
-    /// For each net, its sources: the blocks, ports and ROMs whose values reach it within a clock. In a pipeline, a source may lie
-    /// several clocks back.
+    /// For each net, its sources: the blocks, ports and ROMs whose values reach it within a clock. In a pipeline, a source
+    /// may lie several clocks back.
     pub sources: Vec<Vec<NetId>>,
     /// For each group that is a block, its output net.
     pub head: Vec<Option<NetId>>,
@@ -319,9 +319,9 @@ impl<'a> Groups<'a> {
         operands
     }
 
-    /// Returns whether the sources of `operand` meet inside the block whose output is `head`, so that no joint is drawn. This is so
-    /// if the block itself is one of the sources, or if the gates at which the sources meet belong to the same statement of the
-    /// description as the block.
+    /// Returns whether the sources of `operand` meet inside the block whose output is `head`, so that no joint is drawn. This
+    /// is so if the block itself is one of the sources, or if the gates at which the sources meet belong to the same
+    /// statement of the description as the block.
     pub fn is_part(&self, operand: NetId, head: NetId) -> bool {
         if self.sources[operand.index()].contains(&head) {
             return true;
@@ -337,8 +337,8 @@ impl<'a> Groups<'a> {
         }
     }
 
-    /// Returns the joint behind a net: the net at which several signals meet by wiring or gates to form it. Returns `None` if only
-    /// one signal forms it.
+    /// Returns the joint behind a net: the net at which several signals meet by wiring or gates to form it. Returns `None` if
+    /// only one signal forms it.
     pub fn joint(&self, mut id: NetId) -> Option<NetId> {
         if self.sources[id.index()].len() < 2 {
             return None;

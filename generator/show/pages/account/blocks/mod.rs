@@ -84,8 +84,8 @@ pub struct Blocks<'a> {
 }
 
 impl<'a> Blocks<'a> {
-    /// Finds the blocks of a design. If `figure` is set, the blocks are for a block diagram: gates and wiring are then blocks only
-    /// if the source numbers them, or if several signals meet in them.
+    /// Finds the blocks of a design. If `figure` is set, the blocks are for a block diagram: gates and wiring are then blocks
+    /// only if the source numbers them, or if several signals meet in them.
     pub fn new(design: &'a Design, figure: bool) -> Self {
         Self { design, groups: Groups::new(design, figure) }
     }
