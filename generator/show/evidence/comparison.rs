@@ -35,7 +35,7 @@ pub struct Spread {
 }
 
 impl Spread {
-    /// Adds the error at one of the [`ANGLES`].
+    /// Adds the error at one of the [`ANGLES`]. The mean is right after an error was added for each angle.
     fn take(&mut self, error: f64) {
         let error = error.abs();
         self.largest = self.largest.max(error);
@@ -68,7 +68,8 @@ pub fn formula(highlight: &Highlight, control: &[i64], f: f64) -> f64 {
     if (f - other).abs() < (f - one).abs() { other } else { one }
 }
 
-/// Measures the errors of a device at all [`ANGLES`] for the exponent `n`. Returns `None` if the operands cannot represent `n`.
+/// Measures the errors of a device's reflectance f at all [`ANGLES`] for the exponent `n`. Returns `None` if the device is
+/// no highlight, or if its operands cannot represent `n`.
 pub fn accuracy(contract: &dyn Contract, n: f64) -> Option<Accuracy> {
     let highlight = contract.highlight()?;
     let format = highlight.f_format();
@@ -91,9 +92,10 @@ pub fn accuracy(contract: &dyn Contract, n: f64) -> Option<Accuracy> {
     Some(accuracy)
 }
 
-/// Returns the number of clocks per point for the exponent `n`: the clocks from one `start` to the earliest next `start`, divided
-/// by the number of results between them. If the device computes lines, the function runs the longest line of the domain. For
-/// example, a line of 16 points in 20 clocks takes 1.25 clocks per point.
+/// Returns the number of clocks per point for the exponent `n`: the clocks from one `start` to the earliest next `start`,
+/// divided by the number of results between them. The computation has a typical angle of 10° and the exponent `n`. Operands
+/// that do not follow from them, such as colours, have their largest values. If the device computes lines, the computation
+/// is the longest line of the domain. For example, a line of 16 points in 20 clocks takes 1.25 clocks per point.
 ///
 /// # Errors
 /// Fails if the computation is not over after 65 536 clocks, or if the device never raises `valid`.

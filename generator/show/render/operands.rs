@@ -141,7 +141,7 @@ pub struct Feed {
     surfaces: bool,
 }
 
-/// Returns the range of the exponent in the device's domain, or `None` if the device has no exponent.
+/// Returns the smallest and the largest exponent of the device's domain, or `None` if the device has no operand `exponent`.
 pub fn exponents(contract: &dyn Contract) -> Option<(i64, i64)> {
     let mut operands = contract.operands().iter();
     let exponent = operands.find(|operand| operand.name == "exponent")?;
@@ -350,7 +350,8 @@ impl Feed {
         (raw, beyond)
     }
 
-    /// Returns the value of the amplitude operand at which a white light has full strength.
+    /// Returns the value of the amplitude operand for a white light of full strength: the largest value of the operand's
+    /// domain. It is 0 if the device has no such operand.
     pub fn full(&self) -> f64 {
         let full = self.find(OperandMeaning::Amplitude);
         full.map_or(0.0, |(_, format, (_, most))| format.to_f64(i128::from(most)))
@@ -404,8 +405,9 @@ impl Feed {
         Ok(self.operands.iter().zip(self.line_values(line)).map(raw).collect())
     }
 
-    /// Returns the results of a point as a colour, where 255 is full light. `outputs` returns the results of the computation for
-    /// a colour channel.
+    /// Returns the results of a point as a colour, in which 255 is full light. `outputs` returns the outputs of the
+    /// computation that has the colour channel 0 (red), 1 (green) or 2 (blue). A device for points has all three channels in
+    /// one computation; a device for lines has a computation for each.
     #[inline]
     pub fn colour<'a>(&self, outputs: impl Fn(usize) -> &'a [i64]) -> Vector {
         let of = |channel: usize| outputs(channel)[self.channels[channel]] as f64;

@@ -19,7 +19,7 @@ use glint_rtl::netlist::{Design, Pipeline};
 use glint_rtl::verilog::naming::Naming;
 pub use table::{Align, Column, TextTable, code};
 
-/// The heading of the column with the source's numbers.
+/// The heading of the column with the numbers that blocks, ports and ROMs have in the figure of the source document.
 const NUMBER: &str = "no.";
 
 /// The facts that a page shows in addition to the netlist.
@@ -34,7 +34,7 @@ pub struct PageInputs<'a> {
     pub contract: &'a dyn Contract,
     /// The evidence for the contract's error bound, such as a record of an exhaustive check.
     pub backing: &'a Backing,
-    /// The key that would reduce the error bound most.
+    /// The changes of keys that would reduce the error bound; `None` if no change would.
     pub advice: Option<Advice>,
     /// The number of clocks between the events of the handshake.
     pub timing: &'a HandshakeTiming,
@@ -127,7 +127,7 @@ pub fn proof(inputs: &PageInputs) -> String {
     )
 }
 
-/// Returns a number of the source as text; empty for none.
+/// Returns a number in the source's figure as text, and an empty text for `None`.
 fn number(number: Option<u16>) -> String {
     match number {
         Some(number) => number.to_string(),
@@ -197,7 +197,8 @@ pub fn roms(design: &Design, config: &Config) -> TextTable {
     table.without_empty(NUMBER)
 }
 
-/// Returns the lines of a field as the source numbers them. For example, `30 31`.
+/// Returns the numbers that the control lines of a field have in the source's figure, with spaces between. For example, `30
+/// 31`.
 fn lines(lines: &[u16]) -> String {
     let numbers: Vec<String> = lines.iter().map(u16::to_string).collect();
     numbers.join(" ")
@@ -266,7 +267,8 @@ pub fn microprogram(design: &Design) -> TextTable {
     table
 }
 
-/// Returns a table of the clocks after `start` in which each event of the handshake happens.
+/// Returns a table of the events of the handshake with their clocks, counted from the clock that takes `start`. If a clock
+/// depends on the length of a line, the table has a formula; if it depends on other operands, a remark.
 pub fn clocks(timing: &HandshakeTiming, line: Option<&LineClocks>) -> TextTable {
     let mut events: Vec<(&str, Option<u32>, Option<Linear>)> =
         vec![("`valid` is high, first", timing.start_to_valid, None)];
@@ -419,7 +421,8 @@ pub fn keys(schema: &Schema, config: &Config) -> TextTable {
     table
 }
 
-/// Returns a text that is cut to the number of characters that a cell has room for.
+/// Returns a text of at most 520 characters unchanged. Of a longer text it returns the first 520 characters, and the number
+/// of all characters.
 fn shortened(text: String) -> String {
     const ROOM: usize = 520;
     match text.char_indices().nth(ROOM) {

@@ -64,6 +64,7 @@ pub fn leading<'r>(
     on_target.or(fastest).copied()
 }
 
+/// Returns the row of the table for one target.
 fn row(figures: &Figures, clocks_per_point: f64) -> Vec<String> {
     let area = &figures.area;
     let frequency = match figures.frequency {
