@@ -80,7 +80,7 @@ impl OutputFiles {
         self.files.insert(place, file);
     }
 
-    /// Returns the files of some kinds, in the order of the list.
+    /// Returns the files of some kinds, in their order in the list of all files.
     pub fn of(&self, kinds: &[FileKind]) -> Vec<&OutputFile> {
         self.files.iter().filter(|file| kinds.contains(&file.kind)).collect()
     }

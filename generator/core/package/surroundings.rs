@@ -44,7 +44,8 @@ pub fn check_clock(config: &Config, pipeline: &Pipeline) -> Result<(), KeyError>
     ))
 }
 
-/// Checks that `package.rom_style` is set only where the Verilog has a memory that can have the attribute.
+/// Checks that the Verilog has a memory for the attribute that `package.rom_style` asks for. The value "auto" asks for no
+/// attribute.
 ///
 /// # Errors
 /// Fails if the core has no ROM that is read on the clock, or if `package.memories` writes ROMs as functions.

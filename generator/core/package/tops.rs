@@ -38,8 +38,8 @@ pub struct TopPort {
     pub doc: String,
 }
 
-/// A module that a system can instantiate. For example, `threshold_levels` has the core, `threshold_levels_axis` between
-/// streams, and `threshold_levels_axil` on AXI4-Lite.
+/// A module that a system can instantiate. For example, `threshold_levels` is a core, `threshold_levels_axis` is the same
+/// core between streams, and `threshold_levels_axil` is the core behind registers on AXI4-Lite.
 #[derive(Clone, Debug)]
 pub struct Top {
     /// The name of the module.

@@ -171,7 +171,8 @@ fn candidates(
     candidates
 }
 
-/// Returns the table of a key. For example, `exponent.bits` is in the table `exponent`; `name` is in none.
+/// Returns the table of a key. For example, `exponent.bits` is in the table `exponent`. A key outside of all tables, such as
+/// `name`, gives an empty text.
 fn table_of(key: &str) -> &str {
     match key.split_once('.') {
         Some((table, _)) => table,

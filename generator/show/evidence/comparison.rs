@@ -128,7 +128,8 @@ impl fmt::Display for MultiplierSize {
     }
 }
 
-/// Returns the sizes of the multipliers of a design, the largest first.
+/// Returns the sizes of the multipliers of a design, one for each product in the netlist. The size whose widths have the
+/// largest product is first.
 pub fn multipliers(design: &Design) -> Vec<MultiplierSize> {
     let mut found: Vec<MultiplierSize> = design
         .nets

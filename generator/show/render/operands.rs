@@ -301,8 +301,8 @@ impl Feed {
         operands.find(|operand| operand.0 == wanted).copied()
     }
 
-    /// Returns the operand values for a point with the exponent `exponent`, before they are quantised. Each value is in the
-    /// unit of its operand.
+    /// Returns the operand values for a point with the exponent `exponent` as real numbers, before they are quantised. They
+    /// are in the order of the device's operands. A colour of full strength gives the largest value of its operand.
     pub fn values<'a>(&'a self, point: &'a Point, exponent: u32) -> impl Iterator<Item = f64> + 'a {
         let split = self.takes_deviation();
         self.operands.iter().map(move |&(quantity, format, (_, high))| match quantity {
@@ -363,7 +363,8 @@ impl Feed {
         if self.takes(OperandMeaning::Exponent) { 1.0 } else { line.stretch() }
     }
 
-    /// Returns the operand values for a line of points, before they are quantised. Each value is in the unit of its operand.
+    /// Returns the operand values for a line of points as real numbers, before they are quantised. They are in the order of
+    /// the device's operands. Angles are in right angles.
     pub fn line_values<'a>(&'a self, line: &'a LineParameters) -> impl Iterator<Item = f64> + 'a {
         let stretch = self.stretch(line);
         self.operands.iter().map(move |(quantity, ..)| match quantity {

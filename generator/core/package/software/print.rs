@@ -155,7 +155,8 @@ impl<'a> Printer<'a> {
         if from == to { text } else { CExpression(format!("({to}){}", text.inner()), true) }
     }
 
-    /// Returns `text` with all bits above `width` set to 0. A `text` of 32 or 64 bits needs no mask.
+    /// Returns the value of the expression `text` with all bits from bit `width` on set to 0. A width of 32 or 64 bits needs
+    /// no mask, because the C type has no further bits.
     fn masked(&self, text: String, width: u32) -> CExpression {
         match width {
             32 | 64 => CExpression(text, false),

@@ -49,7 +49,7 @@ impl BusInterface {
 }
 
 impl IpXactComponent<'_> {
-    /// Returns a number as IP-XACT writes it, after the `'h`.
+    /// Returns a number in hexadecimal digits, which IP-XACT writes behind `'h`. For example, 255 gives `ff`.
     fn hex(&self, number: impl std::fmt::LowerHex) -> String {
         format!("{number:x}")
     }

@@ -156,7 +156,7 @@ fn streamed<'a>(rows: impl Iterator<Item = PortValues<'a>>) -> Option<Vec<BenchP
 }
 
 /// Returns the input file of the wrapper's bench: for each computation a word with all operands, each padded to whole bytes.
-/// Every other word has ones in the padding bits, because the wrapper must ignore them.
+/// The padding bits are zeros for one computation and ones for the next, because the wrapper must ignore them.
 pub fn sent(points: &[BenchPoint], operands: &Transfer) -> String {
     let mut text = String::new();
     for (number, point) in points.iter().enumerate() {
@@ -171,8 +171,8 @@ pub fn sent(points: &[BenchPoint], operands: &Transfer) -> String {
 }
 
 /// Returns the output file of the wrapper's bench: a line for each result, with all outputs padded to whole bytes. A signed
-/// output is padded with copies of its sign bit, any other with zeros. If `is_line` is set, a further digit in front says
-/// whether the result is the last one of its computation.
+/// output is padded with copies of its sign bit, any other with zeros. If `is_line` is set, a further digit in front is 1
+/// for the last result of a computation, and 0 for every other result.
 pub fn received(points: &[BenchPoint], results: &Transfer, is_line: bool) -> String {
     let mut text = String::new();
     for point in points {

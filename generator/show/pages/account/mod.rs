@@ -371,7 +371,8 @@ pub fn domain(design: &Design, contract: &dyn Contract) -> TextTable {
     table
 }
 
-/// Returns a table of the worked example, with the values of the formula next to the outputs.
+/// Returns a table of the worked example: its operands and outputs as raw integers and as values. Beside each output is the
+/// value of the formula in f64.
 pub fn example(contract: &dyn Contract, example: &WorkedExample) -> TextTable {
     let mut table = TextTable::of("port | integer: | value: | formula in f64:");
     let operands: Vec<i64> = example.operands.iter().map(|it| it.raw as i64).collect();
