@@ -1,5 +1,9 @@
 //! Generates declarations of a core's modules for designs in other languages: `<name>.vhd` for VHDL, and `<name>_pkg.sv` for
 //! SystemVerilog.
+//!
+//! The VHDL file has a component for each module, and an entity around the core with fixed-point types at its ports. The
+//! SystemVerilog package has a type, limits and conversion functions for each operand and result. The hardware itself stays
+//! in Verilog.
 
 use anyhow::Result;
 use glint_base::fill;

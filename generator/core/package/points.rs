@@ -1,7 +1,7 @@
 //! Generates a Verilog test bench that computes a list of points with a core that has a microprogram.
 //!
-//! The bench reads the operands of each point from one file and writes the results to another. `glint` uses it to compute
-//! pictures with the emitted Verilog under an outside simulator.
+//! The bench reads the operands of each point from one file and writes the results to another. `glint render --through
+//! verilator` uses the bench to compute pictures with the emitted Verilog.
 
 pub(super) mod pipeline;
 

@@ -1,4 +1,7 @@
-//! Lists the modules that a system can instantiate, with their ports: the core itself, its stream wrapper and its bus wrapper.
+//! Lists the modules that a system can instantiate, with their ports: the core itself, its stream wrapper and its bus
+//! wrapper.
+//!
+//! The generators of constraints, Tcl scripts, IP-XACT, VHDL and LiteX modules make their files from this list.
 
 use anyhow::Result;
 

@@ -1,4 +1,5 @@
-//! Draws a recorded waveform as the timing diagram of a datasheet.
+//! Draws a recorded waveform as the timing diagram of a datasheet. A waveform that is wider than the page continues in
+//! strips below each other.
 
 use std::ops::Range;
 
