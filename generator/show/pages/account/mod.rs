@@ -422,8 +422,8 @@ pub fn keys(schema: &Schema, config: &Config) -> TextTable {
     table
 }
 
-/// Returns a text of at most 520 characters unchanged. Of a longer text it returns the first 520 characters, and the number
-/// of all characters.
+/// Returns a text of at most 520 characters unchanged. A longer text is cut after 520 characters, and its number of
+/// characters is added.
 fn shortened(text: String) -> String {
     const ROOM: usize = 520;
     match text.char_indices().nth(ROOM) {
