@@ -147,12 +147,12 @@ pub struct Frequency {
     pub runs: u32,
 }
 
-/// A net on the longest path, and the time at which it settles.
+/// A net on the longest path, and the time at which its value becomes stable.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct PathPoint {
     /// The net, as the description names it. The name of a ROM has `ROM` before it. For example, `ROM coefficient`.
     pub name: String,
-    /// The time in nanoseconds from the clock edge until the net settles.
+    /// The time in nanoseconds from the clock edge until the value of the net is stable.
     pub ns: f64,
 }
 
@@ -176,8 +176,9 @@ impl Figures {
         format!("{} ns", Vec::from_iter(steps).join(" → "))
     }
 
-    /// Adds the results of several runs, each a frequency in MHz and its longest path. For example, the median of runs with 100,
-    /// 110, 120 and 130 MHz is 110 MHz.
+    /// Returns the measurement with the results of several runs, each a frequency in MHz and the longest path of the run.
+    /// The critical path comes from the run with the median frequency. For example, the median of runs with 100, 110, 120
+    /// and 130 MHz is 110 MHz. Without runs, the measurement stays as it is.
     pub fn with_runs(mut self, mut runs: Vec<(f64, Vec<PathPoint>)>) -> Self {
         runs.sort_by(|one, other| one.0.total_cmp(&other.0));
         let (Some(first), Some(last)) = (runs.first(), runs.last()) else {
@@ -194,7 +195,8 @@ impl Figures {
 }
 
 impl Area {
-    /// Returns the area in the resources of an FPGA, or `None` for standard cells.
+    /// Returns the numbers of look-up tables, DSP blocks, block RAMs and flip-flops, or `None` for an area in standard
+    /// cells.
     pub fn usage(&self) -> Option<Usage> {
         let flip_flops = self.flip_flops;
         let (luts, dsps, block_rams) = (self.luts?, self.dsps?, self.block_rams?);

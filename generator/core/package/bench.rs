@@ -26,7 +26,8 @@ fresh_names!(Variables {
     write_microinstruction
 });
 
-/// An output, with the Verilog expression that selects its value from the word of expected outputs.
+/// An output, with the Verilog expression that selects its bits from the expected outputs of a clock, which are one wide
+/// number. For example, `want[7:0]`.
 struct ExpectedOutput {
     name: String,
     select: String,
@@ -70,6 +71,7 @@ pub fn files(job: &EmitJob, vectors: &Vectors, files: &mut OutputFiles) -> Resul
     Ok(())
 }
 
+/// Returns the Verilog of the test bench. Fails if the template fails to print.
 fn bench(job: &EmitJob, vectors: &Vectors) -> Result<String> {
     let design = job.design;
     let port_name = |port: &Port| design.net(port.net).name.clone();
@@ -141,6 +143,9 @@ fn bench(job: &EmitJob, vectors: &Vectors) -> Result<String> {
     })
 }
 
+/// Returns the file that the test bench reads with `$readmemh`: a comment with `title` and the columns, and a line for each
+/// clock. `rows` has for each clock a value for each of `ports`. Fails if a row has another number of values, or if a value
+/// does not fit the bits of its port.
 fn vector_file(design: &Design, title: &str, ports: &[&Port], rows: &[Vec<u64>]) -> Result<String> {
     let widths: Vec<_> = ports.iter().map(|port| design.width(port.net)).collect();
     let mut words = Vec::with_capacity(rows.len());

@@ -32,13 +32,13 @@ pub struct PortFacts<'a> {
     /// The number of the port's block in the block diagram of the document that describes the device.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub block: Option<u16>,
-    /// A description of the port in one line.
+    /// A description of the port in one line; may be empty.
     #[serde(skip_serializing_if = "str::is_empty")]
     pub doc: &'a str,
 }
 
-/// The facts about a field of the control word, for files and pages. For example, `operand_select` of `rough` has 2 bits from bit 7
-/// on, and the choices `cosines`, `sines`, `half_n` and `square`.
+/// The facts about a field of the control word, for files and pages. For example, `operand_select` of `rough` has 2 bits from
+/// bit 7 on, and the choices `cosines`, `sines`, `half_n` and `square`.
 #[derive(Serialize)]
 pub struct FieldFacts<'a> {
     /// The name of the field.
@@ -57,8 +57,8 @@ pub struct FieldFacts<'a> {
     pub lines: &'a [u16],
 }
 
-/// The facts about a microinstruction, for files and pages. For example, microinstruction 3 of `rough` is named `12 <- sin gamma *
-/// sin dgamma`.
+/// The facts about a microinstruction, for files and pages. For example, microinstruction 3 of `rough` is named `12 <- sin
+/// gamma * sin dgamma`.
 #[derive(Serialize)]
 pub struct MicroinstructionFacts<'a> {
     /// The address of the microinstruction in the control ROM.
@@ -248,7 +248,8 @@ pub fn microprogram(design: &Design) -> Vec<MicroinstructionFacts<'_>> {
     facts
 }
 
-/// Returns the ROMs of a design, including the control ROM.
+/// Returns the ROMs of a design, including the control ROM. It leaves out a ROM that is only the second read port of another
+/// ROM.
 pub fn roms<'a>(design: &'a Design, naming: &'a Naming) -> Vec<RomFacts<'a>> {
     let in_file = !naming.style.inline;
     let mut facts = Vec::new();

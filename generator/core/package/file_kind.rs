@@ -9,8 +9,8 @@ use FileKind::{
     WrapperProofScript,
 };
 
-/// The purpose of an emitted file, such as Verilog of the core. Lists of a core's files follow the order of the kinds here, except
-/// as `listed_with` says.
+/// The purpose of an emitted file, such as Verilog of the core. Lists of a core's files follow the order of the kinds here;
+/// a few kinds are listed among the files of another kind (`listed_with`).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum FileKind {
     /// Verilog of the core, the top module first. For example, `rough.v`, `rough_control.v` and `rough_datapath.v`.
@@ -94,8 +94,9 @@ impl FileKind {
         matches!(self, CoreVerilog | TargetVerilog | StreamWrapper | BusWrapper | Bench)
     }
 
-    /// Returns the kind among whose files a file of this kind is listed. Emission makes a bench and its vectors together,
-    /// and so it lists them: `rough_tb.v`, `rough_stimulus.mem`, `rough_expected.mem`, `rough_axis_tb.v`.
+    /// Returns the kind that decides the position of a file of this kind in the list of a core's files. For example,
+    /// [`FileKind::BenchVectors`] gives [`FileKind::Bench`], so that the vectors of a bench follow the bench directly:
+    /// `rough_tb.v`, `rough_stimulus.mem`, `rough_expected.mem`, `rough_axis_tb.v`.
     pub(super) fn listed_with(self) -> Self {
         match self {
             WrapperProofScript => WrapperProof,

@@ -41,8 +41,8 @@ struct AgeView {
     one: String,
 }
 
-/// The clocks of `valid` and `done`, and the largest age of a computation, as Verilog literals. Only a core whose clocks do not
-/// depend on the data has them.
+/// The clocks in which `valid` and `done` are high, counted from the clock of `start`, and the largest age of a computation
+/// (its clocks since `start`), as Verilog literals. Only a core whose clocks do not depend on the data has them.
 struct EventClocks {
     valid: String,
     done: String,
@@ -56,13 +56,15 @@ struct Bounded {
     address: String,
     most: String,
     latest: Vec<Latest>,
-    /// Whether every computation shows a result in the clock of `done`.
+    /// Whether `valid` is high in the clock of `done` of every computation.
     ends_with_result: bool,
-    /// The clock of the first result, if every clock from then on to the end shows a result; otherwise `None`.
+    /// The clock of the first result as a Verilog literal, if `valid` is high in every clock from then on to `done`;
+    /// otherwise `None`.
     first: Option<String>,
 }
 
-/// An upper limit of the end of a computation, for one microinstruction that is executed.
+/// An upper limit of the age at which a computation ends, for the clocks in which one microinstruction is executed. `label`
+/// is the microinstruction's address as a Verilog literal. The age counts the clocks since `start`.
 struct Latest {
     label: String,
     /// The age at which the computation ends if it takes as long as it can, as a Verilog expression. For example, the age plus
@@ -105,7 +107,8 @@ impl Script<'_> {
     }
 }
 
-/// Returns the number of clocks by which `valid` follows the signal that sets it, or 0 in a design without `valid`.
+/// Returns the number of registers between the signal that sets `valid` and the port `valid`, which is a number of clocks.
+/// Returns 0 for a design without `valid`.
 fn valid_delay(design: &Design) -> u32 {
     let Some(valid) = design.port(|role| role == Role::Valid) else { return 0 };
     let mut at = valid.net;
@@ -224,8 +227,9 @@ pub(super) fn outputs_of(design: &Design) -> Vec<String> {
     Row::declarations(&rows)
 }
 
-/// Returns the data for the proof that every computation ends. In each microinstruction, the age plus the largest number of
-/// remaining clocks must be at most `most`, the largest number of clocks of a computation.
+/// Returns the data for the proof that every computation ends. In each microinstruction, the age (the clocks since `start`)
+/// plus the largest number of remaining clocks must be at most `most`, the largest number of clocks of a computation. `left`
+/// has the remaining clocks of each microinstruction.
 fn bounded_view(
     design: &Design,
     naming: &Naming,

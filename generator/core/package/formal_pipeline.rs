@@ -19,16 +19,18 @@ use glint_rtl::verilog::text::{Names, literal, range};
 /// The depth of the induction, in clocks. Every property follows from the state one clock earlier.
 const DEPTH: u32 = 2;
 
-/// The side channel of the pipeline. `tag` is the register of the wrapper that holds the side value of the followed point.
-/// `stages` has the side value of each stage.
+/// The side channel of the pipeline: bits that enter with a point and leave with its results. The wrapper follows one
+/// arbitrary point. `tag` is the wrapper's register with the side value of this point, and `stages` has the side value of
+/// each stage.
 struct SideChannel {
     range: String,
     tag: String,
     stages: Vec<SideStage>,
 }
 
-/// Two counters of a pipeline that accepts a point every few clocks. `slot` is the pipeline's own counter; `name` is the
-/// wrapper's counter, to which the proof compares it.
+/// Two counters of a pipeline that accepts a point every k clocks. Each counts the clocks from 0 to k − 1. `slot` is the
+/// path of the pipeline's own counter; `name` is the wrapper's counter, and the proof shows that both are always equal.
+/// `next` is the expression of the wrapper counter's next value.
 struct Turn {
     range: String,
     name: String,

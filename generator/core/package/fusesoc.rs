@@ -12,8 +12,8 @@ use super::output_files::OutputFiles;
 use super::tops::{Face, Top};
 use glint_rtl::verilog::text::ascii;
 
-/// Adds `<name>.core`, with a simulation target if there is a bench, and then `<name>_tb.core`. The file names in a core file
-/// are relative to its directory.
+/// Adds `<name>.core`. If the core has a bench, `<name>.core` has a target for simulation, and `<name>_tb.core` is added
+/// too. The file names in a core file are relative to its directory.
 ///
 /// # Errors
 /// Fails if a template fails to print.
@@ -57,8 +57,8 @@ pub fn files(job: &EmitJob, tops: &[Top], files: &mut OutputFiles) -> Result<()>
     Ok(())
 }
 
-/// Returns the suffixes of the wrappers that have a bench, and `None` for a core without a bench. For example, `axis` and
-/// `axil`.
+/// Returns the suffixes of the wrappers that have a bench, for example `axis` and `axil`. Returns `None` if neither the core
+/// nor a wrapper has a bench.
 fn wrapper_benches(tops: &[Top], files: &OutputFiles) -> Option<Vec<&'static str>> {
     let benches = files.modules(&[FileKind::Bench]);
     if benches.is_empty() {

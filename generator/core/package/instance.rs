@@ -1,4 +1,5 @@
 //! Writes example instances of a core and its wrappers in Verilog, with a wire for each port, for the user to copy.
+//! Datasheets show them.
 
 use anyhow::Result;
 
@@ -21,11 +22,12 @@ pub struct InstanceExample {
     pub verilog: String,
 }
 
-/// Writes an instance of each module that a system can instantiate: the wrappers that the configuration asks for, and the
-/// core.
+/// Returns an example instance of each module that a system can instantiate: the bus wrapper and the stream wrapper, if the
+/// configuration asks for them, and the core as the last.
 ///
 /// # Errors
-/// Fails if a stream surrounds a core without operands or results, or if the registers do not fit their bus.
+/// Fails if the core cannot have a wrapper that the configuration asks for. For example, streams need operands and results,
+/// and a pipeline cannot have registers on a bus.
 pub fn instances(design: &Design, inputs: &EmitInputs) -> Result<Vec<InstanceExample>> {
     let naming = Naming::new(design);
     let registers = match inputs.around.registers {
@@ -73,7 +75,8 @@ fn wire(port: &TopPort) -> Row {
     Row::port("", kind_of(port.input), port.width, false, &port.name, &port.doc)
 }
 
-/// Returns the kind of net that a system connects to a port.
+/// Returns the Verilog keyword of the net that a system connects to a port: `reg` for an input of the module, `wire` for an
+/// output.
 fn kind_of(is_input: bool) -> &'static str {
     if is_input { "reg" } else { "wire" }
 }

@@ -1,5 +1,9 @@
 //! Generates declarations of a core's modules for designs in other languages: `<name>.vhd` for VHDL, and `<name>_pkg.sv` for
 //! SystemVerilog.
+//!
+//! The VHDL file has a component for each module, and an entity around the core with fixed-point types at its ports. The
+//! SystemVerilog package has a type, limits and conversion functions for each operand and result. The hardware itself stays
+//! in Verilog.
 
 use anyhow::Result;
 use glint_base::fill;
@@ -30,7 +34,7 @@ pub fn files(job: &EmitJob, tops: &[Top], files: &mut OutputFiles) -> Result<()>
     Ok(())
 }
 
-/// Returns whether a port carries a number.
+/// Returns whether a port with this role carries a fixed-point number: an operand or a result.
 fn is_number(role: Role) -> bool {
     matches!(role, Role::Operand { .. } | Role::Point | Role::Result)
 }
@@ -43,6 +47,7 @@ struct VhdlComponent<'a> {
     ports: Vec<String>,
 }
 
+/// Returns the VHDL component of a module. `of_core` are the generics of the core; wrappers have none.
 fn component<'a>(top: &'a Top, of_core: &[String]) -> VhdlComponent<'a> {
     VhdlComponent {
         name: module_name(&top.module),
@@ -52,6 +57,7 @@ fn component<'a>(top: &'a Top, of_core: &[String]) -> VhdlComponent<'a> {
     }
 }
 
+/// Returns the VHDL file: components of all modules, and an entity around the core whose ports have fixed-point types.
 fn vhdl(job: &EmitJob, tops: &[Top]) -> Result<String> {
     let (name, design, naming) = (job.name(), job.design, job.naming);
     let (mut generics, mut passed) = (Vec::new(), Vec::new());
@@ -109,7 +115,7 @@ fn vhdl(job: &EmitJob, tops: &[Top]) -> Result<String> {
     })
 }
 
-/// Puts semicolons between declarations.
+/// Returns the declarations with a semicolon behind each except the last, as VHDL separates ports and generics.
 fn listed(mut declarations: Vec<String>) -> Vec<String> {
     let last = declarations.len().saturating_sub(1);
     declarations.iter_mut().take(last).for_each(|line| line.push(';'));
@@ -121,6 +127,7 @@ fn plain(port: &TopPort) -> String {
     format!("{} : {direction} {}", vhdl_name(&port.name), std_logic(port.width, port.vector))
 }
 
+/// Returns the VHDL type of a port. For example, `std_logic_vector(7 downto 0)` for 8 bits.
 fn std_logic(width: u32, vector: bool) -> String {
     match vector {
         false => "std_logic".to_owned(),
@@ -177,10 +184,12 @@ struct VerilogConstant {
 }
 
 impl VerilogConstant {
+    /// Returns the weight of the lowest bit as a SystemVerilog real, 2^−F with F fraction bits.
     fn unit(&self) -> String {
         format!("{:?}", exp2(-self.format.frac))
     }
 
+    /// Returns the inverse of the lowest bit's weight as a SystemVerilog real, 2^F with F fraction bits.
     fn scale(&self) -> String {
         format!("{:?}", exp2(self.format.frac))
     }
@@ -191,6 +200,7 @@ impl VerilogConstant {
         (format!("{:?}", low as f64), format!("{:?}", high as f64))
     }
 
+    /// Returns the smallest value as a bit pattern, in SystemVerilog. For example, `{1'b1, 7'd0}` for 8 bits with a sign.
     fn least(&self) -> String {
         let width = self.format.width();
         match self.format.signed {
@@ -213,6 +223,7 @@ impl VerilogConstant {
         }
     }
 
+    /// Returns the largest value as a bit pattern, in SystemVerilog.
     fn most(&self) -> String {
         literal(self.format.max_raw() as u64, self.format.width())
     }
@@ -224,6 +235,8 @@ struct Structure {
     members: Vec<String>,
 }
 
+/// Returns the SystemVerilog package: types, limits and conversions of all operands and results, and the layout of stream
+/// transfers. Fails if the configuration asks for streams, and the core has no operands or no results.
 fn systemverilog(job: &EmitJob) -> Result<String> {
     let (name, design) = (job.name(), job.design);
     let mut names = Names::new(design.nets.iter().map(|net| net.name.as_str()));

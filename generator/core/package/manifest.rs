@@ -68,7 +68,8 @@ struct ComputationNames<'a> {
     points: Vec<Box<RawValue>>,
 }
 
-/// Returns the names of all files but the manifest itself, by purpose.
+/// Returns the paths of all files except the manifest, in lists by purpose. For example, `rtl` lists the Verilog of the
+/// core. Paths are relative to the directory of the configuration.
 fn file_names(files: &OutputFiles) -> serde_json::Map<String, Value> {
     let lists: [(&str, &[FileKind]); 10] = [
         ("rtl", &[FileKind::CoreVerilog]),
@@ -153,7 +154,8 @@ pub fn contents(job: &EmitJob, others: &OutputFiles) -> Result<String> {
     Ok(serde_json::to_string_pretty(&manifest)? + "\n")
 }
 
-/// Returns the layout of a transfer on each stream.
+/// Returns the manifest's entry of the streams: the layout of a transfer on each stream. Fails if the core has no operands
+/// or no results.
 fn stream(job: &EmitJob) -> Result<Value> {
     let around = &job.inputs.around;
     Ok(json!({
@@ -164,7 +166,7 @@ fn stream(job: &EmitJob) -> Result<Value> {
     }))
 }
 
-/// Returns the fields of a transfer.
+/// Returns the number of bits of a transfer, and the position of each field in it.
 fn layout(transfer: &Transfer) -> Value {
     let mut fields = Vec::new();
     for field in &transfer.fields {
@@ -229,7 +231,8 @@ fn computations<'a>(
     }))
 }
 
-/// Returns names of ports in the order of the ports, each with its place among `names`.
+/// Returns `names` in the order of the ports that have these names, each with its index in `names`. Fails if no port has one
+/// of the names.
 fn in_port_order<'a>(
     design: &Design,
     names: impl Iterator<Item = &'a String>,
@@ -287,8 +290,9 @@ fn control(design: &Design) -> Value {
     entry
 }
 
-/// Returns the entry of a pipeline. Latency and interval are in clocks. A register bit is counted in each stage that it ends,
-/// and a bit of a delay line in each stage that it passes.
+/// Returns the manifest's entry of a pipeline. Latency and interval are in clocks. `register_bits` of a stage counts the
+/// bits of the registers behind the stage. `delayed_bits` counts the bits that are in delay memories in place of these
+/// registers.
 fn pipeline(pipeline: &Pipeline) -> Value {
     let stages = pipeline.stages.iter().map(|stage| {
         json!({

@@ -1,4 +1,4 @@
-//! Assigns the bus registers of a core: it gives each operand, each result and each status bit an address.
+//! Makes the register map of a core: gives each operand, each result and each status bit an address on the bus.
 //!
 //! The Verilog of the bus wrapper, the C header and the documentation use the same assignment. For example, the first operand is
 //! at word 8, which is byte address 32.
@@ -87,8 +87,8 @@ impl BusRegister {
     }
 }
 
-/// The placement of a port of the core (an operand or a result) in bus registers, the lowest bits first. For example, an operand of
-/// 40 bits takes two registers, the first with 32 bits and the second with 8.
+/// The placement of a port of the core (an operand or a result) in bus registers, the lowest bits first. For example, an
+/// operand of 40 bits takes two registers, the first with 32 bits and the second with 8.
 #[derive(Clone, Debug)]
 pub struct PortPlacement {
     /// The name of the port.
@@ -130,7 +130,7 @@ impl Map {
     ///
     /// # Errors
     /// Fails if the core is a pipeline, computes several results after one `start`, or lacks the handshake, operands or
-    /// results. Fails if two registers have the same name.
+    /// results. Fails if two registers would have the same name, for example because an operand is called `status`.
     pub fn new(design: &Design, inputs: &EmitInputs) -> Result<Self> {
         let name = design.name.as_str();
         if design.pipeline.is_some() {
@@ -193,7 +193,7 @@ impl Map {
         (4 * self.last()).ilog2() + 1
     }
 
-    /// Checks that no two registers have the same name: software knows registers and their bits by name.
+    /// Checks that no two registers have the same name, because software refers to registers by their names.
     fn check(&self, core: &str) -> Result<()> {
         let mut names = BTreeSet::new();
         for register in &self.registers {
@@ -218,7 +218,8 @@ fn last_place(ports: &[PortPlacement]) -> u32 {
     parts.map(|part| part.place).max().unwrap_or_default()
 }
 
-/// Places a port in registers that no other port uses, from the word address `place` on, and moves `place` behind them.
+/// Places a port in as many registers as it needs, which no other port uses, from the word address `place` on. Then `place`
+/// is the word address behind them. `strobe` is the name of the port that writes an operand; empty for a result.
 fn placed(design: &Design, port: &Port, strobe: String, place: &mut u32) -> PortPlacement {
     let net = design.net(port.net);
     let width = net.format.width();
@@ -232,9 +233,9 @@ fn placed(design: &Design, port: &Port, strobe: String, place: &mut u32) -> Port
     PortPlacement { name: net.name.clone(), format: net.format, strobe, parts }
 }
 
-/// Returns the placements of the results, and moves `place` behind them. If all results fit into one register, each in whole
-/// bytes, they share it; otherwise each result has its own registers. For example, three colours of 8 bits share a register,
-/// from bits 0, 8 and 16 on.
+/// Returns the placements of the results, from the word address `place` on. Then `place` is the word address behind them. If
+/// all results fit into one register, each in whole bytes, they share it; otherwise each result has its own registers. For
+/// example, three colours of 8 bits share a register, from bits 0, 8 and 16 on.
 fn results(design: &Design, place: &mut u32) -> Vec<PortPlacement> {
     let ports: Vec<&Port> = design.outputs().filter(|port| port.role == Role::Result).collect();
     let padded = |port: &Port| design.width(port.net).next_multiple_of(8);
@@ -336,7 +337,9 @@ fn of_results(results: &[PortPlacement], design: &Design) -> Vec<BusRegister> {
     }]
 }
 
-/// Returns the bus registers of a port that shares no register with another port. `access` says how software can access them.
+/// Returns the bus registers of a port that shares no register with another port. `access` says how software can access
+/// them. A port of more than 32 bits has several registers, named `<port>_0`, `<port>_1` and so on, with the lowest bits in
+/// the first.
 fn own(port: &PortPlacement, access: Access, doc: &str) -> Vec<BusRegister> {
     let mut registers = Vec::new();
     for (number, part) in port.parts.iter().enumerate() {

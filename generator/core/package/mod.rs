@@ -1,5 +1,5 @@
-//! Generates all files of a checked [`Design`]: Verilog, ROM contents, manifest, FuseSoC cores, test benches, formal wrappers,
-//! bus wrappers and the model in C.
+//! Generates all files of a [`Design`]: Verilog, ROM contents, manifest, FuseSoC cores, test benches, formal wrappers, bus
+//! wrappers and the model in C.
 //!
 //! `hdl::verilog` turns names and expressions of the netlist into strings. Each module here collects such strings in a view, a
 //! plain struct, and a template in `templates/` prints the view. Templates make no decisions. Emission returns the files and
@@ -70,11 +70,12 @@ pub use seal::{Seal, is_sealed, sealed, sealed_json, sealed_object};
 pub use software::check_recomputation;
 pub use surroundings::{Surroundings, check_clock, check_rom_style};
 
-/// Returns the test bench that computes a list of points, with a pipeline or with a core that has a microprogram. Each point must
-/// take less than `limit` clocks.
+/// Returns a Verilog test bench that computes the points (sets of operands) of a file, with a pipeline or with a core that
+/// has a microprogram. The simulation ends with `FAIL` if a computation takes `limit` clocks or more. For a pipeline,
+/// `limit` counts the clocks from the last point to the last result.
 ///
 /// # Errors
-/// Fails if the design lacks its handshake, operands or results.
+/// Fails if the design lacks a port of its handshake, or if a template fails.
 pub fn points_bench(design: &Design, limit: u32) -> Result<PointsBench> {
     match design.pipeline {
         Some(_) => points::pipeline::points_bench(design, limit),
@@ -82,7 +83,8 @@ pub fn points_bench(design: &Design, limit: u32) -> Result<PointsBench> {
     }
 }
 
-/// Returns only the Verilog of a core and the contents of its ROMs, without wrappers, test benches and other files.
+/// Returns only the Verilog of a core and the files with the contents of its ROMs, without wrappers, test benches and other
+/// files.
 ///
 /// # Errors
 /// Fails if [`Design::verify_structure`] finds mistakes, if a net is named `clk`, or if the name of a module is used for

@@ -1,8 +1,8 @@
 //! Generates `<name>_multiplier.v`: a multiplier with an output register, for pipelines.
 //!
-//! There are two versions with the same module name. The portable version is ordinary Verilog, and is listed with the core's
-//! files. The version for a target, for example ECP5, instantiates the target's DSP block and is in a directory with the target's
-//! name. The build for that target uses it in place of the portable version.
+//! There are two files with the same module name. The portable file is ordinary Verilog, and is listed with the core's
+//! files. The file for a target, for example ECP5, instantiates the target's DSP block and is in a directory with the
+//! target's name. A build for that target uses the second file in place of the portable file.
 
 use anyhow::Result;
 use glint_base::fill;
@@ -23,8 +23,8 @@ const PORTABLE: &str = "The portable form, for simulators and synthesis alike. O
 const ECP5: &str = "For ECP5: a DSP block with its output register and no other. nextpnr-ecp5 times the ways into the \
                     block, which end in that register, and those from it. The portable form is in the directory above.";
 
-/// Adds the multiplier module of a design, in the portable version and in the version for the target. Adds nothing if no
-/// multiplier of the design contains its output register.
+/// Adds the multiplier module of a pipeline: the portable file and the file for the pipeline's target. Adds nothing unless
+/// `pipeline.multipliers` is "registered", which puts the register behind a product into the DSP block.
 ///
 /// # Errors
 /// Fails if a template fails to print.

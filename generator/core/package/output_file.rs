@@ -12,8 +12,9 @@ pub struct OutputFile {
     pub path: String,
     /// The whole text, which must end with a newline.
     pub contents: String,
-    /// The modules that a file in Verilog or SystemVerilog defines, the main one first; none for any other file. For
-    /// example, `testbench/rough/rough_registers_formal.sv` defines `rough_registers_formal`, and `rough` as a stub.
+    /// The names of the modules that a file in Verilog or SystemVerilog defines, the main one first; empty for any other
+    /// file. For example, `testbench/rough/rough_registers_formal.sv` defines `rough_registers_formal`, and `rough` as a
+    /// stub.
     pub modules: Vec<String>,
     /// The target of a [`FileKind::TargetVerilog`]; `None` for any other file. For example, `ecp5`.
     pub target: Option<String>,
@@ -50,14 +51,15 @@ impl OutputFile {
         }
     }
 
-    /// Returns the main module of a file in Verilog or SystemVerilog, and nothing for any other file. For example,
-    /// `rtl_out/rough/rough.v` gives `rough`.
+    /// Returns the name of the main module of a file in Verilog or SystemVerilog, and an empty text for any other file. For
+    /// example, `rtl_out/rough/rough.v` gives `rough`.
     pub fn main_module(&self) -> &str {
         self.modules.first().map_or("", String::as_str)
     }
 }
 
-/// Returns the digest of a file, as the manifest holds it: SHA-256 in hexadecimal.
+/// Returns the SHA-256 of a file's contents as 64 hexadecimal digits in lower case. The manifest has this digest of each
+/// file.
 pub fn digest(contents: &[u8]) -> String {
     Sha256::digest(contents).iter().map(|byte| format!("{byte:02x}")).collect()
 }

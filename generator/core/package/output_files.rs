@@ -8,8 +8,8 @@ use std::vec::IntoIter;
 use super::file_kind::FileKind;
 use super::output_file::OutputFile;
 
-/// The emitted files of a configuration, in the order of their kinds. Files that are listed together are in the order in which they
-/// were made.
+/// The emitted files of a configuration, in the order of their kinds, [`FileKind`]. Some kinds share a position, for example
+/// benches and their vectors (`FileKind::listed_with`). Files at one position are in the order in which they were added.
 #[derive(Clone, Debug)]
 pub struct OutputFiles {
     /// The name of the configuration, which its directories have too.
@@ -35,7 +35,8 @@ impl OutputFiles {
         self.add_modules(kind, "v", modules, contents);
     }
 
-    /// Adds a file in SystemVerilog that defines `modules`, and has the name of the first.
+    /// Adds a file in SystemVerilog that defines `modules`, and has the name of the first. For example, `rough_formal` is in
+    /// `rough_formal.sv`.
     pub(super) fn add_system_verilog(
         &mut self,
         kind: FileKind,
@@ -45,7 +46,8 @@ impl OutputFiles {
         self.add_modules(kind, "sv", modules, contents);
     }
 
-    /// Adds the form of `module` for one target, in a directory that has the name of the target.
+    /// Adds the Verilog of `module` for one target, in a directory with the name of the target. For example,
+    /// `blinn_pipelined_multiplier` for `ecp5` is in `ecp5/blinn_pipelined_multiplier.v`.
     pub(super) fn add_for_target(&mut self, target: &str, module: &str, contents: String) {
         let kind = FileKind::TargetVerilog;
         let path = self.path(kind, &format!("{target}/{module}.v"));
@@ -71,32 +73,32 @@ impl OutputFiles {
         format!("{}/{}/{file}", kind.folder(), self.name)
     }
 
-    /// Inserts a file after all files that are listed before it or together with it.
+    /// Inserts a file behind all files whose kinds have an earlier position in the list, or the same position.
     fn insert(&mut self, file: OutputFile) {
         let kind = file.kind.listed_with();
         let place = self.files.partition_point(|other| other.kind.listed_with() <= kind);
         self.files.insert(place, file);
     }
 
-    /// Returns the files of some kinds, in the order of the list.
+    /// Returns the files of some kinds, in their order in the list of all files.
     pub fn of(&self, kinds: &[FileKind]) -> Vec<&OutputFile> {
         self.files.iter().filter(|file| kinds.contains(&file.kind)).collect()
     }
 
-    /// Returns the paths of the files of some kinds inside the directory of the configuration. For example, the kind
+    /// Returns the paths of the files of some kinds, relative to the directory of the configuration. For example, the kind
     /// [`FileKind::Memory`] gives `rough_sine.mem`.
     pub(super) fn local_paths(&self, kinds: &[FileKind]) -> Vec<String> {
         self.of(kinds).into_iter().map(OutputFile::local_path).collect()
     }
 
-    /// Returns the main modules of the files of some kinds. For example, the kind [`FileKind::Bench`] gives `rough_tb` and
-    /// `rough_axis_tb`.
+    /// Returns the name of the main module of each file of some kinds. For example, the kind [`FileKind::Bench`] gives
+    /// `rough_tb` and `rough_axis_tb`. A file without modules gives an empty name.
     pub fn modules(&self, kinds: &[FileKind]) -> Vec<&str> {
         self.of(kinds).into_iter().map(OutputFile::main_module).collect()
     }
 
-    /// Returns the modules that a system can instantiate, the core first. For example, `rough`, `rough_axis` and
-    /// `rough_axil`.
+    /// Returns the names of the modules that a system can instantiate: the core, then the wrappers that exist. For example,
+    /// `rough`, `rough_axis` and `rough_axil`.
     pub fn top_modules(&self) -> Vec<&str> {
         let mut tops = Vec::new();
         for kind in [FileKind::CoreVerilog, FileKind::StreamWrapper, FileKind::BusWrapper] {
@@ -105,14 +107,15 @@ impl OutputFiles {
         tops
     }
 
-    /// Returns the files of some kinds as outside tools read them, in the form for all targets: pairs of a plain name and
-    /// contents. For example, `rough.v` with its Verilog.
+    /// Returns the files of some kinds as outside tools read them: pairs of a name without directory, and the contents. For
+    /// example, `rough.v` with its Verilog. A module that also has a version for one target is in the portable version.
     pub fn sources(&self, kinds: &[FileKind]) -> Vec<(String, String)> {
         self.sources_for(kinds, "")
     }
 
-    /// Returns the same as [`OutputFiles::sources`], but with the forms for one target in place of the forms for all targets.
-    /// For example, for the target `ecp5` the file `blinn_pipelined_multiplier.v` instantiates the DSP block of ECP5.
+    /// Returns the same files as [`OutputFiles::sources`], but a file that has a version for `target` has the contents of
+    /// this version. For example, for the target `ecp5` the file `blinn_pipelined_multiplier.v` instantiates the DSP block
+    /// of ECP5.
     pub fn sources_for(&self, kinds: &[FileKind], target: &str) -> Vec<(String, String)> {
         let mut sources = Vec::new();
         for file in self.of(kinds) {
@@ -122,7 +125,7 @@ impl OutputFiles {
         sources
     }
 
-    /// Returns the form of a file for one target, if there is one.
+    /// Returns the version of the file `name` for one target, or `None` if the file has no such version.
     fn form_for(&self, target: &str, name: &str) -> Option<&OutputFile> {
         let forms = self.of(&[FileKind::TargetVerilog]);
         let is_form =

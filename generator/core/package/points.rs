@@ -1,7 +1,7 @@
 //! Generates a Verilog test bench that computes a list of points with a core that has a microprogram.
 //!
-//! The bench reads the operands of each point from one file and writes the results to another. `glint` uses it to compute
-//! pictures with the emitted Verilog under an outside simulator.
+//! The bench reads the operands of each point from one file and writes the results to another. `glint render --through
+//! verilator` uses the bench to compute pictures with the emitted Verilog.
 
 pub(super) mod pipeline;
 
@@ -16,8 +16,8 @@ use glint_rtl::verilog::text::Names;
 /// hexadecimal, in the order of [`PointsBench::operands`], with spaces between.
 pub const POINTS_FILE: &str = "points.hex";
 
-/// The default name of the file to which the bench writes results. The file has a line for each result: its outputs in hexadecimal,
-/// in the order of [`PointsBench::results`]. A line with a dot follows the last result of each computation.
+/// The default name of the file to which the bench writes results. The file has a line for each result: its outputs in
+/// hexadecimal, in the order of [`PointsBench::results`]. A line with a dot follows the last result of each computation.
 pub const RESULTS_FILE: &str = "results.hex";
 
 /// A test bench that reads operands from a file and writes results to another file.
@@ -51,8 +51,8 @@ struct PointList {
 }
 
 impl PointList {
-    /// Collects the names and texts of the bench for a design. `is_operand` says which roles are operands. The last parameter
-    /// has the net of the reset and the net of `valid`.
+    /// Collects the names and texts of the bench for a design. A port is an operand if `is_operand` returns true for its
+    /// role. The last parameter has the net of the reset, then the net of `valid`.
     fn new(
         design: &Design,
         limit: u32,
@@ -87,7 +87,7 @@ impl PointList {
         }
     }
 
-    /// Returns the bench with this text.
+    /// Returns the finished bench, whose Verilog is `text`.
     fn bench(self, text: String) -> PointsBench {
         PointsBench { name: self.name, text, operands: self.operands, results: self.results }
     }
@@ -95,11 +95,11 @@ impl PointList {
 
 fresh_names!(Variables { points, results, read, clocks, total, tick, dut });
 
-/// Returns the test bench that computes points with a core that has a microprogram. Each computation must take less than `limit`
-/// clocks.
+/// Returns the test bench that computes points (sets of operands) with a core that has a microprogram. The simulation ends
+/// with `FAIL` if a computation takes `limit` clocks or more.
 ///
 /// # Errors
-/// Fails if the design lacks the common handshake, operands or results.
+/// Fails if the design lacks a port of the handshake `rst_n`, `start`, `busy`, `valid`, `done`, or if the template fails.
 pub fn points_bench(design: &Design, limit: u32) -> Result<PointsBench> {
     let handshake = design.handshake()?;
     let name_of = |net: NetId| design.net(net).name.clone();

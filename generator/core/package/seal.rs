@@ -37,7 +37,7 @@ fn last_line(above: &[u8], seal: Seal) -> String {
     }
 }
 
-/// Returns a JSON object with one member more, which has the digest of the other members.
+/// Returns a JSON object with one member more, `sha256`, which has the digest of the other members.
 ///
 /// # Errors
 /// Fails if the value is no object.
@@ -48,7 +48,7 @@ pub fn sealed_object(mut value: Value) -> Result<Value> {
     Ok(value)
 }
 
-/// Returns the text of [`sealed_object`], indented, with a newline at its end.
+/// Returns the JSON text of the object that [`sealed_object`] returns, indented, with a newline at its end.
 ///
 /// # Errors
 /// Fails if the value is no object.
@@ -56,7 +56,8 @@ pub fn sealed_json(value: Value) -> Result<String> {
     Ok(serde_json::to_string_pretty(&sealed_object(value)?)? + "\n")
 }
 
-/// Returns whether the digest in a file matches the file's other contents, so that nobody has edited the file since Glint wrote it.
+/// Returns whether the digest in a file matches the file's other contents, so that nobody has edited the file since Glint
+/// wrote it. Returns `false` if the file has no digest at the position `seal`.
 pub fn is_sealed(contents: &[u8], seal: Seal) -> bool {
     match seal {
         Seal::Json => is_sealed_json(contents),

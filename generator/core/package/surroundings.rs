@@ -18,7 +18,11 @@ const CLOCK: &str = "package.clock_mhz";
 /// The key that says whether ROMs should be in memory blocks or in look-up tables.
 const ROM_STYLE: &str = "package.rom_style";
 
-/// Checks that the constraints do not ask for a faster clock than the clock for which the pipeline is made.
+/// Checks that `package.clock_mhz`, the clock of the constraint files, is not faster than the clock for which the pipeline
+/// is scheduled.
+///
+/// # Errors
+/// Fails if `package.clock_mhz` is larger than the clock of the pipeline, both in MHz. The error names values that are valid.
 pub fn check_clock(config: &Config, pipeline: &Pipeline) -> Result<(), KeyError> {
     let (asked, made_for) = (config.number(CLOCK), pipeline.clock_mhz);
     if asked <= made_for {
@@ -40,7 +44,8 @@ pub fn check_clock(config: &Config, pipeline: &Pipeline) -> Result<(), KeyError>
     ))
 }
 
-/// Checks that `package.rom_style` is set only where the Verilog has a memory that can have the attribute.
+/// Checks that the Verilog has a memory for the attribute that `package.rom_style` asks for. The value "auto" asks for no
+/// attribute.
 ///
 /// # Errors
 /// Fails if the core has no ROM that is read on the clock, or if `package.memories` writes ROMs as functions.
@@ -75,9 +80,9 @@ pub fn check_rom_style(config: &Config, design: &Design) -> Result<(), KeyError>
 pub struct Surroundings {
     /// Whether to emit a wrapper that connects the core to two AXI4-Streams.
     pub stream: bool,
-    /// The width of `tuser` on the streams.
+    /// The number of bits of `tuser`, the user's own data that travel with each point on the streams.
     pub user_bits: u32,
-    /// Whether the number of bytes of a transfer is padded to a power of two.
+    /// Whether the number of bits of a transfer is padded to a power of two. For example, 24 bits become 32.
     pub power_of_two: bool,
     /// Whether the streams have the signal `tkeep`, which marks the valid bytes of a transfer.
     pub keep: bool,
@@ -87,7 +92,7 @@ pub struct Surroundings {
     pub software: bool,
     /// Whether to emit a C program that computes every operand and compares the results with the formula.
     pub recomputation: bool,
-    /// How the Verilog declares memories and registers.
+    /// How the Verilog declares memories and registers. For example, whether a ROM's words are in the Verilog or in a file.
     pub style: Style,
     /// Whether to emit a module for LiteX.
     pub litex: bool,
@@ -111,7 +116,7 @@ pub struct Surroundings {
     pub licence: String,
 }
 
-/// The values of a configuration that sets none of the keys.
+/// Returns the values of a configuration that sets no key of `interface` and `package`.
 impl Default for Surroundings {
     fn default() -> Self {
         let schema = Schema { device: "", keys: Vec::new(), check: |_, _| () };
@@ -120,8 +125,8 @@ impl Default for Surroundings {
 }
 
 impl Surroundings {
-    /// Reads the keys of the tables `interface` and `package`, which every device has. For a pipeline, `pipeline` gives the
-    /// default of the clock.
+    /// Reads the keys of the tables `interface` and `package`, which every device has. The default clock of the constraint
+    /// files is the clock of `pipeline`, or 100 MHz if `pipeline` is `None`.
     pub fn new(config: &Config, pipeline: Option<&Pipeline>) -> Self {
         let keys = Shared::of(config);
         Self {

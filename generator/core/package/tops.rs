@@ -1,4 +1,7 @@
-//! Lists the modules that a system can instantiate, with their ports: the core itself, its stream wrapper and its bus wrapper.
+//! Lists the modules that a system can instantiate, with their ports: the core itself, its stream wrapper and its bus
+//! wrapper.
+//!
+//! The generators of constraints, Tcl scripts, IP-XACT, VHDL and LiteX modules make their files from this list.
 
 use anyhow::Result;
 
@@ -30,7 +33,7 @@ pub struct TopPort {
     pub input: bool,
     /// The number of bits of the port.
     pub width: u32,
-    /// Whether the port is declared with a range.
+    /// Whether the port is declared with a range, such as `[0:0]`; a port of one bit need not be.
     pub vector: bool,
     /// The signal of the LiteX bus that connects to the port; empty if there is no such signal.
     pub signal: String,
@@ -38,8 +41,8 @@ pub struct TopPort {
     pub doc: String,
 }
 
-/// A module that a system can instantiate. For example, `threshold_levels` has the core, `threshold_levels_axis` between
-/// streams, and `threshold_levels_axil` on AXI4-Lite.
+/// A module that a system can instantiate. For example, `threshold_levels` is a core, `threshold_levels_axis` is the same
+/// core between streams, and `threshold_levels_axil` is the core behind registers on AXI4-Lite.
 #[derive(Clone, Debug)]
 pub struct Top {
     /// The name of the module.
@@ -75,7 +78,8 @@ impl Top {
         self.ports.iter().filter(|port| port.name != self.clock && port.name != self.reset)
     }
 
-    /// Returns the ports of a standard interface, each with its name in the definition of the interface.
+    /// Returns the ports of a standard interface, each with its name in the definition of the interface. For example, the
+    /// port `s_axis_tdata` of the interface `s_axis` has the name `tdata`.
     pub fn ports_of(&self, protocol: &Protocol) -> Vec<(&TopPort, String)> {
         let prefix = format!("{}_", protocol.name);
         let mut ports = Vec::new();
@@ -93,7 +97,8 @@ impl Top {
     }
 }
 
-/// Fails if the configuration asks for streams, and the core has no operands or no results.
+/// Returns the modules that a system can instantiate: the core, then its stream wrapper and its bus wrapper, if the
+/// configuration asks for them. Fails if the configuration asks for streams, and the core has no operands or no results.
 pub fn tops(job: &EmitJob, files: &OutputFiles) -> Result<Vec<Top>> {
     let (name, design) = (job.name(), job.design);
     let reset = design.port(|role| role == Role::Reset);
@@ -164,6 +169,7 @@ fn core_ports(design: &Design) -> Vec<TopPort> {
     ports
 }
 
+/// Returns the ports of the stream wrapper. Fails if the core has no operands or no results.
 fn stream_ports(job: &EmitJob) -> Result<Vec<TopPort>> {
     let (input, output) = (Transfer::sent(job)?.bits, Transfer::received(job)?.bits);
     let keep = |port: &str, bits: u32| match job.inputs.around.keep {

@@ -41,14 +41,15 @@ impl fmt::Display for Advice {
     }
 }
 
-/// A changed configuration and its bound, which is smaller than before the change.
+/// A changed configuration and its error bound, which is smaller than the bound before the change.
 struct Better {
     config: Config,
     bound: Bound,
 }
 
-/// Returns the changes with which a core that violates its accuracy contract would keep it. If the core keeps the contract, or no
-/// changes help, returns the change of one key that reduces the error bound most.
+/// Returns changes of configuration keys that reduce the error bound of a core. If the core violates its accuracy contract,
+/// the changes are enough to keep it, if at most 40 steps find such changes. Otherwise only one key changes: the one that
+/// reduces the bound most. Returns `None` if no change of one key reduces the bound.
 pub fn of(core: &Core) -> Option<Advice> {
     let (device, bound) = (&core.device, core.contract.bound());
     let first = better(device, &core.config, &bound)?;
@@ -110,8 +111,8 @@ fn output_formats(contract: &dyn Contract) -> Vec<Format> {
     contract.outputs().iter().map(|output| output.format).collect()
 }
 
-/// Undoes the changes that are not needed: without them, the core keeps its contract too. For example, if one of two changes is
-/// enough, the other one is undone.
+/// Undoes the changes without which the core still keeps its contract, one key after the other. `config` is the
+/// configuration before all changes. For example, if one of two changes is enough, the other one is undone.
 fn needed(device: &Device, config: &Config, mut kept: Better) -> Better {
     let schema = (device.schema)();
     for (key, ..) in changes(device, config, &kept.config) {
@@ -129,6 +130,8 @@ fn advice(device: &Device, config: &Config, better: &Better) -> Advice {
     Advice { changes: changes(device, config, &better.config), units: better.bound.units }
 }
 
+/// Returns the keys with different values in two configurations: the name of each, and its value in `config` and in `other`, as
+/// TOML.
 fn changes(
     device: &Device,
     config: &Config,
@@ -168,7 +171,8 @@ fn candidates(
     candidates
 }
 
-/// Returns the table of a key. For example, `exponent.bits` is in the table `exponent`; `name` is in none.
+/// Returns the table of a key. For example, `exponent.bits` is in the table `exponent`. A key outside of all tables, such as
+/// `name`, gives an empty text.
 fn table_of(key: &str) -> &str {
     match key.split_once('.') {
         Some((table, _)) => table,

@@ -19,8 +19,8 @@ pub struct ChartAxis {
     pub label: String,
     /// Whether the axis is linear or logarithmic.
     pub scale: AxisScale,
-    /// The smallest and the largest value of the plotted range. The plot clips values outside the range; the table of values shows
-    /// them.
+    /// The smallest and the largest value of the plotted range. The plot clips values outside the range; the table of values
+    /// shows them.
     pub range: (f64, f64),
 }
 
@@ -53,8 +53,8 @@ impl ChartAxis {
 pub struct Series {
     /// The name of the curve, for the legend and the head of the table.
     pub name: String,
-    /// The values of the curve, one for each position in [`Chart::places`]. A position without a value has NaN, which is `null` in
-    /// JSON.
+    /// The values of the curve, one for each position in [`Chart::places`]. A position without a value has NaN, which is
+    /// `null` in JSON.
     pub values: Vec<f64>,
 }
 

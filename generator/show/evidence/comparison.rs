@@ -35,7 +35,7 @@ pub struct Spread {
 }
 
 impl Spread {
-    /// Adds the error at one of the [`ANGLES`].
+    /// Adds the error at one of the [`ANGLES`]. The mean is right after an error was added for each angle.
     fn take(&mut self, error: f64) {
         let error = error.abs();
         self.largest = self.largest.max(error);
@@ -43,8 +43,8 @@ impl Spread {
     }
 }
 
-/// The error of a device's reflectance `f` against `cosⁿγ`, in total and by cause. At every angle the total error is the sum of the
-/// signed errors by cause. The largest values of two causes may be at different angles.
+/// The error of a device's reflectance `f` against `cosⁿγ`, in total and by cause. At every angle the total error is the sum
+/// of the signed errors by cause. The largest values of two causes may be at different angles.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Accuracy {
     /// The total error: the reflectance f that the hardware computes, against `cosⁿγ`.
@@ -53,11 +53,11 @@ pub struct Accuracy {
     /// The error of the device's formula in f64, at the quantised operands, against `cosⁿ` of the angle that these operands
     /// denote.
     pub formula: Spread,
-    /// The error of quantising the operands: `cosⁿ` of the angle that the quantised operands denote, against `cosⁿγ`. It is 0 if a
-    /// contract does not tell that angle ([`Highlight::cosine`]); the formula's error then includes it.
+    /// The error of quantising the operands: `cosⁿ` of the angle that the quantised operands denote, against `cosⁿγ`. It is 0
+    /// if a contract does not tell that angle ([`Highlight::cosine`]); the formula's error then includes it.
     pub operands: Spread,
-    /// The error of the fixed-point arithmetic: the reflectance f that the hardware computes, against the formula at the quantised
-    /// operands.
+    /// The error of the fixed-point arithmetic: the reflectance f that the hardware computes, against the formula at the
+    /// quantised operands.
     pub fixed_point: Spread,
 }
 
@@ -68,7 +68,8 @@ pub fn formula(highlight: &Highlight, control: &[i64], f: f64) -> f64 {
     if (f - other).abs() < (f - one).abs() { other } else { one }
 }
 
-/// Measures the errors of a device at all [`ANGLES`] for the exponent `n`. Returns `None` if the operands cannot represent `n`.
+/// Measures the errors of a device's reflectance f at all [`ANGLES`] for the exponent `n`. Returns `None` if the device is
+/// no highlight, or if its operands cannot represent `n`.
 pub fn accuracy(contract: &dyn Contract, n: f64) -> Option<Accuracy> {
     let highlight = contract.highlight()?;
     let format = highlight.f_format();
@@ -91,9 +92,10 @@ pub fn accuracy(contract: &dyn Contract, n: f64) -> Option<Accuracy> {
     Some(accuracy)
 }
 
-/// Returns the number of clocks per point for the exponent `n`: the clocks from one `start` to the earliest next `start`, divided
-/// by the number of results between them. If the device computes lines, the function runs the longest line of the domain. For
-/// example, a line of 16 points in 20 clocks takes 1.25 clocks per point.
+/// Returns the number of clocks per point for the exponent `n`: the clocks from one `start` to the earliest next `start`,
+/// divided by the number of results between them. The computation has a typical angle of 10° and the exponent `n`. Operands
+/// that do not follow from them, such as colours, have their largest values. If the device computes lines, the computation
+/// is the longest line of the domain. For example, a line of 16 points in 20 clocks takes 1.25 clocks per point.
 ///
 /// # Errors
 /// Fails if the computation is not over after 65 536 clocks, or if the device never raises `valid`.
@@ -126,7 +128,8 @@ impl fmt::Display for MultiplierSize {
     }
 }
 
-/// Returns the sizes of the multipliers of a design, the largest first.
+/// Returns the sizes of the multipliers of a design, one for each product in the netlist. The size whose widths have the
+/// largest product is first.
 pub fn multipliers(design: &Design) -> Vec<MultiplierSize> {
     let mut found: Vec<MultiplierSize> = design
         .nets

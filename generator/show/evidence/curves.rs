@@ -138,9 +138,9 @@ fn places() -> Vec<f64> {
     even(0.0, REACH, PLACES)
 }
 
-/// Returns the signed formula error at each position, and the largest fixed-point error near it. Both are NaN beyond 90°,
-/// because nothing is reflected there. For example, the curve of n = 2 ends at √n·γ = 2.2. Returns `None` if the operands
-/// cannot represent `n`.
+/// Returns the signed error of the formula at each position of [`places`], and the largest fixed-point error near the
+/// position. Both errors are NaN for angles beyond 90°, at which there is no highlight. For example, the curve of n = 2 ends
+/// at √n·γ = 2.2. Returns `None` if the operands cannot represent `n`.
 fn over_angle(contract: &dyn Contract, n: f64) -> Option<Vec<AtAngle>> {
     let highlight = contract.highlight()?;
     let half = REACH / f64::from(PLACES) / 2.0;
@@ -251,7 +251,8 @@ fn charts(
     vec![over_n, over_gamma, fixed_point]
 }
 
-/// Returns a round number that is at least as large as every finite absolute value. For example, values up to 0.013 give 0.02.
+/// Returns the end of an axis for some curves: a round number from 0.001 to 1 that is at least as large as every finite
+/// absolute value of the curves. For example, values up to 0.013 give 0.02. Values above 0.5 give 1.
 fn reach(series: &[Series]) -> f64 {
     let mut largest: f64 = 0.0;
     for value in series.iter().flat_map(|series| &series.values) {

@@ -1,5 +1,7 @@
-//! Makes the charts of a device that computes a function of one operand, such as a square root: the function and its error over
-//! the domain.
+//! Makes the charts of a device that computes a function of one operand, such as a square root: the function and its error
+//! over the domain.
+//!
+//! If the domain is large, the charts show a sample of the operands, so that they may miss the largest error.
 
 use super::chart::{Chart, ChartAxis, Mark, Series};
 use glint_golden::Contract;

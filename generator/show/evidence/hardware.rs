@@ -1,4 +1,5 @@
-//! Asks a synthesis tool how many cells a core takes on each FPGA family: LUTs, DSP blocks and block RAMs.
+//! Asks a synthesis tool how many cells a core takes on each FPGA family: LUTs, DSP blocks and block RAMs. The cells are
+//! counted before placement.
 
 use anyhow::{Context, Result};
 use rayon::prelude::*;
@@ -15,7 +16,8 @@ pub trait Synthesis: Sync {
     /// Fails if the tool does not say its version.
     fn version(&self) -> Result<String>;
 
-    /// Returns the cells of a family that the module `top` takes. `files` are pairs of a plain name and contents.
+    /// Returns the number of cells of each kind that the module `top` takes on an FPGA family. `files` are the Verilog and
+    /// memory files: pairs of a file name without directory, and the contents.
     ///
     /// # Errors
     /// Fails if the tool fails or takes too long.
@@ -35,7 +37,8 @@ pub struct FamilyUsage {
     pub block_rams: u64,
 }
 
-/// Returns the number of cells that a configuration takes on every FPGA family. It calls `done` after each family.
+/// Returns the number of cells that a core takes on each of the FPGA families [`COMPARED`], in their order. It calls `done`
+/// after each family, so that a caller can show progress.
 ///
 /// # Errors
 /// Fails if synthesis fails.

@@ -34,8 +34,8 @@ pub struct SynthesisRecord<F = Figures> {
 }
 
 impl SynthesisRecord {
-    /// Returns the record of a core, among all in a directory. Returns `None` if there is no such record, or no such
-    /// directory. It ignores files that are no records.
+    /// Returns the record of the core with the digest `core`, among all records in a directory. Returns `None` if the
+    /// directory has no such record, or does not exist. Files that are no records are ignored.
     ///
     /// # Errors
     /// Fails if the directory or a file in it cannot be read, or if a record is damaged.
@@ -50,13 +50,13 @@ impl SynthesisRecord {
         self.targets.iter().find(|figures| figures.target == target)
     }
 
-    /// Returns the tools that made the measurements, each once.
+    /// Returns the tools that made the measurements, each once, with their versions, in alphabetical order.
     pub fn tools(&self) -> BTreeSet<&str> {
         tools(&self.targets)
     }
 }
 
-/// Returns the tools that made some measurements, each once.
+/// Returns the tools that made some measurements, each once, with their versions, in alphabetical order.
 pub fn tools<'a>(figures: impl IntoIterator<Item = &'a Figures>) -> BTreeSet<&'a str> {
     figures.into_iter().flat_map(|it| &it.tools).map(String::as_str).collect()
 }

@@ -23,7 +23,7 @@ pub struct Figure<'a> {
     pub rows: Vec<(String, Vec<String>)>,
 }
 
-/// Makes the figures of some charts, each given with the place in its source document.
+/// Makes the figures of some charts. Each chart comes with the text for [`Figure::source`], which may be empty.
 ///
 /// # Errors
 /// Fails if a chart cannot be plotted.
@@ -52,8 +52,8 @@ fn figure<'a>(chart: &'a Chart, source: &'a str) -> Result<Figure<'a>> {
     Ok(Figure { chart, source, svg: plots::svg(chart)?, legend, rows })
 }
 
-/// Returns a value as the table shows it: in scientific notation if the axis is logarithmic, otherwise with four digits after
-/// the point. NaN is a dash.
+/// Returns a value as the table shows it: in scientific notation if the axis is logarithmic, otherwise with four digits
+/// after the point. NaN becomes a dash. For example, 0.5 is `0.5000` on a linear axis.
 fn cell(value: f64, scale: AxisScale) -> String {
     match scale {
         _ if value.is_nan() => "\u{2013}".to_owned(),

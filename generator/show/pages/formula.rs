@@ -137,6 +137,7 @@ impl<'a> FormulaReader<'a> {
         (!clause.is_empty()).then_some(clause)
     }
 
+    /// Parses sums with relations such as `=` and `<=` between them.
     fn relation(&mut self) -> Option<String> {
         let mut relation = self.sum()?;
         while let Some(sign) = self.sign(&["=", "<", ">", "<=", ">="]) {
@@ -152,6 +153,7 @@ impl<'a> FormulaReader<'a> {
         Some(relation)
     }
 
+    /// Parses products with `+`, `-` and `+-` between them. A minus may precede the first one.
     fn sum(&mut self) -> Option<String> {
         let mut sum = match self.sign(&["-"]) {
             Some(_) => "<mo>−</mo>".to_owned(),
@@ -183,6 +185,7 @@ impl<'a> FormulaReader<'a> {
         Some(product.mathml)
     }
 
+    /// Parses a base with an optional exponent, or one of [`FUNCTIONS`] with its argument.
     fn power(&mut self) -> Option<FormulaPart> {
         let name = self.peek().filter(|name| FUNCTIONS.contains(name));
         let Some(name) = name else {
@@ -224,6 +227,7 @@ impl<'a> FormulaReader<'a> {
         Some(FormulaPart::new(format!("{name}<mo>&#x2061;</mo>{argument}")))
     }
 
+    /// Parses a number, a name, a function call, or an expression in parentheses.
     fn atom(&mut self) -> Option<FormulaPart> {
         let token = self.peek()?;
         if token == "(" {

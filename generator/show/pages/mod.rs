@@ -22,8 +22,9 @@ use crate::evidence::advice;
 use glint_base::input;
 use glint_core::core::Core;
 
-/// Returns the documentation page of `core` in Markdown. `config` is the path of its configuration on the command line; `proofs`
-/// is the directory of the proof records.
+/// Returns the documentation page of `core` in Markdown. `config` is the path of the core's configuration file, as the user
+/// gave it. `proofs` is the directory with the records of exhaustive checks, which the page cites as evidence for the error
+/// bound.
 ///
 /// # Errors
 /// Fails if a simulated computation does not finish within 65 536 clocks, or if a record cannot be read.

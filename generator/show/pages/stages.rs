@@ -17,7 +17,8 @@ pub fn reservations(pipeline: &Pipeline) -> Option<TextTable> {
     (!pipeline.units.is_empty()).then_some(table)
 }
 
-/// Returns the table of a pipeline's stages: the microinstructions and values of each stage, its delay and its registers.
+/// Returns the table of a pipeline's stages, with a row for each: the microinstructions whose values the stage computes, the
+/// delay and the slack of its logic in nanoseconds, its register bits, its bits in delay lines, and the names of the values.
 pub fn table(design: &Design, pipeline: &Pipeline) -> TextTable {
     let mut table = TextTable::of(
         "stage: | microinstructions | logic, ns: | slack, ns: | register bits: | in delay lines: | computes",

@@ -1,4 +1,5 @@
 //! Defines the perspective camera of a rendered picture: its position and direction, and where a point of the scene appears.
+//! By default, the camera is at the smallest distance at which it shows all objects.
 
 use anyhow::{Context, Result, ensure};
 

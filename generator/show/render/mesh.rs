@@ -1,4 +1,5 @@
-//! Defines triangle meshes with normals and texture coordinates, and computes normals that are missing.
+//! Defines triangle meshes with normals and texture coordinates, and computes normals that are missing. A computed normal is
+//! the mean over the triangles around a corner, as far as no sharp edge separates them.
 
 use std::collections::HashMap;
 

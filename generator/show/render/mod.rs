@@ -1,8 +1,8 @@
 //! Renders pictures whose specular highlights are bit-exact results of a device.
 //!
-//! The host is the software around the device. It computes visibility, normals, half vectors, and the ambient and diffuse light in
-//! f64. An [`Engine`] computes the specular term of every sample and light, point by point or along lines of points. A device that
-//! takes normals as operands, such as `shading`, also computes the ambient and diffuse light of a lit surface.
+//! The host is the software around the device. It computes visibility, normals, half vectors, and the ambient and diffuse
+//! light in f64. An [`Engine`] computes the specular term of every sample and light, point by point or along lines of points.
+//! A device that takes normals as operands, such as `shading`, also computes the ambient and diffuse light of a lit surface.
 //!
 //! The same picture has the same bytes on every machine, because `libm` computes the transcendental functions. The bytes depend
 //! neither on the engine nor on the number of threads.
@@ -121,8 +121,8 @@ pub struct PictureComparison {
     pub units: f64,
 }
 
-/// Returns the default exponent n of a picture: 80, or the nearest exponent in the device's domain. For example, it returns
-/// 64 for a device whose domain ends at 64.
+/// Returns the default exponent n of a picture: 80, or the exponent of the device's domain that is nearest to 80. For
+/// example, it returns 64 for a device whose domain ends at 64. A device without an exponent gives 80.
 pub fn usual_exponent(contract: &dyn Contract) -> u32 {
     let (least, most) = exponents(contract).unwrap_or((0, i64::MAX));
     EXPONENT.clamp(least, most).max(0) as u32
@@ -137,7 +137,8 @@ pub fn draws(core: &Core) -> bool {
 /// Checks the settings and the scene before rendering.
 ///
 /// # Errors
-/// Fails if a setting is wrong; the sentence says which.
+/// Fails if the size, the number of samples or the number of lights is outside its limits. Fails if the scene has a height
+/// map and a mesh without texture coordinates.
 pub fn check(settings: &Settings, scene: &Scene) -> Result<()> {
     let (width, height) = settings.size;
     let sides = 1..=LARGEST_SIDE;
@@ -171,7 +172,8 @@ pub fn check(settings: &Settings, scene: &Scene) -> Result<()> {
     Ok(())
 }
 
-/// Renders a scene. It calls `progress` with the number of finished rows.
+/// Renders a scene. It calls `progress` with the number of finished rows of pixels, several times up to the height of the
+/// picture. The highlights are results of `engine`, for example the golden model or a simulation of the Verilog.
 ///
 /// # Errors
 /// Fails if [`check`] does, if the camera is at the point at which it looks, if a scene cannot supply an operand, or if the

@@ -25,8 +25,8 @@ pub struct Point {
     pub dgamma_negative: bool,
     /// The vector N − H from the half vector to the normal N. N is the perturbed normal if the surface has a height map.
     pub difference: Vector,
-    /// The cosine N·H of the angle between the half vector and the normal N. N is the perturbed normal if the surface has a height
-    /// map.
+    /// The cosine N·H of the angle between the half vector and the normal N. N is the perturbed normal if the surface has a
+    /// height map.
     pub cos_shaded: f64,
     /// The colour of the light times the specular coefficient, from 0 to 1.
     pub colour: Vector,
@@ -141,7 +141,7 @@ pub struct Feed {
     surfaces: bool,
 }
 
-/// Returns the range of the exponent in the device's domain, or `None` if the device has no exponent.
+/// Returns the smallest and the largest exponent of the device's domain, or `None` if the device has no operand `exponent`.
 pub fn exponents(contract: &dyn Contract) -> Option<(i64, i64)> {
     let mut operands = contract.operands().iter();
     let exponent = operands.find(|operand| operand.name == "exponent")?;
@@ -154,8 +154,8 @@ pub fn walks_lines(contract: &dyn Contract) -> bool {
 }
 
 impl Feed {
-    /// Finds for each operand of a device the quantity of a scene that supplies its value. `device` is the name of the device, for
-    /// messages.
+    /// Finds for each operand of a device the quantity of a scene that supplies its value. `device` is the name of the
+    /// device, for messages.
     ///
     /// # Errors
     /// Fails if a picture cannot supply an operand, or if the device lacks the colour operands or their outputs.
@@ -301,8 +301,8 @@ impl Feed {
         operands.find(|operand| operand.0 == wanted).copied()
     }
 
-    /// Returns the operand values for a point with the exponent `exponent`, before they are quantised. Each value is in the unit of
-    /// its operand.
+    /// Returns the operand values for a point with the exponent `exponent` as real numbers, before they are quantised. They
+    /// are in the order of the device's operands. A colour of full strength gives the largest value of its operand.
     pub fn values<'a>(&'a self, point: &'a Point, exponent: u32) -> impl Iterator<Item = f64> + 'a {
         let split = self.takes_deviation();
         self.operands.iter().map(move |&(quantity, format, (_, high))| match quantity {
@@ -350,7 +350,8 @@ impl Feed {
         (raw, beyond)
     }
 
-    /// Returns the value of the amplitude operand at which a white light has full strength.
+    /// Returns the value of the amplitude operand for a white light of full strength: the largest value of the operand's
+    /// domain. It is 0 if the device has no such operand.
     pub fn full(&self) -> f64 {
         let full = self.find(OperandMeaning::Amplitude);
         full.map_or(0.0, |(_, format, (_, most))| format.to_f64(i128::from(most)))
@@ -362,7 +363,8 @@ impl Feed {
         if self.takes(OperandMeaning::Exponent) { 1.0 } else { line.stretch() }
     }
 
-    /// Returns the operand values for a line of points, before they are quantised. Each value is in the unit of its operand.
+    /// Returns the operand values for a line of points as real numbers, before they are quantised. They are in the order of
+    /// the device's operands. Angles are in right angles.
     pub fn line_values<'a>(&'a self, line: &'a LineParameters) -> impl Iterator<Item = f64> + 'a {
         let stretch = self.stretch(line);
         self.operands.iter().map(move |(quantity, ..)| match quantity {
@@ -404,8 +406,9 @@ impl Feed {
         Ok(self.operands.iter().zip(self.line_values(line)).map(raw).collect())
     }
 
-    /// Returns the results of a point as a colour, where 255 is full light. `outputs` returns the results of the computation for
-    /// a colour channel.
+    /// Returns the results of a point as a colour, in which 255 is full light. `outputs` returns the outputs of the
+    /// computation that has the colour channel 0 (red), 1 (green) or 2 (blue). A device for points has all three channels in
+    /// one computation; a device for lines has a computation for each.
     #[inline]
     pub fn colour<'a>(&self, outputs: impl Fn(usize) -> &'a [i64]) -> Vector {
         let of = |channel: usize| outputs(channel)[self.channels[channel]] as f64;

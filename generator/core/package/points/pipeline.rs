@@ -11,11 +11,11 @@ use glint_rtl::verilog::text::{Names, literal};
 
 fresh_names!(Variables { points, results, read, clocks, offered, total, tick, dut });
 
-/// Returns the test bench that sends points through a pipeline. After the last point, the last results must come in less than
-/// `limit` clocks.
+/// Returns the test bench that sends points (sets of operands) through a pipeline. The simulation ends with `FAIL` if the
+/// last results do not come within `limit` clocks after the last point.
 ///
 /// # Errors
-/// Fails if the design lacks the handshake of a pipeline.
+/// Fails if the design has no reset, `in_valid` or `out_valid`, as a pipeline has, or if the template fails.
 pub fn points_bench(design: &Design, limit: u32) -> Result<PointsBench> {
     let port_name = |port: &Port| design.net(port.net).name.clone();
     let of_role = |role: Role| {

@@ -19,7 +19,7 @@ use glint_base::key_error::KeyError;
 use glint_rtl::netlist::{Design, Role};
 use glint_rtl::verilog::text::ascii;
 
-/// A core that CSRs can drive: one computation of operands to results.
+/// A core that computes one point after each `start`, with the ports that CSRs drive and read.
 struct LitexCore<'a> {
     top: &'a Top,
     operands: Vec<LitexOperand>,
@@ -47,7 +47,7 @@ struct LitexStream<'a> {
 /// Adds the LiteX module of a core.
 ///
 /// # Errors
-/// Fails if CSRs cannot drive the core and it has no stream.
+/// Fails if the core is a pipeline or computes lines of points, and the configuration does not ask for a stream.
 pub fn file(job: &EmitJob, tops: &[Top], files: &mut OutputFiles) -> Result<()> {
     let (name, design, is_line) = (job.name(), job.design, job.is_line());
     let stream = tops.iter().find(|top| top.face == Face::Stream).map(streamed);

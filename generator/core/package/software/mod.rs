@@ -1,7 +1,8 @@
 //! Generates `software/<name>/`: a bit-exact model of the core in C, register headers and other files for the author of a driver.
 //!
-//! The author can start with these files before there is hardware. Glint generates the C model from the netlist and its
-//! microprogram, and not from the golden model. Tests compare the two, so each checks the other.
+//! The author of a driver can start with these files before there is hardware. Glint generates the C model from the netlist
+//! and its microprogram. The golden model does not read the netlist. Tests compare both models, which can find mistakes in
+//! either.
 
 mod litex;
 mod model;

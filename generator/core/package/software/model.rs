@@ -1,4 +1,7 @@
 //! Generates the bit-exact model of a core in C: a header, the functions, and an example in Python that calls them.
+//!
+//! A function computes the raw results of one point, or of a line of points, from raw operands. It is printed from the
+//! unrolled microprogram (`print`). A core that waits for a second `start` within a computation has no model.
 
 use glint_base::fill;
 use std::collections::BTreeMap;
@@ -23,7 +26,7 @@ use glint_rtl::verilog::text::{Names, ascii, constant_name, statement};
 pub struct CField {
     /// The name of the member in the C structure.
     pub name: String,
-    /// The upper-case name with the module's before it. For example, `ROUGH_COS_GAMMA`.
+    /// The prefix of the port's constants in C: the names of module and port in upper case. For example, `ROUGH_COS_GAMMA`.
     constant: String,
     /// The C type of the member, which holds the raw integer.
     pub kind: &'static str,
@@ -71,6 +74,7 @@ impl CField {
         format!("{}{}", self.format.max_raw(), self.suffix())
     }
 
+    /// Returns the suffix of a C literal of the member's type. For example, `ull` for `uint64_t`.
     fn suffix(&self) -> &'static str {
         match (self.format.signed, self.format.width() <= 32) {
             (false, true) => "u",
@@ -80,8 +84,8 @@ impl CField {
         }
     }
 
-    /// Returns the inverse of the lowest bit's weight as a C double: exactly 2^F, with F fraction bits. For example, `u1.20`
-    /// has `1048576.0`.
+    /// Returns the inverse of the lowest bit's weight as a C double, exactly 2^F for F fraction bits. For example, `u1.20`
+    /// gives `1048576.0`.
     pub fn scale(&self) -> String {
         format!("{:?}", glint_base::fixed::exp2(self.format.frac))
     }
@@ -113,11 +117,12 @@ impl CField {
     }
 }
 
-/// Adds the C model, and returns the ROMs that it reads. The model is generated from the sequential netlist and its microprogram.
+/// Adds the C model: a header, the functions, and an example in Python if there is a worked example. Returns the ROMs whose
+/// words the model contains. The model is generated from the sequential netlist and its microprogram.
 ///
 /// # Errors
-/// Fails if the core cannot become a function. It must not wait for `start` in the middle, have a loop without a bound, or have
-/// results that depend on an earlier computation.
+/// Fails if the core cannot become a C function. A core that computes single points must not wait for a second `start`, have
+/// a loop without a bound, or have results that depend on an earlier computation.
 pub fn files(job: &EmitJob, files: &mut OutputFiles) -> Result<Vec<RomId>> {
     let (name, inputs, line) = (job.name(), job.inputs, job.is_line());
     let design = inputs.sequential.as_ref().unwrap_or(job.design);
@@ -225,6 +230,7 @@ fn of_point(design: &Design, tables: &[String]) -> Result<(Vec<String>, Vec<RomI
     Ok((body, roms(&unrolled.graph, &wanted)))
 }
 
+/// Returns the result ports of a design, each with the node of its value in the unrolled computation.
 fn results_of<'a>(
     design: &'a Design,
     of: &'a Unrolled,
@@ -302,7 +308,9 @@ fn of_line(design: &Design, tables: &[String]) -> Result<(Vec<String>, Vec<RomId
     Ok((body, read))
 }
 
-/// Returns the C statements of a rising edge, at which all registers take their new values at once.
+/// Returns the C statements of a rising edge: the variables `states` of the registers and memories in `kept` take their new
+/// values. A new value that depends on the old values is computed first, so that the order of the assignments does not
+/// matter.
 fn clocked(
     graph: &Graph,
     printer: &Printer,
@@ -331,8 +339,8 @@ fn clocked(
     lines
 }
 
-/// Returns the C statement that assigns the number of a bit pattern to the member of a result. For example, `red_out =
-/// pattern;`.
+/// Returns the C statement that converts `pattern`, an expression with the bit pattern of a result, to a number, and assigns
+/// it to the member of the result. For example, `red_out = pattern;`.
 fn assigned(design: &Design, port: &Port, pattern: &str) -> String {
     let net = design.net(port.net);
     let kind = CField::new(design, port).kind;
@@ -348,6 +356,7 @@ fn assigned(design: &Design, port: &Port, pattern: &str) -> String {
     format!("{} = {value};", field(&net.name))
 }
 
+/// Returns the ROMs that the values `wanted` depend on. A ROM that is read several times occurs several times.
 fn roms(graph: &Graph, wanted: &[NodeId]) -> Vec<RomId> {
     let mut roms = Vec::new();
     for id in graph.cone(wanted.iter().copied()) {

@@ -10,7 +10,8 @@ use glint_rtl::netlist::{Design, NetId};
 use glint_rtl::pipeline::{Cell, Graph, NodeId, NodeOp, Unrolled};
 use glint_rtl::verilog::text::{Names, ascii};
 
-/// The words of C99 and the names that the model's own text uses.
+/// Names that generated code must not use: the reserved words of C99, names of its headers, and names in the template of the
+/// model.
 const TAKEN: &str = "
     auto break case char const continue default do double else enum extern float for goto if inline
     int long register restrict return short signed sizeof static struct switch typedef union
@@ -35,7 +36,8 @@ pub fn pattern_type(width: u32) -> &'static str {
     if width <= 32 { "uint32_t" } else { "uint64_t" }
 }
 
-/// Returns a literal of the type of a bit pattern. For example, 9 in 8 bits is `9u`, and 4096 in 40 bits is `UINT64_C(0x1000)`.
+/// Returns the C literal of a bit pattern of `width` bits, in the type that [`pattern_type`] gives. For example, 9 in 8 bits
+/// is `9u`, and 4096 in 40 bits is `UINT64_C(0x1000)`.
 pub fn literal(bits: u64, width: u32) -> String {
     match (width <= 32, bits < 1024) {
         (true, true) => format!("{bits}u"),
@@ -49,6 +51,7 @@ pub fn literal(bits: u64, width: u32) -> String {
 struct CExpression(String, bool);
 
 impl CExpression {
+    /// Returns the expression as an operand of any operator, in parentheses if necessary.
     fn inner(self) -> String {
         if self.1 { self.0 } else { format!("({})", self.0) }
     }
@@ -58,13 +61,13 @@ impl CExpression {
 pub struct Printer<'a> {
     graph: &'a Graph,
     design: &'a Design,
-    /// The ports with the operands, in their order.
+    /// The nets of the operand ports, in the order of the ports.
     operands: &'a [NetId],
-    /// The tables, by ROM.
+    /// The name of the C array with the words of each ROM, in the order of the design's ROMs.
     tables: &'a [String],
-    /// Names of values that have a statement of their own.
+    /// The names of the C variables that statements have defined, by the value that they hold.
     locals: BTreeMap<NodeId, String>,
-    /// Names of values that registers and memories hold before a clock.
+    /// The names of the C variables with the contents of registers and memories before a clock, by the value.
     states: BTreeMap<NodeId, String>,
 }
 
@@ -123,13 +126,14 @@ impl<'a> Printer<'a> {
         lines
     }
 
-    /// Returns whether the expression of a value stays valid after C statements have assigned new values to registers and
-    /// memories. It does if the value is constant or has a variable of its own.
+    /// Returns whether the expression of a value still has the same value after C statements have assigned new values to
+    /// registers and memories. This is so if the value is constant or has a C variable of its own.
     pub fn is_settled(&self, id: NodeId) -> bool {
         self.locals.contains_key(&id) || self.graph.constant_of(id).is_some()
     }
 
-    /// Returns the C expression of a value that the statements have computed.
+    /// Returns the C expression of a value: the name of its variable if [`Printer::lines`] made one, otherwise the
+    /// operation.
     pub fn text(&self, id: NodeId) -> String {
         self.value(id).0
     }
@@ -151,6 +155,8 @@ impl<'a> Printer<'a> {
         if from == to { text } else { CExpression(format!("({to}){}", text.inner()), true) }
     }
 
+    /// Returns the value of the expression `text` with all bits from bit `width` on set to 0. A width of 32 or 64 bits needs
+    /// no mask, because the C type has no further bits.
     fn masked(&self, text: String, width: u32) -> CExpression {
         match width {
             32 | 64 => CExpression(text, false),
@@ -183,6 +189,7 @@ impl<'a> Printer<'a> {
         }
     }
 
+    /// Returns the C condition of a comparison, or of the reduction `Any` or `All`.
     fn comparison(&self, op: &NodeOp) -> String {
         let text = |id: NodeId| self.value(id).inner();
         match op {
@@ -204,6 +211,7 @@ impl<'a> Printer<'a> {
         }
     }
 
+    /// Returns the C expression that computes a value from its operands, even if the value has a variable.
     fn expression(&self, id: NodeId) -> CExpression {
         let node = self.graph.node(id);
         let width = node.format.width();
@@ -235,6 +243,7 @@ impl<'a> Printer<'a> {
         }
     }
 
+    /// Returns the C expression of an operation with a result of `width` bits.
     fn operation(&self, op: &NodeOp, width: u32) -> CExpression {
         let graph = self.graph;
         let text = |id: NodeId| self.value(id).inner();

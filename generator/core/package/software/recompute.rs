@@ -1,9 +1,9 @@
 //! Writes a C program that computes the results of a core for every combination of operands, and compares them with the formulas.
 //!
-//! The program evaluates the formulas with the multiple-precision library MPFR. It is therefore evidence for the error bounds
-//! that does not depend on Glint's own arithmetic. A core of one operand gets a program that uses MPFR for every operand. A
-//! core of the device `expression` has up to 2^32 combinations, so its program evaluates the formulas in double precision
-//! first.
+//! The program evaluates the formulas with the multiple-precision library MPFR, so that its verdict does not depend on
+//! Glint's own arithmetic. The program for a core with one formula of one operand uses MPFR at every operand. A core of the
+//! device `expression` has up to 2^32 combinations. Its program evaluates the formulas in double precision first, and uses
+//! MPFR only if the rounding errors of doubles leave the verdict open.
 
 use anyhow::Result;
 
@@ -21,7 +21,8 @@ use glint_rtl::netlist::{Design, RomId};
 use glint_rtl::verilog::naming::Naming;
 use glint_rtl::verilog::text::{ascii, statement};
 
-/// The largest number of intervals with MPFR limits that the program may create for each part of a formula.
+/// The number of intervals with MPFR limits that the program reserves for each part of a formula, such as a sum or an
+/// operand.
 const VALUES: usize = 8;
 
 /// The largest number of combinations of operands that a program computes.
@@ -75,7 +76,7 @@ impl<'f> RecomputedContract<'f> {
     }
 }
 
-/// Returns the error of the key that asks for the program.
+/// Returns the error of the key `package.recomputation`: nothing recomputes the core `name`, for the reason `why`.
 fn recomputation_error(name: &str, why: &str) -> KeyError {
     let message = format!("nothing recomputes `{name}`: {why}");
     KeyError::new("package.recomputation", message, "remove it")
@@ -116,7 +117,7 @@ pub fn file(job: &EmitJob, read: &[RomId], files: &mut OutputFiles) -> Result<()
 struct CheckedMemories {
     /// For each memory file its name, the name of the table, and the number of words.
     files: Vec<(String, String, usize)>,
-    /// The reason why there are no memory files, as a sentence.
+    /// The sentence that the program prints if there are no memory files to compare.
     why_none: &'static str,
 }
 
@@ -150,7 +151,8 @@ fn field(name: &str, design: &Design, port: &str) -> Result<CField, KeyError> {
         .ok_or_else(|| recomputation_error(name, "its contract names no port"))
 }
 
-/// Returns the number of parts of a formula. For example, `x * x + 1` has five: the sum, the product, two times `x`, and `1`.
+/// Returns the number of nodes of a formula's tree. For example, `x * x + 1` has five: the sum, the product, `x`, `x`, and
+/// `1`.
 fn part_count(formula: &Expression) -> usize {
     formula.count(&|_| true)
 }
@@ -241,7 +243,7 @@ fn c_return(value: &str) -> Vec<String> {
     lines
 }
 
-/// Returns the formula with `x[0]`, `x[1]` and so on for the operands.
+/// Returns the formula with the operands renamed to `x[0]`, `x[1]` and so on, in the order of the contract's domain.
 fn with_numbered_operands(formula: &Expression, facts: &ContractFacts) -> Expression {
     formula.with_operands(&|name| {
         let number = facts.domain.iter().position(|(operand, _)| operand == name)?;

@@ -1,4 +1,7 @@
 //! Generates descriptions of a core's bus registers for software: a C header, a Rust module without `std`, and SystemRDL.
+//!
+//! All three files describe the registers of the same [`Map`]. The C header and the Rust module also have functions that
+//! convert a number to the raw integer of an operand.
 
 use anyhow::Result;
 use glint_base::fill;

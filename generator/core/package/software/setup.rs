@@ -28,16 +28,19 @@ struct LineSetup<'a> {
     exponent: Option<(i64, i64)>,
     /// The largest number of intervals of a line.
     longest: i64,
-    /// The amplitude of full light, as a value; `amplitude_scale` is 2^F of its format.
+    /// The largest amplitude, which full light has, as a real number. `amplitude_scale` is 2^F for the F fraction bits of
+    /// the amplitude's format.
     full: f64,
     amplitude_scale: String,
-    /// The largest stretched angle, in right angles.
+    /// The largest absolute value that an angle along the line may have, in right angles, after its multiplication by √(n/2)
+    /// for a device without exponent. It leaves one right angle of the format for rounding errors that add up along the
+    /// line.
     room: f64,
     order: Vec<String>,
 }
 
 impl LineSetup<'_> {
-    /// Returns the number of raw values of an angle, which cover a full turn.
+    /// Returns the number of raw values of an angle's format as a C literal, 2^width. They cover a full turn.
     fn turn(&self, angle: &CField) -> String {
         exp2(angle.format.width() as i32).to_string()
     }

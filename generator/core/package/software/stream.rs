@@ -90,7 +90,7 @@ impl Bytes {
         Self { bytes: transfer.bits / 8, filled: transfer.filled() / 8, numbers }
     }
 
-    /// Returns the range of the unused bytes, which are above all numbers.
+    /// Returns the indices of the unused bytes of a transfer, which are behind the bytes of all numbers.
     fn above(&self) -> std::ops::Range<u32> {
         self.filled..self.bytes
     }

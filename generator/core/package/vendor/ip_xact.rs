@@ -49,7 +49,7 @@ impl BusInterface {
 }
 
 impl IpXactComponent<'_> {
-    /// Returns a number as IP-XACT writes it, after the `'h`.
+    /// Returns a number in hexadecimal digits, which IP-XACT writes behind `'h`. For example, 255 gives `ff`.
     fn hex(&self, number: impl std::fmt::LowerHex) -> String {
         format!("{number:x}")
     }
@@ -70,7 +70,8 @@ impl RegisterBits {
         }
     }
 
-    /// Returns whether the hardware may change the bits.
+    /// Returns whether the hardware may change the bits, so that software must not cache them. A field that software only
+    /// reads, with a value other than 0 after a reset, is constant.
     fn is_volatile(&self) -> bool {
         match self.access {
             Access::Read => self.reset == 0,
@@ -107,8 +108,8 @@ pub fn files(job: &EmitJob, tops: &[Top], files: &mut OutputFiles) -> Result<()>
     Ok(())
 }
 
-/// Returns the buses of a module, and its interrupt. IEEE 1685-2014 defines no interrupt of its own, and other tools know
-/// Vivado's definition too.
+/// Returns the bus interfaces of a module, and the interface of its interrupt output, if it has one. IEEE 1685-2014 does not
+/// define an interrupt. The interrupt therefore has Vivado's definition, which other tools know too.
 fn buses(top: &Top) -> Vec<BusInterface> {
     let mut buses = Vec::new();
     for protocol in top.protocols {

@@ -92,11 +92,11 @@ pub fn quartus(job: &EmitJob, tops: &[Top], files: &mut OutputFiles) -> Result<(
     Ok(())
 }
 
-/// Returns the interfaces of a module for Platform Designer, without clock and reset. A module without a standard interface has
-/// one conduit with all its other ports.
+/// Returns the interfaces of a module for Platform Designer, without clock and reset. A module without a standard interface
+/// has one conduit, an interface without a protocol, with all ports except clock and reset.
 fn interfaces(top: &Top) -> Vec<PlatformInterface<'_>> {
     if top.protocols.is_empty() {
-        // A conduit is the interface for ports that no standard defines.
+        // A conduit is an interface without a protocol.
         let ports = top.signals().map(|port| (port, port.name.clone())).collect();
         return vec![PlatformInterface { name: "signals", kind: "conduit", side: "end", ports }];
     }

@@ -14,19 +14,20 @@ use crate::package::map::{Access, INTERRUPT_PENDING, Map, PortBits, PortPlacemen
 use crate::package::output_files::OutputFiles;
 use glint_base::fixed::mask;
 
-/// The largest number of points that a bench writes to registers. If there are more points, the bench uses every second point,
-/// every third point, and so on.
+/// The largest number of points (sets of operands) that a bench of a bus wrapper computes. If the vectors have more points,
+/// the bench uses every second point, or every third, and so on.
 const ON_A_BUS: usize = 256;
 
-/// A register of an operand or of results, as a bench accesses it.
+/// A bus register of an operand or of results, as a bench accesses it: its address, the word to write or to expect as a
+/// Verilog expression, and a mask with 1 at the bits of the port.
 struct BenchRegister {
     at: String,
     word: String,
     mask: String,
 }
 
-/// Adds the test benches of the core's wrappers and the files that they read. Adds nothing if the vectors contain no finished
-/// computation.
+/// Adds the test benches of the core's wrappers and the files that they read. Adds nothing if no computation in `vectors`
+/// runs to its end.
 ///
 /// # Errors
 /// Fails if the core lacks its handshake.
@@ -111,11 +112,13 @@ fn add_python(job: &EmitJob, wrapper: &str, tests: &[&str], files: &mut OutputFi
     Ok(())
 }
 
+/// Returns the byte address of the register with the word address `place`, as a Verilog literal. For example, 8 gives `32'h20`.
 fn address(place: u32) -> String {
     format!("32'h{:02x}", 4 * place)
 }
 
-/// Returns the registers before the operands with their values after a reset, and the registers that cannot be written.
+/// Returns two lists: the addresses of the registers before the operands, with their values after a reset, and the addresses
+/// of all registers that cannot be written.
 fn fixed(map: &Map) -> (Vec<(String, String)>, Vec<String>) {
     let (mut own, mut read_only) = (Vec::new(), Vec::new());
     for register in &map.registers {
@@ -142,6 +145,8 @@ fn accesses(ports: &[PortPlacement], fields: &[StreamField], net: &str) -> Vec<B
     accesses
 }
 
+/// Returns the bus register that holds `part` of a port. `field` gives the position of the port in the bench's variable `net`,
+/// which is `point` for an operand and `result` for a result.
 fn access(part: &PortBits, field: &StreamField, net: &str) -> BenchRegister {
     let bits = (field.padded() - part.low).min(32);
     let low = field.low + part.low;

@@ -17,7 +17,7 @@ pub struct StreamField {
     pub width: u32,
     /// The lowest bit of the value in the transfer.
     pub low: u32,
-    /// The port that writes the operand, if the core has a microprogram; otherwise empty.
+    /// The name of the write strobe, the input that writes the operand, if the core has a microprogram; otherwise empty.
     pub strobe: String,
 }
 
@@ -31,6 +31,7 @@ impl StreamField {
         self.low + self.width - 1
     }
 
+    /// Returns the part-select of the value in the transfer. For example, `[28:8]`, and `[8]` for a value of one bit.
     pub fn bits(&self) -> String {
         match self.width {
             1 => format!("[{}]", self.low),
@@ -66,6 +67,8 @@ pub fn results(design: &Design) -> Vec<StreamField> {
     side_by_side(design, ports.map(|port| (port, String::new())))
 }
 
+/// Returns the fields of some ports, each in whole bytes behind the one before. Each port comes with the name of its strobe, or
+/// an empty text.
 fn side_by_side<'a>(
     design: &Design,
     ports: impl Iterator<Item = (&'a Port, String)>,
@@ -138,8 +141,8 @@ impl Transfer {
         self.fields.iter().any(|field| field.signed && field.padded() > field.width)
     }
 
-    /// Returns the parts of a Verilog concatenation that forms the whole transfer, from the top bits down. The last field is in the
-    /// top bits; `prefix` is put before the name of each port.
+    /// Returns the parts of a Verilog concatenation that forms the whole transfer, from the top bits down: zeros above all
+    /// fields, then the last field, and the first field at the end. `prefix` is put before the name of each port.
     pub fn packed(&self, prefix: &str) -> Vec<String> {
         let mut parts = Vec::new();
         let above = self.bits - self.filled();
@@ -152,7 +155,8 @@ impl Transfer {
         parts
     }
 
-    /// Returns the padding bits of a transfer, as part-selects of the net `net`.
+    /// Returns the bits of a transfer that belong to no value, as part-selects of the net `net`. For example,
+    /// `operands[23:21]` above a value of 21 bits.
     pub fn padding(&self, net: &str) -> Vec<String> {
         let mut ranges = Vec::new();
         for field in &self.fields {
@@ -171,8 +175,8 @@ impl Transfer {
     }
 }
 
-/// Returns Verilog that declares a wire which reads all nets in `unused`, so that linters do not warn of unread nets. Returns
-/// nothing if there are no such nets.
+/// Returns Verilog that declares a wire which reads all nets in `unused`, so that linters do not warn of unread nets.
+/// Returns no lines if `unused` is empty.
 pub fn sink(unused: &[String]) -> Vec<String> {
     match unused {
         [] => Vec::new(),

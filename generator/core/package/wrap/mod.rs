@@ -21,7 +21,8 @@ use glint_rtl::verilog::text::range;
 /// Adds the wrappers that the configuration asks for. If there is a bench, it also adds the wrappers' benches and proofs.
 ///
 /// # Errors
-/// Fails if a wrapper does not fit the core.
+/// Fails if the core cannot have a wrapper that the configuration asks for. For example, a pipeline without stalls cannot
+/// have streams.
 pub fn files(job: &EmitJob, files: &mut OutputFiles) -> Result<()> {
     let streams = job.inputs.around.stream;
     if streams {
@@ -40,8 +41,10 @@ pub fn files(job: &EmitJob, files: &mut OutputFiles) -> Result<()> {
     bench::files(job, vectors, files)
 }
 
-/// Adds the properties of the module `wrapper`, and the Yosys commands that make them a problem for a solver. Adds nothing if
-/// there is no bench. `stubs` are the modules that `text` defines in place of the modules below the wrapper.
+/// Adds the formal properties `text` of the module `wrapper`, and the Yosys commands that prepare them for a solver. Adds
+/// nothing if the configuration has no test vectors, and so no bench. `stubs` names the modules that `text` defines in place
+/// of modules that the wrapper instantiates. For example, the proof of `rough_axis` has a simple module `rough` in place of
+/// the core.
 fn add_proof(
     job: &EmitJob,
     wrapper: &str,
@@ -59,8 +62,9 @@ fn add_proof(
     Ok(())
 }
 
-/// Returns the port connections of the core's instance, the clock first. `to` gives the net for a port by its role and its
-/// name. If `to` gives `None`, an input is connected to 0, and an output to the wire that [`core_wire`] declares.
+/// Returns the port connections of the core's instance, the clock first. `to` returns the net for a port, given the port's
+/// role and name. If it returns `None`, an input is connected to `1'b0`, and an output to the wire that [`core_wire`]
+/// declares. For example, `.busy(core_busy)`.
 fn connected(
     design: &Design,
     clock: &str,
@@ -77,13 +81,14 @@ fn connected(
     separated(std::iter::once(format!(".clk({clock})")).chain(ports).collect())
 }
 
-/// Returns the declaration of the wire that an output of the core drives.
+/// Returns the declaration of the wire that an output of the core drives. For example, `wire [7:0] core_red_out;`.
 fn core_wire(design: &Design, port: &Port) -> String {
     let net = design.net(port.net);
     format!("wire {} core_{};", range(net.format.width()), net.name).replace("  ", " ")
 }
 
-/// Returns Verilog that lets a solver choose the results of the stub, which replaces the core in a proof.
+/// Returns Verilog for the stub, the module that replaces the core in a proof. It lets the solver choose any values for the
+/// results and status bits of the stub in each clock.
 fn stub_free(design: &Design) -> Vec<String> {
     let mut lines = Vec::new();
     for port in &design.ports {
@@ -111,8 +116,8 @@ fn stub_ports(design: &Design) -> Vec<String> {
     separated(ports)
 }
 
-/// Returns the declaration that makes a net inside the proved module readable. The parameter is the net's path below `dut` and
-/// its width.
+/// Returns the Verilog declaration with which a proof reads a net inside the proved module, the instance `dut`. The
+/// parameters are the net's path below `dut`, for example `core.run`, and its width in bits.
 fn seen_inside((net, width): (String, u32)) -> String {
     format!("(* hierconn *) wire {} \\dut.{net} ;", range(width)).replace("  ", " ")
 }

@@ -13,13 +13,15 @@ use glint_rtl::netlist::{Pipeline, Role};
 use glint_rtl::verilog::rows::separated;
 use glint_rtl::verilog::text::literal;
 
-/// The lowest and the highest bit of a stage's tlast and tuser, among the bits of all stages.
+/// The positions of a stage's tlast and tuser in the register or memory of the wrapper with these bits of all stages: the
+/// lowest and the highest bit.
 struct SideBits {
     low: u32,
     high: u32,
 }
 
-/// A result among the bits of all results, without padding.
+/// The position of a result in the concatenation of all results without padding. For example, three colours of 8 bits are at
+/// bits 0, 8 and 16.
 struct ResultBits<'a> {
     name: &'a str,
     low: u32,
@@ -29,7 +31,7 @@ struct ResultBits<'a> {
 /// Adds the stream wrapper of a pipeline and its proof.
 ///
 /// # Errors
-/// Fails if the environment cannot stall the pipeline, or if the pipeline has no operands or results.
+/// Fails if the pipeline has no stall (`pipeline.stall` = "none"), or if it has no operands or no results.
 pub fn modules(job: &EmitJob, pipeline: &Pipeline, files: &mut OutputFiles) -> Result<()> {
     let (name, design) = (job.name(), job.design);
     ensure!(

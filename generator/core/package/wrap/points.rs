@@ -23,8 +23,8 @@ pub struct BenchPoint {
     pub results: Vec<Vec<u64>>,
 }
 
-/// Returns the computations in `vectors` that run to their end, in the order in which they end. The list has at most 4096
-/// results; computations with more results than fit are left out.
+/// Returns the computations in `vectors` that run to their end, in the order in which they end. The computations in the list
+/// have at most 4096 results together; a computation with which they would have more is left out.
 ///
 /// # Errors
 /// Fails if the design lacks its handshake.
@@ -155,8 +155,8 @@ fn streamed<'a>(rows: impl Iterator<Item = PortValues<'a>>) -> Option<Vec<BenchP
     Some(done)
 }
 
-/// Returns the input file of the wrapper's bench: for each computation a word with all operands, each padded to whole bytes. Every
-/// other word has ones in the padding bits, because the wrapper must ignore them.
+/// Returns the input file of the wrapper's bench: for each computation a word with all operands, each padded to whole bytes.
+/// The padding bits are zeros for one computation and ones for the next, because the wrapper must ignore them.
 pub fn sent(points: &[BenchPoint], operands: &Transfer) -> String {
     let mut text = String::new();
     for (number, point) in points.iter().enumerate() {
@@ -170,9 +170,9 @@ pub fn sent(points: &[BenchPoint], operands: &Transfer) -> String {
     text
 }
 
-/// Returns the output file of the wrapper's bench: a line for each result, with all outputs padded to whole bytes. A signed output
-/// is padded with copies of its sign bit, any other with zeros. If `is_line` is set, a further digit in front says whether the
-/// result is the last one of its computation.
+/// Returns the output file of the wrapper's bench: a line for each result, with all outputs padded to whole bytes. A signed
+/// output is padded with copies of its sign bit, any other with zeros. If `is_line` is set, a further digit in front is 1
+/// for the last result of a computation, and 0 for every other result.
 pub fn received(points: &[BenchPoint], results: &Transfer, is_line: bool) -> String {
     let mut text = String::new();
     for point in points {
@@ -190,8 +190,9 @@ pub fn received(points: &[BenchPoint], results: &Transfer, is_line: bool) -> Str
     text
 }
 
-/// Returns a line of a file for `$readmemh`. The bytes above all fields are filled with ones if `ones` is set, otherwise with
-/// zeros. `top` is a further digit in front.
+/// Returns a line of a file for `$readmemh`: the `values` of a transfer's fields in hexadecimal, each in whole bytes, the
+/// last field first. The bytes above all fields are filled with ones if `ones` is set, otherwise with zeros. `top` is a
+/// further digit in front of the line, if any.
 fn word(values: Vec<u64>, transfer: &Transfer, ones: bool, top: Option<u64>) -> String {
     let (mut row, mut widths) = (Vec::new(), Vec::new());
     for (value, field) in values.into_iter().zip(&transfer.fields) {

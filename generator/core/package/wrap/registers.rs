@@ -27,7 +27,8 @@ struct OperandWords {
     lanes: Vec<ByteLane>,
 }
 
-/// The bits of an operand that one byte of a bus register writes.
+/// The bits of an operand that one byte of a bus register writes. `number` is the word address of the register, and `word`
+/// is the same as a Verilog literal. `byte` is the number of the byte in the register, from 0 for the lowest.
 struct ByteLane {
     word: String,
     number: u32,
@@ -54,6 +55,7 @@ pub fn modules(job: &EmitJob, bus: &Bus, map: &Map, files: &mut OutputFiles) -> 
     add_proof(job, &registers, vec![core], proof(job, map)?, files)
 }
 
+/// Returns the Verilog of the module with the registers. Fails if the template fails.
 fn block(job: &EmitJob, map: &Map) -> Result<String> {
     let design = job.design;
     let word_bits = map.address_bits() - 2;
@@ -121,12 +123,13 @@ fn described(map: &Map) -> Vec<String> {
     lines
 }
 
-/// Formats a text as lines of a comment, below the name of a register.
+/// Returns a text as lines of a Verilog comment, indented below the name of a register.
 fn indented(text: &str) -> Vec<String> {
     let lines = comment(12, text).into_iter();
     lines.map(|line| line.trim_start().replacen("//", "//          ", 1)).collect()
 }
 
+/// Returns the operands of the map, each with the byte lanes that write its bits.
 fn operands(map: &Map) -> Vec<OperandWords> {
     let word_bits = map.address_bits() - 2;
     let mut words = Vec::new();
@@ -156,8 +159,8 @@ fn operands(map: &Map) -> Vec<OperandWords> {
     words
 }
 
-/// Returns the Verilog assertion for a read of a register. The word must have each field of the map at its place, and 0 between
-/// the fields. A register of a result reads as 0 until a computation has finished.
+/// Returns the Verilog assertion about the word that a read of a register returns. The word must have the value of each
+/// field at the field's bits, and 0 elsewhere. A register of a result must read as 0 until a computation has finished.
 fn read(map: &Map, register: &BusRegister) -> Vec<String> {
     let mut parts = Vec::new();
     let mut above = 32;
@@ -215,6 +218,7 @@ fn source(map: &Map, register: &BusRegister, bits: &RegisterBits) -> String {
     }
 }
 
+/// Returns the formal properties of the module with the registers. Fails if the template fails.
 fn proof(job: &EmitJob, map: &Map) -> Result<String> {
     let word_bits = map.address_bits() - 2;
     let own = [

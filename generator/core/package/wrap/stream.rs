@@ -13,13 +13,14 @@ use glint_rtl::netlist::Role;
 use glint_rtl::verilog::rows::separated;
 use glint_rtl::verilog::text::literal;
 
-/// The facts about a core that walks lines: it computes all points along a scan line after one `start`. They are the operand
-/// with the length of a line, and the width of the buffer.
+/// The stream of a core that computes all points along a scan line after one `start`. The wrapper has a buffer for the
+/// results of a line. `length` is the operand with the number of intervals of a line, and `length_low` and `length_high` are
+/// its bits in the input transfer.
 struct LineStream {
     length: String,
     length_low: u32,
     length_high: u32,
-    /// The number of bits of the length, and of an address of the buffer.
+    /// The number of bits of the operand `length`, and of an address of the buffer.
     width: u32,
 }
 
@@ -29,11 +30,12 @@ impl LineStream {
         self.width - 1
     }
 
-    /// Returns 0 as a count, which has a bit more than an address of the buffer.
+    /// Returns 0 as a Verilog literal for counts of results. A count has a bit more than an address of the buffer.
     fn zero(&self) -> String {
         literal(0, self.width + 1)
     }
 
+    /// Returns 1 as a Verilog literal for counts of results.
     fn one(&self) -> String {
         literal(1, self.width + 1)
     }
@@ -43,13 +45,14 @@ impl LineStream {
         literal(1 << self.width, self.width + 1)
     }
 
+    /// Returns the highest address of the buffer.
     fn deepest(&self) -> u64 {
         (1 << self.width) - 1
     }
 }
 
-/// Adds the stream wrapper of a core with a microprogram, and its proof. If the core computes several points after one `start`, it
-/// also adds a buffer for the results.
+/// Adds the stream wrapper of a core with a microprogram, and its proof. If the core computes several points after one
+/// `start`, it also adds a buffer for the results.
 ///
 /// # Errors
 /// Fails if the core lacks the handshake of a microprogram, operands or results.
@@ -143,8 +146,8 @@ pub fn modules(job: &EmitJob, files: &mut OutputFiles) -> Result<()> {
     add_proof(job, &format!("{name}_axis"), stubs, text, files)
 }
 
-/// Returns the declarations of the nets inside the wrapper that the proof reads, with their widths. Yosys needs these
-/// declarations to find the nets by their paths.
+/// Returns the Verilog declarations of the nets inside the wrapper that the proof reads. Yosys needs these declarations to
+/// find the nets by their paths. `user` is the number of bits of `tuser`.
 fn inside(
     operands: &Transfer,
     results: &Transfer,
@@ -189,6 +192,8 @@ fn inside(
     Ok(nets.into_iter().map(seen_inside).collect())
 }
 
+/// Returns the facts about the lines of a core, or `None` if the core computes single points. Fails if the operand with the
+/// length of a line is not among the operands.
 fn line(job: &EmitJob, operands: &Transfer) -> Result<Option<LineStream>> {
     let length = job.inputs.accuracy.as_ref().and_then(|accuracy| accuracy.length.as_ref());
     let Some(length) = length else {

@@ -13,12 +13,13 @@ pub struct Word {
     pub index: String,
     /// A Verilog expression of 32 bits, the word that a read returns.
     pub read: String,
-    /// Whether the register holds a result. Such a register reads as 0 until a computation has finished.
+    /// Whether the register holds a result. A read of such a register returns 0 until a computation has finished.
     pub is_result: bool,
 }
 
-/// Returns the Verilog of a wire that is 1 if the address `at` lies from word `first` to word `last`. It compares upper address
-/// bits with constants, which needs no adder, in contrast to a comparison of sizes.
+/// Returns the Verilog of a wire that is 1 if the byte address in the net `at` lies from word `first` to word `last`, both
+/// included. Words have `word_bits` address bits. The Verilog compares upper address bits with constants, because a
+/// comparison by size would take an adder. For example, words 8 to 11 are the words whose upper address bits are 2.
 pub fn within(wire: &str, at: &str, (first, last): (u32, u32), word_bits: u32) -> Vec<String> {
     let mut terms = Vec::new();
     let mut place = first;
@@ -50,7 +51,7 @@ pub fn select(width: u32, low: u32, high: u32) -> String {
     }
 }
 
-/// Returns the values of the registers that never change, as Verilog literals.
+/// Returns the values of the registers that never change, as Verilog literals of 32 bits, in the order of their addresses.
 pub fn constants(map: &Map) -> Vec<String> {
     let mut constants = Vec::new();
     for register in &map.registers[..map::CONSTANTS as usize] {

@@ -19,7 +19,7 @@ use glint_rtl::netlist::{Design, Pipeline};
 use glint_rtl::verilog::naming::Naming;
 pub use table::{Align, Column, TextTable, code};
 
-/// The heading of the column with the source's numbers.
+/// The heading of the column with the numbers that blocks, ports and ROMs have in the figure of the source document.
 const NUMBER: &str = "no.";
 
 /// The facts that a page shows in addition to the netlist.
@@ -34,7 +34,7 @@ pub struct PageInputs<'a> {
     pub contract: &'a dyn Contract,
     /// The evidence for the contract's error bound, such as a record of an exhaustive check.
     pub backing: &'a Backing,
-    /// The key that would reduce the error bound most.
+    /// The changes of keys that would reduce the error bound; `None` if no change would.
     pub advice: Option<Advice>,
     /// The number of clocks between the events of the handshake.
     pub timing: &'a HandshakeTiming,
@@ -127,7 +127,7 @@ pub fn proof(inputs: &PageInputs) -> String {
     )
 }
 
-/// Returns a number of the source as text; empty for none.
+/// Returns a number in the source's figure as text, and an empty text for `None`.
 fn number(number: Option<u16>) -> String {
     match number {
         Some(number) => number.to_string(),
@@ -197,14 +197,15 @@ pub fn roms(design: &Design, config: &Config) -> TextTable {
     table.without_empty(NUMBER)
 }
 
-/// Returns the lines of a field as the source numbers them. For example, `30 31`.
+/// Returns the numbers that the control lines of a field have in the source's figure, with spaces between. For example, `30
+/// 31`.
 fn lines(lines: &[u16]) -> String {
     let numbers: Vec<String> = lines.iter().map(u16::to_string).collect();
     numbers.join(" ")
 }
 
-/// Returns a table of the fields of the control word. For example, the column "bits" has `4:2` for a field of three bits from bit 2
-/// on.
+/// Returns a table of the fields of the control word. For example, the column "bits" has `4:2` for a field of three bits from
+/// bit 2 on.
 pub fn fields(design: &Design) -> TextTable {
     let mut table = TextTable::of("field | lines | bits | controls");
     for field in facts::fields(design) {
@@ -266,7 +267,8 @@ pub fn microprogram(design: &Design) -> TextTable {
     table
 }
 
-/// Returns a table of the clocks after `start` in which each event of the handshake happens.
+/// Returns a table of the events of the handshake with their clocks, counted from the clock that takes `start`. If a clock
+/// depends on the length of a line, the table has a formula; if it depends on other operands, a remark.
 pub fn clocks(timing: &HandshakeTiming, line: Option<&LineClocks>) -> TextTable {
     let mut events: Vec<(&str, Option<u32>, Option<Linear>)> =
         vec![("`valid` is high, first", timing.start_to_valid, None)];
@@ -318,8 +320,8 @@ pub fn terms(bound: &Bound) -> TextTable {
     table
 }
 
-/// Returns a table of the parts of the computation, with the share of each in the error of each output and in the area. The last row
-/// has the sums of the area. Returns `None` if the contract does not know the parts.
+/// Returns a table of the parts of the computation, with the share of each in the error of each output and in the area. The
+/// last row has the sums of the area. Returns `None` if the contract does not know the parts.
 pub fn parts(contract: &dyn Contract) -> Option<TextTable> {
     let parts = contract.parts();
     if parts.is_empty() {
@@ -369,7 +371,8 @@ pub fn domain(design: &Design, contract: &dyn Contract) -> TextTable {
     table
 }
 
-/// Returns a table of the worked example, with the values of the formula next to the outputs.
+/// Returns a table of the worked example: its operands and outputs as raw integers and as values. Beside each output is the
+/// value of the formula in f64.
 pub fn example(contract: &dyn Contract, example: &WorkedExample) -> TextTable {
     let mut table = TextTable::of("port | integer: | value: | formula in f64:");
     let operands: Vec<i64> = example.operands.iter().map(|it| it.raw as i64).collect();
@@ -419,7 +422,8 @@ pub fn keys(schema: &Schema, config: &Config) -> TextTable {
     table
 }
 
-/// Returns a text that is cut to the number of characters that a cell has room for.
+/// Returns a text of at most 520 characters unchanged. A longer text is cut after 520 characters, and its number of
+/// characters is added.
 fn shortened(text: String) -> String {
     const ROOM: usize = 520;
     match text.char_indices().nth(ROOM) {

@@ -42,9 +42,9 @@ impl RecordView {
     }
 }
 
-/// Returns the measurement on one FPGA, with its frequency and its rate, for the summary at the head of the datasheet. The FPGA is
-/// `target` if the record has it, otherwise the FPGA with the most points per second. For example, a pipeline for ECP5 shows its
-/// numbers on ECP5, even if another FPGA is faster.
+/// Returns the measurement on one FPGA, with its frequency and its rate, for the summary at the head of the datasheet. The
+/// FPGA is `target` if the record has it, otherwise the FPGA with the most points per second. For example, a pipeline for
+/// ECP5 shows its numbers on ECP5, even if another FPGA is faster.
 pub fn leading<'r>(
     record: &'r SynthesisRecord,
     target: Option<&str>,
@@ -64,6 +64,7 @@ pub fn leading<'r>(
     on_target.or(fastest).copied()
 }
 
+/// Returns the row of the table for one target.
 fn row(figures: &Figures, clocks_per_point: f64) -> Vec<String> {
     let area = &figures.area;
     let frequency = match figures.frequency {

@@ -69,6 +69,7 @@ impl Microprogram {
     }
 }
 
+/// Returns the entries of a row for [`MicroinstructionRow::bits`]. `values` are the values of the fields.
 fn bits(design: &Design, values: &[u64]) -> Vec<(bool, bool, String)> {
     let mut bits = Vec::new();
     for (field, &value) in design.control.fields.iter().zip(values) {

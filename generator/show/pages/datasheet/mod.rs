@@ -84,8 +84,8 @@ struct HighlightPicture {
     gain: u8,
 }
 
-/// Returns the number of times that [`datasheet`] calls `done`, so that a caller can show progress. For example, without synthesis
-/// it is 26: 25 times for the curves and once for the picture.
+/// Returns the number of times that [`datasheet`] calls `done`, so that a caller can show progress. For example, without
+/// synthesis it is 26: 25 times for the curves and once for the picture.
 pub fn steps(synthesis: bool) -> usize {
     curves::STEPS + 1 + if synthesis { COMPARED.len() } else { 0 }
 }

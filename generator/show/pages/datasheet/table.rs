@@ -1,4 +1,5 @@
-//! Converts tables of plain text to the HTML tables of a datasheet.
+//! Converts tables of plain text to the HTML tables of a datasheet. On a phone, a wide table has the cells of a row below
+//! each other.
 
 use crate::pages::account::{Align, TextTable};
 use crate::pages::markup::html;

@@ -1,4 +1,5 @@
-//! Draws a recorded waveform as the timing diagram of a datasheet.
+//! Draws a recorded waveform as the timing diagram of a datasheet. A waveform that is wider than the page continues in
+//! strips below each other.
 
 use std::ops::Range;
 
@@ -20,10 +21,10 @@ const CLOCK: std::ops::RangeInclusive<i32> = 34..=104;
 /// The horizontal length of a slanted edge.
 const SLANT: i32 = 3;
 
-/// The space that a value needs in addition to its text.
+/// The width that a frame with a value needs in addition to the width of the text.
 const MARGIN: i32 = 10;
 
-/// The largest width of the drawing, which a page shows without scrolling.
+/// The largest width of the drawing. A page shows a drawing of this width without scrolling.
 const ROOM: i32 = 1120;
 
 /// The vertical distance between two strips of a waveform that is too wide for one strip.
@@ -55,6 +56,7 @@ pub fn drawing(waves: &Waves) -> Drawing {
     }
 }
 
+/// Returns the name of a signal, with the number that its block has in the source's figure.
 fn label(lane: &Lane) -> String {
     match lane.number {
         Some(number) => format!("{} ({number})", lane.name),
@@ -144,6 +146,7 @@ impl Grid<'_> {
         self.places.clone().filter(|&at| at > 0 && clocks[at] != clocks[at - 1] + 1)
     }
 
+    /// Returns the SVG path of the clock. `top` is the vertical position of a high signal.
     fn clock(&self, top: i32) -> String {
         let low = top + SWING;
         let mut d = format!("M{} {low}", self.left);
@@ -154,6 +157,7 @@ impl Grid<'_> {
         d
     }
 
+    /// Returns the SVG path of a signal of one bit. `top` is the vertical position of a high signal.
     fn bit(&self, lane: &Lane, top: i32) -> String {
         let mut d = String::new();
         for (from, to) in segments(lane, self.places.clone()) {
@@ -175,6 +179,7 @@ impl Grid<'_> {
         (f64::from(self.x(to) - self.x(from) - 2 * SLANT) / (SIZE * 0.6)) as usize
     }
 
+    /// Draws a signal of several bits: a frame with the value for each range of clocks in which the value stays the same.
     fn bus(&self, lane: &Lane, top: i32, items: &mut Vec<Item>) {
         let (middle, low) = (top + SWING / 2, top + SWING);
         let segments = segments(lane, self.places.clone());

@@ -80,8 +80,8 @@ enum Meaning {
 }
 
 impl Waves {
-    /// Simulates the worked example and records its waveform. A pipeline gets several points one after another, and the first point
-    /// is the example.
+    /// Simulates the worked example and records its waveform. A pipeline gets several points one after another, and the first
+    /// point is the example.
     ///
     /// # Errors
     /// Fails if a simulated computation of the device never ends.
@@ -136,6 +136,8 @@ impl Waves {
         Ok(Self::cut(design, "points through the pipeline", clocks.len(), lanes))
     }
 
+    /// Records the waveform of a core with a microprogram: the handshake, the microinstruction, the architectural registers,
+    /// and the results of one computation.
     fn computation(core: &Core) -> Result<Self> {
         let design = &core.design;
         let Handshake { start, busy, valid, done, .. } = design.handshake()?;
@@ -159,7 +161,8 @@ impl Waves {
         Ok(Self::cut(design, "one computation", clocks.len(), lanes))
     }
 
-    /// Makes the waveform from lanes of `clocks` clocks, and keeps only the clocks that the diagram shows.
+    /// Makes the waveform from lanes with a value for each of `clocks` clocks, and keeps only the clocks that the diagram
+    /// shows: all of at most 40, otherwise the first 24 and the last 8. `what` is the caption.
     fn cut(design: &Design, what: &'static str, clocks: usize, mut lanes: Vec<Lane>) -> Self {
         let shown = shown(clocks);
         for lane in &mut lanes {
@@ -198,7 +201,7 @@ impl Waves {
         )
     }
 
-    /// Returns the first clock in which a signal is 1 as text, and `some` if there is no such clock.
+    /// Returns the number of the first clock in which a signal is 1 as text, or the word `some` if there is no such clock.
     fn first_text(&self, name: &str) -> String {
         match self.first(name) {
             Some(clock) => clock.to_string(),
@@ -219,6 +222,7 @@ impl Waves {
         }))
     }
 
+    /// Returns a lane as an entry of WaveDrom's list of signals.
     fn signal(&self, lane: &Lane) -> Value {
         let (mut wave, mut data) = (String::new(), Vec::new());
         let mut before: Option<&Option<String>> = None;
@@ -281,12 +285,13 @@ fn clock_lane(clocks: usize) -> Lane {
     }
 }
 
+/// Returns the style for a signal of this format.
 fn shape(format: Format) -> LaneStyle {
     if format.width() == 1 { LaneStyle::Bit } else { LaneStyle::Bus }
 }
 
-/// Returns the lane of a probe. `bits` are its bit patterns in each clock, and `valid` is the first clock with results. Returns
-/// `None` for a register that never changes.
+/// Returns the lane of a probe. `bits` has the bit pattern of the net in each clock, and `valid` is the index of the first
+/// clock with results. Returns `None` for a register that never changes.
 fn lane(design: &Design, probe: &Probe, bits: &[u64], valid: usize) -> Option<Lane> {
     let net = design.net(probe.net);
     let known = match probe.kind {

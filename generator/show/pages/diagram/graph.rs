@@ -22,7 +22,7 @@ pub struct DiagramGraph {
 pub struct DiagramBox {
     /// The shape of the box, which shows what kind of thing it is.
     pub form: BoxForm,
-    /// The number of the block in the source's figure.
+    /// The number of the block or port in the figure of the source document, if it has one.
     pub number: Option<u16>,
     /// The name of the block, the port or the control unit that the box shows.
     pub name: String,
@@ -103,11 +103,13 @@ struct GraphBuilder<'a> {
 }
 
 impl<'a> GraphBuilder<'a> {
+    /// Adds a box to the graph, and returns its index.
     fn add(&mut self, added: DiagramBox) -> usize {
         self.graph.boxes.push(added);
         self.graph.boxes.len() - 1
     }
 
+    /// Adds a wire from the box that drives `net` to the box `to`. Adds nothing if no box drives the net.
     fn wire(&mut self, net: NetId, to: usize) {
         if let Some(&from) = self.driver.get(&net) {
             self.graph.wires.push(DiagramWire { from, to });
@@ -141,6 +143,7 @@ impl<'a> GraphBuilder<'a> {
         }
     }
 
+    /// Adds a box for a port, and returns its index.
     fn port(&mut self, net: NetId, form: BoxForm) -> usize {
         let found = self.design.net(net);
         let format = format_text(found.format);
@@ -198,6 +201,7 @@ impl<'a> GraphBuilder<'a> {
         }
     }
 
+    /// Adds the box of the control unit and the wire from `start` to it, and returns the index of the box.
     fn control(&mut self) -> usize {
         let control = &self.design.control;
         let rom = self.design.rom(control.rom);
@@ -218,7 +222,7 @@ impl<'a> GraphBuilder<'a> {
         at
     }
 
-    /// Adds the conditions that the sequencer reads.
+    /// Adds a wire to the control unit from each block or port on which a condition of the microprogram depends.
     fn conditions(&mut self, control: usize) {
         for microinstruction in &self.design.control.microprogram {
             if let Sequence::LoopWhile { condition, .. } = microinstruction.sequence {
@@ -229,6 +233,7 @@ impl<'a> GraphBuilder<'a> {
         }
     }
 
+    /// Adds a box for each block of the datapath. Returns the blocks, each with the index of its box.
     fn all(&mut self) -> Vec<(usize, Block)> {
         let mut added = Vec::new();
         for block in self.blocks.all() {
@@ -271,6 +276,7 @@ impl<'a> GraphBuilder<'a> {
         lines.join(" ")
     }
 
+    /// Returns the numbers of a field's control lines in the source's figure, or the name of the field if it has none.
     fn lines(&self, field: FieldId) -> String {
         let field = &self.design.control.fields[field.index()];
         let lines: Vec<String> = field.lines.iter().map(u16::to_string).collect();

@@ -143,10 +143,12 @@ impl Sizes {
         }
     }
 
+    /// Returns the height that the box takes in its column of the layout, with the lanes and the control arrow beside it.
     fn all(&self) -> f64 {
         self.lanes + self.stub + self.height
     }
 
+    /// Returns the position of the box if the middle of the whole height is at `middle`.
     fn body(&self, middle: f64) -> Body {
         let top = (middle - self.all() / 2.0).round();
         let upper = top + self.lanes + self.stub;
@@ -182,11 +184,12 @@ fn lines(one: &DiagramBox) -> Vec<(&'static str, String)> {
     lines
 }
 
+/// Returns the vertical position of the lowest box or wire.
 fn bottom(bodies: &[Body], routes: &Routes) -> f64 {
     bodies.iter().map(|body| body.lower).fold(routes.bottom(), f64::max)
 }
 
-/// Rounds a coordinate to whole units, and adds the border.
+/// Returns a coordinate of the layout on the page: rounded to whole units, plus the width of the border.
 fn coordinate(value: f64) -> i32 {
     value.round() as i32 + BORDER
 }
@@ -203,7 +206,8 @@ impl Page<'_> {
         format!("{} {}", self.left + coordinate(y), coordinate(x))
     }
 
-    /// Draws the stages of a pipeline, each with the registers at its end.
+    /// Draws the stages of a pipeline: beside each a note with its delay, slack and register bits, at its end a line, and on
+    /// this line a mark for each wire that a register interrupts.
     fn stages(
         &mut self,
         pipeline: &Pipeline,

@@ -1,4 +1,8 @@
-//! Places the boxes of a block diagram in columns from left to right, with the layered layout algorithm of the `dagre` library.
+//! Places the boxes of a block diagram in columns from left to right, with the layered layout algorithm of the `dagre`
+//! library.
+//!
+//! The module computes four layouts and takes the lowest one. Wires that lead back, as in a loop of the datapath, are
+//! reversed for the algorithm.
 
 use dagre::graph::{Graph as Layered, GraphOptions};
 use dagre::{EdgeLabel, LayoutOptions, NodeLabel, RankDir, Ranker, layout};

@@ -174,6 +174,7 @@ impl Router<'_> {
         self.placement.middle[at].clamp(body.upper + EDGE, body.lower - EDGE)
     }
 
+    /// Returns the vertical position of the lane in which the wires of the box `net` run around the box `at`.
     fn lane(&self, at: usize, net: usize) -> f64 {
         let lane = self.lanes[at].iter().position(|&other| other == net);
         self.bodies[at].top + LANE * (lane.unwrap_or(0) as f64 + 0.5)
@@ -220,6 +221,7 @@ impl Router<'_> {
         pins
     }
 
+    /// Routes the wire with the index `at`, which enters its box at the vertical position `pin`.
     fn wire(&mut self, at: usize, pin: f64) {
         let wire = self.graph.wires[at];
         let net = wire.from;
@@ -265,6 +267,8 @@ impl Router<'_> {
         }
     }
 
+    /// Assigns tracks to all gaps, gives columns and boxes their horizontal positions, and returns the finished routes. `pins`
+    /// has for each wire the vertical position at which it enters its box.
     fn finish(mut self, pins: &[f64]) -> Routes {
         let columns = self.placement.columns;
         let tracks: Vec<usize> = self.gaps.iter_mut().map(|gap| assign(gap)).collect();
@@ -310,6 +314,7 @@ impl Router<'_> {
 }
 
 impl WireRoute {
+    /// Adds a straight piece, unless it has no length or exists already.
     fn piece(&mut self, from: (f64, f64), to: (f64, f64)) {
         let piece = WireSegment { from, to };
         if from != to && !self.pieces.contains(&piece) {

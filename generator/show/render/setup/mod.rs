@@ -70,13 +70,14 @@ impl std::error::Error for Error {}
 /// are in radians.
 ///
 /// Every field has a value even where a formula of the source document divides by zero. For γ = 0, the angle stays at λ = 0. For
-/// cos θ₁ ≤ 0, `arctan P` would be in the wrong half plane; λ is the angle of the point (cos θ₁, P·cos θ₁), from −180° to 180°, and
-/// A is never negative. For N₁ = −N₂, the normal turns by half a turn in the plane of N₂ and H₂, so that H₂′ = −H₂.
+/// cos θ₁ ≤ 0, `arctan P` would be in the wrong half plane; λ is the angle of the point (cos θ₁, P·cos θ₁), from −180° to
+/// 180°, and A is never negative. For N₁ = −N₂, the normal turns by half a turn in the plane of N₂ and H₂, so that H₂′ = −H₂.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Arc {
     /// θ₁, the angle between the normal N₁ and the half vector H₁ at the start of the line.
     pub theta_1: f64,
-    /// θ₂, the angle between the normal N₂ and the half vector H₂ at the end of the line. It is also the angle between N₁ and H₂′.
+    /// θ₂, the angle between the normal N₂ and the half vector H₂ at the end of the line. It is also the angle between N₁ and
+    /// H₂′.
     pub theta_2: f64,
     /// γ, the angle by which the half vector turns from the start H₁ to the end H₂′ of the line; less than π.
     pub gamma: f64,
@@ -117,8 +118,8 @@ impl Arc {
         )
     }
 
-    /// Makes an arc from three angles, each from 0 to π: θ₁ and θ₂ between normal and half vector at the two ends of the line, and
-    /// γ, by which the half vector turns.
+    /// Makes an arc from three angles, each from 0 to π: θ₁ and θ₂ between normal and half vector at the two ends of the
+    /// line, and γ, by which the half vector turns.
     ///
     /// # Errors
     /// Fails with [`Error::OppositeHalves`] or [`Error::NoSuchAngles`].
@@ -152,8 +153,8 @@ impl Arc {
         Ok(Self { theta_1, theta_2, gamma, rise, lambda, peak })
     }
 
-    /// Returns cos δ, the cosine between normal and half vector, at the part `t` of the line, 0 … 1. It is A·cos ζ. It is negative
-    /// if the surface faces away, except that it is 0 for γ = 0.
+    /// Returns cos δ, the cosine between normal and half vector, at the part `t` of the line, 0 … 1. It is A·cos ζ. It is
+    /// negative if the surface faces away, except that it is 0 for γ = 0.
     pub fn cosine(&self, t: f64) -> f64 {
         self.peak * libm::cos(t * self.gamma - self.lambda)
     }
@@ -236,8 +237,8 @@ pub struct LineParameters {
 }
 
 impl LineParameters {
-    /// Returns the angle ζ of point number `index` of the line, counted from 0. The cosine between normal and half vector is A·cos
-    /// ζ.
+    /// Returns the angle ζ of point number `index` of the line, counted from 0. The cosine between normal and half vector is
+    /// A·cos ζ.
     pub fn zeta(&self, index: u32) -> f64 {
         self.zeta_start + f64::from(index) * self.delta_zeta
     }

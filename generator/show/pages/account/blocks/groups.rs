@@ -18,8 +18,8 @@ pub struct Groups<'a> {
     /// For each net, whether it makes its group a block: it is a register, a ROM or an operator, or the description documents or
     /// numbers it.
     pub cell: Vec<bool>,
-    /// For each net, its sources: the blocks, ports and ROMs whose values reach it within a clock. In a pipeline, a source may lie
-    /// several clocks back.
+    /// For each net, its sources: the blocks, ports and ROMs whose values reach it within a clock. In a pipeline, a source
+    /// may lie several clocks back.
     pub sources: Vec<Vec<NetId>>,
     /// For each group that is a block, its output net.
     pub head: Vec<Option<NetId>>,
@@ -28,8 +28,8 @@ pub struct Groups<'a> {
 }
 
 impl<'a> Groups<'a> {
-    /// Groups the nets of a design. In a `figure`, gates and wiring are blocks only if the source numbers them, or if
-    /// several signals meet in them.
+    /// Groups the nets of a design. If `figure` is set, the blocks are for a block diagram: gates and wiring are then blocks
+    /// only if the source document numbers them, or if several signals meet in them.
     pub fn new(design: &'a Design, figure: bool) -> Self {
         let cell = design.iter().map(|(id, net)| is_cell(design, id, net, figure)).collect();
         let mut groups = Self {
@@ -41,7 +41,7 @@ impl<'a> Groups<'a> {
             joints: BTreeSet::new(),
         };
         groups.form(true);
-        // Statements are taken apart if their operators feed each other through other statements, as in a loop.
+        // If the blocks form a cycle, each operator becomes a block of its own.
         if groups.is_tangled() {
             groups.form(false);
         }
@@ -49,7 +49,8 @@ impl<'a> Groups<'a> {
         groups
     }
 
-    /// Forms the groups, and finds the sources of each net.
+    /// Forms the groups, and finds the sources of each net. If `statements` is set, the nets that one statement of the
+    /// description made are a group, as far as [`Groups::belongs`] allows it. Otherwise each net is a group of its own.
     fn form(&mut self, statements: bool) {
         let design = self.design;
         self.group = (0..design.nets.len()).collect();
@@ -67,7 +68,8 @@ impl<'a> Groups<'a> {
                 continue;
             }
             let head = &mut self.head[self.group[id.index()]];
-            // A net that the source numbers is the block. The nets that serve it are inside.
+            // The output of a block is preferably a net that the source document numbers, then a net with a name, then the
+            // last net.
             let is_better = match head {
                 Some(before) => {
                     let before = design.net(*before);
@@ -93,8 +95,8 @@ impl<'a> Groups<'a> {
         at
     }
 
-    /// Puts a net into the group of the nets that it is made from, if one statement made both. For example, the muxes
-    /// of one tree are a group.
+    /// Joins the group of a net and the groups of the nets from which it is computed, if one statement of the description
+    /// made both. For example, the muxes of one tree are a group.
     fn join(&mut self, id: NetId) {
         let design = self.design;
         let net = design.net(id);
@@ -113,7 +115,9 @@ impl<'a> Groups<'a> {
         }
     }
 
-    /// Returns whether an operator is part of another that takes it, if one statement made both.
+    /// Returns whether the nets `from` and `to` of one statement belong to one block. `to` takes the value of `from`. For
+    /// example, a mux that takes another mux belongs to the same block, and an adder behind a multiplier does not in a
+    /// sequential core.
     fn belongs(&self, from: NetId, to: NetId) -> bool {
         let design = self.design;
         let (Some(a), Some(b)) = (self.operator(from), self.operator(to)) else {
@@ -142,8 +146,8 @@ impl<'a> Groups<'a> {
         }
     }
 
-    /// Returns whether everything that an operator of a pipeline takes is operators of its statement. Rows of a product
-    /// do not count: they are gates of the statement.
+    /// Returns whether an operator of a pipeline takes only values of operators that the same statement made. Rows of a
+    /// product (gates of the same statement, one row for each bit of a factor) do not count.
     fn takes_its_statement_alone(&self, id: NetId) -> bool {
         let mut whole = self.operands(id);
         whole.retain(|operand| !self.is_product_row(*operand, id));
@@ -179,13 +183,14 @@ impl<'a> Groups<'a> {
         self.operands(adder).iter().any(|operand| self.design.net(*operand).range == (0, 1))
     }
 
-    /// Returns the operators, registers and tables whose values form the value of a net, through wires and gates. In a pipeline,
+    /// Returns the operators, registers and ROMs from whose values wires and gates form the value of a net. In a pipeline,
     /// the search also passes through registers.
     pub fn operators(&self, id: NetId) -> Vec<NetId> {
         self.through(self.operands(id))
     }
 
-    /// Returns the operators, registers and tables that these nets are or take.
+    /// Returns the operators, registers and ROMs among the nets `pending`, and the ones that the search finds behind the
+    /// other nets, through wires and gates.
     fn through(&self, mut pending: Vec<NetId>) -> Vec<NetId> {
         let (mut found, mut seen) = (Vec::new(), BTreeSet::new());
         while let Some(id) = pending.pop() {
@@ -214,7 +219,8 @@ impl<'a> Groups<'a> {
         }
     }
 
-    /// Finds the sources of a net, after the sources of its operands.
+    /// Finds the sources of the net `id`, and first the sources of all nets on which it depends, and writes them to
+    /// `sources`.
     fn trace(&self, id: NetId, sources: &mut [Option<Vec<NetId>>]) {
         let mut pending = vec![id];
         while let Some(&id) = pending.last() {
@@ -241,7 +247,8 @@ impl<'a> Groups<'a> {
         }
     }
 
-    /// Returns the sources of a net that is no cell: all sources of its operands.
+    /// Returns the sources of a net that is wiring or a gate: all sources of its operands, each once. If the output of the
+    /// net's own block is among them, it is the only source.
     fn joined_sources(
         &self,
         id: NetId,
@@ -256,14 +263,15 @@ impl<'a> Groups<'a> {
                 }
             }
         }
-        // Bits that go around the operators of a statement belong to its result.
+        // Bits that bypass the operators of a statement belong to its result.
         match self.head[self.group[id.index()]] {
             Some(head) if found.contains(&head) => vec![head],
             _ => found,
         }
     }
 
-    /// Returns whether the blocks of a pipeline form a cycle. It is always false for a sequential core.
+    /// Returns whether the blocks of a pipeline form a cycle, which a drawing by stages cannot show. Returns `false` for a
+    /// sequential core.
     fn is_tangled(&self) -> bool {
         if self.design.pipeline.is_none() {
             return false;
@@ -287,7 +295,7 @@ impl<'a> Groups<'a> {
         }
     }
 
-    /// Finds the nets at which signals meet.
+    /// Finds the joints: the nets at which several signals meet before a block or an output port takes them.
     fn meet(&mut self) {
         let mut read: Vec<NetId> = Vec::new();
         for port in self.design.outputs() {
@@ -319,9 +327,9 @@ impl<'a> Groups<'a> {
         operands
     }
 
-    /// Returns whether the sources of `operand` meet inside the block whose output is `head`, so that no joint is drawn. This is so
-    /// if the block itself is one of the sources, or if the gates at which the sources meet belong to the same statement of the
-    /// description as the block.
+    /// Returns whether the sources of `operand` meet inside the block whose output is `head`, so that no joint is drawn. This
+    /// is so if the block itself is one of the sources, or if the gates at which the sources meet belong to the same
+    /// statement of the description as the block.
     pub fn is_part(&self, operand: NetId, head: NetId) -> bool {
         if self.sources[operand.index()].contains(&head) {
             return true;
@@ -337,8 +345,8 @@ impl<'a> Groups<'a> {
         }
     }
 
-    /// Returns the joint behind a net: the net at which several signals meet by wiring or gates to form it. Returns `None` if only
-    /// one signal forms it.
+    /// Returns the joint behind a net: the net at which several signals meet by wiring or gates to form it. Returns `None` if
+    /// only one signal forms it.
     pub fn joint(&self, mut id: NetId) -> Option<NetId> {
         if self.sources[id.index()].len() < 2 {
             return None;
@@ -365,7 +373,8 @@ impl<'a> Groups<'a> {
         inside
     }
 
-    /// Returns the output net of the block, or the port, whose value a net carries.
+    /// Returns the source whose value a net carries: the output net of a block, a port, or the joint at which several
+    /// sources meet. Returns `None` for a net without a source, for example a constant.
     pub fn driver(&self, net: NetId) -> Option<NetId> {
         match self.sources[net.index()][..] {
             [] => None,
@@ -374,7 +383,7 @@ impl<'a> Groups<'a> {
         }
     }
 
-    /// Returns the registers of a pipeline that only delay the value of the block or port `source`.
+    /// Returns the registers of a pipeline that only delay the value of the block, port or joint `source`.
     pub fn held(&self, source: NetId) -> Vec<NetId> {
         let mut held = Vec::new();
         for (id, net) in self.design.iter() {

@@ -15,8 +15,8 @@ use groups::Groups;
 pub use kind::BlockKind;
 use kind::{ADDER, MULTIPLIER, operator};
 
-/// Returns the table of a design's blocks, in the order of their numbers in the source's figure. Blocks without a number come
-/// last.
+/// Returns the table of a design's blocks, in the order of the numbers that they have in the figure of the source document.
+/// Blocks without a number come last.
 pub fn table(design: &Design) -> TextTable {
     let blocks = Blocks::new(design, false);
     let mut table = TextTable::of("no.: | block | kind | format | takes | what it is");
@@ -41,11 +41,12 @@ pub fn table(design: &Design) -> TextTable {
     table.without_empty(NUMBER)
 }
 
-/// Returns the stage of a pipeline in which a cell works.
+/// Returns the stage of a pipeline in which a cell computes its value. A block memory works in the stage of its address, one
+/// stage before its word is available.
 fn stage(design: &Design, pipeline: &Pipeline, cell: NetId) -> usize {
     let clock = pipeline.clock_of(cell);
     match design.net(cell).driver {
-        // The word of a block memory is there a stage after its address.
+        // The word of a block memory is available one stage after the address.
         Driver::Rom(rom) => clock - usize::from(design.rom(rom).synchronous),
         _ => clock,
     }
@@ -54,7 +55,7 @@ fn stage(design: &Design, pipeline: &Pipeline, cell: NetId) -> usize {
 /// A block of a datapath: the hardware of one statement of the description.
 #[derive(Clone, Debug)]
 pub struct Block {
-    /// The number of the block in the source's figure.
+    /// The number of the block in the figure of the source document, if it has one.
     pub number: Option<u16>,
     /// The name of the block: the name of the net that it drives.
     pub name: String,
@@ -84,8 +85,8 @@ pub struct Blocks<'a> {
 }
 
 impl<'a> Blocks<'a> {
-    /// Finds the blocks of a design. If `figure` is set, the blocks are for a block diagram: gates and wiring are then blocks only
-    /// if the source numbers them, or if several signals meet in them.
+    /// Finds the blocks of a design. If `figure` is set, the blocks are for a block diagram: gates and wiring are then blocks
+    /// only if the source numbers them, or if several signals meet in them.
     pub fn new(design: &'a Design, figure: bool) -> Self {
         Self { design, groups: Groups::new(design, figure) }
     }
@@ -103,6 +104,7 @@ impl<'a> Blocks<'a> {
         blocks
     }
 
+    /// Returns the block with the output `head`, with its kind, inputs and names.
     fn block(&self, head: NetId) -> Block {
         let design = self.design;
         let inside = self.groups.inside(head);
@@ -158,11 +160,12 @@ impl<'a> Blocks<'a> {
         }
     }
 
-    /// Returns the inputs of a block, and the nets that select among them. `cells` and `around` are its nets: operators,
-    /// registers and tables, and the bits that go around them.
+    /// Returns the inputs of the block with the output `head`, and the nets that select among them. `cells` are the
+    /// operators, registers and ROMs of the block. `around` are its other nets: wiring and gates through which bits bypass
+    /// the operators.
     fn inputs(&self, head: NetId, cells: &[NetId], around: &[NetId]) -> (Vec<NetId>, Vec<NetId>) {
         let (mut inputs, mut selected_by) = (Vec::new(), Vec::new());
-        // Operators first: bits that go around them come from the same signals.
+        // Operators first: bits that bypass them come from the same signals.
         let mut nets = cells.to_vec();
         // For a mux alone, the bits around it are its inputs, masked by the select if one input is 0.
         if !matches!(cells, [only] if self.is_mux(*only)) {
@@ -188,7 +191,8 @@ impl<'a> Blocks<'a> {
         (inputs, selected_by)
     }
 
-    /// Returns the blocks, ports and constants outside of a block that an operand of its net comes from.
+    /// Returns the sources of `operand`, an operand of a net in the block with the output `head`: blocks, ports and
+    /// constants outside of this block.
     fn sources_outside(&self, operand: NetId, head: NetId) -> Vec<NetId> {
         if !self.groups.is_part(operand, head) {
             return self.source(operand).into_iter().collect();
@@ -202,7 +206,8 @@ impl<'a> Blocks<'a> {
         matches!(self.design.net(id).driver, Driver::Op(Op::Mux { .. }))
     }
 
-    /// Returns the documentation of a block: the text of its output, or else of the last net inside that has a text.
+    /// Returns the comment of the description on a block: the comment on its output, or else the comment on the last net
+    /// inside that has one. Returns an empty text if no net has a comment.
     fn doc(&self, inside: &[NetId], head: NetId) -> String {
         let of_head = &self.design.net(head).doc;
         if inside.contains(&head) && !of_head.is_empty() {
@@ -217,7 +222,8 @@ impl<'a> Blocks<'a> {
         String::new()
     }
 
-    /// Returns the registers, tables and operators of the block with this output; in a pipeline with the registers that hold it.
+    /// Returns the registers, ROMs and operators of the block with the output `head`. In a pipeline, the registers that
+    /// delay the value of the block are included.
     fn cells(&self, head: NetId) -> Vec<NetId> {
         let mut cells = self.groups.inside(head);
         cells.retain(|net| self.groups.cell[net.index()]);
@@ -225,8 +231,8 @@ impl<'a> Blocks<'a> {
         cells
     }
 
-    /// Returns the block, port or constant that an operand comes from. Returns `None` for a signal of the control
-    /// unit.
+    /// Returns the source of an operand: the output net of a block, a port, a constant, or the joint at which several
+    /// sources meet. Returns `None` for a signal of the control unit.
     fn source(&self, operand: NetId) -> Option<NetId> {
         match self.groups.sources[operand.index()][..] {
             [] => self.constant(operand),
@@ -235,8 +241,8 @@ impl<'a> Blocks<'a> {
         }
     }
 
-    /// Returns the constant that a net is made of, also through other cells. For example, an extension of the constant
-    /// 1 gives the constant 1.
+    /// Returns the constant whose value a net has, through the first operands of cells. For example, an extension of the
+    /// constant 1 gives the constant 1. Returns `None` if the search ends at another net.
     fn constant(&self, mut id: NetId) -> Option<NetId> {
         loop {
             match &self.design.net(id).driver {
@@ -264,7 +270,8 @@ impl<'a> Blocks<'a> {
         shortest.unwrap_or(&pipeline.value_of[head.index()]).clone()
     }
 
-    /// Returns the other names of a block's output in a pipeline, on its way through wires and registers.
+    /// Returns the other names that the value of a block has in a pipeline: the names of checkpoints whose only source is
+    /// the block, with their numbers in the source's figure. For a sequential core the list is empty.
     fn aliases(&self, head: NetId, name: &str) -> Vec<String> {
         let design = self.design;
         let Some(pipeline) = &design.pipeline else { return Vec::new() };
@@ -283,7 +290,7 @@ impl<'a> Blocks<'a> {
         names
     }
 
-    /// Returns the block in which signals meet by gates or side by side.
+    /// Returns the block that is drawn for a joint: gates in which several signals meet, or their concatenation.
     fn meeting(&self, joint: NetId) -> Block {
         let net = self.design.net(joint);
         let inputs = self.groups.sources[joint.index()].clone();
@@ -365,7 +372,7 @@ impl<'a> Blocks<'a> {
         }
     }
 
-    /// Returns the width of an operand before it is extended for a sign.
+    /// Returns the number of bits of an operand, without the bits by which an extension widens it.
     fn narrow_width(&self, operand: NetId) -> u32 {
         match &self.design.net(operand).driver {
             Driver::Op(Op::Extend(of)) => self.design.width(*of),
@@ -373,6 +380,7 @@ impl<'a> Blocks<'a> {
         }
     }
 
+    /// Returns the kind of a block that consists of the driver of a single net.
     fn kind_of_net(&self, id: NetId) -> BlockKind {
         match &self.design.net(id).driver {
             Driver::Register(register) => match self.design.register(*register).kind {
@@ -399,7 +407,8 @@ impl<'a> Blocks<'a> {
         }
     }
 
-    /// Returns the output nets of the blocks, ports and ROMs whose values form the value of a net.
+    /// Returns the sources of a net: the output nets of the blocks, ports and ROMs whose values reach the net through wiring
+    /// and gates alone.
     pub fn behind(&self, net: NetId) -> &[NetId] {
         &self.groups.sources[net.index()]
     }
@@ -466,12 +475,13 @@ impl<'a> Blocks<'a> {
         (fields, strobes)
     }
 
-    /// Returns the output net of the block, or the port, whose value a net carries.
+    /// Returns the source whose value a net carries: the output net of a block, a port, or a joint. Returns `None` for a net
+    /// without a source, for example a constant.
     pub fn driver(&self, net: NetId) -> Option<NetId> {
         self.groups.driver(net)
     }
 
-    /// Returns the registers of a pipeline that hold the value of a block or port.
+    /// Returns the registers of a pipeline that only delay the value of the block, port or joint `source`.
     pub fn held(&self, source: NetId) -> Vec<NetId> {
         self.groups.held(source)
     }
