@@ -305,7 +305,7 @@ pub fn handshake(pipeline: &Pipeline) -> &'static str {
 /// Returns a table of the number of clocks from taking a point to each event of a pipeline.
 pub fn pipeline_clocks(pipeline: &Pipeline) -> TextTable {
     let mut table = TextTable::of("event | clock:");
-    table.row(["the next point is taken".to_owned(), "1".to_owned()]);
+    table.row(["the next point is taken".to_owned(), pipeline.interval.to_string()]);
     let latency = pipeline.stages.len().to_string();
     table.row(["the results are on the outputs".to_owned(), latency]);
     table

@@ -317,9 +317,14 @@ fn throughput(subject: &Subject, timing: &HandshakeTiming) -> String {
             )
         }
         (Some(rate), None) => format!("{often}; points a second, as measured below: {rate}."),
-        (None, Some(made)) => format!(
-            "{often}: {made} million a second at {made} MHz, which the stages are made for."
-        ),
+        (None, Some(made)) => {
+            let pipeline = subject.core.design.pipeline.as_ref();
+            let points = pipeline.map_or(0.0, |it| it.clock_mhz / it.interval as f64);
+            let points = short(points);
+            format!(
+                "{often}: {points} million a second at {made} MHz, which the stages are made for."
+            )
+        }
         (None, None) => format!("{often}."),
     }
 }
