@@ -62,7 +62,7 @@ id!(
     RegId
 );
 id!(
-    /// The identifier of a ROM: its position in [`Design::roms`].
+    /// The identifier of a ROM: its position in `Design::roms`.
     RomId
 );
 id!(

@@ -126,7 +126,7 @@ fn kill_all(list: impl Fn() -> Vec<i32>) {
     stopped.into_iter().for_each(|pid| send(pid, Signal::KILL));
 }
 
-/// Makes this process the parent of descendants whose own parent has ended, so that [`kill_own_descendants`] finds them. If the
+/// Makes this process the parent of descendants whose own parent has ended, so that `kill_own_descendants` finds them. If the
 /// system cannot do this, only descendants in the process group of a child are killed.
 pub fn adopt_orphans() {
     #[cfg(target_os = "linux")]

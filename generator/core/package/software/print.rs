@@ -36,7 +36,7 @@ pub fn pattern_type(width: u32) -> &'static str {
     if width <= 32 { "uint32_t" } else { "uint64_t" }
 }
 
-/// Returns the C literal of a bit pattern of `width` bits, in the type that [`pattern_type`] gives. For example, 9 in 8 bits
+/// Returns the C literal of a bit pattern of `width` bits, in the type that [`pattern_type()`] gives. For example, 9 in 8 bits
 /// is `9u`, and 4096 in 40 bits is `UINT64_C(0x1000)`.
 pub fn literal(bits: u64, width: u32) -> String {
     match (width <= 32, bits < 1024) {
