@@ -110,25 +110,27 @@ struct HighlightPart {
 
 /// Returns the highlight device that the key `highlight` names.
 fn highlight_part(keys: &Keys) -> HighlightPart {
-    let part = |describe, formula: &str| HighlightPart { describe, formula: formula.to_owned() };
-    match keys.highlight {
-        HighlightDevice::CosinePower => {
-            let power = keys.power;
-            let formula = format!("max(0, n/{power}*(c - 1) + 1)^{power} where c > 0, else 0");
-            part(cosine_power::describe, &formula)
-        }
-        HighlightDevice::Blinn => part(blinn::describe, "c^n"),
-        HighlightDevice::Schlick => part(schlick::describe, "c/(n - n*c + c)"),
-        HighlightDevice::Gauss => part(gauss::describe, "exp(-n*acos(c)^2/2) where c > 0, else 0"),
-        HighlightDevice::Quadratic => part(quadratic::describe, "max(0, c - a(n)*(c - c^2))"),
-        HighlightDevice::Threshold => part(
-            threshold::describe,
-            "max(0, n/2*(c - 1) + 1)^2 where that reaches ROM(n) and c > 0, else 0",
+    let power = keys.power;
+    let (describe, formula): (fn(&Designer, &Config), String) = match keys.highlight {
+        HighlightDevice::CosinePower => (
+            cosine_power::describe,
+            format!("max(0, n/{power}*(c - 1) + 1)^{power} where c > 0, else 0"),
         ),
-        HighlightDevice::Function => {
-            part(function::describe, &format!("{} with x = c", keys.formula))
+        HighlightDevice::Blinn => (blinn::describe, "c^n".to_owned()),
+        HighlightDevice::Schlick => (schlick::describe, "c/(n - n*c + c)".to_owned()),
+        HighlightDevice::Gauss => {
+            (gauss::describe, "exp(-n*acos(c)^2/2) where c > 0, else 0".to_owned())
         }
-    }
+        HighlightDevice::Quadratic => {
+            (quadratic::describe, "max(0, c - a(n)*(c - c^2))".to_owned())
+        }
+        HighlightDevice::Threshold => (
+            threshold::describe,
+            "max(0, n/2*(c - 1) + 1)^2 where that reaches ROM(n) and c > 0, else 0".to_owned(),
+        ),
+        HighlightDevice::Function => (function::describe, format!("{} with x = c", keys.formula)),
+    };
+    HighlightPart { describe, formula }
 }
 
 fn about(keys: &Keys) -> About {

@@ -27,8 +27,9 @@ pub const TEST_POINTS: u64 = 100_000;
 /// The seed of the random inputs of the default test.
 pub const TEST_SEED: u64 = 1;
 
-/// The number of random computations at the beginning of the emitted bench, which use everything that the handshake allows. For
-/// a device with lines, the number of results is this times [`BENCH_LINE`].
+/// The number of random computations at the beginning of the bench that is emitted with a sequential core. They use everything
+/// that the handshake allows, such as writes while the core is busy. For a device with lines, random lines are computed until
+/// they have this number times [`BENCH_LINE`] results. The bench of a pipeline has [`PIPELINE_POINTS`] points instead.
 const BENCH_POINTS: u64 = 64;
 
 /// The largest number of results of a line among these computations.

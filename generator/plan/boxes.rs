@@ -1,7 +1,12 @@
-//! Proves a bound of the error of a result over all of its operands, box by box.
+//! Proves a bound of the error of a result, over all operands for which the result is promised.
 //!
-//! The box with the largest error is divided first. A box whose error has no limit counts as the largest: a part may exceed its
-//! format there, or a function may have no value.
+//! A box is a range of raw values for each operand: for example, x from 0 to 255 and y from 16 to 31. An analysis with intervals
+//! bounds the error in a box. The search begins with the box of the whole domain, and always divides the box with the largest
+//! error in two. It ends when this error is small enough, when this box is a single combination, or after a given number of
+//! divisions.
+//!
+//! A box whose error has no limit counts as the largest. The reason is a part of the formula that may exceed its format in the
+//! box, or a function that may have no value in the box.
 
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;

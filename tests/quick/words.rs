@@ -19,7 +19,8 @@ const PATTERNS: [(&str, usize); 6] = [
     ),
     (r"\b[Ss]tands?\b", 5),
     (r"\bof which\b", 5),
-    (r"(?m)(^|[.;:] )[Oo]f (a|an|the|each|every|what|two|all)\b", 14),
+    // A line that begins with "of the" continues a sentence, unless the line before ends it.
+    (r"[.;:][ \n][Oo]f (a|an|the|each|every|what|two|all)\b", 4),
     (r"\bThere is none\b", 0),
 ];
 

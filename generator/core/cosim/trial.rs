@@ -196,11 +196,13 @@ pub fn line(design: &Design, contract: &dyn Contract) -> Result<Option<LineClock
     Ok(Some(LineClocks { length: name, last_valid, done, next_start }))
 }
 
-/// Returns a worked example: a computation with the values of all operands and outputs. Its operands are the ones from
-/// [`typical`]. If the computation has several results, `outputs` are the first, and `results` has all.
+/// Simulates one computation, and returns it as a worked example: the values of all operands and outputs. [`typical`] chooses
+/// the operands; for a highlight, `f` is mostly between 0.4 and 0.8. If the computation has several results, `outputs` has the
+/// outputs of the first one, and `results` has all.
 ///
 /// # Errors
-/// Fails as [`timing`] does.
+/// Fails if the design cannot be simulated or does not belong to the contract. Fails if the computation does not end within
+/// 65 536 clocks, or never raises `valid`.
 pub fn example(design: &Design, contract: &dyn Contract) -> Result<WorkedExample> {
     let operands = typical(contract, &[]);
     let trial = run(design, contract, &operands, &mut |_| Ok(()))?;

@@ -1,9 +1,10 @@
 //! The description language: datapath, microprogram and ports of a device, in Rust.
 //!
 //! A description is a function that builds with a [`Designer`], by handles such as [`Signal`], [`Register`] and [`Mux`]. Every
-//! signal has a fixed-point format *and* the interval of values that it can take, so that nothing can overflow unnoticed. Only
-//! [`Designer::narrow`] drops bits of a value, with stated rounding and overflow. A microinstruction ([`step`]) is a list of
-//! settings, such as [`Register::load`] and [`Mux::pick`].
+//! signal has a fixed-point format *and* the interval of values that it can take. The sums and products of [`Designer::add`] and
+//! [`Designer::mul`] are exact, so that they cannot overflow. Only [`Designer::narrow`] rounds or saturates, in a stated way.
+//! [`Signal::bits`] takes some bits of a signal, and [`Designer::add_modulo`] drops the carry. A microinstruction ([`step`]) is a
+//! list of settings, such as [`Register::load`] and [`Mux::pick`].
 //!
 //! ```
 //! use glint_rtl::dsl::{Designer, end, step, valid};

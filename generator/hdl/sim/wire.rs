@@ -1,8 +1,9 @@
-//! Shows the nets of a circuit to rust_hdl's probes, as atoms (rust_hdl's term for a signal) whose widths are known only at run
-//! time.
+//! Shows the ports and the named nets of a circuit to rust_hdl's probes, as atoms (rust_hdl's term for a signal) whose widths are
+//! known only at run time.
 //!
-//! A probe that visits the circuit gets an atom for each net. The atoms are made anew at every visit; the id of a net's atom
-//! stays the same. A simulation without a waveform makes no atoms.
+//! A probe that visits the circuit gets an atom for each port and each named net, with its value in lane 0. If the design has a
+//! microprogram, a further atom shows the name of the executed microinstruction. The atoms are made anew at every visit; the id
+//! of a net's atom stays the same. rust_hdl visits a new circuit to check it. Later it visits the circuit only for a waveform.
 
 use rust_hdl::core::ast::VerilogLiteral;
 use rust_hdl::core::atom::{Atom, AtomKind};

@@ -1,4 +1,7 @@
-//! Defines the arithmetic on the values of the simulator, for its 32-bit and its 64-bit slots.
+//! Defines the arithmetic on the values in the simulator's memory.
+//!
+//! The memory has slots of 32 bits and slots of 64 bits, and a slot has one value for each lane. These slots are places in the
+//! memory, not the slots of a pipeline.
 
 use std::ops::{BitAnd, BitOr, BitXor, Shl, Shr};
 

@@ -188,7 +188,7 @@ fn handshake(plan: &Plan, naming: &Naming, pipeline: &Pipeline) -> Vec<String> {
                 "The handshake: a bit for each stage that has a point; all points move on together"
             }
             Some(_) => {
-                "The handshake: a bit for each stage that has a point; all points move on together, and the slot with them"
+                "The handshake: a bit for each stage that has a point; points and slot move on together"
             }
         },
         lines.into_iter().map(|line| format!("    {line}")).collect(),

@@ -337,7 +337,8 @@ fn text(format: Format, bits: u64) -> String {
     }
 }
 
-/// Returns the numbers of the clocks that the diagram shows of a computation with `clocks` clocks. For example, it shows the
+/// Returns the numbers of the clocks that the diagram shows of a computation with `clocks` clocks, in ascending order. It shows
+/// all clocks of a computation with at most 40 clocks, and otherwise the first 24 and the last 8. For example, it shows the
 /// clocks 0 to 23 and 92 to 99 of 100 clocks.
 fn shown(clocks: usize) -> Vec<usize> {
     match clocks {
