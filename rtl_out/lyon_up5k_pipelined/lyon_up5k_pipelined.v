@@ -50,7 +50,7 @@ module lyon_up5k_pipelined (
     // Constants
     localparam [16:0] ONE = 17'h10000;  // 1.0 in u1.16
 
-    // The handshake: a bit for each stage that has a point; all points move on together, and the slot with them
+    // The handshake: a bit for each stage that has a point; points and slot move on together
     reg  [19:1] valid;
     reg  slot;
     assign out_valid = valid[19];

@@ -50,7 +50,7 @@ module rough_up5k_pipelined #(
     localparam [16:0] RESULT_MOST = 17'hffff;  // 0.9999847412109375 in s0.16
     localparam [16:0] MINUS_ONE = 17'h10000;  // -1.0 in s0.16
 
-    // The handshake: a bit for each stage that has a point; all points move on together, and the slot with them
+    // The handshake: a bit for each stage that has a point; points and slot move on together
     reg  [18:1] valid;
     reg  [1:0] slot;
     assign out_valid = valid[18];
