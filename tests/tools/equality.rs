@@ -56,10 +56,10 @@ fn at_interval(path: &str, clocks: u64) -> Core {
     Core::with_free_clock(device, config).sure_of(path)
 }
 
-/// Returns all pipelines in `configs/` at intervals from 2 to 4 clocks.
+/// Returns the pipelines in `configs/` at intervals from 2 to 4 clocks, without the one that z3 does not decide.
 fn at_longer_intervals() -> Vec<(String, Core)> {
     let mut all = Vec::new();
-    for (path, _) in pipelines() {
+    for (path, _) in pipelines().into_iter().filter(|(path, _)| path != UNDECIDED) {
         for clocks in 2..=4 {
             all.push((format!("{path} every {clocks} clocks"), at_interval(&path, clocks)));
         }
@@ -69,9 +69,7 @@ fn at_longer_intervals() -> Vec<(String, Core)> {
 
 #[test]
 fn every_longer_interval_is_proved_equal_to_its_sequential_core() {
-    let all = at_longer_intervals().into_iter();
-    let decided = all.filter(|(path, _)| !path.starts_with(UNDECIDED));
-    for (path, core) in sampled("equality of intervals", decided, 5) {
+    for (path, core) in sampled("equality of intervals", at_longer_intervals(), 5) {
         match verdict(&sequential(&core), &core.design) {
             Verdict::Equal(proof) => {
                 assert!(proof.outputs > 0 && proof.registers > 0 && proof.products > 0, "{path}");
