@@ -8,9 +8,9 @@ use std::path::{Path, PathBuf};
 
 use sha2::{Digest, Sha256};
 
-/// The sources whose change can change the result of an exhaustive check: formats, configurations, golden models, descriptions,
-/// the simulator, and the check itself.
-const SOURCES: [&str; 10] = [
+/// The sources whose change can change the result of an exhaustive check: formats, configurations, golden models, plans,
+/// descriptions, the simulator, and the check itself.
+const SOURCES: [&str; 11] = [
     "../approximate",
     "../base",
     "../catalogue",
@@ -19,6 +19,7 @@ const SOURCES: [&str; 10] = [
     "../golden",
     "../hdl",
     "../keys",
+    "../plan",
     "../../Cargo.lock",
     "cosim",
 ];

@@ -89,6 +89,22 @@ fn the_page_of_rough_reads_as_the_patent() {
     assert_eq!(numbers, figure);
 }
 
+/// The interval is the number in the configuration; without one, a pipeline takes a point every clock.
+#[test]
+fn a_page_says_when_the_next_point_is_taken() {
+    for (name, clocks) in [("lyon_up5k", 2), ("rough_up5k", 3), ("cosine_power", 1)] {
+        let page = read(format!("docs/devices/{name}_pipelined.md"));
+        let row = format!("| the next point is taken        | {clocks:>3} |");
+        assert!(page.contains(&row), "{name}: {row}");
+        // A line directly below a table would become a row of the table.
+        let mut lines = page.lines().zip(page.lines().skip(1));
+        let stuck = lines.find(|(row, next)| {
+            row.starts_with("| ") && !next.is_empty() && !next.starts_with('|')
+        });
+        assert_eq!(stuck, None, "{name}");
+    }
+}
+
 #[test]
 fn a_line_has_all_its_points_and_clocks_in_its_length() {
     for name in ["quad_cosine", "cosine_squared"] {

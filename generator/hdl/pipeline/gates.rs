@@ -75,7 +75,7 @@ fn part(
     graph.op(op, format, label)
 }
 
-/// Returns a node of `width` bits, each of which equals the bit `select`, or its inverse if `inverted`.
+/// Returns a node of `width` bits. Each bit equals the bit `select`, or its inverse if `inverted`.
 fn spread(graph: &mut Graph, select: NodeId, inverted: bool, width: u32, label: &Label) -> NodeId {
     let bit = if inverted { graph.op(NodeOp::Not(select), Format::BIT, label) } else { select };
     let sign = graph.op(NodeOp::Relabel(bit), Format::signed(0, 0), label);

@@ -15,7 +15,7 @@ use glint_base::fixed::mask;
 use glint_rtl::netlist::Role;
 
 /// The largest number of clocks after which a counter returns to its first value. The module does not recognise longer counters.
-const MOST_CLOCKS: usize = 1024;
+const LONGEST_PERIOD: usize = 1024;
 
 /// The roles of the ports, by their names.
 pub type Roles = HashMap<String, Role>;
@@ -150,7 +150,7 @@ fn course(
 ) -> Result<Option<Vec<ClockConstants>>> {
     let mut course = Vec::new();
     let mut value = counter.map(|(_, &first)| first);
-    while course.len() < MOST_CLOCKS {
+    while course.len() < LONGEST_PERIOD {
         let mut known = slots[course.len() % slots.len()].clone();
         if let (Some((&register, _)), Some(value)) = (counter, value) {
             known.insert(register, value);

@@ -5,10 +5,8 @@
 
 use anyhow::{Context, Result, bail};
 
+use super::MOST_CLOCKS;
 use glint_rtl::netlist::{Design, Interpreter, NetId, Role};
-
-/// The largest number of clocks for which the sequential core is simulated. If a computation takes more, the comparison fails.
-const MOST_CLOCKS: usize = 8192;
 
 /// A pipeline and its sequential core, with the operands and outputs that both have.
 pub struct DesignPair<'a> {
