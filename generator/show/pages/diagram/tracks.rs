@@ -108,6 +108,7 @@ pub fn assign(trunks: &mut [Trunk]) -> usize {
             }
         }
     }
+    while separate(trunks) {}
     let mut tracks = 0;
     for at in 0..trunks.len() {
         if trunks[at].is_straight() {
@@ -124,6 +125,36 @@ pub fn assign(trunks: &mut [Trunk]) -> usize {
         tracks = tracks.max(track + 1);
     }
     tracks
+}
+
+/// Moves one trunk to the left of another if fewer wires lie upon each other then, and returns whether it did. Exchanges of
+/// neighbours can miss such a move, because a trunk between the two may cost the same on both sides.
+fn separate(trunks: &mut [Trunk]) -> bool {
+    let before = overlaps(trunks);
+    for right in 1..trunks.len() {
+        for left in 0..right {
+            if trunks[left].left_of(&trunks[right]) < OVERLAP {
+                continue;
+            }
+            trunks[left..=right].rotate_right(1);
+            if overlaps(trunks) < before {
+                return true;
+            }
+            trunks[left..=right].rotate_left(1);
+        }
+    }
+    false
+}
+
+/// Returns the number of pairs of trunks whose wires lie upon each other in the present order.
+fn overlaps(trunks: &[Trunk]) -> usize {
+    let mut count = 0;
+    for (at, trunk) in trunks.iter().enumerate() {
+        for other in &trunks[at + 1..] {
+            count += usize::from(trunk.left_of(other) >= OVERLAP);
+        }
+    }
+    count
 }
 
 #[cfg(test)]
@@ -154,6 +185,15 @@ mod tests {
         assert_eq!(assign(&mut trunks), 2);
         assert_eq!(tracks(&trunks), [(0, 1), (1, 0)]);
         assert_eq!(trunks[0].left_of(&trunks[1]), 0);
+    }
+
+    /// The straight wire between the two costs the same on both sides, so that no exchange of neighbours helps.
+    #[test]
+    fn a_wire_between_does_not_keep_wires_upon_each_other() {
+        let mut trunks = [trunk(0, 0.0, 50.0), trunk(1, 25.0, 25.0), trunk(2, 50.0, 100.0)];
+        assign(&mut trunks);
+        let track = |net| trunks.iter().find(|it| it.net == net).map(|it| it.track);
+        assert!(track(0) > track(2), "{trunks:?}");
     }
 
     #[test]
