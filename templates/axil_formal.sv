@@ -1,8 +1,8 @@
-// ${ name }$_axil_formal: what is proved of ${ name }$_axil
+// ${ name }$_axil_formal: formal properties of ${ name }$_axil
 //
-// For formal tools alone. The master keeps to AXI, and does what it likes beside that; in place of
-// the registers stands anything that answers requests at any time. To prove it, from a directory
-// that holds the files of both folders:
+// For formal tools only. The master obeys the rules of AXI and is arbitrary otherwise. A stub that
+// answers requests at arbitrary times replaces the registers. To prove the properties, run in a
+// directory with the files of both folders:
 //   $ yosys -q ${ name }$_axil_formal.ys
 //   $ yosys-smtbmc -s z3 --unroll -t 3 ${ name }$_axil_formal.smt2
 //   $ yosys-smtbmc -s z3 --unroll -i -t 2 ${ name }$_axil_formal.smt2
@@ -63,7 +63,7 @@ module ${ name }$_axil_formal (
         .irq(irq)
     );
 
-    // Internal signals that the proof refers to.
+    // Internal signals of the design that the assertions read.
     (* hierconn *) wire \dut.write_taken ;
     (* hierconn *) wire \dut.write ;
     (* hierconn *) wire \dut.read ;
@@ -74,10 +74,10 @@ module ${ name }$_axil_formal (
     (* hierconn *) wire [31:0] \dut.read_data ;
 <% include "registers_inside.sv" %>
 
-    // The reset comes first; the state before it is arbitrary.
+    // The reset is active in the first clock. The state before it is arbitrary.
     always @* if ($initstate) assume (!aresetn);
 
-    // What the master offers stays, as it is, until it is taken.
+    // Assumption: a valid of the master and its payload stay unchanged until the ready.
     always @(posedge aclk) if (!$initstate && $past(aresetn)) begin
         if ($past(s_axil_awvalid && !s_axil_awready)) begin
             assume (s_axil_awvalid && $stable(s_axil_awaddr));
@@ -90,13 +90,14 @@ module ${ name }$_axil_formal (
         end
     end
 
-    // Requests taken and answers given, modulo more than there can be under way.
+    // The numbers of accepted requests and of accepted responses, modulo 4. Fewer than 4 can be
+    // outstanding, so equal numbers modulo 4 are equal.
     reg [1:0] addresses;
     reg [1:0] words;
     reg [1:0] answers;
     reg [1:0] reads;
     reg [1:0] results;
-    // What the registers answered last.
+    // The error bits of the last answers of the registers.
     reg write_failed;
     reg read_failed;
     always @(posedge aclk) begin
@@ -118,20 +119,22 @@ module ${ name }$_axil_formal (
     end
 
     always @* if (!$initstate) begin
-        // Every request is answered once: what was taken and has no answer yet has one offered.
+        // Every request gets one response: an accepted request without an accepted response has a
+        // valid response.
         assert (addresses == answers + s_axil_bvalid);
         assert (words == addresses);
         assert (reads == results + s_axil_rvalid);
-        // An address is taken with its data, and when there is room for the answer.
+        // Address and data of a write are accepted together, and no response is valid in that
+        // clock.
         assert (s_axil_awready == s_axil_wready);
         if (s_axil_awready) assert (!s_axil_bvalid);
         if (s_axil_arready) assert (!s_axil_rvalid);
-        // A request reaches the registers as soon as there is room, and once.
+        // A request reaches the registers once, and as soon as its response has room.
         assert (dut.write == (s_axil_awvalid && s_axil_wvalid && !s_axil_awready
                 && (s_axil_bready || !s_axil_bvalid)));
         assert (dut.read == (s_axil_arvalid && !s_axil_arready
                 && (s_axil_rready || !s_axil_rvalid)));
-        // What reaches them is the request.
+        // The registers get the address, data and byte enables of the request.
         assert (\dut.registers.rst_n == aresetn && irq == \dut.registers.irq );
         if (dut.write) begin
             assert (\dut.registers.write_at == s_axil_awaddr[${ address_high }$:2]);
@@ -139,19 +142,19 @@ module ${ name }$_axil_formal (
             assert (\dut.registers.write_bytes == s_axil_wstrb);
         end
         if (dut.read) assert (\dut.registers.read_at == s_axil_araddr[${ address_high }$:2]);
-        // The answer is that of the registers.
+        // The response has the error bit of the registers.
         if (dut.write_taken || s_axil_bvalid) assert (s_axil_bresp == {write_failed, 1'b0});
         if (s_axil_arready || s_axil_rvalid) assert (s_axil_rresp == {read_failed, 1'b0});
     end
 
     always @(posedge aclk) if (!$initstate && $past(!$initstate)) begin
-        // A request is taken in the clock after the registers carried it out.
+        // The master sees ready in the clock after the registers executed the request.
         assert (s_axil_awready == $past(aresetn && dut.write_answer));
         assert (s_axil_arready == $past(aresetn && dut.read_answer));
         if (s_axil_awready && aresetn) assert (s_axil_awvalid && s_axil_wvalid);
         if (s_axil_arready && aresetn) assert (s_axil_arvalid);
         if ($past(aresetn)) begin
-            // An offer stays, as it is, until it is taken.
+            // A valid response stays unchanged until the master accepts it.
             if ($past(s_axil_bvalid && !s_axil_bready)) begin
                 assert (s_axil_bvalid && s_axil_bresp == $past(s_axil_bresp));
             end
@@ -159,7 +162,7 @@ module ${ name }$_axil_formal (
                 assert (s_axil_rvalid && s_axil_rresp == $past(s_axil_rresp));
                 assert (s_axil_rdata == $past(s_axil_rdata));
             end
-            // An answer is offered in the clock after the request was taken.
+            // The response is valid in the clock after the request was accepted.
             if ($past(s_axil_awready)) assert (s_axil_bvalid);
             if ($past(s_axil_arready)) begin
                 assert (s_axil_rvalid && s_axil_rdata == $past(dut.read_data));

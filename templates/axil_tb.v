@@ -42,7 +42,8 @@
         .irq(irq)
     );
 
-    // A write or a read; address, data and the readiness for the answer come in any order.
+    // Does one write or one read. Address, data and the ready for the response come in random
+    // order.
     task access(input [31:0] address, input writes, input [31:0] data, input [3:0] bytes);
         begin
             accesses = accesses + 1;

@@ -1,13 +1,13 @@
-// ${ name }$_axis_formal: what is proved of ${ name }$_axis
+// ${ name }$_axis_formal: formal properties of ${ name }$_axis
 //
-// For formal tools alone. All inputs are free, the sender's too. The core is abstracted to its
-// handshake: busy from the clock after start to done, results while it is busy,
-<%- if line.is_some() %> one more
-// than its length,
-<%- else %> exactly
-// one,
-<%- endif %> after any time and with any values. To prove it, from a directory that holds the
-// files of both folders:
+// For formal tools only. All inputs are arbitrary, also those from the sender. A stub with the
+// handshake of the core replaces the core: busy is high from the clock after start to done, and
+<%- if line.is_some() %>
+// during that time the stub shows length + 1 results, at arbitrary times and with arbitrary values.
+<%- else %>
+// during that time the stub shows one result, at an arbitrary time and with arbitrary values.
+<%- endif %>
+// To prove the properties, run in a directory with the files of both folders:
 //   $ yosys -q ${ name }$_axis_formal.ys
 //   $ yosys-smtbmc -s z3 --unroll -t 3 ${ name }$_axis_formal.smt2
 //   $ yosys-smtbmc -s z3 --unroll -i -t 2 ${ name }$_axis_formal.smt2
@@ -28,7 +28,7 @@ module ${ name }$ (
 <%- endfor %>
     reg run;
 <%- if overlaps %>
-    // start is heard in the clock of done too.
+    // The core accepts start in the clock of done too.
     wire idle = !run | done;
 <%- endif %>
 <%- if let Some(line) = line %>
@@ -54,7 +54,7 @@ module ${ name }$ (
     always @(posedge clk) run <= rst_n & (run ? ~done : start);
 <%- endif %>
 
-    // A computation begins with all of its operands, and when the one before is over.
+    // A computation starts only after the computation before it has ended, and loads all operands.
     always @(posedge clk) if (!$initstate && start) begin
         assert (<% if overlaps %>idle<% else %>!run<% endif %>);
 <%- for strobe in strobes %>
@@ -66,7 +66,8 @@ endmodule
 
 <%- if let Some(line) = line %>
 
-// In place of the buffer, any memory: at one place, whichever, it is known what it holds.
+// An abstract memory replaces the buffer. Only the word at one arbitrary address, `watched`, is
+// stored. A read of any other address gives an arbitrary value.
 module ${ name }$_axis_buffer #(
     parameter WIDTH = 1
 ) (
@@ -132,12 +133,12 @@ module ${ name }$_axis_formal (
         .m_axis_tready(m_axis_tready)
     );
 
-    // Internal signals that the proof refers to.
+    // Internal signals of the design that the assertions read.
 <%- for wire in inside %>
     ${ wire }$
 <%- endfor %>
 
-    // The reset comes first; the state before it is arbitrary.
+    // The reset is active in the first clock. The state before it is arbitrary.
     always @* if ($initstate) assume (!aresetn);
 <%- if keep %>
 
@@ -145,14 +146,15 @@ module ${ name }$_axis_formal (
 <%- endif %>
 <%- if let Some(line) = line %>
 
-    // Lines taken and begun, and points given, modulo more than there can be under way. The number
-    // of the point that is computed next is write_at.
+    // The numbers of lines that were accepted and started, and of points that came out, modulo more
+    // than can be on their way. write_at is the number of the next point of the core.
     reg [1:0] taken;
     reg [1:0] begun;
     reg [${ line.width }$:0] given;
 <%- else %>
 
-    // Points taken, begun, computed and given, modulo more than there can be under way.
+    // The numbers of points that were accepted, started, computed and that came out, modulo 8.
+    // Fewer than 8 points can be on their way.
     reg [2:0] taken;
     reg [2:0] begun;
     reg [2:0] computed;
@@ -178,7 +180,7 @@ module ${ name }$_axis_formal (
         end
     end
 
-    // One of them, whichever, and what belongs to it.
+    // One arbitrary <% if line.is_some() %>line<% else %>point<% endif %>, with its operands, tuser and results.
 <%- if line.is_some() %>
     (* anyconst *) reg [1:0] chosen_line;
 <%- else %>
@@ -190,7 +192,7 @@ module ${ name }$_axis_formal (
     reg [${ user_high }$:0] its_user;
     reg [${ packed_high }$:0] its_results;
 <%- if line.is_some() %>
-    // The point that is offered comes from the watched place of the buffer.
+    // Whether the transfer on m_axis comes from the watched address of the buffer.
     reg its_turn;
     reg [${ packed_high }$:0] its_turn_results;
 <%- endif %>
@@ -225,7 +227,8 @@ module ${ name }$_axis_formal (
 <%- endif %>
     end
 
-    // Clocks in which nothing is taken although the core is idle and what it computed is gone.
+    // Counts clocks without an accepted transfer although the core is idle and its results have
+    // left.
     reg [1:0] waited;
 <%- if line.is_some() %>
     wire idle = !dut.core.run && dut.write_at == dut.read_at;
@@ -239,17 +242,17 @@ module ${ name }$_axis_formal (
 
     always @(posedge aclk) if (!$initstate) begin
         if ($past(aresetn)) begin
-            // Progress: what is sent waits for the core and for the receiver alone.
+            // Progress: a transfer waits only for the core and for the receiver.
             if ($past(s_axis_tready && !s_axis_tvalid)) assert (s_axis_tready);
             assert (waited <= 2);
-            // What is offered stays, as it is, until it is taken.
+            // A valid transfer stays unchanged until the receiver accepts it.
             if ($past(m_axis_tvalid && !m_axis_tready)) begin
                 assert (m_axis_tvalid);
                 assert (m_axis_tdata == $past(m_axis_tdata));
                 assert (m_axis_tuser == $past(m_axis_tuser));
                 assert (m_axis_tlast == $past(m_axis_tlast));
             end
-            // An offer does not wait for the receiver.
+            // m_axis_tvalid does not wait for m_axis_tready.
 <%- if line.is_some() %>
             if ($past(dut.write_at != dut.read_at)) assert (m_axis_tvalid);
 <%- else %>
@@ -258,13 +261,14 @@ module ${ name }$_axis_formal (
         end else begin
             assert (!m_axis_tvalid && !s_axis_tready);
         end
-        // The core computes with what was sent, in its order.
+        // The core computes with the operands that were sent, in the same order.
         if (dut.start && begun == chosen_line) begin
 <%- for check in stub_checks %>
             assert (${ check }$);
 <%- endfor %>
         end
-        // What is given is what the core computed, in its order, and tuser and tlast with it.
+        // The transfers on m_axis carry the results of the core in the same order, each with its
+        // tuser and tlast.
 <%- if line.is_some() %>
         if (give && its_turn) begin
             assert ({m_axis_tuser, m_axis_tlast, m_axis_tdata} == its_turn_results);
@@ -276,7 +280,7 @@ module ${ name }$_axis_formal (
 <%- endif %>
     end
 
-    // Inductive invariants.
+    // Invariants that make the properties inductive.
     always @* if (!$initstate) begin
         assert (!(s_axis_tready && dut.waiting));
         if (waited != 0) assert (s_axis_tready || dut.waiting<% if line.is_none() %> && !dut.held<% endif %>);
@@ -291,11 +295,11 @@ module ${ name }$_axis_formal (
         end
 <%- if let Some(line) = line %>
         if (dut.core.computing && begun - 2'd1 == chosen_line) assert (dut.user == its_user);
-        // There is a place for everything that is to come.
+        // The buffer has room for all points of the line that are still to come.
         assert (dut.next_line - dut.write_at == dut.core.to_come);
         assert (stored <= reserved);
         assert (reserved <= ${ line.places() }$);
-        // Every point is given in its turn.
+        // The points leave the buffer in order.
         assert (given + m_axis_tvalid == dut.read_at);
         if (watched_from_read < stored) assert (dut.buffer.watched_word == its_results);
         if (m_axis_tvalid && its_turn) begin

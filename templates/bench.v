@@ -1,14 +1,16 @@
 // ${ name }$: self-checking bench of ${ module }$
 //
-// Run it with any simulator from a directory that holds the files of both folders, for example
+// To run it, copy the files of both folders into one directory and use any simulator, for example
 //   $ iverilog -g2012 -s ${ name }$ -o sim ${ module }$*.v
 //   $ ./sim
 // or, with Verilator 5,
 //   $ verilator --binary --timing --top ${ name }$ ${ module }$*.v
 //   $ obj_dir/V${ name }$
-// Inputs change on the falling edge of the clock; outputs are compared just before the rising edge.
+// Inputs change on the falling edge of the clock. The bench compares outputs just before the rising
+// edge.
 <%- if word_stride > 1 %>
-// To keep the bench short, its computations notice faults in one of ${ word_stride }$ words of the memories.
+// To keep the bench short, its points cover only one in ${ word_stride }$ words of the memories: a
+// wrong bit in another word may go unnoticed.
 <%- endif %>
 //
 // Generated files belong to their user, without conditions.
@@ -20,8 +22,8 @@ module ${ name }$ #(
     parameter EXPECTED_FILE = "${ expected_file }$"
 );
     localparam CLOCKS     = ${ clocks }$;
-    localparam KNOWN_FROM = ${ known_from }$;  // results are compared from this clock on
-    localparam REPORTED   = 20;  // differences that are printed
+    localparam KNOWN_FROM = ${ known_from }$;  // the first clock in which results are compared
+    localparam REPORTED   = 20;  // the number of differences to print
 
     reg [${ stimulus_last }$:0] ${ names.stimulus }$ [0:CLOCKS-1];
     reg [${ expected_last }$:0] ${ names.expected }$ [0:CLOCKS-1];
@@ -33,8 +35,8 @@ ${ line }$
 <%- endfor %>
 
     integer ${ names.clock }$;
-    // Initial values stand here and not in the process below: Verilator 5.006 takes a variable for
-    // constant after a loop with delays when the process has set it before the loop.
+    // The initial values are set here and not in the process below, because Verilator 5.006 treats
+    // a variable as constant after a loop with delays if the process has set it before the loop.
     integer ${ names.errors }$ = 0;
     reg ${ names.was_reset }$ = ${ reset_seen }$;  // the control unit is in a known state
 
@@ -45,7 +47,7 @@ ${ line }$
     );
 <%- if let Some(address) = address %>
 
-    // Prints the microinstruction that is executed.
+    // Prints the address and the name of the current microinstruction.
     task ${ names.write_microinstruction }$;
         begin
             $write("microinstruction ");

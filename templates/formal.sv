@@ -1,7 +1,7 @@
 // ${ name }$: properties of the handshake of ${ module }$
 //
-// For formal tools alone: every input is free. To prove it, from a directory that holds the files
-// of both folders:
+// For formal tools only. All inputs are arbitrary. To prove the properties, run in a directory with
+// the files of both folders:
 //   $ yosys -q ${ name }$.ys
 //   $ yosys-smtbmc ${ solver }$ -t ${ depth }$ ${ name }$.smt2
 //   $ yosys-smtbmc ${ solver }$ -i -t ${ depth }$ ${ name }$.smt2
@@ -27,17 +27,17 @@ ${ line }$
 <%- endfor %>
     );
 
-    // The reset comes first; the state before it is arbitrary.
+    // The reset is active in the first clock. The state before it is arbitrary.
     always @* if ($initstate) assume (!rst_n);
 <%- if let Some(age) = age %>
 
-    // Clocks since start.
+    // The number of clocks since start.
     reg ${ age.range }$ ${ age.name }$;
     always @(posedge clk) ${ age.name }$ <= <% if overlaps %>busy && !done<% else %>busy<% endif %> ? ${ age.name }$ + ${ age.one }$ : ${ age.one }$;
 <%- endif %>
 <%- if let Some(bounded) = bounded %>
 
-    // The microinstruction that is executed, and the counters of loops.
+    // The address of the current microinstruction, and the counters of loops.
 <%- for line in bounded.inside %>
     ${ line }$
 <%- endfor %>
@@ -45,20 +45,20 @@ ${ line }$
 
     always @(posedge clk) if (!$initstate) begin
         if (!$past(rst_n)) begin
-            // Idle after reset, whatever the state was before.
+            // After a reset the core is idle, whatever the state before it was.
             assert (!busy && !done);
 <%- if straight %>
 <%- if overlaps %>
         end else if (!$past(busy && !done)) begin
-            // Idle until start, which is heard in the clock of done too, and busy from the clock
-            // after it.
+            // The core is idle until start and busy from the clock after it. It accepts start in
+            // the clock of done too.
 <%- else %>
         end else if (!$past(busy)) begin
-            // Idle until start, busy from the clock after it.
+            // The core is idle until start and busy from the clock after it.
 <%- endif %>
             assert (busy == $past(start));
         end else begin
-            // Busy up to the clock of done.
+            // The core is busy up to the clock of done.
             assert (busy == !$past(done));
 <%- endif %>
         end
@@ -67,7 +67,7 @@ ${ line }$
 <%- if let Some(age) = age %>
 <%- if let Some(exact) = exact %>
         if ($past(rst_n)) begin
-            // The clocks that the manifest promises.
+            // valid and done are high exactly in the clocks that the manifest promises.
             assert (valid == (busy && ${ age.name }$ == ${ exact.valid }$));
             assert (done == (busy && ${ age.name }$ == ${ exact.done }$));
             if (busy) assert (${ age.name }$ <= ${ exact.last }$);
@@ -75,7 +75,8 @@ ${ line }$
 <%- endif %>
 <%- if let Some(bounded) = bounded %>
         if (busy) begin
-            // Every computation ends in time: its clocks so far, and the most that can follow.
+            // Every computation ends in time: the clocks so far, plus the most clocks from the
+            // current microinstruction to the end, are within the promised number.
             assert (${ age.name }$ <= ${ bounded.most }$);
             case (${ bounded.address }$)
 <%- for latest in bounded.latest %>
@@ -84,11 +85,11 @@ ${ line }$
             endcase
         end
 <%- if bounded.ends_with_result %>
-        // No computation ends without a result.
+        // Every computation ends with a result.
         if (done) assert (valid);
 <%- endif %>
 <%- if let Some(first) = bounded.first %>
-        // From the clock that the manifest promises a result a clock, to the end.
+        // From the clock that the manifest promises to the end, every clock has a result.
         assert (valid == (busy && ${ age.name }$ >= ${ first }$));
 <%- endif %>
 <%- endif %>

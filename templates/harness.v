@@ -1,10 +1,10 @@
-// ${ top }$: ${ name }$ with a register on each side of every port, and four pins
+// ${ top }$: ${ name }$ between shift registers, so that the whole design needs only four pins
 `default_nettype none
 
 module ${ top }$ (
     input  wire clk,
     input  wire in,    // shifted into the inputs of the core
-    input  wire take,  // takes what was captured; else it is shifted out
+    input  wire take,  // 1 loads the captured outputs, 0 shifts them out
     output wire out
 );
     reg  [${ fed - 1 }$:0] fed;

@@ -42,9 +42,9 @@ RTL = Path(__file__).resolve().parents[2] / "rtl_out" / "${ name }$"
 class ${ class }$Core(LiteXModule):
     """The core with CSRs.
 
-    Write the operands, then `start` in `control`; wait until `busy` in `status` is 0, or for the
-    event `done`; read the results. Operands can be written while it computes, for the next start; a
-    start while it computes is lost.
+    Write the operands, then `start` in `control`. Wait until `busy` in `status` is 0, or for the
+    event `done`. Then read the results. Software may write operands for the next start while the
+    core computes. A start while the core computes is ignored.
     """
 
     def __init__(self, platform, rtl=RTL):
@@ -55,10 +55,10 @@ class ${ class }$Core(LiteXModule):
         self.result_${ result.name }$ = CSRStatus(${ result.width }$, name="result_${ result.name }$")
 <%- endfor %>
         self.control = CSRStorage(
-            fields=[CSRField("start", description="Begins a computation.", pulse=True)]
+            fields=[CSRField("start", description="Starts a computation.", pulse=True)]
         )
         self.status = CSRStatus(
-            fields=[CSRField("busy", description="A computation is under way.")]
+            fields=[CSRField("busy", description="1 while the core computes.")]
         )
         self.ev = EventManager()
         self.ev.done = EventSourcePulse(description="The end of a computation.")
@@ -67,7 +67,7 @@ class ${ class }$Core(LiteXModule):
         # # #
 
         start, busy = Signal(), Signal()
-        # Busy from the clock of the start on, which the core sees.
+        # `busy` of the core is high only from the next clock on, so `start` is added.
         self.comb += [
             start.eq(self.control.fields.start),
             self.status.fields.busy.eq(start | busy),
@@ -98,10 +98,10 @@ class ${ class }$Core(LiteXModule):
 
 
 class ${ class }$Stream(LiteXModule):
-    """The core between two streams; the head of ${ stream.top.module }$.v has the bits of data.
+    """The core between two streams. The head of ${ stream.top.module }$.v lists the bits of `data`.
 <%- if !stream.last %>
 
-    A transfer into the sink is a line, and what comes out of the source a packet with its points.
+    A transfer into the sink is a line. The source gives a packet with the points of the line.
 <%- endif %>
     """
 
@@ -137,15 +137,17 @@ class ${ class }$Stream(LiteXModule):
 
 
 class ${ class }$Registers(LiteXModule):
-    """The core behind its own registers: `bus` for `soc.bus.add_slave`, and `irq`, a level.
+    """The core behind its own registers.
 
-    `soc.irq.add` takes it by the name that it has in the system.
+    Pass `bus` to `soc.bus.add_slave`. `irq` is level-sensitive.
+
+    Pass the name of this module in the system to `soc.irq.add`.
     """
 
     def __init__(self, platform, rtl=RTL):
         self.bus = bus = ${ bus.litex }$
         self.irq = Signal()
-        # Where the system looks for the interrupt of a module. Its registers enable and clear it.
+        # LiteX finds the interrupt of a module here. The core's registers enable and clear it.
         self.ev = SimpleNamespace(irq=self.irq)
 
         # # #

@@ -25,13 +25,13 @@ RESULTS = np.dtype([
 
 
 def load(directory=None):
-    """The compiled model in a directory, by default that of this file."""
+    """Loads the compiled model from a directory, by default from the directory of this file."""
     place = pathlib.Path(directory) if directory else pathlib.Path(__file__).resolve().parent
     return ctypes.CDLL(str(place / "${ name }$_model.so"))
 <% if line %>
 
 class Operands(ctypes.Structure):
-    """One line's operands, raw."""
+    """The raw operands of one line."""
 
     _fields_ = [
 <%- for field in operands %>
@@ -41,7 +41,7 @@ class Operands(ctypes.Structure):
 
 
 def line(library, *operands):
-    """The points of one line, a structured array of raw integers."""
+    """Returns the points of one line, as a structured array of raw integers."""
     model = library.${ name }$_model
     model.restype = ctypes.c_size_t
     model.argtypes = [Operands, ctypes.c_void_p, ctypes.c_size_t]
@@ -57,7 +57,7 @@ if __name__ == "__main__":
 <%- else %>
 
 def evaluate(library, operands):
-    """The results of a structured array of operands, raw integers both."""
+    """Returns the results of a structured array of operands. All numbers are raw integers."""
     operands = np.ascontiguousarray(operands, OPERANDS)
     results = np.empty(operands.shape, RESULTS)
     model = library.${ name }$_model_points

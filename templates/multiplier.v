@@ -5,7 +5,7 @@
 module ${ name }$ #(
     parameter A_WIDTH = 18,
     parameter B_WIDTH = 18,
-    parameter SIGNED = 0  // 1: factors and product are two's complement
+    parameter SIGNED = 0  // 1 if factors and product are two's complement, 0 if unsigned
 ) (
     input  wire                       clk,
     input  wire                       enable,

@@ -3,9 +3,9 @@
 `default_nettype none
 
 module ${ name }$ #(
-    parameter A_WIDTH = 18,  // at most 18, as B_WIDTH
+    parameter A_WIDTH = 18,  // at most 18, like B_WIDTH
     parameter B_WIDTH = 18,
-    parameter SIGNED = 0  // 1: factors and product are two's complement
+    parameter SIGNED = 0  // 1 if factors and product are two's complement, 0 if unsigned
 ) (
     input  wire                       clk,
     input  wire                       enable,
@@ -14,7 +14,7 @@ module ${ name }$ #(
     output wire [A_WIDTH+B_WIDTH-1:0] product
 );
 
-    // The factors with copies of their sign above them, or zeros.
+    // The factors, extended to 18 bits with copies of the sign bit or with zeros.
     wire is_signed = SIGNED != 0;
     wire [35:0] a_wide = {{36 - A_WIDTH{is_signed & a[A_WIDTH-1]}}, a};
     wire [35:0] b_wide = {{36 - B_WIDTH{is_signed & b[B_WIDTH-1]}}, b};

@@ -1,7 +1,7 @@
-// ${ name }$: what is proved of the handshake of ${ module }$
+// ${ name }$: formal properties of the handshake of ${ module }$
 //
-// For formal tools alone: every input is free. To prove it, from a directory that holds the files
-// of both folders:
+// For formal tools only. All inputs are arbitrary. To prove the properties, run in a directory with
+// the files of both folders:
 //   $ yosys -q ${ name }$.ys
 //   $ yosys-smtbmc --unroll -s z3 -t ${ depth }$ ${ name }$.smt2
 //   $ yosys-smtbmc --unroll -s z3 -i -t ${ depth }$ ${ name }$.smt2
@@ -27,19 +27,19 @@ ${ line }$
 <%- endfor %>
     );
 
-    // The reset comes first; the state before it is arbitrary.
+    // The reset is active in the first clock. The state before it is arbitrary.
     always @* if ($initstate) assume (!rst_n);
 
-    // Which stage of the pipeline has a point.
+    // The stages that hold a point.
 <%- for line in inside %>
     ${ line }$
 <%- endfor %>
     wire [${ stages }$:1] ${ present }$ = ${ valid }$;
 
-    // The same for a queue beside it: all points in it move together, unless a result waits.
+    // A reference model of these bits. All points advance together, unless a result waits.
     wire ${ moves }$ = ${ moves_when }$;
 <%- if let Some(turn) = turn %>
-    reg  ${ turn.range }$${ turn.name }$;  // points are taken at 0
+    reg  ${ turn.range }$${ turn.name }$;  // the core accepts points at 0
     always @(posedge clk) begin
         if (!rst_n) ${ turn.name }$ <= 0;
         else if (${ moves }$) ${ turn.name }$ <= ${ turn.next }$;
@@ -52,7 +52,8 @@ ${ line }$
     end
 <%- if let Some(side) = side %>
 
-    // One point, whichever it is: ${ chosen }$ is free. Where it is, and what travels with it.
+    // Follows one arbitrary point, which the free input ${ chosen }$ chooses: its stage and its
+    // side bits.
     wire ${ begins }$ = ${ offered }$ & ${ moves }$ & ${ chosen }$ & ~|${ followed }$;
     reg  [${ stages }$:1] ${ followed }$;
     reg  ${ side.range }$ ${ side.tag }$;
@@ -64,20 +65,20 @@ ${ line }$
 <%- endif %>
 
     always @(posedge clk) if (!$initstate) begin
-        // No point is lost, none is doubled, and none comes sooner or later than the stages let it:
-        // out_valid follows from the points that were taken, whatever out_ready is.
+        // No point is lost or duplicated, and every point takes the same number of moves: out_valid
+        // equals that of the reference model, whatever out_ready does.
         assert (${ present }$ == ${ queue }$);
         assert (out_valid == ${ queue }$[${ stages }$]);
 <%- if let Some(turn) = turn %>
-        // A point is taken in its turn, whenever no result waits.
+        // The core accepts a point in slot 0 whenever no result waits.
         assert (${ turn.slot }$ == ${ turn.name }$);
         assert (in_ready == (${ moves }$ & (${ turn.name }$ == 0)));
 <%- else if stall %>
-        // A point is taken whenever no result waits.
+        // The core accepts a point whenever no result waits.
         assert (in_ready == ${ moves }$);
 <%- endif %>
 <%- if stall %>
-        // A result that waits stays as it is.
+        // A waiting result stays unchanged.
         if ($past(rst_n && out_valid && !out_ready)) begin
             assert (out_valid);
 <%- for result in results %>
@@ -86,7 +87,7 @@ ${ line }$
         end
 <%- endif %>
 <%- if let Some(side) = side %>
-        // What was offered with a point comes out with it: none overtakes another.
+        // The side bits of a point come out with that point, so no point overtakes another.
         assert ((${ followed }$ & ~${ queue }$) == ${ empty }$);
 <%- for stage in side.stages %>
         if (${ followed }$[${ stage.number }$]) assert (${ stage.value }$ == ${ side.tag }$);

@@ -1,9 +1,9 @@
-// ${ list.name }$: computes with ${ list.module }$ what a file lists
+// ${ list.name }$: runs ${ list.module }$ on the points of a file
 //
-// Every line of POINTS_FILE has the operands of one computation in hexadecimal, in port order. For each
-// result, ${ list.name }$ writes a line to RESULTS_FILE with the outputs in hexadecimal, in port order, and
-// after the last result of a computation a line with a single dot.
-// Inputs change on the falling edge of the clock; outputs are read just before the rising edge.
+// Each line of POINTS_FILE holds the operands of one computation in hexadecimal, in port order. For
+// each result, the module writes a line to RESULTS_FILE with the outputs in hexadecimal, in port
+// order. After the last result of a computation it writes a line with a single dot. Inputs change
+// on the falling edge of the clock. Outputs are read just before the rising edge.
 
 `default_nettype none
 
@@ -11,7 +11,7 @@ module ${ list.name }$ #(
     parameter POINTS_FILE  = "${ list.points_file }$",
     parameter RESULTS_FILE = "${ list.results_file }$"
 );
-    localparam LIMIT = ${ list.limit }$;  // clocks that one computation may take
+    localparam LIMIT = ${ list.limit }$;  // the most clocks of one computation
 
     reg clk = 1'b0;
 <%- for line in list.declarations %>
@@ -54,7 +54,7 @@ ${ line }$
 <%- endfor %>
         );
         while (${ names.read }$ == ${ list.operands.len() }$) begin
-            // The registers take the operands in the clock that takes `start`.
+            // The operand registers load in the same clock in which `start` is high.
             ${ start }$ = 1'b1;
 <%- for strobe in strobes %>
             ${ strobe }$ = 1'b1;

@@ -1,9 +1,9 @@
-// ${ list.name }$: computes with ${ list.module }$ what a file lists
+// ${ list.name }$: runs ${ list.module }$ on the points of a file
 //
-// Every line of POINTS_FILE has the operands of one point in hexadecimal, in port order. ${ list.name }$
-// offers a point ${ every }$, and writes a line for each to RESULTS_FILE, with the outputs in
-// hexadecimal, in port order, and a line with a single dot behind it.
-// Inputs change on the falling edge of the clock; outputs are read just before the rising edge.
+// Each line of POINTS_FILE holds the operands of one point in hexadecimal, in port order. The
+// module offers a point ${ every }$. For each point it writes two lines to RESULTS_FILE: the
+// outputs in hexadecimal, in port order, and a single dot. Inputs change on the falling edge of the
+// clock. Outputs are read just before the rising edge.
 
 `default_nettype none
 
@@ -11,7 +11,7 @@ module ${ list.name }$ #(
     parameter POINTS_FILE  = "${ list.points_file }$",
     parameter RESULTS_FILE = "${ list.results_file }$"
 );
-    localparam LIMIT = ${ list.limit }$;  // clocks from the last point to the last results
+    localparam LIMIT = ${ list.limit }$;  // the most clocks from the last point to its results
 
     reg clk = 1'b0;
 <%- for line in list.declarations %>

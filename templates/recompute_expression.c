@@ -11,7 +11,7 @@
  *   cc -O2 ${ name }$_recompute.c -lmpfr -lgmp -lm -o recompute && ./recompute${ memory_argument }$
  *
 <%- if memories.is_empty() %>
- * The core has no memory files, so that no memory is checked: ${ without_memories }$
+ * The core has no memory files, so the program checks no memory: ${ without_memories }$
 <%- else %>
  * The argument is the directory with the memory files.
 <%- endif %>

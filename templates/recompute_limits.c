@@ -1,17 +1,20 @@
-/* Bits of a number. There are more, up to the most, where the limits are further apart than 2^-CLOSE units. */
+/* The precision of MPFR numbers in bits. The program raises it, up to MOST_PRECISION, while the ends of an interval are
+ * more than 2^-CLOSE units apart. */
 enum { PRECISION = 96, MOST_PRECISION = 6144, CLOSE = 20 };
 
-/* The limits of a value; not a number where it has none. Where the value is known to be rational, it is there too. */
+/* An interval that contains a value; its ends are NaN if the value does not exist. If the value is known to be rational, the
+ * exact value is stored too. */
 typedef struct {
     mpfr_t low, high;
     mpq_t exact;
     int known;
 } limits;
 
-/* Whether rational values are kept: for operands that no precision decides, as 30 in floor(x * 0.1). */
+/* Whether exact rational values are stored. Some operands need them, because no precision decides them: for example,
+ * x = 30 in floor(x * 0.1). */
 static int exactly;
 
-/* What one evaluation makes, and how many of it are in use. */
+/* The intervals of one evaluation, and the number of intervals in use. */
 static limits values[${ values }$];
 static size_t used;
 
@@ -22,7 +25,7 @@ static inline limits *fresh(void)
     return it;
 }
 
-/* The limits of a value that is known. */
+/* The interval of an exact value. */
 static inline limits *known(limits *it)
 {
     mpfr_set_q(it->low, it->exact, MPFR_RNDD);
@@ -31,7 +34,7 @@ static inline limits *known(limits *it)
     return it;
 }
 
-/* A value whose limits are equal is known. */
+/* If both ends of the interval are equal, the value is exact. */
 static inline limits *noticed(limits *it)
 {
     if (exactly && mpfr_number_p(it->low) && mpfr_equal_p(it->low, it->high)) {
@@ -72,7 +75,7 @@ static int holds_zero(const limits *a)
     return mpfr_sgn(a->low) <= 0 && mpfr_sgn(a->high) >= 0;
 }
 
-/* Digits with a point and a power of ten. */
+/* The value of a number in decimal notation, such as 1.5e-3. */
 static inline limits *known_number(const char *text)
 {
     limits *it = fresh();
@@ -123,7 +126,7 @@ static inline limits *constant(of_none *function)
     return it;
 }
 
-/* A function that rises with its operand. */
+/* A function that increases with its operand. */
 static inline limits *rising(of_one *function, const limits *a)
 {
     limits *it = fresh();
@@ -132,7 +135,7 @@ static inline limits *rising(of_one *function, const limits *a)
     return noticed(it);
 }
 
-/* A function that rises with both. */
+/* A function that increases with both operands. */
 static inline limits *rising_in_both(of_two *function, const limits *a, const limits *b)
 {
     limits *it = fresh();
@@ -141,7 +144,7 @@ static inline limits *rising_in_both(of_two *function, const limits *a, const li
     return it;
 }
 
-/* A function that is monotone in each of two operands: its limits are at their limits. */
+/* A function that is monotone in each of two operands: its extremes are at the ends of their intervals. */
 static inline limits *at_corners(of_two *function, const limits *a, const limits *b)
 {
     limits *it = fresh(), *corner = fresh();
@@ -159,7 +162,7 @@ static inline limits *at_corners(of_two *function, const limits *a, const limits
     return it;
 }
 
-/* A function with a slope from -1 to 1: its value at the lower limit, give or take the distance of the limits. */
+/* A function with a slope from -1 to 1: its value at the lower end, plus or minus the width of the interval. */
 static inline limits *wave(of_one *function, const limits *a)
 {
     limits *it = fresh(), *distance = fresh();
@@ -218,7 +221,7 @@ static inline limits *divide(const limits *a, const limits *b)
     return holds_zero(b) ? without_value() : at_corners(mpfr_div, a, b);
 }
 
-/* mpfr_min and mpfr_max take what is not a number for missing. */
+/* mpfr_min and mpfr_max ignore a NaN, which must not get lost here. */
 static inline int smaller(mpfr_ptr it, mpfr_srcptr a, mpfr_srcptr b, mpfr_rnd_t rounding)
 {
     return mpfr_set(it, mpfr_nan_p(a) || mpfr_less_p(a, b) ? a : b, rounding);
@@ -249,7 +252,7 @@ static inline limits *absolute(const limits *a)
 {
     limits *it = maximum(a, negate(a));
     if (mpfr_sgn(a->low) < 0 && mpfr_sgn(a->high) > 0) {
-        mpfr_set_zero(it->low, 1); /* so that a root of it has limits */
+        mpfr_set_zero(it->low, 1); /* so that its root has an interval */
     }
     return it;
 }
@@ -259,7 +262,7 @@ static inline limits *tangent(const limits *a)
     return divide(wave(mpfr_sin, a), wave(mpfr_cos, a));
 }
 
-/* What is left of a when multiples of b are taken away, between 0 and b. */
+/* The remainder of a divided by b, between 0 and b. */
 static inline limits *remainder_of(const limits *a, const limits *b)
 {
     limits *times = divide(a, b);
@@ -277,7 +280,7 @@ static inline limits *remainder_of(const limits *a, const limits *b)
     return between(minimum(none, b)->low, maximum(none, b)->high);
 }
 
-/* The direction of the point (x, y), from -pi to pi: by the half plane in which the point is. */
+/* The direction of the point (x, y), from -pi to pi. The half plane of the point selects the formula. */
 static inline limits *direction(const limits *y, const limits *x)
 {
     const limits *half_turn = constant(mpfr_const_pi);
@@ -321,15 +324,15 @@ static inline limits *power(const limits *a, const limits *b)
     }
     limits *it = at_corners(mpfr_pow, a, b);
     if (whole && holds_zero(a) && mpfr_sgn(it->low) > 0 && mpfr_sgn(b->low) > 0) {
-        mpfr_set_zero(it->low, 1); /* an even power falls and rises */
+        mpfr_set_zero(it->low, 1); /* an even power decreases and then increases */
     }
     return noticed(it);
 }
 
-/* Whether a comparison holds. */
+/* The outcome of a comparison of intervals. */
 typedef enum { NO, YES, UNKNOWN } truth;
 
-/* Whether left exceeds right, or is equal to it if that counts. */
+/* Whether left exceeds right, or equals right if `or_equal` is set. */
 static inline truth exceeds(const limits *left, const limits *right, int or_equal)
 {
     const limits *by = subtract(left, right);
@@ -342,7 +345,8 @@ static inline truth exceeds(const limits *left, const limits *right, int or_equa
     return UNKNOWN;
 }
 
-/* The one where left exceeds right, or is equal to it if that counts, else the other. */
+/* Returns `one` if left exceeds right, or equals right if `or_equal` is set, and otherwise `other`. If the comparison is unknown,
+ * the interval contains both. */
 static inline limits *choose(const limits *left, const limits *right, int or_equal, const limits *one, const limits *other)
 {
     switch (exceeds(left, right, or_equal)) {
@@ -355,7 +359,7 @@ static inline limits *choose(const limits *left, const limits *right, int or_equ
     }
 }
 
-/* A raw operand or result, whose last place has the weight 2^exponent. */
+/* The interval of a raw operand or result, whose last place has the weight 2^exponent. */
 static inline limits *raw_number(int64_t raw, int exponent)
 {
     limits *it = fresh();
@@ -364,11 +368,11 @@ static inline limits *raw_number(int64_t raw, int exponent)
     return noticed(it);
 }
 
-/* The outcome of an attempt to limit the error of a result. */
+/* The outcome of an attempt to bound the error of a result. */
 typedef enum { UNDECIDED, DECIDED, NOT_PROMISED } outcome;
 
-/* Sets the largest error that a result can have, in units of its last place 2^exponent. It is decided if the formula has a value,
- * and the limits of the value are close enough. */
+/* Sets `error` to an upper bound of the error of a result, in units of its last place 2^exponent. The outcome is DECIDED if the
+ * formula has a value and its interval is narrow enough. */
 static outcome limit_error(mpfr_ptr error, const limits *value, int64_t result, int exponent)
 {
     if (!mpfr_number_p(value->low) || !mpfr_number_p(value->high)) {
@@ -396,10 +400,10 @@ static void set_precision(mpfr_prec_t bits)
     }
 }
 
-/* A function that limits the error of a result for raw operands, with the present precision. */
+/* A function that bounds the error of a result for raw operands, with the current precision. */
 typedef outcome attempt(mpfr_ptr error, const int64_t *operands, int64_t result);
 
-/* Attempts it with more and more bits, and with rational values, until the error is decided. */
+/* Bounds the error with increasing precision, and then with rational values, until the outcome is not UNDECIDED. */
 static outcome has_error(attempt *with_present_precision, mpfr_ptr error, const int64_t *operands, int64_t result)
 {
     outcome reached = with_present_precision(error, operands, result);

@@ -18,7 +18,7 @@ static void check_memory(const char *directory, const char *name, const void *ta
             char *end;
             const uint64_t word = strtoull(token, &end, 16);
             if (!isxdigit((unsigned char)token[0]) || *end != '\0' || strpbrk(token, "xX") != NULL) {
-                printf("%s: word %zu is no hexadecimal number: %s\n", path, at, token);
+                printf("%s: word %zu is not a hexadecimal number: %s\n", path, at, token);
                 exit(1);
             }
             const uint64_t own = at >= count  ? ~word
@@ -27,14 +27,14 @@ static void check_memory(const char *directory, const char *name, const void *ta
                                  : bytes == 4 ? ((const uint32_t *)table)[at]
                                               : ((const uint64_t *)table)[at];
             if (word != own) {
-                printf("%s: word %zu is not that of the model\n", path, at);
+                printf("%s: word %zu differs from the model\n", path, at);
                 exit(1);
             }
         }
     }
     fclose(file);
     if (at != count) {
-        printf("%s: %zu words, where the model has %zu\n", path, at, count);
+        printf("%s: %zu words, but the model has %zu\n", path, at, count);
         exit(1);
     }
 }

@@ -169,7 +169,7 @@ static inline near between_from_library(double low, double high)
     return (near){middle, wider(fabs(high - low) / 2 + (fabs(low) + fabs(high)) * LIBRARY)};
 }
 
-/* A function of the C library that rises with its operand. */
+/* A function of the C library that increases with its operand. */
 static inline near near_rising(double (*function)(double), near a)
 {
     if (a.margin == 0) {
@@ -242,7 +242,7 @@ static inline near near_power(near a, near b)
     return between_from_library(low, high);
 }
 
-/* Whether left exceeds right, or is equal to it if that counts. */
+/* Whether left exceeds right, or equals right if `or_equal` is set. */
 static inline truth near_exceeds(near left, near right, int or_equal)
 {
     const near by = near_subtract(left, right);
@@ -255,7 +255,8 @@ static inline truth near_exceeds(near left, near right, int or_equal)
     return UNKNOWN;
 }
 
-/* The one where left exceeds right, or is equal to it if that counts, else the other. */
+/* Returns `one` if left exceeds right, or equals right if `or_equal` is set, and otherwise `other`. If the comparison is unknown,
+ * so is the result. */
 static inline near near_choose(near left, near right, int or_equal, near one, near other)
 {
     switch (near_exceeds(left, right, or_equal)) {

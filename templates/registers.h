@@ -24,14 +24,15 @@ extern "C" {
 <%- endif %>
 <%- endfor %>
 <% endfor %>
-/* What ${ prefix }$_REG_ID and ${ prefix }$_REG_CONFIGURATION read. */
+/* The values that ${ prefix }$_REG_ID and ${ prefix }$_REG_CONFIGURATION must read as. */
 <%- for view in registers %>
 <%- if view.register.name == "id" || view.register.name == "configuration" %>
 #define ${ prefix }$_${ view.constant }$ ${ format!("0x{:08x}", view.fields[0].bits.reset) }$u
 <%- endif %>
 <%- endfor %>
 
-/* Writes and reads a register. A read of a result waits for the computation that is under way. */
+/* Writes or reads the register at `offset`. A read of a result waits until the computation has
+ * ended. */
 static inline void ${ name }$_write(volatile uint32_t *base, uint32_t offset, uint32_t value)
 {
     base[offset / 4u] = value;
@@ -42,20 +43,21 @@ static inline uint32_t ${ name }$_read(const volatile uint32_t *base, uint32_t o
     return base[offset / 4u];
 }
 
-/* Bits of a register that was read, by the mask and the shift of them. */
+/* Extracts a field from the value of a register, with the MASK and the SHIFT of the field. */
 static inline uint32_t ${ name }$_bits(uint32_t value, uint32_t mask, unsigned shift)
 {
     return (value & mask) >> shift;
 }
 
-/* value * 2^-from as the nearest multiple of 2^-to, ties upward, in its units; from, to < 64. */
+/* Converts a number from `from` to `to` fraction bits, each below 64. Rounds to nearest, ties up,
+ * and clamps the result to least ... most. */
 static inline int64_t
 ${ name }$_fixed(int64_t value, unsigned from, unsigned to, int64_t least, int64_t most)
 {
     int64_t whole = value;
     if (from > to) {
         const unsigned drop = from - to;
-        /* Without a sum that could overflow: down, and up again where a half or more was lost. */
+        /* Rounds down, then adds the dropped half. Adding a half first could overflow. */
         whole = value >> drop;
         whole += (value >> (drop - 1u)) & 1;
     } else {
@@ -71,8 +73,8 @@ ${ name }$_fixed(int64_t value, unsigned from, unsigned to, int64_t least, int64
     return whole < least ? least : whole > most ? most : whole;
 }
 <% for operand in operands %>
-/* ${ operand.name }$, ${ operand.format }$: a fixed-point number with that many fraction bits as the core
- * takes it, saturated. */
+/* Converts a fixed-point number with `fraction_bits` fraction bits to the raw value of
+ * ${ operand.name }$ (${ operand.format }$), clamped to its domain. */
 #define ${ prefix }$_${ operand.constant }$_FRACTION ${ operand.format.frac }$
 static inline uint${ operand.bits() }$_t
 ${ name }$_${ operand.name }$_from_fixed(int64_t value, unsigned fraction_bits)

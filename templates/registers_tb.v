@@ -1,14 +1,14 @@
 // ${ top }$_tb: self-checking bench of ${ top }$
 //
-// Run it with any simulator from a directory that holds the files of both folders, for example
+// To run it, copy the files of both folders into one directory and use any simulator, for example
 //   $ iverilog -g2012 -s ${ top }$_tb -o sim ${ name }$*.v
 //   $ ./sim
 // or, with Verilator 5,
 //   $ verilator --binary --timing --top ${ top }$_tb ${ name }$*.v
 //   $ obj_dir/V${ top }$_tb
-// The points of the core's bench are written and started in turn in each way that there is, and the
-// results are read. Inputs change on the falling edge of the clock; outputs are read just before
-// the rising edge.
+// The bench writes the operands of points of the core's bench, starts each computation in one of
+// the possible ways in turn, and reads the results. Inputs change on the falling edge of the clock.
+// Outputs are read just before the rising edge.
 //
 // Generated files belong to their user, without conditions.
 
@@ -19,12 +19,12 @@ module ${ top }$_tb #(
     parameter RECEIVED_FILE = "${ name }$_received.mem"
 );
     localparam POINTS   = ${ points }$;
-    localparam EVERY    = ${ every }$;  // one of so many is computed
-    localparam PARTS    = ${ parts.len() }$;  // registers of operands
-    localparam RESULTS  = ${ results.len() }$;  // registers of results
-    localparam WORDS    = ${ words }$;  // registers
-    localparam LIMIT    = ${ limit }$;  // clocks until an answer
-    localparam REPORTED = 20;  // differences that are printed
+    localparam EVERY    = ${ every }$;  // the bench computes one point in so many
+    localparam PARTS    = ${ parts.len() }$;  // the number of operand registers
+    localparam RESULTS  = ${ results.len() }$;  // the number of result registers
+    localparam WORDS    = ${ words }$;  // the number of registers
+    localparam LIMIT    = ${ limit }$;  // the most clocks until an answer
+    localparam REPORTED = 20;  // the number of differences to print
     localparam [31:0] STATUS = 32'h10, CONTROL = 32'h14, ENABLE = 32'h18, PENDING = 32'h1c;
 
     reg [${ in_high }$:0] sent [0:POINTS-1];
@@ -32,7 +32,7 @@ module ${ top }$_tb #(
     reg [${ in_high }$:0] point;
     reg [${ out_high }$:0] result;
 
-    // Initial values stand here: see ${ name }$_tb.
+    // The initial values are set here: ${ name }$_tb.v says why.
     reg clk = 1'b0;
     reg reset = 1'b1;
     reg irq_enabled = 1'b0;
@@ -66,7 +66,7 @@ module ${ top }$_tb #(
         end
     endtask
 
-    // A clock, to just before its rising edge; outputs are as they are then.
+    // Waits until just before the next rising edge of the clock, when outputs can be read.
     task wait_a_clock;
         begin
             waited = waited + 1;
@@ -92,7 +92,8 @@ module ${ top }$_tb #(
             default: part_at = 32'd0;
         endcase
     endfunction
-    // What is written, with any bits above the operand, and what is read back.
+    // part_word is the word that the bench writes, with arbitrary bits above the operand. part_mask
+    // has the bits that read back.
     function [31:0] part_word(input integer number);
         case (number)
 <%- for part in parts %>
@@ -143,7 +144,7 @@ module ${ top }$_tb #(
         end
     endtask
 
-    // Both ways, an error.
+    // A write must fail. A read must fail too if `reads` is 1, and must not if it is 0.
     task expect_error(input [31:0] address, input reads);
         begin
             access(address, 1'b1, 32'hffff_ffff, 4'hf);
@@ -157,7 +158,7 @@ module ${ top }$_tb #(
         for (part = 0; part < PARTS; part = part + 1) write(part_at(part), part_word(part), 4'hf);
     endtask
 
-    // Byte by byte, with other data beside each.
+    // Writes each byte of a word alone, with wrong data in the bytes that are not enabled.
     task write_bytes;
         for (part = 0; part < PARTS; part = part + 1) begin
             write(part_at(part), part_word(part) ^ 32'hffff_ff00, 4'b0001);
@@ -179,7 +180,7 @@ module ${ top }$_tb #(
         end
     endtask
 
-    // The registers as a reset leaves them.
+    // Reads all registers and expects their values after a reset.
     task expect_reset;
         begin
             point = 0;
@@ -193,7 +194,8 @@ module ${ top }$_tb #(
         end
     endtask
 
-    // The start word is the part's; nothing starts but by a write of its register with a byte.
+    // Makes the register of the chosen part the start register, and writes it. Before that, it
+    // checks that writes in which the byte of the start bit is not enabled start nothing.
     task start_by_write(input integer chosen);
         begin
             write(CONTROL, 32'd2 | part_at(chosen) << 6, 4'b1111);
@@ -233,7 +235,7 @@ module ${ top }$_tb #(
                 write(CONTROL, 32'd1, 4'b0001);
             end
             if (number / EVERY % 4 == 2) begin
-                // Those of another point do not matter now.
+                // The operands of another point must not change this computation.
                 point = ~point;
                 write_operands;
                 expect_operands;
@@ -251,7 +253,7 @@ module ${ top }$_tb #(
             expect_results;
             number = number + EVERY;
         end
-        // A reset ends what is under way.
+        // A reset ends the computation.
         write(ENABLE, 32'd1, 4'b1111);
         write(CONTROL, 32'd1, 4'b0001);
         reset = 1'b1;

@@ -22,7 +22,7 @@
         .irq(irq)
     );
 
-    // A cycle, after clocks with one of its two signals alone.
+    // Does one bus cycle, after clocks in which only one of cyc and stb is high.
     task access(input [31:0] address, input writes, input [31:0] data, input [3:0] bytes);
         begin
             accesses = accesses + 1;
@@ -50,7 +50,7 @@
                 got = dat_o;
                 @(negedge clk);
             end
-            // The master may go on at once.
+            // The next cycle may begin in the next clock.
             cyc = random[3];
             stb = 1'b0;
             we = random[4];

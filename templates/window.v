@@ -1,4 +1,4 @@
-// ${ name }$: runs ${ bench }$ and writes the waveform of clocks ${ from }$ to ${ to }$ to ${ file }$
+// ${ name }$: runs ${ bench }$ and records the waveform of clocks ${ from }$ to ${ to }$ in ${ file }$
 
 `default_nettype none
 

@@ -1,13 +1,13 @@
-"""Drives a core that Glint generated, from Python, by its manifest alone.
+"""Drives a core that Glint generated from Python. All facts come from the manifest of the core.
 
-`Manifest` reads rtl_out/<name>/<name>.json; `Core` plays the host of a core with a microprogram,
-and `Pipeline` that of one that takes a point a clock. Both check the handshake in every clock.
-`Stream` and `Registers` are the system around a core with that interface. The tests below hold for
-every core of their kind. A bench, such as testbench/<name>/test_<name>.py,
-imports them, adds its own, and has a simulator `run` them.
+`Manifest` reads rtl_out/<name>/<name>.json. `Core` drives a core with a microprogram, and
+`Pipeline` drives a pipeline. Both check the handshake in every clock. `Stream` and `Registers` drive the cores
+with these interfaces. The tests below apply to every core of their kind. A bench, such as
+testbench/<name>/test_<name>.py, imports the tests, adds its own, and calls `run`.
 
-Inputs change after the falling edge of the clock; outputs are read at the rising edge, as they
-were before it. Needs cocotb 2.1 and Icarus Verilog: cocotb refuses Verilator before 5.036.
+Inputs change after the falling edge of the clock. Outputs are read at the rising edge, with their
+values before the edge. The module needs cocotb 2.1 and Icarus Verilog; cocotb 2.1 refuses Verilator
+before 5.036.
 
 Generated files belong to their user, without conditions.
 """
@@ -29,32 +29,32 @@ from cocotb.clock import Clock
 from cocotb.triggers import FallingEdge, RisingEdge
 
 ROOT = Path(__file__).resolve().parents[1]
-"""The directory that holds rtl_out/ and testbench/."""
+"""The directory with rtl_out/ and testbench/."""
 
 LONGEST = 1 << 16
-"""More clocks than any computation takes."""
+"""A number of clocks within which every computation ends."""
 
 Raw = dict[str, int]
-"""Ports by name, with the integers that their bits denote."""
+"""The raw integer on each port, by name."""
 
 
 @dataclass
 class Computation:
-    """What a computation shows. The clock that takes `start` is number 0."""
+    """The outputs of one computation. Clock 0 is the clock in which the core accepts `start`."""
 
     valid: list[int]
     """The clocks in which `valid` is high."""
     results: list[Raw]
-    """The outputs in each of them."""
+    """The outputs in each clock of `valid`."""
     done: int
     """The clock in which `done` is high."""
 
 
 class Manifest:
-    """What a core promises: ports, timing, accuracy, and computations with their results."""
+    """The manifest of a core: ports, timing, accuracy, and computations with their results."""
 
     def __init__(self, name: str) -> None:
-        """Read the manifest of core `name`."""
+        """Reads the manifest of core `name`."""
         self.directory = ROOT / "rtl_out" / name
         facts = json.loads((self.directory / f"{name}.json").read_text(encoding="utf-8"))
         self.ports: dict[str, dict[str, Any]] = {port["name"]: port for port in facts["ports"]}
@@ -66,10 +66,10 @@ class Manifest:
         }
         self.timing: dict[str, int | None] = facts["timing"]
         self.overlaps: bool = facts.get("control", {}).get("operands_buffered", False)
-        """Whether `start` is heard in the clock of `done` too."""
+        """Whether the core accepts `start` in the clock of `done` too."""
         self.latency: int | None = facts.get("pipeline", {}).get("latency")
         self.interval: int = facts.get("pipeline", {}).get("interval", 1)
-        """Clocks from a point to the next at least."""
+        """The least number of clocks from one point to the next."""
         accuracy = facts["accuracy"]
         self.domain: dict[str, dict[str, int]] = accuracy["domain"]
         self.outputs: dict[str, str | None] = accuracy["outputs"]
@@ -93,37 +93,40 @@ class Manifest:
         return operands, Computation(point["valid"], results, point["done"])
 
     def _words(self, rom: dict[str, Any]) -> list[float]:
-        """The words of a ROM of unsigned values; `format` is u<integer bits>.<fraction bits>."""
+        """Returns the words of a ROM as numbers. `format` is u<integer bits>.<fraction bits>."""
         fraction_bits = int(rom["format"].rpartition(".")[2])
-        if "words" in rom:  # Of a ROM whose contents stand in the Verilog.
+        if "words" in rom:  # The contents of this ROM are in the Verilog.
             return [word / 2**fraction_bits for word in rom["words"]]
         lines = (self.directory / rom["file"]).read_text(encoding="utf-8").splitlines()
         words = [line.partition("//")[0].replace("_", "").strip() for line in lines]
         return [int(word, rom["radix"]) / 2**fraction_bits for word in words if word]
 
     def named(self, role: str) -> str:
-        """The one port of a role."""
+        """Returns the name of the only port with a role."""
         (name,) = (name for name, port in self.ports.items() if port["role"] == role)
         return name
 
     def value(self, name: str, raw: int) -> float:
-        """What a raw integer on a port stands for."""
+        """Returns the value of a raw integer on a port."""
         return raw / 2 ** self.ports[name]["fraction_bits"]
 
     def result_count(self, operands: Mapping[str, int]) -> int:
-        """How many results a computation has."""
+        """Returns the number of results of a computation."""
         return 1 if self.length is None else operands[self.length] + 1
 
     def f(self, operands: Mapping[str, int], index: int) -> list[float]:
-        """The values that are right for f in result number `index`: one, or two where f jumps.
+        """Returns the right values of f in result number `index`: one, or two at a jump of f.
 
-        Where no operand multiplies f, they are the values of the outputs, one for each.
+        If no operand multiplies f, the list has the exact value of each output instead.
         """
         values = {name: self.value(name, raw) for name, raw in operands.items()}
         return [eval(code, self._names, values | {"index": index}) for code in self._f]
 
     def error(self, operands: Mapping[str, int], index: int, result: Raw) -> float:
-        """The largest error of an output in result number `index`, in its units; within the bound."""
+        """Returns the largest error of an output in result number `index`, in units of the output.
+
+        Raises AssertionError if an error exceeds the bound of the manifest.
+        """
         values, worst = self.f(operands, index), 0.0
         for number, (output, operand) in enumerate(self.outputs.items()):
             if operand is None:
@@ -139,11 +142,11 @@ class Manifest:
         return worst
 
     def draw(self, source: random.Random) -> Raw:
-        """Operands of the domain, with a line's length short.
+        """Draws operands of the domain. The length of a line is at most 12 above its minimum.
 
-        Of all operands of a domain most leave f at 0. Three of four draws therefore start from a
-        computation of the manifest and move each operand by a random magnitude, until f is
-        between 0 and 1.
+        For most operands of a domain f is 0. Therefore three of four draws start from a
+        computation of the manifest and change each operand by a random amount, until f is between
+        0 and 1.
         """
         if source.randrange(4) == 0:
             return self._anywhere(source)
@@ -155,7 +158,7 @@ class Manifest:
         return drawn
 
     def _near(self, source: random.Random, operands: Raw) -> Raw:
-        """Operands around these."""
+        """Draws operands near the given ones."""
         drawn = {}
         for name, raw in operands.items():
             low, high = self.domain[name]["low"], self.domain[name]["high"]
@@ -166,7 +169,7 @@ class Manifest:
         return drawn
 
     def _anywhere(self, source: random.Random) -> Raw:
-        """Operands that are drawn one by one, every other one near an end or 0."""
+        """Draws each operand independently. About half of them are near 0 or an end of the domain."""
         operands = {}
         for name, domain in self.domain.items():
             low, high = domain["low"], domain["high"]
@@ -180,18 +183,18 @@ class Manifest:
 
 
 class Core:
-    """The host of a core: drives the inputs and watches the handshake."""
+    """Drives the inputs of a core and checks its handshake."""
 
     def __init__(self, dut: Any, seed: int = 1) -> None:
-        """Take over the inputs of `dut`; what is random follows from `seed`."""
+        """Prepares to drive the inputs of `dut`. `seed` determines all random choices."""
         self.dut = dut
         self.manifest = Manifest(dut._name)
         self.random = random.Random(seed)
         self.clocks = 0
         self._busy: bool | None = None
-        """What `busy` must be in the next clock; nothing is known before the first reset."""
+        """The value that `busy` must have in the next clock, or None before the first reset."""
         self._age = 0
-        """The number of the next clock of the computation that runs."""
+        """The number of the next clock of the current computation."""
         roles = {port["role"]: name for name, port in self.manifest.ports.items()}
         self._clk = getattr(dut, roles["clock"])
         self._rst_n = getattr(dut, roles["reset"])
@@ -204,22 +207,22 @@ class Core:
 
     @classmethod
     async def after_reset(cls, dut: Any, seed: int = 1) -> Core:
-        """A core whose clock runs and that has been reset."""
+        """Starts the clock, resets the core, and returns its driver."""
         core = cls(dut, seed)
         Clock(core._clk, 10, unit="ns").start(start_high=False)
         await core.reset()
         return core
 
     async def reset(self) -> None:
-        """A clock of reset."""
+        """Resets the core for one clock."""
         await self.clock(rst_n=0)
 
     async def clock(
         self, *, start: int = 0, writes: Mapping[str, int] | None = None, rst_n: int = 1
     ) -> dict[str, int]:
-        """One clock with these inputs; the handshake in it.
+        """Runs one clock with these inputs, and returns the handshake outputs in it.
 
-        What is on an operand's input while its strobe is low does not matter, and is noise.
+        While the strobe of an operand is low, its input carries random bits.
         """
         writes = writes or {}
         await FallingEdge(self._clk)
@@ -241,7 +244,7 @@ class Core:
         return seen
 
     def _check(self, seen: Mapping[str, int]) -> None:
-        """The handshake of this clock against what went before and what the manifest promises."""
+        """Checks the handshake of this clock against the clocks before and the manifest."""
         at = f"clock {self.clocks} after the beginning, {self._age} after start"
         assert seen["busy"] == self._busy, f"busy is {seen['busy']}, {at}"
         if not seen["busy"]:
@@ -253,7 +256,7 @@ class Core:
         if done is not None:
             assert seen["done"] == (self._age == done), f"done is {seen['done']}, {at}"
         if first is not None:
-            # One result, or one every so many clocks.
+            # There is one result, or one result every `every` clocks.
             every = self.manifest.timing.get("valid_to_valid")
             due = self._age == first
             if every and self._age > first:
@@ -271,11 +274,11 @@ class Core:
             self._busy, self._age = not seen["done"], self._age + 1
 
     def outputs(self) -> Raw:
-        """The results as they are on the outputs now."""
+        """Returns the current values of the outputs."""
         return outputs(self.dut, self.manifest)
 
     async def write_in_parts(self, operands: Mapping[str, int]) -> Raw:
-        """Some operands one by one, with pauses; what is left may be written with `start`."""
+        """Writes some operands in separate clocks, with pauses. Returns the other operands."""
         left = dict(operands)
         for name in self.random.sample(list(left), self.random.randint(0, len(left))):
             await self.clock(writes={name: left.pop(name)})
@@ -284,12 +287,15 @@ class Core:
         return left
 
     async def compute(self, **operands: int) -> Computation:
-        """Writes the operands together with `start`, and waits for the end."""
+        """Writes the operands together with `start`, and waits until the computation ends."""
         await self.clock(start=1, writes=operands)
         return await self.finish()
 
     async def finish(self, disturbed: bool = False) -> Computation:
-        """What the computation that was started shows, through writes and starts to be ignored."""
+        """Waits until the computation ends, and returns its outputs.
+
+        If `disturbed`, writes and starts arrive in every clock, which the core must ignore.
+        """
         valid: list[int] = []
         results: list[Raw] = []
         for clock in range(1, LONGEST):
@@ -304,10 +310,10 @@ class Core:
 
 
 class Pipeline:
-    """The host of a pipeline: offers points, takes results, and follows the points between."""
+    """Drives a pipeline: offers points, accepts results, and tracks the points in its stages."""
 
     def __init__(self, dut: Any, seed: int = 1) -> None:
-        """Take over the inputs of `dut`; what is random follows from `seed`."""
+        """Prepares to drive the inputs of `dut`. `seed` determines all random choices."""
         self.dut = dut
         self.manifest = Manifest(dut._name)
         self.random = random.Random(seed)
@@ -315,24 +321,24 @@ class Pipeline:
         latency = self.manifest.latency
         assert latency is not None, f"the manifest of {dut._name} has no pipeline"
         self._stages: list[tuple[Raw, int] | None] = [None] * latency
-        """The point in each stage, with its side value; results are those of the last."""
+        """The point in each stage, with its side value. The outputs belong to the last stage."""
         self._slot = 0
-        """A point is taken in slot 0 alone."""
+        """The current slot. The pipeline accepts a point only in slot 0."""
         self._known = False
-        """Whether there was a reset."""
+        """Whether the pipeline has been reset."""
         self._waiting: Raw | None = None
-        """The results that were not taken in the clock before."""
+        """The results that had to wait in the clock before, or None."""
         ports = {port["role"]: getattr(dut, name) for name, port in self.manifest.ports.items()}
         self._clk, self._rst_n = ports["clock"], ports["reset"]
         self._in_valid, self._out_valid = ports["in_valid"], ports["valid"]
-        # Those of a pipeline that can be stalled, and of one with a side channel.
+        # Only a pipeline that can stall, or that has a side channel, has these ports.
         self._in_ready, self._out_ready = ports.get("in_ready"), ports.get("out_ready")
         self._side_in, self._side_out = ports.get("side_in"), ports.get("side_out")
         self._operands = [(name, getattr(dut, name)) for name in self.manifest.domain]
 
     @classmethod
     async def after_reset(cls, dut: Any, seed: int = 1) -> Pipeline:
-        """A pipeline whose clock runs and that has been reset."""
+        """Starts the clock, resets the pipeline, and returns its driver."""
         pipeline = cls(dut, seed)
         Clock(pipeline._clk, 10, unit="ns").start(start_high=False)
         await pipeline.clock(rst_n=0)
@@ -340,21 +346,21 @@ class Pipeline:
 
     @property
     def stalls(self) -> bool:
-        """Whether results can be held back."""
+        """Whether the pipeline can stall."""
         return self._out_ready is not None
 
     @property
     def occupied(self) -> bool:
-        """Whether any point is on its way."""
+        """Whether a stage holds a point."""
         return any(point is not None for point in self._stages)
 
     async def clock(
         self, point: Mapping[str, int] | None = None, *, ready: int = 1, rst_n: int = 1
     ) -> tuple[bool, tuple[Raw, Raw] | None]:
-        """One clock in which this point is offered, and results are taken if `ready`.
+        """Runs one clock that offers `point` and accepts results if `ready` is 1.
 
-        Returns whether the point was taken, and the point whose results were, with its results.
-        What is on the inputs without a point does not matter, and is noise.
+        Returns whether the pipeline accepted the point, and the point that left the pipeline with
+        its results, or None. Without a point, the operands carry random bits.
         """
         ready = ready if self.stalls else 1
         await FallingEdge(self._clk)
@@ -386,7 +392,7 @@ class Pipeline:
         return takes and bool(rst_n), None if left is None or shown is None else (left[0], shown)
 
     def _check(self, ready: int) -> Raw | None:
-        """The handshake of this clock against where the points are; the results that are shown."""
+        """Checks the handshake against the tracked points. Returns the results on the outputs."""
         at = f"clock {self.clocks}"
         last = self._stages[-1]
         valid = int(self._out_valid.value)
@@ -406,11 +412,11 @@ class Pipeline:
         return shown
 
     def outputs(self) -> Raw:
-        """The results as they are on the outputs now."""
+        """Returns the current values of the outputs."""
         return outputs(self.dut, self.manifest)
 
     async def compute(self, **operands: int) -> Raw:
-        """Offers one point, with nothing before and behind it; its results."""
+        """Runs one point alone through the pipeline, and returns its results."""
         taken = False
         for _ in range(self.manifest.interval):
             if not taken:
@@ -423,7 +429,11 @@ class Pipeline:
         raise AssertionError("no results")
 
     async def through(self, points: list[Raw], offer: int = 1, take: int = 1) -> list[Raw]:
-        """The results of these points; offered, and taken, once in so many clocks at random."""
+        """Runs points through the pipeline, and returns their results.
+
+        In each clock, a point is offered with probability 1/`offer`, and a result is accepted with
+        probability 1/`take`.
+        """
         results: list[Raw] = []
         left = list(points)
         offered: Raw | None = None
@@ -441,10 +451,10 @@ class Pipeline:
 
 
 class Stream:
-    """Sender and receiver of a core between two AXI4-Streams."""
+    """Sends to and receives from a core with AXI4-Stream interfaces."""
 
     def __init__(self, dut: Any, seed: int = 1) -> None:
-        """Take over the inputs of `dut`; what is random follows from `seed`."""
+        """Prepares to drive the inputs of `dut`. `seed` determines all random choices."""
         self.dut = dut
         self.manifest = Manifest(dut._name.removesuffix("_axis"))
         self.random = random.Random(seed)
@@ -455,14 +465,14 @@ class Stream:
 
     @classmethod
     async def after_reset(cls, dut: Any, seed: int = 1) -> Stream:
-        """A stream whose clock runs and that has been reset."""
+        """Starts the clock, resets the core, and returns its driver."""
         stream = cls(dut, seed)
         Clock(dut.aclk, 10, unit="ns").start(start_high=False)
         await stream.reset()
         return stream
 
     async def reset(self) -> None:
-        """Two clocks of reset."""
+        """Resets the core for two clocks."""
         for _ in range(2):
             await FallingEdge(self.dut.aclk)
             self.dut.aresetn.value = 0
@@ -470,11 +480,11 @@ class Stream:
             self.dut.m_axis_tready.value = 0
 
     def _bits(self, name: str) -> int:
-        """A port's in its whole bytes."""
+        """Returns the width of a port, rounded up to whole bytes, in bits."""
         return -(-self.manifest.ports[name]["width"] // 8) * 8
 
     def packed(self, operands: Mapping[str, int]) -> int:
-        """The operands side by side, with anything in the bits above them."""
+        """Packs operands into a word, with random bits as padding."""
         word, low = 0, 0
         for name in self._operands:
             width, bits = self.manifest.ports[name]["width"], self._bits(name)
@@ -484,7 +494,7 @@ class Stream:
         return word | self.random.getrandbits(len(self.dut.s_axis_tdata)) >> low << low
 
     def unpacked(self, word: int) -> Raw:
-        """The results that are side by side, with copies of their signs."""
+        """Unpacks the results of a word. Checks that the padding is 0 or copies of the sign."""
         results = {}
         for name in self._results:
             bits = self._bits(name)
@@ -498,9 +508,10 @@ class Stream:
     async def through(
         self, points: list[Raw], offer: int = 1, take: int = 1
     ) -> list[tuple[Raw, int, bool]]:
-        """What comes of these points, with tuser and tlast; tuser is sent as the point's number.
+        """Sends points, and returns the transfers that come back, each with tuser and tlast.
 
-        Points are offered, and transfers taken, once in so many clocks at random.
+        The tuser of a sent point is its number. In each clock, a point is offered with probability
+        1/`offer`, and a transfer is accepted with probability 1/`take`.
         """
         dut, got = self.dut, []
         count = sum(self.manifest.result_count(point) for point in points)
@@ -542,25 +553,25 @@ class Stream:
 
 
 class BusError(Exception):
-    """The answer to an access was an error."""
+    """The core answered an access with an error."""
 
 
 class Registers:
-    """The master of a core behind registers."""
+    """The bus master of a core with registers."""
 
     def __init__(self, dut: Any, seed: int = 1) -> None:
-        """Take over the inputs of `dut`; what is random follows from `seed`."""
+        """Prepares to drive the inputs of `dut`. `seed` determines all random choices."""
         self.dut = dut
         self.wishbone = dut._name.endswith("_wb")
         self.manifest = Manifest(dut._name.rpartition("_")[0])
         self.random = random.Random(seed)
         self._clk = dut.wb_clk_i if self.wishbone else dut.aclk
         self._taken: set[str] = set()
-        """The channels of AXI4-Lite whose part of the request was taken."""
+        """The channels of AXI4-Lite that accepted their part of the request."""
 
     @classmethod
     async def after_reset(cls, dut: Any, seed: int = 1) -> Registers:
-        """Registers whose clock runs and that have been reset."""
+        """Starts the clock, resets the core, and returns its driver."""
         registers = cls(dut, seed)
         Clock(registers._clk, 10, unit="ns").start(start_high=False)
         reset, level = (dut.wb_rst_i, 1) if registers.wishbone else (dut.aresetn, 0)
@@ -579,7 +590,10 @@ class Registers:
             getattr(self.dut, name).value = 0
 
     async def access(self, offset: int, data: int | None = None, lanes: int = 15) -> int:
-        """A write of some byte lanes, or a read; what was read. Raises BusError."""
+        """Writes the byte lanes `lanes` of a register, or reads it if `data` is None.
+
+        Returns the word that was read, or 0. Raises BusError if the core answers with an error.
+        """
         one = self._wishbone if self.wishbone else self._axi_lite
         for _ in range(LONGEST):
             await FallingEdge(self._clk)
@@ -610,7 +624,7 @@ class Registers:
         dut, writes = self.dut, data is not None
         channels = ("aw", "w") if writes else ("ar",)
         for channel in channels:
-            # Once taken, a request is not offered again before the answer.
+            # An accepted request must not be offered again before the answer.
             getattr(dut, f"s_axil_{channel}valid").value = int(channel not in self._taken)
         (dut.s_axil_awaddr if writes else dut.s_axil_araddr).value = offset
         dut.s_axil_awprot.value = dut.s_axil_arprot.value = 0
@@ -637,7 +651,7 @@ class Registers:
         return await self.access(self.manifest.registers[name]["offset"])
 
     def parts(self, port: str) -> list[str]:
-        """The registers of a port that has its own, the lowest bits first."""
+        """Returns the names of the registers of a port, the lowest bits first."""
         registers = self.manifest.registers
         return [port] if port in registers else [it for it in registers if it[:-2] == port]
 
@@ -648,7 +662,7 @@ class Registers:
                 await self.write(part, value >> 32 * number)
 
     async def results(self) -> Raw:
-        """The results; the read waits for them."""
+        """Reads the results. The read waits until the computation has ended."""
         ports, registers, results = self.manifest.ports, self.manifest.registers, {}
         for name in self.manifest.outputs:
             if "results" in registers:
@@ -665,7 +679,7 @@ class Registers:
 
 
 def outputs(dut: Any, manifest: Manifest) -> Raw:
-    """The results as they are on the outputs now."""
+    """Returns the current values of the outputs."""
     results = {}
     for name in manifest.outputs:
         value = getattr(dut, name).value
@@ -676,7 +690,7 @@ def outputs(dut: Any, manifest: Manifest) -> Raw:
 
 @cocotb.test()
 async def computations_are_exact(dut: Any) -> None:
-    """Every computation of the manifest: results, clocks of `valid`, clock of `done`."""
+    """Every computation of the manifest has its results, clocks of `valid` and clock of `done`."""
     core = await Core.after_reset(dut)
     for operands, wanted in core.manifest.computations:
         left = await core.write_in_parts(operands)
@@ -686,18 +700,18 @@ async def computations_are_exact(dut: Any) -> None:
 
 @cocotb.test()
 async def writes_and_starts_while_busy_are_ignored(dut: Any) -> None:
-    """The operands keep their values through a computation in which others are offered."""
+    """Writes and starts during a computation change neither the operands nor the results."""
     core = await Core.after_reset(dut)
     for operands, wanted in core.manifest.computations:
         await core.clock(start=1, writes=operands)
         assert await core.finish(disturbed=True) == wanted, f"{operands}, disturbed: not {wanted}"
-        # Nothing was written, so that a start alone repeats it.
+        # The operands are unchanged, so a start alone repeats the computation.
         assert await core.compute() == wanted, f"{operands}, a second time: not {wanted}"
 
 
 @cocotb.test()
 async def writes_while_busy_are_for_the_next_computation(dut: Any) -> None:
-    """Operands come one by one while a point is computed; the next one begins as it is done."""
+    """Operands written during a computation belong to the next one, which starts with `done`."""
     core = await Core.after_reset(dut)
     computations = core.manifest.computations
     await core.clock(start=1, writes=computations[0][0])
@@ -709,7 +723,7 @@ async def writes_while_busy_are_for_the_next_computation(dut: Any) -> None:
             is_done = clock == wanted.done
             now = list(left) if is_done else left[:1]
             del left[: len(now)]
-            # Before the last clock a start is not heard.
+            # The core must ignore a start before the last clock.
             start = not last if is_done else core.random.getrandbits(1)
             seen = await core.clock(start=int(start), writes=dict(now))
             if seen["valid"]:
@@ -720,7 +734,7 @@ async def writes_while_busy_are_for_the_next_computation(dut: Any) -> None:
 
 @cocotb.test()
 async def held_start_repeats(dut: Any) -> None:
-    """A `start` that is held is taken whenever it is heard: after `done`, or with it."""
+    """A constant `start` repeats the computation: the core accepts it after or with `done`."""
     core = await Core.after_reset(dut)
     for operands, wanted in core.manifest.computations:
         period = wanted.done if core.manifest.overlaps else wanted.done + 1
@@ -743,7 +757,7 @@ async def held_start_repeats(dut: Any) -> None:
 
 @cocotb.test()
 async def reset_ends_a_computation(dut: Any) -> None:
-    """A reset in any clock leaves the core idle, and the next computation is right."""
+    """A reset in any clock makes the core idle, and the next computation is right."""
     core = await Core.after_reset(dut)
     operands, wanted = max(core.manifest.computations, key=lambda pair: len(pair[1].valid))
     for age in range(wanted.done + 1):
@@ -758,7 +772,7 @@ async def reset_ends_a_computation(dut: Any) -> None:
 
 @cocotb.test()
 async def formula_holds_at_random_points(dut: Any) -> None:
-    """The results at random points are within the manifest's bound of its formula in floats."""
+    """At random points, the error against the formula in floats is within the bound."""
     core = await Core.after_reset(dut, seed=2)
     manifest = core.manifest
     worst = 0.0
@@ -774,7 +788,7 @@ async def formula_holds_at_random_points(dut: Any) -> None:
 
 @cocotb.test()
 async def points_are_exact(dut: Any) -> None:
-    """Every computation of the manifest, as fast as can be: results come as many clocks later."""
+    """Every computation of the manifest is exact at the full rate, after the promised latency."""
     pipeline = await Pipeline.after_reset(dut)
     points = [operands for operands, _ in pipeline.manifest.computations]
     before = pipeline.clocks
@@ -789,7 +803,7 @@ async def points_are_exact(dut: Any) -> None:
 
 @cocotb.test()
 async def bubbles_and_stalls_change_nothing(dut: Any) -> None:
-    """Points that come now and then, and results that are taken now and then, are the same."""
+    """Pauses between points and stalls of results do not change the results."""
     pipeline = await Pipeline.after_reset(dut)
     points = [operands for operands, _ in pipeline.manifest.computations]
     wanted = [wanted.results[0] for _, wanted in pipeline.manifest.computations]
@@ -800,7 +814,7 @@ async def bubbles_and_stalls_change_nothing(dut: Any) -> None:
 
 @cocotb.test()
 async def reset_drops_every_point(dut: Any) -> None:
-    """A reset leaves no point on its way, wherever they are, and the next one is right."""
+    """A reset discards all points in the pipeline, and the next point is right."""
     pipeline = await Pipeline.after_reset(dut)
     assert pipeline.manifest.latency is not None
     operands, wanted = pipeline.manifest.computations[-1]
@@ -815,7 +829,7 @@ async def reset_drops_every_point(dut: Any) -> None:
 
 @cocotb.test()
 async def random_points_follow_the_formula(dut: Any) -> None:
-    """The results at random points are within the manifest's bound of its formula in floats."""
+    """At random points, the error against the formula in floats is within the bound."""
     pipeline = await Pipeline.after_reset(dut, seed=2)
     manifest = pipeline.manifest
     points = [manifest.draw(pipeline.random) for _ in range(1000)]
@@ -827,7 +841,7 @@ async def random_points_follow_the_formula(dut: Any) -> None:
 
 @cocotb.test()
 async def streams_carry_every_point(dut: Any) -> None:
-    """Every computation of the manifest, with and without pauses of both sides, and after a reset."""
+    """Every computation of the manifest is exact, with and without pauses, and after a reset."""
     stream = await Stream.after_reset(dut)
     is_line = stream.manifest.length is not None
     points = [operands for operands, _ in stream.manifest.computations]
@@ -851,7 +865,7 @@ async def streams_carry_every_point(dut: Any) -> None:
 
 @cocotb.test()
 async def registers_compute_every_point(dut: Any) -> None:
-    """Every computation of the manifest, started by control and by a write; an interrupt each."""
+    """Every computation of the manifest is exact, with both kinds of start, and interrupts."""
     registers = await Registers.after_reset(dut)
     assert set((await registers.results()).values()) == {0}
     await registers.write("interrupt_enable", 1)
@@ -875,7 +889,7 @@ async def registers_compute_every_point(dut: Any) -> None:
 
 @cocotb.test()
 async def registers_keep_what_is_written(dut: Any) -> None:
-    """Operands read back by bytes; what cannot be written is an error, and changes nothing."""
+    """Operands read back byte by byte. A write to a read-only register is an error."""
     registers = await Registers.after_reset(dut)
     for name in registers.manifest.domain:
         for part in registers.parts(name):
@@ -897,7 +911,7 @@ async def registers_keep_what_is_written(dut: Any) -> None:
 
 
 def run(name: str, wrapper: str = "") -> None:
-    """Builds core `name`, or a wrapper, in sim_build/ and runs its bench; ends the process."""
+    """Builds core `name` or its wrapper in sim_build/, runs its bench, and ends the process."""
     from cocotb_tools.check_results import get_results
     from cocotb_tools.runner import get_runner
 
@@ -925,4 +939,4 @@ def run(name: str, wrapper: str = "") -> None:
     sys.exit(1 if failed or not tests else 0)
 
 
-# sha256 2273cb3252dd93e0c50ad6c83ea59bc98a2852b1a149d15be3732c63530ced00
+# sha256 3eeb6a7f8d674bc4edf3413af108559d8c78d20c47531cf95d6c020a17ac4408

@@ -25,21 +25,21 @@ pub fn describe(d: &Designer, config: &Config) {
     let fraction = cos_gamma.bits(0, Format::unsigned(0, bits as i32));
     let normalised = shift::normalise(d, "octave", fraction);
     // The normaliser has a long delay, so a pipeline register follows it.
-    let octave = d.pipeline("octave", normalised.zeros).doc("leading zeros of cos gamma");
+    let octave = d.pipeline("octave", normalised.zeros).doc("number of leading zeros of cos gamma");
     let mantissa = normalised.word.bits(0, Format::unsigned(bits as i32 - 1, 0));
     let u = d.not("distance_next", mantissa);
     let u = d
         .pipeline("distance", u)
-        .doc("1.0 - cos gamma * 2^octave, less an ulp, from 0 to one half");
+        .doc("1.0 - cos gamma * 2^octave - 1 ulp, from 0 to one half");
     decay::describe(d, config, cos_gamma, Decay::Logarithm, Distance { u, octave: Some(octave) });
 }
 
 fn about(keys: &Keys) -> About {
     let mut notes = vec![
-        "The seeds hold every device against this function and give no circuit for it; structure and formats \
+        "The sources compare every device with this function and give no circuit for it. Structure and formats \
          are Glint's own."
             .into(),
-        "Phong's function is this device with cos psi = V.R at the input in place of N.H.".into(),
+        "For Phong's function, apply cos psi = V.R to the input in place of N.H.".into(),
     ];
     notes.extend(decay::notes(keys));
     About {

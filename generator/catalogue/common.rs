@@ -70,13 +70,14 @@ impl<'d> ColourProducts<'d> {
 pub fn outputs_note(keys: &keys::ColourKeys, follow: &str, until: &str) -> Note {
     if keys.in_turn() {
         return Topic::Writes.note(
-            "Writes while busy are ignored. One multiplier multiplies f by the colours, one after the other, and the \
-             outputs are registers: they hold from valid until the next computation reaches the products.",
+            "Writes while busy are ignored. One multiplier multiplies f by the colours in turn. The outputs \
+             are registers: they keep their values from valid until the next computation reaches these \
+             products.",
         );
     }
     Topic::Writes.note(format!(
-        "Writes while busy are ignored. The outputs follow {follow} and the colour registers: they hold from valid \
-         until a colour is written or the next computation {until}."
+        "Writes while busy are ignored. The outputs depend on {follow} and the colour registers: they keep \
+         their values from valid until a colour is written or the next computation {until}."
     ))
 }
 

@@ -29,7 +29,7 @@ pub fn describe(d: &Designer, config: &Config) {
     // With power = 2 there is no power to square again.
     let operand_select = d.select("operand_select", &["distance", "base", "power"]).partly_used();
     let accumulator =
-        d.register("accumulator", f).doc("n/m*(1 - cos gamma), then the powers of W's base");
+        d.register("accumulator", f).doc("n/m*(1 - cos gamma), later the powers of the base of W");
     let squarings = Squarings::new(d, count);
 
     let one = d.constant("one", 1.0, Format::unsigned(1, keys.operands.cosine.fraction as i32));
@@ -45,7 +45,7 @@ pub fn describe(d: &Designer, config: &Config) {
         .doc("second operand of the multiplier");
     let product = d
         .shared_mul("product", &first, &second)
-        .doc_on(Topic::Microprogram, "the shared product; its point depends on the operands");
+        .doc_on(Topic::Microprogram, "the shared product; its number of fraction bits depends on the operands");
     let rounding_f = keys.f.rounding;
     let distance =
         d.narrow("distance", product.of(complement, zeta), f, rounding_f, Overflow::Saturate);
@@ -73,8 +73,8 @@ pub fn describe(d: &Designer, config: &Config) {
 /// Returns the base `1 − n/m·(1 − cos γ)` as the complement of the accumulator. The complement is an ulp too small, and is
 /// therefore always a fraction. The base is 0 when cos γ ≤ 0.
 fn base<'d>(d: &'d Designer, cos_gamma: Signal<'d>, accumulator: Signal<'d>) -> Signal<'d> {
-    let facing = d.any("facing", cos_gamma).doc("the surface faces the half vector");
-    let inverse = d.not("inverse", accumulator).doc("1.0 - accumulator, less an ulp");
+    let facing = d.any("facing", cos_gamma).doc("1 if the surface faces the half vector");
+    let inverse = d.not("inverse", accumulator).doc("1.0 - accumulator - 1 ulp");
     let zero = d.raw_constant("zero", 0, accumulator.format());
     d.choose("base", facing, [zero, inverse]).doc("base of the power")
 }
@@ -87,16 +87,16 @@ fn about(keys: &Keys) -> About {
         formula: format!("out = colour * (n/{m} * (cos(gamma) - 1) + 1)^{m}"),
         source: "Seed 002, the paper's W(n, gamma) with zeta = n/m".to_owned(),
         notes: vec![
-            "The paper gives no circuit; n/m is a shift by wiring.".into(),
+            "The paper gives no circuit. The quotient n/m is a shift by wiring.".into(),
             Topic::Microprogram.note(
-                "The circuit is the least that the formula asks for: one multiplier and one accumulator.",
+                "The circuit is the smallest for the formula: one multiplier and one accumulator.",
             ),
-            "The sum is formed as a complement, 1 - n/m * (1 - cos gamma): every number is then a fraction from 0 \
-             to 1, and the clamp beyond the zero of W is the saturation of the first product. The complement is the \
-             accumulator inverted, an ulp too small, which the error bound counts."
+            "The sum is computed as the complement 1 - n/m * (1 - cos gamma). So every number is a fraction \
+             from 0 to 1, and the saturation of the first product clamps the result to 0 beyond the zero of W. \
+             Inverting the accumulator gives the complement minus 1 ulp; the error bound includes this ulp."
                 .into(),
-            "Cosines are limited to 0 ... 1.0 as they are written; cos gamma <= 0 gives 0, and so does everything \
-             beyond the zero of W at cos gamma = (n - m)/n."
+            "Cosines are clamped to 0 ... 1.0 when they are written. The result is 0 for cos gamma <= 0, and \
+             for cos gamma <= (n - m)/n, where W has its zero."
                 .into(),
             common::outputs_note(&keys.operands.colours, "the accumulator", "begins"),
         ],

@@ -35,7 +35,7 @@ pub fn describe(d: &Designer, config: &Config) {
     let cosine = d
         .rom("cosine", address, f, &angle::cosine_power_table(2, table, f.frac), true)
         .block(12)
-        .doc(&format!("cos^2 in 2^{table} steps of a right angle"))
+        .doc(&format!("cos^2 at 2^{table} angles of a right angle"))
         .comments(angle::step_comments(2, table));
     let rounding = keys.output_rounding;
     if staged {
@@ -55,30 +55,34 @@ fn about(stages: u32) -> About {
             .to_owned(),
         source: "Seed 000, the prototype: Abbas, Szirmay-Kalos, Horvath 2000".to_owned(),
         notes: vec![
-            "The host multiplies both angles by a = sqrt(n/2) before it writes them: there is no exponent here. \
-             Angles are in right angles: 1.0 is 90 degrees. The intensity is 0 where the stretched angle is not in \
-             -90 (included) to 90 degrees."
+            "The core has no exponent: the host must multiply both angles by a = sqrt(n/2) before it writes \
+             them. The unit of angles is the right angle: 1.0 is 90 degrees. The intensity is 0 if the \
+             stretched angle is below -90 degrees, or 90 degrees or more."
                 .into(),
-            "A stretched angle is no angle on a circle: it must not wrap around within a line. With angle.integer = 7 \
-             the register holds 128 right angles either way; what a host can set up reaches 3*sqrt(n/2), that is 68 for n \
-             = 1000. Beyond, the register wraps around, in model and hardware alike."
+            "A stretched angle is no angle on a circle, so it must not wrap around within a line. With \
+             angle.integer = 7, the register holds -128 to 128 right angles. The angles of a host reach at \
+             most 3*sqrt(n/2), which is 68 for n = 1000. Beyond its range the register wraps around, in the \
+             model and in the hardware."
                 .into(),
-            "The default has 22 fraction bits of the angle: over the longest line, of 4095 intervals, the host's roundings of delta_zeta and \
-             zeta_start add up to at most 2^11 ulps. The formula falls by at most 1.58 in a right angle, so that an \
-             amplitude of 255 drifts by at most 255 * 1.58 * 2^(11 - 22) = 0.20 units; with the contract's 0.82 and \
-             half a unit for the rounding of the amplitude, 1.52 from the host's unrounded numbers."
+            "By default an angle has 22 fraction bits. Over the longest line, with 4095 intervals, the host's \
+             roundings of delta_zeta and zeta_start add up to at most 2^11 ulps. The slope of the formula is \
+             at most 1.58 per right angle. So with an amplitude of 255 the result drifts by at most 255 * 1.58 \
+             * 2^(11 - 22) = 0.20 units. With the contract's 0.82 units and half a unit for the rounding of \
+             the amplitude, the error against the host's unrounded numbers is at most 1.52 units."
                 .into(),
-            "The seed does not draw the prototype. Its accumulator is taken to be that of the claimed device, and \
-             bears its block numbers: registers 1 to 3, counter 5, adder 6, mux 7, register 8, ROM 12, multiplier 13."
+            "The source has no drawing of the prototype. Its accumulator is assumed to be the one of the \
+             claimed device, and has the same block numbers: registers 1 to 3, counter 5, adder 6, mux 7, \
+             register 8, ROM 12, multiplier 13."
                 .into(),
             Topic::Latency.note(format!(
-                "A start makes length + 1 points, one a clock: valid is high for each, {} clocks after output 37 \
-                 (write_angle) has written its angle. busy is high to the last point and done is high with it.",
+                "A start computes length + 1 points, one per clock. valid is high for each point, {} clocks \
+                 after output 37 (write_angle) has written its angle. busy is high until the last point, and \
+                 done is high together with the last point.",
                 if stages == 2 { "two".to_owned() } else { stages.to_string() }
             )),
             Topic::Writes.note(
-                "Writes while busy are ignored. The output follows the operand register of the amplitude: it holds \
-                 from valid until that is written or the next computation begins.",
+                "Writes while busy are ignored. The output depends on the operand register of the amplitude: \
+                 it keeps its value from valid until the amplitude is written or the next computation starts.",
             ),
         ],
     }

@@ -49,7 +49,7 @@ pub fn describe<'d>(
     let sums = ["ratio", "ratio_sum1", "ratio_sum2"];
     let number = u.bits(keys.unseen(), Format::unsigned(bits - keys.unseen() as i32, 0));
     let ratio = PolynomialDatapath::new(d, "ratio_", &sums, number, &ratios, tables);
-    let _ = ratio.q().doc("decay over 1 - cos gamma");
+    let _ = ratio.q().doc("the decay divided by 1 - cos gamma");
     let ulp = d.raw_constant("ulp", 1, Format::unsigned(1 - fraction, fraction));
     let whole =
         d.add("distance_whole", u.read_as(Format::unsigned(bits - fraction, fraction)), ulp);
@@ -58,12 +58,12 @@ pub fn describe<'d>(
     let integer = |bits: u32| Format::unsigned(bits as i32, 0);
     let factor = d
         .register("factor", integer(keys.factor_bits(of)))
-        .doc("the decay; its point by decay_small");
+        .doc("the decay; decay_small selects its number of fraction bits");
     let small = d
         .register("decay_small", Format::BIT)
-        .doc("the decay is below 1/4, and all its bits count");
+        .doc("1 if the decay is below 1/4 and has more fraction bits");
     let halvings =
-        d.register("halvings", keys.halvings(of)).doc("n*decay: how often f is half of 1.0");
+        d.register("halvings", keys.halvings(of)).doc("n*decay: the number of halvings from 1.0 to f");
     let operand_select = d.select("operand_select", &["decay", "power"]);
     let first =
         d.bus("first", operand_select, [way, factor.q()]).doc("first operand of the multiplier");
@@ -72,7 +72,7 @@ pub fn describe<'d>(
         .doc("second operand of the multiplier");
     let product = d
         .shared_mul("product", &first, &second)
-        .doc_on(Topic::Microprogram, "its point depends on the operands");
+        .doc_on(Topic::Microprogram, "the shared product; its number of fraction bits depends on the operands");
     // The product is below 2.0, because the decay is.
     let decay = product.of(way, ratio.q());
     let decay = d.narrow("decay", decay, keys.decay_format(), Rounding::Truncate, Overflow::Wrap);
@@ -92,7 +92,7 @@ pub fn describe<'d>(
     let sums = ["power", "power_sum1", "power_sum2"];
     let number = halvings.q().bits(0, Format::unsigned(keys.argument as i32, 0));
     let exp2 = PolynomialDatapath::new(d, "power_", &sums, number, &powers, tables);
-    let _ = exp2.q().doc("2^-x of the fraction x of halvings");
+    let _ = exp2.q().doc("2^-x, where x is the fraction of halvings");
     // An integer part that shifts all bits of f out need not be larger.
     let most = integer((f.frac as u32 + 2).ilog2() + 1);
     let whole = halvings.q().bits(keys.argument, integer(halvings.format().int as u32));
@@ -100,7 +100,7 @@ pub fn describe<'d>(
     let rounded = exponential::halved(d, "exp2", exp2.q(), places, f.frac, keys.f.rounding);
     let reflectance = d.register("reflectance", f).doc("f");
     reflectance.takes(ends(d, cos_gamma, rounded));
-    let _ = d.output("f_out", reflectance.q()).doc("the reflectance, for a user's own multipliers");
+    let _ = d.output("f_out", reflectance.q()).doc("the reflectance f, for multipliers outside the core");
 
     let outputs = colours.results(reflectance.q(), keys.f.output_rounding);
 
@@ -108,13 +108,13 @@ pub fn describe<'d>(
     let multiplier = StepMultiplier::new(d, names, &[&ratio, &exp2], &[]);
     let horner = |it: &PolynomialDatapath<'d, '_>, k: usize, name: &str| {
         let what =
-            if k == 0 { "all coefficients".to_owned() } else { format!("those from {k} on") };
+            if k == 0 { "all coefficients".to_owned() } else { format!("coefficients from {k} on") };
         step(&format!("{name} <- {what}"), multiplier.step(it, k))
     };
-    let mut steps = vec![step("distance from the cosine", [])];
+    let mut steps = vec![step("distance <- 1 - cos gamma", [])];
     steps.extend(ratio.steps().map(|k| horner(&ratio, k, "ratio")));
     let decayed = [first.pick(way), second.pick(ratio.q()), factor.load(), small.load()];
-    steps.push(step("factor <- way * ratio", decayed));
+    steps.push(step("factor <- distance * ratio", decayed));
     let halved = [first.pick(factor.q()), second.pick(exponent), halvings.load()];
     steps.push(step("halvings <- n * factor", halved));
     steps.extend(exp2.steps().map(|k| horner(&exp2, k, "power")));
@@ -140,7 +140,7 @@ fn factor_of<'d>(
     let mut large = d.any("decay_large", decay.bits(fraction - 2, integer(3)));
     if let Some(octave) = octave {
         whole = d.add("decay_whole", octave, one);
-        let far = d.any("octave_any", octave).doc("cos gamma is below one half");
+        let far = d.any("octave_any", octave).doc("1 if cos gamma is below one half");
         large = d.or("decay_far", large, far);
     }
     let width = whole.format().width() + coarse;
@@ -153,9 +153,9 @@ fn factor_of<'d>(
 /// Returns f with the values that need no table: 0 if cos γ ≤ 0, and all ones, the largest value below 1, if cos γ is 1.0.
 fn ends<'d>(d: &'d Designer, cos_gamma: Signal<'d>, rounded: Signal<'d>) -> Signal<'d> {
     let format = rounded.format();
-    let facing = d.any("facing", cos_gamma).doc("the surface faces the half vector");
+    let facing = d.any("facing", cos_gamma).doc("1 if the surface faces the half vector");
     let aligned =
-        cos_gamma.bit(cos_gamma.format().frac as u32).named("aligned").doc("cos gamma is 1.0");
+        cos_gamma.bit(cos_gamma.format().frac as u32).named("aligned").doc("1 if cos gamma is 1.0");
     let ones = d.raw_constant("ones", format.max_raw(), format);
     let lit = d.choose("lit", aligned, [rounded, ones]);
     let dark = d.raw_constant("dark", 0, format);
@@ -167,15 +167,17 @@ fn ends<'d>(d: &'d Designer, cos_gamma: Signal<'d>, rounded: Signal<'d>) -> Sign
 pub fn notes(keys: &Keys) -> Vec<Note> {
     vec![
         Topic::Microprogram.note(
-            "Two multipliers: one has the steps of both polynomials, the other 1 - cos gamma times the ratio, and n times \
-             the decay.",
+            "There are two multipliers. One evaluates both polynomials. The other multiplies 1 - cos gamma by \
+             the ratio, and n by the decay.",
         ),
-        "2^-x over the fraction of n*decay is a piecewise polynomial; the integer shifts it right.".into(),
-        "The decay is 1 - cos gamma times a ratio that hardly changes, a piecewise polynomial of a few leading bits of \
-         1 - cos gamma. So the decay keeps its relative accuracy toward cos gamma = 1, which is what n multiplies."
+        "A piecewise polynomial gives 2^-x, where x is the fraction of n*decay. The integer part of n*decay \
+         shifts the result right.".into(),
+        "The decay is 1 - cos gamma times a ratio that changes little. A piecewise polynomial gives the ratio. \
+         So the relative error of the decay stays small near cos gamma = 1, which matters because n multiplies \
+         the decay."
             .into(),
-        "Cosines are limited to 0 ... 1.0 as they are written; cos gamma <= 0 gives 0, for n = 0 too, and 1.0 gives all \
-         ones, an ulp below 1.0."
+        "Cosines are clamped to 0 ... 1.0 when they are written. The result is 0 for cos gamma <= 0, also for \
+         n = 0. For cos gamma = 1.0 it is all ones, which is 1.0 - 1 ulp."
             .into(),
         common::outputs_note(&keys.operands.colours, "the register of f", "reaches the microinstruction that loads it"),
     ]

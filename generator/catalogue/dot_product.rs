@@ -19,9 +19,11 @@ pub fn describe(d: &Designer, config: &Config) {
         formula: format!("min(1, {lower}(nx*hx + ny*hy + nz*hz)/sqrt(nx^2 + ny^2 + nz^2)))"),
         source: "J. F. Blinn, Models of Light Reflection for Computer Synthesized Pictures, SIGGRAPH 1977".into(),
         notes: vec![
-            "The normal need not be a unit vector: an interpolated one will do. Of the zero vector the cosine is 0.".into(),
-            "A unit vector that was rounded may have a product above 1: it becomes 1.".into(),
-            "The components of the half vector are from -1 to 1; nothing is stated of others.".into(),
+            "The normal may have any length, for example after interpolation. If it is the zero vector, the \
+             cosine is 0.".into(),
+            "A rounded unit vector may be longer than 1. A product above 1 becomes 1.".into(),
+            "The components of the half vector must be from -1 to 1. For other components no error bound is \
+             stated.".into(),
         ],
     });
     let [fraction, other, kept] = [keys.fraction, keys.other, keys.kept].map(|bits| bits as i32);
@@ -46,23 +48,25 @@ pub fn describe(d: &Designer, config: &Config) {
     };
     let product = d.mul("product", first.out(), second.out());
     let format = Format::signed(4, fraction + other);
-    let (sum, sum_so_far, no_sum) = sum_of("sum", product, format, "the products so far");
+    let (sum, sum_so_far, no_sum) = sum_of("sum", product, format, "the sum of products so far");
     let square = d.mul("square", first.out(), first.out());
     let format = Format::unsigned(4, 2 * fraction);
     let (squares, squares_so_far, no_squares) =
-        sum_of("squares", square, format, "the squares so far");
+        sum_of("squares", square, format, "the sum of squares so far");
 
     let width = Format::unsigned(2 * fraction + 4, 0);
     let (word, places) = by_pairs(d, squares.q().read_as(width));
-    let mantissa = d.register("mantissa", width).doc("the squares, from 1.0 to 4.0");
+    let mantissa = d.register("mantissa", width).doc("the sum of squares, scaled to 1.0 ... 4.0");
     mantissa.takes(word);
-    let shift = d.register("shift", places.format()).doc("pairs of leading zeros of the squares");
+    let shift = d.register("shift", places.format()).doc("number of pairs of leading zeros of the sum of \
+                                                          squares");
     shift.takes(places);
     let distance =
-        d.register("distance", keys.distance()).doc("the products, for a length from 1.0 to 2.0");
+        d.register("distance", keys.distance()).doc("the sum of products, for a normal scaled to a length of \
+                                                     1.0 to 2.0");
     let products = if keys.two_sided { size(d, sum.q()) } else { sum.q() };
     distance.takes(shifted(d, products, shift.q(), &keys));
-    let root = d.register("inverse", keys.shortened()).doc("1/sqrt of the mantissa");
+    let root = d.register("inverse", keys.shortened()).doc("1/sqrt of the scaled sum of squares");
     let found = inverse_root(d, mantissa.q(), keys.address as i32, keys.inverse as i32);
     let (rounding, overflow) = (Rounding::Nearest, Overflow::Saturate);
     root.takes(d.narrow("inverse_rounded", found, keys.shortened(), rounding, overflow));

@@ -42,7 +42,7 @@ fn about(keys: &Keys, found: &ProvedPlan) -> About {
         let proof = found.proof.words();
         notes.push(
             format!(
-                "{name} is no further off than {bound} units of its last place{promise}: {proof}."
+                "The error of {name} is at most {bound} units of its last place{promise}: {proof}."
             )
             .into(),
         );
@@ -50,7 +50,7 @@ fn about(keys: &Keys, found: &ProvedPlan) -> About {
     let names: Vec<&str> = keys.results.0.iter().map(|record| record.name.as_str()).collect();
     About {
         device: "expression".to_owned(),
-        title: format!("{}, by a plan with a proved error", names.join(" and ")),
+        title: format!("{}, with a proved error bound", names.join(" and ")),
         formula: formulas.join("; "),
         source: "The configuration".to_owned(),
         notes,

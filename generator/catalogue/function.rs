@@ -30,7 +30,7 @@ pub fn describe(d: &Designer, config: &Config) {
 fn about(keys: &Keys, proof: &str, it: &Piecewise) -> About {
     let Keys { from, to, .. } = keys;
     let formula = if keys.samples.is_empty() { &keys.formula } else { "samples(x)" };
-    let ends = if keys.to_included { "both ends included" } else { "the end not included" };
+    let ends = if keys.to_included { "both ends included" } else { "without the end" };
     let reduced = it.reduction.as_ref().map_or_else(String::new, |it| {
         format!("Operands are reduced ({}) to {} bits. ", keys.reduction.word(), it.bits)
     });
@@ -51,7 +51,7 @@ fn about(keys: &Keys, proof: &str, it: &Piecewise) -> About {
         notes: vec![
             format!("The domain is x from {from} to {to}, {ends}.").into(),
             format!(
-                "{reduced}{shape}. {proof}: no result is further off than {} units of the last place.",
+                "{reduced}{shape}. {proof}: the error is at most {} units of the last place.",
                 text::rounded_up(it.bound, 4)
             )
             .into(),

@@ -22,14 +22,14 @@ pub fn describe(d: &Designer, config: &Config) {
     let cos_gamma = common::cosine(d, &keys.operands.cosine).q();
     let bits = keys.operands.cosine.fraction;
     let fraction = cos_gamma.bits(0, Format::unsigned(bits as i32, 0));
-    let u = d.not("distance", fraction).doc("1.0 - cos gamma, less an ulp");
+    let u = d.not("distance", fraction).doc("1.0 - cos gamma - 1 ulp");
     decay::describe(d, config, cos_gamma, Decay::Angle, Distance { u, octave: None });
 }
 
 fn about(keys: &Keys) -> About {
     let mut notes = vec![
-        "The seed gives no circuit. It prints gamma as the angle between H and L; the angle between N and H, \
-         which is what makes the function comparable with cos^n, is taken here."
+        "The source gives no circuit. It defines gamma as the angle between H and L. Here gamma is the angle \
+         between N and H, because only then can the function be compared with cos^n."
             .into(),
     ];
     notes.extend(decay::notes(keys));
@@ -37,7 +37,7 @@ fn about(keys: &Keys) -> About {
         device: "gauss".to_owned(),
         title: "Specular intensity by a Gaussian of the angle".to_owned(),
         formula: "out = colour * exp(-n * gamma^2 / 2)".to_owned(),
-        source: "Seed 002, the fourth function that it weighs".to_owned(),
+        source: "Seed 002, the fourth function that the paper considers".to_owned(),
         notes,
     }
 }

@@ -41,7 +41,7 @@ pub fn describe(d: &Designer, config: &Config) {
 
     let vector = Format::signed(1, keys.vector_fraction as i32);
     let component = |name: &str, of: &str| {
-        d.operand(name, vector).doc(&format!("{of} of N - H, normal less half vector")).q()
+        d.operand(name, vector).doc(&format!("{of} of N - H, the normal minus the half vector")).q()
     };
     let components = [component("dx", "x"), component("dy", "y"), component("dz", "z")];
     let distance = if keys.squares_in_turn() {
@@ -54,13 +54,13 @@ pub fn describe(d: &Designer, config: &Config) {
         Scale::Multiplier => by_multiplier(d, &keys, distance),
     };
     let colours = ColourProducts::new(d, &keys.colours, None);
-    let accumulator = d.register("accumulator", f).doc("the powers of the base, in the end f");
+    let accumulator = d.register("accumulator", f).doc("the powers of the base, at the end f");
 
     let format = Format::unsigned(1, f.frac);
     let value = d.narrow("beta_distance", scaled.value, format, rounding_f, Overflow::Saturate);
-    let base = base(d, value.doc("beta*D^2, to the point of f"), f);
+    let base = base(d, value.doc("beta*D^2, with as many fraction bits as f"), f);
     let operand =
-        d.mux("multiplier4_operand", [base, accumulator.q()]).doc("what multiplier 4 squares");
+        d.mux("multiplier4_operand", [base, accumulator.q()]).doc("the number that multiplier 4 squares");
     let multiplier4 = d.mul("multiplier4", operand.out(), operand.out()).block(4);
     accumulator.takes(d.narrow("square", multiplier4, f, rounding_f, Overflow::Saturate));
     let outputs = colours.results(accumulator.q(), keys.f.output_rounding);
@@ -96,12 +96,12 @@ fn distance_in_turn<'d>(
 ) -> SquaredDistance<'d> {
     let sum = d
         .register("distance_sum", Format::unsigned(4, 2 * components[0].format().frac))
-        .doc("dx^2, then dx^2 + dy^2");
+        .doc("dx^2, later dx^2 + dy^2");
     let component = d.mux("component", components).doc("the component that is squared");
     let zero = d.raw_constant("no_sum", 0, sum.format());
-    let addend = d.mux("addend", [zero, sum.q()]).doc("the squares before it");
+    let addend = d.mux("addend", [zero, sum.q()]).doc("the sum of the squares before");
     let multiplier1 = d.mul("multiplier1", component.out(), component.out()).block(1);
-    let adder1 = d.add("adder1", multiplier1, addend.out()).block(1).doc("in the end D^2");
+    let adder1 = d.add("adder1", multiplier1, addend.out()).block(1).doc("the sum of squares, at the end D^2");
     // As in `rounded_distance`, the interval of a sum does not consider that squares are not negative.
     let (rounding, overflow) = (Rounding::Truncate, Overflow::Wrap);
     sum.takes(d.narrow("sum_next", adder1, sum.format(), rounding, overflow));
@@ -134,9 +134,9 @@ fn by_shift<'d>(d: &'d Designer, keys: &Keys, distance: SquaredDistance<'d>) -> 
     let shift = d.operand("shift", format).doc("log2 of the specular exponent n, rounded").q();
     let register = d
         .register("shift_register", Format::unsigned(1, distance.value.format().frac + half_down))
-        .doc("beta*D^2, once it has shifted");
+        .doc("beta*D^2, after all shifts");
     let (squarings, counter, load_shift) = Squarings::sharing(d, count, shift);
-    let counter = counter.doc("shifts, then squarings, to come");
+    let counter = counter.doc("shifts that remain, then squarings that remain");
     let small = distance
         .value
         .shift_right(half_down)
@@ -147,7 +147,7 @@ fn by_shift<'d>(d: &'d Designer, keys: &Keys, distance: SquaredDistance<'d>) -> 
     let doubled = d.narrow("doubled", twice, register.format(), rounding, overflow);
     let input = d.mux("shift_input", [small, doubled]).doc("loads or shifts");
     register.takes(input.out());
-    let more = d.any("more_shifts", counter.q()).doc("not the last shift");
+    let more = d.any("more_shifts", counter.q()).doc("1 if this is not the last shift");
     let name = "shift_register <- 2 * shift_register";
     let load = [input.pick(small), register.load()];
     let shift_on: [StepSetting; 4] =
@@ -186,8 +186,8 @@ fn by_multiplier<'d>(d: &'d Designer, keys: &Keys, distance: SquaredDistance<'d>
 /// β·D² reaches 1.0, the comparator makes the mux pass 0 instead.
 fn base<'d>(d: &'d Designer, value: Signal<'d>, f: Format) -> Signal<'d> {
     let one = d.constant("one", 1.0, Format::unsigned(1, f.frac));
-    let comparator = d.less("comparator", value, one).doc("beta*D^2 is below 1.0");
-    let inverse = d.not("inverse", value.bits(0, f)).doc("1.0 - beta*D^2, less an ulp");
+    let comparator = d.less("comparator", value, one).doc("1 if beta*D^2 is below 1.0");
+    let inverse = d.not("inverse", value.bits(0, f)).doc("1.0 - beta*D^2 - 1 ulp");
     let zero = d.raw_constant("zero", 0, f);
     d.choose("base", comparator, [zero, inverse]).doc("base of the power, or 0")
 }
@@ -198,8 +198,8 @@ fn clocks_note(keys: &Keys, config: &Config) -> Note {
     let (squares, colours) = (keys.squares_in_turn(), keys.colours.in_turn());
     let output = Shared::of(config).output_registered && !colours;
     Topic::Latency.note(format!(
-        "Valid is {}{} clocks after start: one each for {}D^2, scaling, base{} and result, and one for each squaring \
-         after the first{}.",
+        "valid is high {}{} clocks after start. One clock each is for {}D^2, scaling, base{} and result, and \
+         for each squaring after the first{}.",
         keys.squarings()
             + 4
             + 2 * u32::from(squares)
@@ -212,7 +212,7 @@ fn clocks_note(keys: &Keys, config: &Config) -> Note {
             (_, true) => ", the output registers",
             _ => "",
         },
-        if shift { " and for each place shifted after the first" } else { "" },
+        if shift { " and each shift after the first" } else { "" },
     ))
 }
 
@@ -222,29 +222,32 @@ fn about(keys: &Keys, config: &Config) -> About {
     let (beta, scaling) = if shift {
         (
             "2^shift",
-            "The host loads shift = log2 n, rounded: beta is within a factor of 1.42 of n/(2*power).",
+            "The host loads shift = log2 n, rounded. So beta differs from n/(2*power) by a factor of at most \
+             1.42.",
         )
     } else {
         (
             "n",
-            "Beta is n/(2*power) for every n: multiplier 5 is ours, and stands in for the patent's shift register.",
+            "Beta is n/(2*power) for every n. Multiplier 5 is Glint's own and replaces the patent's shift \
+             register.",
         )
     };
     let mut notes = vec![
-        "The seed lists the parts; the wiring is an interpretation. For unit vectors D^2 = 2*(1 - cos gamma), so that this \
-         is the function of cosine-power, reached without a scalar product."
+        "The source lists the blocks; their connections are an interpretation. For unit vectors D^2 = 2*(1 - \
+         cos gamma), so the function equals the one of cosine-power, without a scalar product."
             .into(),
         scaling.into(),
         clocks_note(keys, config),
-        "The formula knows no side that faces away: where cos gamma <= 0, that is D^2 >= 2, f is not 0 for small n. \
-         A host that wants it to be 0 does not start the device there."
+        "The formula does not distinguish surfaces that face away: for cos gamma <= 0, which is D^2 >= 2, f is \
+         not 0 if n is small. A host that needs 0 there must not start the device."
             .into(),
-        "Components may have any value; D^2 is whole up to 12.0, which is the most that three of them give."
+        "Components may have any value of their format. D^2 is exact: it has room for 12.0, the largest sum of \
+         three squares."
             .into(),
         common::outputs_note(&keys.colours, "the accumulator", "begins"),
     ];
-    let shifting = "The shift register shifts one place a clock under the counter, shift + 1 times, which then counts the \
-                    squarings.";
+    let shifting = "The shift register shifts by one place per clock, shift + 1 times. One counter counts the \
+                    shifts and then the squarings.";
     notes.extend(shift.then(|| Topic::Microprogram.note(shifting)));
     About {
         device: "lyon".to_owned(),

@@ -21,7 +21,7 @@ pub fn describe(d: &Designer, config: &Config) {
         formula: "(x, y, z)/sqrt(x^2 + y^2 + z^2)".into(),
         source: "M. J. Schulte and K. E. Wires, High-Speed Inverse Square Roots, ARITH-14, 1999"
             .into(),
-        notes: vec!["Of the zero vector it makes zeros.".into()],
+        notes: vec!["The zero vector gives zeros.".into()],
     });
     let Keys { fraction, address, inverse, kept, rounding } = Keys::of(config);
     let [fraction, address, inverse] = [fraction, address, inverse].map(|bits| bits as i32);
@@ -34,7 +34,7 @@ pub fn describe(d: &Designer, config: &Config) {
     // Three squares of at most 4.0 fit.
     let squares = Format::unsigned(4, 2 * fraction);
     let square = d.mul("square", component.out(), component.out());
-    let sum = d.register("sum", squares).doc("the squares so far");
+    let sum = d.register("sum", squares).doc("the sum of squares so far");
     let zero = d.constant("nothing", 0.0, squares);
     let so_far = d.mux("so_far", [sum.q(), zero]);
     let added = d.add("added", so_far.out(), square);
@@ -42,12 +42,13 @@ pub fn describe(d: &Designer, config: &Config) {
 
     let width = 2 * fraction + 4;
     let (word, places) = by_pairs(d, sum.q().read_as(integer(width)));
-    let mantissa = d.register("mantissa", integer(width)).doc("the sum, from 1.0 to 4.0");
+    let mantissa = d.register("mantissa", integer(width)).doc("the sum of squares, scaled to 1.0 ... 4.0");
     mantissa.takes(word);
-    let shift = d.register("shift", places.format()).doc("pairs of leading zeros of the sum");
+    let shift = d.register("shift", places.format()).doc("number of pairs of leading zeros of the sum of \
+                                                          squares");
     shift.takes(places);
 
-    let root = d.register("inverse", Format::unsigned(1, inverse)).doc("1/sqrt of the mantissa");
+    let root = d.register("inverse", Format::unsigned(1, inverse)).doc("1/sqrt of the scaled sum of squares");
     root.takes(inverse_root(d, mantissa.q(), address, inverse));
 
     let shifted = shifted(d, component.out(), shift.q(), fraction);
@@ -121,7 +122,7 @@ pub(super) fn inverse_root<'d>(
     let rest = mantissa.bits((width - address - along) as u32, integer(along));
     let rom = d
         .rom("inverse_roots", prefix, integer(inverse + 1 + fall_bits), &words, true)
-        .doc("1/sqrt at the start of a segment, then its fall over the segment");
+        .doc("1/sqrt at the start of a segment, then the decrease over the segment");
     let word = rom.out();
     let start = word.bits(fall_bits as u32, Format::unsigned(1, inverse));
     let slope = word.bits(0, integer(fall_bits));

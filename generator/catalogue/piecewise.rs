@@ -332,9 +332,9 @@ fn table<'d>(
             format!("{prefix}coefficients{}", part.start)
         };
         let doc = match part.len() {
-            1 => "coefficient of the segment's polynomial",
+            1 => "coefficient of the polynomial of a segment",
             _ => {
-                "coefficients of the segment's polynomial, that of the lowest power in the top bits"
+                "coefficients of the polynomial of a segment, the constant term in the top bits"
             }
         };
         let rom = d.rom(&name, address, format, &words, tables.synchronous).doc(doc);

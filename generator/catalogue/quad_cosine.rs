@@ -51,7 +51,7 @@ pub fn describe<'d>(d: &'d Designer, config: &Config) {
     let root = d
         .rom("root", exponent, root_format(&keys), &roots(&keys), true)
         .block(9)
-        .doc("sqrt(n/k), k as decoder 10 picks it for n; n is the address")
+        .doc("sqrt(n/k), where decoder 10 selects k for n; the address is n")
         .comments(
             (0..1i64 << keys.exponent_bits)
                 .map(|n| format!("sqrt({n}/{})", POWERS[power_of(n)]))
@@ -67,7 +67,8 @@ pub fn describe<'d>(d: &'d Designer, config: &Config) {
     let (scaled, within) = (held("scaled_angle_held", scaled), held("scaled_within_held", within));
     let step = angle::address(d, "table_step", scaled, within, table);
     let address =
-        d.concat("table_address", decoder(d, exponent), step).doc("which table, and where in it");
+        d.concat("table_address", decoder(d, exponent), step).doc("the number of the table, and the address in \
+                                                                   it");
     let address = held("table_address_held", address);
     let words: Vec<i128> =
         POWERS.iter().flat_map(|&power| angle::cosine_power_table(power, table, f.frac)).collect();
@@ -76,7 +77,7 @@ pub fn describe<'d>(d: &'d Designer, config: &Config) {
         .rom("cosine", address, f, &words, true)
         .block(12)
         .doc(&format!(
-            "cos^k for k = 1, 2, 4, 16, one table after another; 2^{table} steps of a right angle each"
+            "four tables, cos^k for k = 1, 2, 4, 16, each at 2^{table} angles of a right angle"
         ))
         .comments(comments);
     let rounding = keys.output_rounding;
@@ -105,7 +106,7 @@ fn decoder<'d>(d: &'d Designer, exponent: Signal<'d>) -> Signal<'d> {
     let power_16 = d.not("power_16", small).doc("output 33 of decoder 10: n = 0, and n from 7 on");
     let high = d.or("power_4_or_16", power_4, power_16);
     let low = d.or("power_2_or_16", power_2, power_16);
-    d.concat("power_code", high, low).block(10).doc("the number of the decoder's output that is 1")
+    d.concat("power_code", high, low).block(10).doc("the number of the decoder output that is 1")
 }
 
 /// Returns the index in `POWERS` of the power for the exponent n. For example, n = 5 gives 2, and `POWERS[2]` is 4.
@@ -138,40 +139,45 @@ fn about(stages: u32) -> About {
             .to_owned(),
         source: "Seed 000, the claimed device: quadruple cosine".to_owned(),
         notes: vec![
-            "Angles are in right angles: 1.0 is 90 degrees. The register holds one turn and wraps around where \
-             angles do, so no line overflows it. The intensity is 0 where the angle is not in -90 (included) to 90 \
-             degrees, and where the stretched angle is 90 degrees or more."
+            "The unit of angles is the right angle: 1.0 is 90 degrees. The register holds one turn and wraps \
+             around as angles do, so no line can overflow it. The intensity is 0 if the angle is below -90 \
+             degrees, or 90 degrees or more, or if the size of the stretched angle is 90 degrees or more."
                 .into(),
             Topic::Latency.note(format!(
-                "A start makes length + 1 points, one a clock: valid is high for each. Output 37 (write_angle) writes \
-                 the angle of a point; valid, which is the same net in the patent, follows it by {}. busy is high to the \
-                 last point and done is high with it.",
+                "A start computes length + 1 points, one per clock. valid is high for each point. Output 37 \
+                 (write_angle) writes the angle of a point. In the patent valid is the same net; here valid \
+                 follows by {}. busy is high until the last point, and done is high together with the last \
+                 point.",
                 match stages {
                     2 => "two clocks, for register 8 and for the synchronous ROM 12".to_owned(),
-                    stages => format!("{stages} clocks, for the registers on the way"),
+                    stages => format!("{stages} clocks, because of the registers between"),
                 }
             )),
-            "Decoder 10 picks k = 1 for n = 1, 2 for n = 2, 4 for n = 3 to 6 and 16 for all other n, with n = 0 among \
-             them: its root is 0 and its intensity the amplitude wherever the surface faces. The patent drives four \
-             address bits of ROM 12 with the decoder's outputs 30 to 33; here their number drives two, and the ROM is \
-             a quarter as large. Its nine bits of n cannot hold 1000; ten can."
+            "Decoder 10 selects k = 1 for n = 1, 2 for n = 2, 4 for n = 3 to 6, and 16 for all other n. This \
+             includes n = 0, whose root is 0: its intensity is the amplitude wherever the surface faces the \
+             half vector. In the patent, the decoder outputs 30 to 33 drive four address bits of ROM 12. Here \
+             the number of the output drives two address bits, so the ROM is a quarter as large. The patent \
+             has nine bits for n, which cannot hold 1000; here n has ten bits."
                 .into(),
-            "The patent's counter 5 is written by its strobe and used up by a line. Here the operand length keeps its \
-             value and loads the counter with the first point, so that a line can be repeated by start alone. A length \
-             of 0 makes one point: the microinstruction that adds is left out, as the patent's borrow from an empty counter \
-             leaves it out."
+            "In the patent, a strobe writes counter 5, and a line uses the count up. Here the operand length \
+             keeps its value and loads the counter at the first point, so a start alone repeats the line. A \
+             length of 0 gives one point: the microprogram skips the addition, as the borrow from an empty \
+             counter does in the patent."
                 .into(),
-            "The default has 26 fraction bits of the angle: over the longest line, of 4095 intervals, the host's roundings of delta_zeta and \
-             zeta_start add up to at most 2^11 ulps. The formula falls by at most 30.6 in a right angle (n = 1000), so \
-             that an amplitude of 255 drifts by at most 255 * 30.6 * 2^(11 - 26) = 0.24 units. With the contract's 0.93 \
-             and half a unit for the rounding of the amplitude itself this is 1.67 units from the host's unrounded \
-             numbers. The accumulator adds exactly, and only multiplier 11 drops bits."
+            "By default an angle has 26 fraction bits. Over the longest line, with 4095 intervals, the host's \
+             roundings of delta_zeta and zeta_start add up to at most 2^11 ulps. The slope of the formula is \
+             at most 30.6 per right angle (n = 1000). So with an amplitude of 255 the result drifts by at most \
+             255 * 30.6 * 2^(11 - 26) = 0.24 units. With the contract's 0.93 units and half a unit for the \
+             rounding of the amplitude, the error against the host's unrounded numbers is at most 1.67 units. \
+             The accumulator adds exactly; only multiplier 11 drops bits."
                 .into(),
-            "The root sqrt(n/k) is applied by multiplier 11 alone; the seed's formulas (13) and (16) apply it to the \
-             operands a second time. Output 28 is busy, high from start to end, as trigger 39 drives it."
+            "Only multiplier 11 applies the root sqrt(n/k). The formulas (13) and (16) of the source apply it \
+             to the operands a second time. Output 28 is busy, which trigger 39 drives high from start to the \
+             end."
                 .into(),
-            "Writes while busy are ignored. The output follows the operand registers of amplitude and exponent: it \
-             holds from valid until one of them is written or the next computation begins."
+            "Writes while busy are ignored. The output depends on the operand registers of amplitude and \
+             exponent: it keeps its value from valid until one of them is written or the next computation \
+             starts."
                 .into(),
         ],
     }

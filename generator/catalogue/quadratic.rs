@@ -59,7 +59,7 @@ pub fn describe(d: &Designer, config: &Config) {
     let outputs = colours.results(intensity.q(), keys.f.output_rounding);
 
     let steps = vec![
-        step("operands; ROM(n) addressed", []),
+        step("operands are written; ROM address <- n", []),
         step("difference <- c^2 - c", [difference.load()]),
         step("intensity <- c + a(n) * difference, not below 0", [intensity.load()]),
     ];
@@ -70,7 +70,7 @@ pub fn describe(d: &Designer, config: &Config) {
 fn adder1<'d>(d: &'d Designer, cos_gamma: Signal<'d>) -> Signal<'d> {
     let square = d.mul("multiplier5", cos_gamma, cos_gamma).block(5).doc("c^2");
     let wide = cos_gamma.with_fraction(square.format().frac).as_signed();
-    let inverters = d.not("inverters", wide).doc("-c, less an ulp of the square");
+    let inverters = d.not("inverters", wide).doc("-c - 1 ulp of the square");
     let carry = d.raw_constant("carry", 1, Format::BIT).doc("carry-in of adder 1");
     d.add_carry("adder1", square, inverters, carry).block(1).doc("c^2 - c")
 }
@@ -113,17 +113,17 @@ fn about(keys: &Keys) -> About {
         formula: "out = colour * max(0, c + a(n) * (c^2 - c)), c = cos(gamma)".to_owned(),
         source: "UA 20998, the analogue in seed 001".to_owned(),
         notes: vec![
-            "Below its zero at c = 1 - 1/a(n) the parabola is clamped to 0. The seed has no clamp, but no negative numbers \
-             either."
+            "Below its zero at c = 1 - 1/a(n), the parabola is clamped to 0. The source has no clamp, but it \
+             has no negative numbers either."
                 .into(),
             format!(
-                "The seed does not say what ROM(n) holds. Against cos^n over n = {first} ... {last} the formula itself \
-                 is off by up to {:.4} with a(n) = n - 1 (at n = {}), and by up to {:.4} with the minimax a(n) (at \
-                 n = {}).",
+                "The source does not state the contents of ROM(n). For n = {first} ... {last}, the formula \
+                 differs from cos^n by up to {:.4} with a(n) = n - 1 (at n = {}), and by up to {:.4} with the \
+                 minimax a(n) (at n = {}).",
                 taylor.0, taylor.1, minimax.0, minimax.1
             ).into(),
-            "n = 0 is taken as n = 1, where a(n) = 0 and f = c.".into(),
-            "Cosines are limited to 0 ... 1.0 as they are written; cos gamma <= 0 gives 0.".into(),
+            "For n = 0 the ROM has the a(n) of n = 1, which is 0, so f = c.".into(),
+            "Cosines are clamped to 0 ... 1.0 when they are written. The result is 0 for cos gamma <= 0.".into(),
             common::outputs_note(&keys.operands.colours, "register intensity", "has its result"),
         ],
     }

@@ -95,7 +95,7 @@ pub fn describe(d: &Designer, config: &Config) {
         .mux("mux17", [cos_gamma, cos_dgamma])
         .block(17)
         .line(47)
-        .doc("the cosine whose sine is looked up");
+        .doc("the cosine that addresses the sine table");
     let r19 = d.register("reg19_sin_gamma", formats.sine).block(19).line(48).doc("sin gamma");
     let r11 = d
         .register("reg11_cos_cos", formats.cos_cos)
@@ -111,13 +111,13 @@ pub fn describe(d: &Designer, config: &Config) {
         .register("reg13_result", formats.result)
         .block(13)
         .line(51)
-        .doc("n/2*(cos(gamma +- dgamma) - 1), then f");
+        .doc("n/2*(cos(gamma +- dgamma) - 1), later f");
 
     // A synchronous ROM is addressed with dγ while register 19 still loads the sine of γ, one microinstruction before line 47
     // selects dγ. The sine of dγ is then available when mux 8 selects it.
     let addressed = if keys.synchronous {
         d.choose("sine_of", r19.loading(), [sine_of.out(), cos_dgamma])
-            .doc("mux 17, ahead by a microinstruction")
+            .doc("mux 17, one microinstruction earlier")
     } else {
         sine_of.out()
     };
@@ -145,7 +145,7 @@ pub fn describe(d: &Designer, config: &Config) {
     let product = d
         .shared_mul("multiplier10", &mux8, &mux9)
         .block(10)
-        .doc_on(Topic::Microprogram, "the shared product; its point depends on the operands");
+        .doc_on(Topic::Microprogram, "the shared product; its number of fraction bits depends on the operands");
     let overflow = if formats.patent { Overflow::Wrap } else { Overflow::Saturate };
     let (rounding_products, rounding_result) = (formats.product_rounding, formats.result_rounding);
     let cos_cos = product.of(cos_gamma, cos_dgamma);
@@ -158,7 +158,7 @@ pub fn describe(d: &Designer, config: &Config) {
         .out()
         .bit(0)
         .named("squares")
-        .doc("V2: which of its two products register 13 takes");
+        .doc("V2: which of the two products register 13 loads");
     let frac = line.format().frac.max(square.format().frac);
     let either = [line.with_fraction(frac), square.with_fraction(frac)];
     let either = d
@@ -178,20 +178,20 @@ pub fn describe(d: &Designer, config: &Config) {
 
     d.sequencer_lines(43, 44);
     let mut steps = vec![
-        step("operands cos gamma, cos dgamma; sine of gamma addressed", []),
+        step("operands <- cos gamma, cos dgamma; ROM address <- cos gamma", []),
         step("19 <- sin gamma; 11 <- cos gamma * cos dgamma", [hold(), r19.load(), r11.load()]),
         step(
-            "operands sin dgamma, sin gamma",
+            "operands <- sin dgamma, sin gamma",
             [mux8.pick(sine), mux9.pick(r19.q()), sine_of.pick(cos_dgamma)],
         ),
         step("12 <- sin gamma * sin dgamma", [hold(), r12.load()]),
         step(
-            "operands adder 15, n/2",
+            "operands <- adder 15, n/2",
             [mux8.pick(adder15), mux9.pick(half_n), sine_of.pick(cos_dgamma)],
         ),
         step("13 <- n/2 * (cos(gamma +- dgamma) - 1)", [hold(), r13.load()]),
         step(
-            "operands adder 16, adder 16",
+            "operands <- adder 16, adder 16",
             [mux8.pick(adder16), mux9.pick(adder16), sine_of.pick(cos_dgamma)],
         ),
         step("13 <- (... + 1)^2", [hold(), r13.load()]),
@@ -242,11 +242,11 @@ fn exact_sums<'d>(
     let one = d.constant("one", 1.0, Format::unsigned(1, r12.format().frac));
     let adder31 = d.sub("adder31", r12.q(), one).block(31).doc("register 12 - 1.0");
     let raised = d.add("raised12", r12.q(), one).doc("register 12 + 1.0, by wiring");
-    let inverse = d.not("inverse12", raised.as_signed()).doc("-(register 12) - 1.0, less an ulp");
+    let inverse = d.not("inverse12", raised.as_signed()).doc("-(register 12) - 1.0 - 1 ulp");
     let mux14 = d
         .choose("mux14", negative, [inverse, adder31])
         .block(14)
-        .doc("what adder 15 adds to register 11");
+        .doc("the number that adder 15 adds to register 11");
     let positive = d.not("subtracts", negative).doc("carry-in of adder 15");
     let adder15 = d
         .add_carry("adder15", r11.q(), mux14, positive)
@@ -277,7 +277,7 @@ fn patent_sums<'d>(
     let mux14 = d
         .choose("mux14", negative, [inverse, adder31])
         .block(14)
-        .doc("what adder 15 adds to register 11");
+        .doc("the number that adder 15 adds to register 11");
     let adder15 = d
         .add_modulo("adder15", r11.q(), mux14, Some(negative))
         .block(15)
@@ -293,7 +293,7 @@ fn patent_sums<'d>(
 
 /// Returns the next value of register 13: the product if cos γ > 0, and otherwise −1.0, which makes f = 0.
 fn facing_only<'d>(d: &'d Designer, cos_gamma: Signal<'d>, result: Signal<'d>) -> Signal<'d> {
-    let facing = d.any("facing", cos_gamma).doc("the surface faces the half vector");
+    let facing = d.any("facing", cos_gamma).doc("1 if the surface faces the half vector");
     let dark = d.constant("minus_one", -1.0, Format::signed(0, result.format().frac));
     d.choose("facing_result", facing, [dark, result])
 }
@@ -301,27 +301,27 @@ fn facing_only<'d>(d: &'d Designer, cos_gamma: Signal<'d>, result: Signal<'d>) -
 fn about(keys: &Keys, config: &Config) -> About {
     let patent = keys.patent();
     let mut notes = vec![
-        "Registers, muxes, adders and multipliers carry the numbers of the patent's figure 1.".into(),
+        "Registers, muxes, adders and multipliers have the block numbers of figure 1 of the patent.".into(),
         Topic::Microprogram.note(format!(
-            "The control ROM is the patent's table 1, {}.",
+            "The control ROM is table 1 of the patent, {}.",
             match (keys.operands.colours.in_turn(), Shared::of(config).output_registered) {
-                (true, _) => "with a microinstruction more for each colour",
-                (_, true) => "with a microinstruction more for the output registers",
+                (true, _) => "with one more microinstruction for each colour",
+                (_, true) => "with one more microinstruction for the output registers",
                 _ => "bit for bit",
             }
         )),
         Topic::Microprogram.note(
-            "Muxes 8 and 9 are followed by registers: the multiplier takes what the microinstruction before \
-             selected. The patent's settling microinstructions leave the time for that. A synchronous ROM 18 is \
-             addressed with dgamma one microinstruction before line 47 says so.",
+            "Registers follow muxes 8 and 9: the multiplier gets the operands that the previous \
+             microinstruction selected. The settling microinstructions of the patent leave time for this. If \
+             ROM 18 is synchronous, dgamma addresses it one microinstruction before line 47 selects dgamma.",
         ),
         common::outputs_note(&keys.operands.colours, "register 13", "reaches microinstruction 5"),
     ];
     notes.push(Note::from(if patent {
-        "Numbers are fractions modulo 1.0, as in the patent: every '- 1' is a missing carry, n loses its low \
-         bit, and nothing is clamped."
+        "Numbers are fractions modulo 1.0, as in the patent: every '- 1' is a missing carry, the low bit of n \
+         is dropped, and no value is clamped."
     } else {
-        "Cosines are limited to 0 ... 1.0 as they are written; cos gamma <= 0 gives 0."
+        "Cosines are clamped to 0 ... 1.0 when they are written. The result is 0 for cos gamma <= 0."
     }));
     About {
         device: "rough".to_owned(),

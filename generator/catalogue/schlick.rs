@@ -29,8 +29,8 @@ pub fn describe(d: &Designer, config: &Config) {
     let outputs = colours.results(quotient.quotient(), keys.output_rounding);
 
     let steps = vec![
-        step("operands cos gamma, n", []),
-        step("cos gamma by n*(1 - cos gamma) + cos gamma", quotient.load()),
+        step("operands <- cos gamma, n", []),
+        step("quotient <- cos gamma / (n*(1 - cos gamma) + cos gamma)", quotient.load()),
         step(
             "next bit of the quotient",
             quotient
@@ -49,8 +49,8 @@ fn divisor<'d>(d: &'d Designer, cos_gamma: Signal<'d>, exponent: Signal<'d>) -> 
     let one = d.constant("one", 1.0, Format::unsigned(1, c.frac));
     let complement = d.sub("complement", one, cos_gamma).doc("1.0 - cos gamma");
     let scaled = d.mul("scaled", complement, exponent).doc("n*(1 - cos gamma)");
-    let facing = d.any("facing", cos_gamma).doc("the surface faces the half vector");
-    let dark = d.not("dark", facing).doc("an ulp for the divisor, which n = 0 would leave at 0");
+    let facing = d.any("facing", cos_gamma).doc("1 if the surface faces the half vector");
+    let dark = d.not("dark", facing).doc("1 ulp, which keeps the divisor above 0 for n = 0");
     let sum = d.add_carry("denominator", scaled, cos_gamma, dark);
     // The divisor lies between cos γ and n, or is at most 1.0; its largest value is n plus one unit in the last place.
     let format = Format::unsigned(n.int, c.frac);
@@ -67,18 +67,18 @@ fn about(keys: &Keys) -> About {
         source: "Seed 002, Schlick's function, with which the paper compares its own".to_owned(),
         notes: vec![
             format!(
-                "The quotient is truncated to {bits} bits and exact to the last of them: the divider keeps the whole \
-                 remainder. The quotient 1.0, of cos gamma = 1.0 or n = 0, is the largest \
-                 fraction, an ulp less."
+                "The quotient is truncated to {bits} bits, and all of these bits are exact, because the \
+                 divider keeps the whole remainder. A quotient of 1.0, for cos gamma = 1.0 or n = 0, becomes \
+                 the largest fraction, 1.0 - 1 ulp."
             )
             .into(),
-            Topic::Microprogram.note("One bit of the quotient takes a clock."),
-            "Cosines are limited to 0 ... 1.0 as they are written; cos gamma <= 0 gives 0. A division by zero \
-             cannot occur: the divisor is 0 for cos gamma = 0 and n = 0 alone, and cos gamma = 0 adds an ulp to \
-             it, so that this gives 0 too."
+            Topic::Microprogram.note("Each bit of the quotient takes one clock."),
+            "Cosines are clamped to 0 ... 1.0 when they are written. The result is 0 for cos gamma <= 0. A \
+             division by zero cannot occur: the divisor would be 0 only for cos gamma = 0 and n = 0, and cos \
+             gamma = 0 adds 1 ulp to it, so the result is 0 there too."
                 .into(),
-            "The seed prints the fraction as cos/n - n*cos + cos, without the fraction bar; the denominator is \
-             n - n*cos + cos."
+            "The source prints the fraction as cos/n - n*cos + cos, without the fraction bar. The denominator \
+             is n - n*cos + cos."
                 .into(),
             common::outputs_note(&keys.operands.colours, "the quotient", "begins"),
         ],

@@ -147,9 +147,11 @@ fn about(keys: &Keys) -> About {
         formula: format!("out = ambient + {sum}diffuse*{facing} + specular*f(c), c = {c}, f(c) = {f}"),
         source: "J. F. Blinn, Models of Light Reflection for Computer Synthesized Pictures, SIGGRAPH 1977".to_owned(),
         notes: vec![
-            "N is the unit vector of the normal, which can have any length: an interpolated one will do. Of the zero vector every cosine is 0.".into(),
-            "Light and half vector are unit vectors: nothing is stated of components beyond -1 and 1.".into(),
-            "A sum above the largest result becomes the largest.".into(),
+            "N is the unit vector of the normal. The normal may have any length, for example after \
+             interpolation. If it is the zero vector, every cosine is 0.".into(),
+            "Light and half vector must be unit vectors. For components below -1 or above 1 no error bound is \
+             stated.".into(),
+            "A sum above the largest result becomes the largest result.".into(),
         ],
     }
 }

@@ -43,7 +43,7 @@ pub fn describe(d: &Designer, config: &Config) {
     // The format begins at −1.0, where the parabola has its zero, so that the saturation of the product is the clamp.
     let scaled =
         d.register("scaled", Format::signed(0, f.frac)).doc("n/2*(cos gamma - 1), not below -1.0");
-    let intensity = d.register("intensity", f).doc("the reflectance f: what the gates passed");
+    let intensity = d.register("intensity", f).doc("the reflectance f, the output of the gates");
 
     let one = d.constant("one", 1.0, Format::unsigned(1, keys.operands.cosine.fraction as i32));
     let adder1 = d.sub("adder1", cos_gamma, one).block(1).doc("cos gamma - 1.0");
@@ -59,7 +59,7 @@ pub fn describe(d: &Designer, config: &Config) {
     let outputs = colours.results(intensity.q(), keys.f.output_rounding);
 
     let steps = vec![
-        step("operands; ROM(n) addressed", []),
+        step("operands are written; ROM address <- n", []),
         step("scaled <- n/2 * (cos gamma - 1)", [scaled.load()]),
         step("intensity <- (scaled + 1)^2, or 0 below ROM(n)", [intensity.load()]),
     ];
@@ -76,12 +76,12 @@ fn gates<'d>(
 ) -> Signal<'d> {
     let level = level_rom(d, keys, exponent).out();
     let comparator =
-        d.less("comparator", square, level).doc("the square is below the level of visibility");
+        d.less("comparator", square, level).doc("1 if the square is below the level of visibility");
     let visible = d.not("visible", comparator);
-    let facing = d.any("facing", cos_gamma).doc("the surface faces the half vector");
-    let pass = d.and("pass", facing, visible).doc("opens the gates");
+    let facing = d.any("facing", cos_gamma).doc("1 if the surface faces the half vector");
+    let pass = d.and("pass", facing, visible).doc("1 opens the gates");
     let zero = d.raw_constant("zero", 0, square.format());
-    d.choose("gates", pass, [zero, square]).doc("block of keys: the square or 0")
+    d.choose("gates", pass, [zero, square]).doc("block of keys: the square, or 0")
 }
 
 fn level_rom<'d>(d: &'d Designer, keys: &Keys, exponent: Signal<'d>) -> Rom<'d> {
@@ -127,15 +127,15 @@ fn about(keys: &Keys) -> About {
             .to_owned(),
         source: "UA 30041, the prototype in seed 001".to_owned(),
         notes: vec![
-            "The seed multiplies by n; for cos^n to be approximated it must be n/2, which is wiring.".into(),
-            "\"- 1\" and \"+ 1\" are 1.0 here. The seed's adder 1 adds all ones and its adder 2 a carry: an ulp \
-             down and up, which stands for 1.0 only where numbers are modulo 1.0."
+            "The source multiplies by n. An approximation of cos^n needs n/2, which is a shift by wiring.".into(),
+            "\"- 1\" and \"+ 1\" are 1.0 here. In the source, adder 1 adds all ones and adder 2 adds a carry. \
+             This subtracts and adds 1 ulp, which equals 1.0 only if numbers are modulo 1.0."
                 .into(),
-            "The seed does not say what ROM(n) holds: here it holds the smallest f that is shown. Nothing passes where \
-             the base is negative, whose square would rise again."
+            "The source does not state the contents of ROM(n). Here it holds the smallest f that is shown. If \
+             the base is negative, the gates stay closed, because its square would rise again."
                 .into(),
             comparator_note(keys).into(),
-            "Cosines are limited to 0 ... 1.0 as they are written; cos gamma <= 0 gives 0.".into(),
+            "Cosines are clamped to 0 ... 1.0 when they are written. The result is 0 for cos gamma <= 0.".into(),
             common::outputs_note(&keys.operands.colours, "register intensity", "has its result"),
         ],
     }
@@ -157,13 +157,13 @@ fn comparator_note(keys: &Keys) -> String {
     };
     if shown == 0.0 {
         format!(
-            "The comparator changes no output: the largest f that it blocks is {units:.3} of a unit at the largest \
-             colour, which rounds to 0 anyhow. All that is seen is the work of the clamp."
+            "The comparator changes no output: with the largest colour, the largest f that it blocks is \
+             {units:.3} units, which would round to 0 without it. Only the clamp is visible."
         )
     } else {
         format!(
-            "The comparator is seen: it blocks up to {units:.3} units at the largest colour, so that an output goes \
-             from {shown} to 0 at the rim of the highlight, where the clamp alone would let it fade."
+            "The comparator is visible: with the largest colour it blocks up to {units:.3} units. So at the \
+             rim of the highlight an output drops from {shown} to 0, where the clamp alone would let it fade."
         )
     }
 }

@@ -1,12 +1,12 @@
 // blinn_control: sequencer and control ROM of blinn
 //
 // Microprogram:
-//    0  distance from the cosine
-//    1  ratio <- those from 1 on
+//    0  distance <- 1 - cos gamma
+//    1  ratio <- coefficients from 1 on
 //    2  ratio <- all coefficients
-//    3  factor <- way * ratio
+//    3  factor <- distance * ratio
 //    4  halvings <- n * factor
-//    5  power <- those from 1 on
+//    5  power <- coefficients from 1 on
 //    6  power <- all coefficients
 //    7  reflectance <- 2^-halvings
 //    8  result  (end)
@@ -21,11 +21,11 @@ module blinn_control #(
 ) (
     input  wire       clk,
     input  wire       rst_n,              // reset, active low
-    input  wire       start,              // begins a computation when not busy
+    input  wire       start,              // starts a computation if not busy
     output wire       valid,              // the results are on the outputs
-    output wire       busy,               // high from the clock after start to the end
+    output wire       busy,               // high from the clock after start to the last clock
     output wire       done,               // high in the last clock of a computation
-    output wire       idle,               // operands may be written
+    output wire       idle,               // 1 while operands can be written
     output wire       ratio_load,
     output wire       ratio_sum1_load,
     output wire       factor_load,
@@ -39,14 +39,14 @@ module blinn_control #(
 );
 
     // Registers
-    reg        run;           // a microprogram is running
-    reg  [3:0] word_address;  // the microinstruction that is executed
+    reg        run;           // 1 while a microprogram runs
+    reg  [3:0] word_address;  // the address of the current microinstruction
 
-    assign busy = run;  // high from the clock after start to the end
+    assign busy = run;  // high from the clock after start to the last clock
     wire not_busy = ~busy;
-    assign idle = not_busy;  // operands may be written
+    assign idle = not_busy;  // 1 while operands can be written
 
-    // ROM control: the microprogram, a line for each microinstruction; fields: ratio_load,
+    // ROM control: the microprogram, one word per microinstruction; fields: ratio_load,
     // ratio_sum1_load, factor_load, decay_small_load, halvings_load, operand_select, power_load,
     // power_sum1_load, reflectance_load, polynomial_select, valid_word, go_on
     reg [12:0] control_rom [0:8];
@@ -63,8 +63,8 @@ module blinn_control #(
     assign power_sum1_load = control_word[5];
     assign reflectance_load = control_word[4];
     assign polynomial_select = control_word[3:2];
-    wire valid_word = control_word[1];  // the microinstruction sets valid
-    wire go_on = control_word[0];  // 0 in the last microinstruction
+    wire valid_word = control_word[1];  // 1 if the microinstruction sets valid
+    wire go_on = control_word[0];  // 0 in the last microinstruction, else 1
     wire [3:0] following_word = word_address + 4'd1;
     wire [3:0] next_word = go_on ? following_word : 4'd0;
     wire next_run = run ? go_on : start;
@@ -90,7 +90,7 @@ module blinn_control #(
 
 `ifdef FORMAL
     always @* if (!$initstate) begin
-        assert (word_address <= 4'd8);  // no other address is reached
+        assert (word_address <= 4'd8);  // the address stays in the microprogram
         if (!run) assert (word_address == 4'd0);
     end
 `endif

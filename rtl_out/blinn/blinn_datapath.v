@@ -19,13 +19,13 @@ module blinn_datapath #(
     input  wire        cos_gamma_write,    // writes cos_gamma
     input  wire [9:0]  exponent,           // specular exponent n
     input  wire        exponent_write,     // writes exponent
-    input  wire [7:0]  red,                // intensity of the light times k_s
+    input  wire [7:0]  red,                // intensity of the light, times k_s
     input  wire        red_write,          // writes red
-    input  wire [7:0]  green,              // intensity of the light times k_s
+    input  wire [7:0]  green,              // intensity of the light, times k_s
     input  wire        green_write,        // writes green
-    input  wire [7:0]  blue,               // intensity of the light times k_s
+    input  wire [7:0]  blue,               // intensity of the light, times k_s
     input  wire        blue_write,         // writes blue
-    input  wire        idle,               // operands may be written
+    input  wire        idle,               // 1 while operands can be written
     input  wire        ratio_load,
     input  wire        ratio_sum1_load,
     input  wire        factor_load,
@@ -36,10 +36,11 @@ module blinn_datapath #(
     input  wire        power_sum1_load,
     input  wire        reflectance_load,
     input  wire [1:0]  polynomial_select,
-    output wire [15:0] f_out,              // u0.16: the reflectance, for a user's own multipliers
-    output wire [7:0]  red_out,            // intensity on the output
-    output wire [7:0]  green_out,          // intensity on the output
-    output wire [7:0]  blue_out            // intensity on the output
+    // u0.16: the reflectance f, for multipliers outside the core
+    output wire [15:0] f_out,
+    output wire [7:0]  red_out,            // output intensity
+    output wire [7:0]  green_out,          // output intensity
+    output wire [7:0]  blue_out            // output intensity
 );
 
     // Constants
@@ -52,23 +53,23 @@ module blinn_datapath #(
 
     // Registers
     reg         [20:0] cos_gamma_reg;  // u1.20: cosine of the angle between normal and half vector
-    reg         [4:0]  octave;         // leading zeros of cos gamma
-    // 1.0 - cos gamma * 2^octave, less an ulp, from 0 to one half
-    reg         [18:0] distance;
+    reg         [4:0]  octave;         // number of leading zeros of cos gamma
+    reg         [18:0] distance;       // 1.0 - cos gamma * 2^octave - 1 ulp, from 0 to one half
     reg         [9:0]  exponent_reg;   // specular exponent n
-    reg         [7:0]  red_reg;        // intensity of the light times k_s
-    reg         [7:0]  green_reg;      // intensity of the light times k_s
-    reg         [7:0]  blue_reg;       // intensity of the light times k_s
-    reg         [17:0] ratio;          // u2.16: decay over 1 - cos gamma
+    reg         [7:0]  red_reg;        // intensity of the light, times k_s
+    reg         [7:0]  green_reg;      // intensity of the light, times k_s
+    reg         [7:0]  blue_reg;       // intensity of the light, times k_s
+    reg         [17:0] ratio;          // u2.16: the decay divided by 1 - cos gamma
     reg         [12:0] ratio_sum1;     // u-4.17
     reg         [19:0] way;            // u0.20: 1.0 - cos gamma * 2^octave
-    reg         [23:0] factor;         // the decay; its point by decay_small
-    reg                decay_small;    // the decay is below 1/4, and all its bits count
-    reg         [33:0] halvings;       // u16.18: n*decay: how often f is half of 1.0
-    reg         [18:0] power;          // u1.18: 2^-x of the fraction x of halvings
+    reg         [23:0] factor;         // the decay; decay_small selects its number of fraction bits
+    reg                decay_small;    // 1 if the decay is below 1/4 and has more fraction bits
+    reg         [33:0] halvings;       // u16.18: n*decay: the number of halvings from 1.0 to f
+    reg         [18:0] power;          // u1.18: 2^-x, where x is the fraction of halvings
     reg  signed [15:0] power_sum1;     // s-4.19
     reg         [15:0] reflectance;    // u0.16: f
-    reg                facing_held;    // facing, delayed by a clock: the operands do not change
+    // facing, delayed by one clock, because the operands do not change
+    reg                facing_held;
 
     wire cos_gamma_over = cos_gamma[20];
     wire [20:0] cos_gamma_at_most = cos_gamma_over ? COS_GAMMA_MOST : cos_gamma;  // u1.20
@@ -95,21 +96,21 @@ module blinn_datapath #(
     wire blue_load = blue_write & idle;
     wire ratio_offset_top = ~distance[14];
 
-    // ROM ratio_coefficients: coefficient of the segment's polynomial
+    // ROM ratio_coefficients: coefficient of the polynomial of a segment
     reg [18:0] ratio_coefficients_rom [0:15];
     initial $readmemh(RATIO_COEFFICIENTS_FILE, ratio_coefficients_rom);
     wire [18:0] ratio_coefficients_word = ratio_coefficients_rom[distance[18:15]];
 
     wire [18:0] ratio_c0 = ratio_coefficients_word;  // u1.18
 
-    // ROM ratio_coefficients1: coefficient of the segment's polynomial
+    // ROM ratio_coefficients1: coefficient of the polynomial of a segment
     reg [12:0] ratio_coefficients1_rom [0:15];
     initial $readmemh(RATIO_COEFFICIENTS1_FILE, ratio_coefficients1_rom);
     wire [12:0] ratio_coefficients1_word = ratio_coefficients1_rom[distance[18:15]];
 
     wire [12:0] ratio_c1 = ratio_coefficients1_word;  // u-4.17
 
-    // ROM ratio_coefficients2: coefficient of the segment's polynomial
+    // ROM ratio_coefficients2: coefficient of the polynomial of a segment
     reg [5:0] ratio_coefficients2_rom [0:15];
     initial $readmemh(RATIO_COEFFICIENTS2_FILE, ratio_coefficients2_rom);
     wire [5:0] ratio_coefficients2_word = ratio_coefficients2_rom[distance[18:15]];
@@ -121,11 +122,13 @@ module blinn_datapath #(
     // second operand of the multiplier
     wire [17:0] second = operand_select ? {8'd0, exponent_reg} : ratio;
 
-    wire [41:0] product = first * second;  // its point depends on the operands
+    // the shared product; its number of fraction bits depends on the operands
+    wire [41:0] product = first * second;
+
     wire [26:0] decay = product[36:10];  // u1.26: without the octave
     wire decay_large = |decay[26:24];
     wire [5:0] decay_whole = {1'b0, octave} + {5'd0, decay[26]};
-    wire octave_any = |octave;  // cos gamma is below one half
+    wire octave_any = |octave;  // 1 if cos gamma is below one half
     wire decay_far = decay_large | octave_any;
     wire [23:0] factor_next = decay_far ? {decay_whole, decay[25:8]} : decay[23:0];
     wire decay_small_next = ~decay_far;
@@ -134,21 +137,21 @@ module blinn_datapath #(
     wire [33:0] halvings_next = decay_small ? halvings_fine : halvings_coarse;  // u16.18
     wire power_offset_top = ~halvings[13];
 
-    // ROM power_coefficients: coefficient of the segment's polynomial
+    // ROM power_coefficients: coefficient of the polynomial of a segment
     reg [19:0] power_coefficients_rom [0:15];
     initial $readmemh(POWER_COEFFICIENTS_FILE, power_coefficients_rom);
     wire [19:0] power_coefficients_word = power_coefficients_rom[halvings[17:14]];
 
     wire [19:0] power_c0 = power_coefficients_word;  // u0.20
 
-    // ROM power_coefficients1: coefficient of the segment's polynomial
+    // ROM power_coefficients1: coefficient of the polynomial of a segment
     reg [15:0] power_coefficients1_rom [0:15];
     initial $readmemh(POWER_COEFFICIENTS1_FILE, power_coefficients1_rom);
     wire [15:0] power_coefficients1_word = power_coefficients1_rom[halvings[17:14]];
 
     wire signed [15:0] power_c1 = power_coefficients1_word;  // s-4.19
 
-    // ROM power_coefficients2: coefficient of the segment's polynomial
+    // ROM power_coefficients2: coefficient of the polynomial of a segment
     reg [5:0] power_coefficients2_rom [0:15];
     initial $readmemh(POWER_COEFFICIENTS2_FILE, power_coefficients2_rom);
     wire [5:0] power_coefficients2_word = power_coefficients2_rom[halvings[17:14]];
@@ -177,20 +180,20 @@ module blinn_datapath #(
     wire [15:0] exp2_rounded = (|exp2_rounded_nearest[17:16]) ? 16'hffff :
             exp2_rounded_nearest[15:0];
 
-    wire facing = |cos_gamma_reg;  // the surface faces the half vector
-    wire aligned = cos_gamma_reg[20];  // cos gamma is 1.0
+    wire facing = |cos_gamma_reg;  // 1 if the surface faces the half vector
+    wire aligned = cos_gamma_reg[20];  // 1 if cos gamma is 1.0
     wire [15:0] lit = aligned ? 16'hffff : exp2_rounded;  // u0.16
     wire [15:0] reflectance_next = facing_held ? lit : 16'd0;  // u0.16
-    assign f_out = reflectance;  // u0.16: the reflectance, for a user's own multipliers
-    wire [23:0] red_product = reflectance * red_reg;  // u8.16: an output before it is rounded
+    assign f_out = reflectance;  // u0.16: the reflectance f, for multipliers outside the core
+    wire [23:0] red_product = reflectance * red_reg;  // u8.16: the output before rounding
     wire [7:0] red_intensity = red_product[23:16] + {7'd0, red_product[15]};
-    assign red_out = red_intensity;  // intensity on the output
-    wire [23:0] green_product = reflectance * green_reg;  // u8.16: an output before it is rounded
+    assign red_out = red_intensity;  // output intensity
+    wire [23:0] green_product = reflectance * green_reg;  // u8.16: the output before rounding
     wire [7:0] green_intensity = green_product[23:16] + {7'd0, green_product[15]};
-    assign green_out = green_intensity;  // intensity on the output
-    wire [23:0] blue_product = reflectance * blue_reg;  // u8.16: an output before it is rounded
+    assign green_out = green_intensity;  // output intensity
+    wire [23:0] blue_product = reflectance * blue_reg;  // u8.16: the output before rounding
     wire [7:0] blue_intensity = blue_product[23:16] + {7'd0, blue_product[15]};
-    assign blue_out = blue_intensity;  // intensity on the output
+    assign blue_out = blue_intensity;  // output intensity
 
     // s15.0
     reg  signed [15:0] factor_of_offset;
@@ -328,7 +331,7 @@ module blinn_datapath #(
         end
     end
 
-    // Unused bits, among them those that narrowing drops.
+    // Unused: bits that nothing reads, for example those that a narrower format drops.
     wire unused = &{1'b0, octave_by1[19], product[41:37], power[0], red_product[14:0],
             green_product[14:0], blue_product[14:0], polynomial_product[4:0], ratio_added0[1:0],
             power_added1[16], power_added0[1:0]};

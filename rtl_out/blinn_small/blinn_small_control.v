@@ -1,9 +1,9 @@
 // blinn_small_control: sequencer and control ROM of blinn_small
 //
 // Microprogram:
-//    0  distance from the cosine
+//    0  distance <- 1 - cos gamma
 //    1  ratio <- all coefficients
-//    2  factor <- way * ratio
+//    2  factor <- distance * ratio
 //    3  halvings <- n * factor
 //    4  power <- all coefficients
 //    5  reflectance <- 2^-halvings
@@ -19,11 +19,11 @@ module blinn_small_control #(
 ) (
     input  wire clk,
     input  wire rst_n,              // reset, active low
-    input  wire start,              // begins a computation when not busy
+    input  wire start,              // starts a computation if not busy
     output wire valid,              // the results are on the outputs
-    output wire busy,               // high from the clock after start to the end
+    output wire busy,               // high from the clock after start to the last clock
     output wire done,               // high in the last clock of a computation
-    output wire idle,               // operands may be written
+    output wire idle,               // 1 while operands can be written
     output wire ratio_load,
     output wire factor_load,
     output wire decay_small_load,
@@ -35,14 +35,14 @@ module blinn_small_control #(
 );
 
     // Registers
-    reg        run;           // a microprogram is running
-    reg  [2:0] word_address;  // the microinstruction that is executed
+    reg        run;           // 1 while a microprogram runs
+    reg  [2:0] word_address;  // the address of the current microinstruction
 
-    assign busy = run;  // high from the clock after start to the end
+    assign busy = run;  // high from the clock after start to the last clock
     wire not_busy = ~busy;
-    assign idle = not_busy;  // operands may be written
+    assign idle = not_busy;  // 1 while operands can be written
 
-    // ROM control: the microprogram, a line for each microinstruction; fields: ratio_load,
+    // ROM control: the microprogram, one word per microinstruction; fields: ratio_load,
     // factor_load, decay_small_load, halvings_load, operand_select, power_load, reflectance_load,
     // polynomial_select, valid_word, go_on
     reg [9:0] control_rom [0:6];
@@ -57,8 +57,8 @@ module blinn_small_control #(
     assign power_load = control_word[4];
     assign reflectance_load = control_word[3];
     assign polynomial_select = control_word[2];
-    wire valid_word = control_word[1];  // the microinstruction sets valid
-    wire go_on = control_word[0];  // 0 in the last microinstruction
+    wire valid_word = control_word[1];  // 1 if the microinstruction sets valid
+    wire go_on = control_word[0];  // 0 in the last microinstruction, else 1
     wire [2:0] following_word = word_address + 3'd1;
     wire [2:0] next_word = go_on ? following_word : 3'd0;
     wire next_run = run ? go_on : start;
@@ -84,7 +84,7 @@ module blinn_small_control #(
 
 `ifdef FORMAL
     always @* if (!$initstate) begin
-        assert (word_address <= 3'd6);  // no other address is reached
+        assert (word_address <= 3'd6);  // the address stays in the microprogram
         if (!run) assert (word_address == 3'd0);
     end
 `endif

@@ -17,13 +17,13 @@ module blinn_small_datapath #(
     input  wire        cos_gamma_write,    // writes cos_gamma
     input  wire [9:0]  exponent,           // specular exponent n
     input  wire        exponent_write,     // writes exponent
-    input  wire [7:0]  red,                // intensity of the light times k_s
+    input  wire [7:0]  red,                // intensity of the light, times k_s
     input  wire        red_write,          // writes red
-    input  wire [7:0]  green,              // intensity of the light times k_s
+    input  wire [7:0]  green,              // intensity of the light, times k_s
     input  wire        green_write,        // writes green
-    input  wire [7:0]  blue,               // intensity of the light times k_s
+    input  wire [7:0]  blue,               // intensity of the light, times k_s
     input  wire        blue_write,         // writes blue
-    input  wire        idle,               // operands may be written
+    input  wire        idle,               // 1 while operands can be written
     input  wire        ratio_load,
     input  wire        factor_load,
     input  wire        decay_small_load,
@@ -32,10 +32,11 @@ module blinn_small_datapath #(
     input  wire        power_load,
     input  wire        reflectance_load,
     input  wire        polynomial_select,
-    output wire [13:0] f_out,              // u0.14: the reflectance, for a user's own multipliers
-    output wire [7:0]  red_out,            // intensity on the output
-    output wire [7:0]  green_out,          // intensity on the output
-    output wire [7:0]  blue_out            // intensity on the output
+    // u0.14: the reflectance f, for multipliers outside the core
+    output wire [13:0] f_out,
+    output wire [7:0]  red_out,            // output intensity
+    output wire [7:0]  green_out,          // output intensity
+    output wire [7:0]  blue_out            // output intensity
 );
 
     // Constants
@@ -44,20 +45,20 @@ module blinn_small_datapath #(
 
     // Registers
     reg  [20:0] cos_gamma_reg;  // u1.20: cosine of the angle between normal and half vector
-    reg  [4:0]  octave;         // leading zeros of cos gamma
-    reg  [18:0] distance;       // 1.0 - cos gamma * 2^octave, less an ulp, from 0 to one half
+    reg  [4:0]  octave;         // number of leading zeros of cos gamma
+    reg  [18:0] distance;       // 1.0 - cos gamma * 2^octave - 1 ulp, from 0 to one half
     reg  [9:0]  exponent_reg;   // specular exponent n
-    reg  [7:0]  red_reg;        // intensity of the light times k_s
-    reg  [7:0]  green_reg;      // intensity of the light times k_s
-    reg  [7:0]  blue_reg;       // intensity of the light times k_s
-    reg  [12:0] ratio;          // u2.11: decay over 1 - cos gamma
+    reg  [7:0]  red_reg;        // intensity of the light, times k_s
+    reg  [7:0]  green_reg;      // intensity of the light, times k_s
+    reg  [7:0]  blue_reg;       // intensity of the light, times k_s
+    reg  [12:0] ratio;          // u2.11: the decay divided by 1 - cos gamma
     reg  [19:0] way;            // u0.20: 1.0 - cos gamma * 2^octave
-    reg  [19:0] factor;         // the decay; its point by decay_small
-    reg         decay_small;    // the decay is below 1/4, and all its bits count
-    reg  [27:0] halvings;       // u16.12: n*decay: how often f is half of 1.0
-    reg  [12:0] power;          // u1.12: 2^-x of the fraction x of halvings
+    reg  [19:0] factor;         // the decay; decay_small selects its number of fraction bits
+    reg         decay_small;    // 1 if the decay is below 1/4 and has more fraction bits
+    reg  [27:0] halvings;       // u16.12: n*decay: the number of halvings from 1.0 to f
+    reg  [12:0] power;          // u1.12: 2^-x, where x is the fraction of halvings
     reg  [13:0] reflectance;    // u0.14: f
-    reg         facing_held;    // facing, delayed by a clock: the operands do not change
+    reg         facing_held;    // facing, delayed by one clock, because the operands do not change
 
     wire cos_gamma_over = cos_gamma[20];
     wire [20:0] cos_gamma_at_most = cos_gamma_over ? COS_GAMMA_MOST : cos_gamma;  // u1.20
@@ -84,14 +85,14 @@ module blinn_small_datapath #(
     wire blue_load = blue_write & idle;
     wire ratio_offset_top = ~distance[13];
 
-    // ROM ratio_coefficients: coefficient of the segment's polynomial
+    // ROM ratio_coefficients: coefficient of the polynomial of a segment
     reg [12:0] ratio_coefficients_rom [0:31];
     initial $readmemh(RATIO_COEFFICIENTS_FILE, ratio_coefficients_rom);
     wire [12:0] ratio_coefficients_word = ratio_coefficients_rom[distance[18:14]];
 
     wire [12:0] ratio_c0 = ratio_coefficients_word;  // u1.12
 
-    // ROM ratio_coefficients1: coefficient of the segment's polynomial
+    // ROM ratio_coefficients1: coefficient of the polynomial of a segment
     reg [5:0] ratio_coefficients1_rom [0:31];
     initial $readmemh(RATIO_COEFFICIENTS1_FILE, ratio_coefficients1_rom);
     wire [5:0] ratio_coefficients1_word = ratio_coefficients1_rom[distance[18:14]];
@@ -103,11 +104,13 @@ module blinn_small_datapath #(
     // second operand of the multiplier
     wire [12:0] second = operand_select ? {3'd0, exponent_reg} : ratio;
 
-    wire [32:0] product = first * second;  // its point depends on the operands
+    // the shared product; its number of fraction bits depends on the operands
+    wire [32:0] product = first * second;
+
     wire [22:0] decay = product[31:9];  // u1.22: without the octave
     wire decay_large = |decay[22:20];
     wire [5:0] decay_whole = {1'b0, octave} + {5'd0, decay[22]};
-    wire octave_any = |octave;  // cos gamma is below one half
+    wire octave_any = |octave;  // 1 if cos gamma is below one half
     wire decay_far = decay_large | octave_any;
     wire [19:0] factor_next = decay_far ? {decay_whole, decay[21:8]} : decay[19:0];
     wire decay_small_next = ~decay_far;
@@ -116,14 +119,14 @@ module blinn_small_datapath #(
     wire [27:0] halvings_next = decay_small ? halvings_fine : halvings_coarse;  // u16.12
     wire power_offset_top = ~halvings[7];
 
-    // ROM power_coefficients: coefficient of the segment's polynomial
+    // ROM power_coefficients: coefficient of the polynomial of a segment
     reg [14:0] power_coefficients_rom [0:15];
     initial $readmemh(POWER_COEFFICIENTS_FILE, power_coefficients_rom);
     wire [14:0] power_coefficients_word = power_coefficients_rom[halvings[11:8]];
 
     wire [14:0] power_c0 = power_coefficients_word;  // u0.15
 
-    // ROM power_coefficients1: coefficient of the segment's polynomial
+    // ROM power_coefficients1: coefficient of the polynomial of a segment
     reg [10:0] power_coefficients1_rom [0:15];
     initial $readmemh(POWER_COEFFICIENTS1_FILE, power_coefficients1_rom);
     wire [10:0] power_coefficients1_word = power_coefficients1_rom[halvings[11:8]];
@@ -150,20 +153,20 @@ module blinn_small_datapath #(
     // u0.14
     wire [13:0] exp2_rounded = exp2_rounded_nearest[14] ? 14'h3fff : exp2_rounded_nearest[13:0];
 
-    wire facing = |cos_gamma_reg;  // the surface faces the half vector
-    wire aligned = cos_gamma_reg[20];  // cos gamma is 1.0
+    wire facing = |cos_gamma_reg;  // 1 if the surface faces the half vector
+    wire aligned = cos_gamma_reg[20];  // 1 if cos gamma is 1.0
     wire [13:0] lit = aligned ? 14'h3fff : exp2_rounded;  // u0.14
     wire [13:0] reflectance_next = facing_held ? lit : 14'd0;  // u0.14
-    assign f_out = reflectance;  // u0.14: the reflectance, for a user's own multipliers
-    wire [21:0] red_product = reflectance * red_reg;  // u8.14: an output before it is rounded
+    assign f_out = reflectance;  // u0.14: the reflectance f, for multipliers outside the core
+    wire [21:0] red_product = reflectance * red_reg;  // u8.14: the output before rounding
     wire [7:0] red_intensity = red_product[21:14] + {7'd0, red_product[13]};
-    assign red_out = red_intensity;  // intensity on the output
-    wire [21:0] green_product = reflectance * green_reg;  // u8.14: an output before it is rounded
+    assign red_out = red_intensity;  // output intensity
+    wire [21:0] green_product = reflectance * green_reg;  // u8.14: the output before rounding
     wire [7:0] green_intensity = green_product[21:14] + {7'd0, green_product[13]};
-    assign green_out = green_intensity;  // intensity on the output
-    wire [21:0] blue_product = reflectance * blue_reg;  // u8.14: an output before it is rounded
+    assign green_out = green_intensity;  // output intensity
+    wire [21:0] blue_product = reflectance * blue_reg;  // u8.14: the output before rounding
     wire [7:0] blue_intensity = blue_product[21:14] + {7'd0, blue_product[13]};
-    assign blue_out = blue_intensity;  // intensity on the output
+    assign blue_out = blue_intensity;  // output intensity
     wire signed [10:0] factor_of_offset = polynomial_select ? power_c1 : {5'd0, ratio_c1};  // s10.0
 
     // s7.0
@@ -257,7 +260,7 @@ module blinn_small_datapath #(
         end
     end
 
-    // Unused bits, among them those that narrowing drops.
+    // Unused: bits that nothing reads, for example those that a narrower format drops.
     wire unused = &{1'b0, octave_by1[19], product[1:0], product[32], red_product[12:0],
             green_product[12:0], blue_product[12:0], polynomial_product[4:0], ratio_added0[0],
             power_added0[2:0]};

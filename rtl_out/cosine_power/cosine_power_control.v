@@ -17,12 +17,12 @@ module cosine_power_control #(
 ) (
     input  wire       clk,
     input  wire       rst_n,             // reset, active low
-    input  wire       start,             // begins a computation when not busy
-    input  wire       more,              // not the last squaring
+    input  wire       start,             // starts a computation if not busy
+    input  wire       more,              // 1 if this is not the last squaring
     output wire       valid,             // the results are on the outputs
-    output wire       busy,              // high from the clock after start to the end
+    output wire       busy,              // high from the clock after start to the last clock
     output wire       done,              // high in the last clock of a computation
-    output wire       idle,              // operands may be written
+    output wire       idle,              // 1 while operands can be written
     output wire [1:0] operand_select,
     output wire       accumulator_load,
     output wire       remaining_load,
@@ -33,14 +33,14 @@ module cosine_power_control #(
     localparam [2:0] LOOP_START = 3'd3;
 
     // Registers
-    reg        run;           // a microprogram is running
-    reg  [2:0] word_address;  // the microinstruction that is executed
+    reg        run;           // 1 while a microprogram runs
+    reg  [2:0] word_address;  // the address of the current microinstruction
 
-    assign busy = run;  // high from the clock after start to the end
+    assign busy = run;  // high from the clock after start to the last clock
     wire not_busy = ~busy;
-    assign idle = not_busy;  // operands may be written
+    assign idle = not_busy;  // 1 while operands can be written
 
-    // ROM control: the microprogram, a line for each microinstruction; fields: operand_select,
+    // ROM control: the microprogram, one word per microinstruction; fields: operand_select,
     // accumulator_load, remaining_load, remaining_count, valid_word, loop_word, go_on
     reg [7:0] control_rom [0:4];
     initial $readmemb(CONTROL_FILE, control_rom);
@@ -50,9 +50,9 @@ module cosine_power_control #(
     assign accumulator_load = control_word[5];
     assign remaining_load = control_word[4];
     assign remaining_count = control_word[3];
-    wire valid_word = control_word[2];  // the microinstruction sets valid
+    wire valid_word = control_word[2];  // 1 if the microinstruction sets valid
     wire loop_word = control_word[1];
-    wire go_on = control_word[0];  // 0 in the last microinstruction
+    wire go_on = control_word[0];  // 0 in the last microinstruction, else 1
     wire [2:0] following_word = word_address + 3'd1;
     wire condition = more;
     wire loop_back = loop_word & condition;
@@ -81,7 +81,7 @@ module cosine_power_control #(
 
 `ifdef FORMAL
     always @* if (!$initstate) begin
-        assert (word_address <= 3'd4);  // no other address is reached
+        assert (word_address <= 3'd4);  // the address stays in the microprogram
         if (!run) assert (word_address == 3'd0);
     end
 `endif

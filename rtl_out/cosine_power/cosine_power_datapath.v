@@ -12,21 +12,21 @@ module cosine_power_datapath (
     input  wire        cos_gamma_write,   // writes cos_gamma
     input  wire [9:0]  exponent,          // specular exponent n
     input  wire        exponent_write,    // writes exponent
-    input  wire [7:0]  red,               // intensity of the light times k_s
+    input  wire [7:0]  red,               // intensity of the light, times k_s
     input  wire        red_write,         // writes red
-    input  wire [7:0]  green,             // intensity of the light times k_s
+    input  wire [7:0]  green,             // intensity of the light, times k_s
     input  wire        green_write,       // writes green
-    input  wire [7:0]  blue,              // intensity of the light times k_s
+    input  wire [7:0]  blue,              // intensity of the light, times k_s
     input  wire        blue_write,        // writes blue
-    input  wire        idle,              // operands may be written
+    input  wire        idle,              // 1 while operands can be written
     input  wire [1:0]  operand_select,
     input  wire        accumulator_load,
     input  wire        remaining_load,
     input  wire        remaining_count,
-    output wire [7:0]  red_out,           // intensity on the output
-    output wire [7:0]  green_out,         // intensity on the output
-    output wire [7:0]  blue_out,          // intensity on the output
-    output wire        more               // not the last squaring
+    output wire [7:0]  red_out,           // output intensity
+    output wire [7:0]  green_out,         // output intensity
+    output wire [7:0]  blue_out,          // output intensity
+    output wire        more               // 1 if this is not the last squaring
 );
 
     // Constants
@@ -40,14 +40,15 @@ module cosine_power_datapath (
     // Registers
     reg  [20:0] cos_gamma_reg;    // u1.20: cosine of the angle between normal and half vector
     reg  [9:0]  exponent_reg;     // specular exponent n
-    reg  [7:0]  red_reg;          // intensity of the light times k_s
-    reg  [7:0]  green_reg;        // intensity of the light times k_s
-    reg  [7:0]  blue_reg;         // intensity of the light times k_s
-    reg  [15:0] accumulator;      // u0.16: n/m*(1 - cos gamma), then the powers of W's base
-    reg  [1:0]  remaining;        // squarings to come
-    // u1.20: complement, delayed by a clock: the operands do not change
+    reg  [7:0]  red_reg;          // intensity of the light, times k_s
+    reg  [7:0]  green_reg;        // intensity of the light, times k_s
+    reg  [7:0]  blue_reg;         // intensity of the light, times k_s
+    reg  [15:0] accumulator;      // u0.16: n/m*(1 - cos gamma), later the powers of the base of W
+    reg  [1:0]  remaining;        // squarings that remain
+    // u1.20: complement, delayed by one clock, because the operands do not change
     reg  [20:0] complement_held;
-    reg         facing_held;      // facing, delayed by a clock: the operands do not change
+    // facing, delayed by one clock, because the operands do not change
+    reg         facing_held;
 
     wire cos_gamma_over = cos_gamma[20];
     wire [20:0] cos_gamma_at_most = cos_gamma_over ? COS_GAMMA_MOST : cos_gamma;  // u1.20
@@ -61,8 +62,8 @@ module cosine_power_datapath (
     wire remaining_enable = remaining_load | remaining_count;
     wire [20:0] complement = ONE - cos_gamma_reg;  // u1.20: 1.0 - cos gamma
     wire [9:0] zeta = exponent_reg;  // u6.4: n/m, by wiring
-    wire facing = |cos_gamma_reg;  // the surface faces the half vector
-    wire [15:0] inverse = ~accumulator;  // u0.16: 1.0 - accumulator, less an ulp
+    wire facing = |cos_gamma_reg;  // 1 if the surface faces the half vector
+    wire [15:0] inverse = ~accumulator;  // u0.16: 1.0 - accumulator - 1 ulp
     wire [15:0] base = facing_held ? inverse : 16'd0;  // u0.16: base of the power
 
     // first operand of the multiplier
@@ -87,7 +88,9 @@ module cosine_power_datapath (
         endcase
     end
 
-    wire [36:0] product = first * second;  // the shared product; its point depends on the operands
+    // the shared product; its number of fraction bits depends on the operands
+    wire [36:0] product = first * second;
+
     wire [15:0] distance = (|product[29:24]) ? 16'hffff : product[23:8];  // u0.16
     wire [15:0] square = product[31:16];  // u0.16
 
@@ -102,16 +105,16 @@ module cosine_power_datapath (
         endcase
     end
 
-    wire [23:0] red_product = accumulator * red_reg;  // u8.16: an output before it is rounded
+    wire [23:0] red_product = accumulator * red_reg;  // u8.16: the output before rounding
     wire [7:0] red_intensity = red_product[23:16] + {7'd0, red_product[15]};
-    assign red_out = red_intensity;  // intensity on the output
-    wire [23:0] green_product = accumulator * green_reg;  // u8.16: an output before it is rounded
+    assign red_out = red_intensity;  // output intensity
+    wire [23:0] green_product = accumulator * green_reg;  // u8.16: the output before rounding
     wire [7:0] green_intensity = green_product[23:16] + {7'd0, green_product[15]};
-    assign green_out = green_intensity;  // intensity on the output
-    wire [23:0] blue_product = accumulator * blue_reg;  // u8.16: an output before it is rounded
+    assign green_out = green_intensity;  // output intensity
+    wire [23:0] blue_product = accumulator * blue_reg;  // u8.16: the output before rounding
     wire [7:0] blue_intensity = blue_product[23:16] + {7'd0, blue_product[15]};
-    assign blue_out = blue_intensity;  // intensity on the output
-    assign more = remaining > 2'd1;  // not the last squaring
+    assign blue_out = blue_intensity;  // output intensity
+    assign more = remaining > 2'd1;  // 1 if this is not the last squaring
 
     always @(posedge clk) begin
         if (cos_gamma_load) begin
@@ -160,7 +163,7 @@ module cosine_power_datapath (
         facing_held <= facing;
     end
 
-    // Unused bits, among them those that narrowing drops.
+    // Unused: bits that nothing reads, for example those that a narrower format drops.
     wire unused = &{1'b0, product[7:0], product[36:32], red_product[14:0], green_product[14:0],
             blue_product[14:0]};
 

@@ -9,42 +9,43 @@ module cosine_squared_datapath #(
     parameter COSINE_FILE = "cosine_squared_cosine.mem"
 ) (
     input  wire               clk,
-    // input 15: intensity of the light times k_s, at the highest point of the highlight
+    // input 15: intensity of the light, times k_s, at the peak of the highlight
     input  wire        [7:0]  amplitude,
     input  wire               amplitude_write,      // input 16: writes amplitude
-    // input 17, s7.22: angle from a point to the next, in right angles
+    // input 17, s7.22: angle step from point to point, in right angles
     input  wire signed [29:0] delta_zeta,
     input  wire               delta_zeta_write,     // input 18: writes delta_zeta
     // input 19, s7.22: angle of the first point, in right angles
     input  wire signed [29:0] zeta_start,
     input  wire               zeta_start_write,     // input 20: writes zeta_start
-    // input 23: intervals of the line: one less than its points
+    // input 23: number of intervals: the number of points minus 1
     input  wire        [11:0] length,
     input  wire               length_write,         // input 24: writes length
-    input  wire               idle,                 // operands may be written
+    input  wire               idle,                 // 1 while operands can be written
     input  wire               angle_load,           // line 37
     input  wire               angle_source_select,  // line 36
     input  wire               intervals_load,
     input  wire               intervals_count,      // line 34
-    output wire               count,                // output 34: counts an interval
-    output wire               accumulate,           // output 36: the next point, not the first
-    output wire               write_angle,          // output 37: a point is written
-    output wire        [7:0]  intensity_out,        // output 27: intensity on the output
-    output wire               empty,                // a line of one point
-    output wire               more                  // not the last interval
+    output wire               count,                // output 34: counts down the intervals
+    // output 36: 1 for a next point, 0 for the first
+    output wire               accumulate,
+    output wire               write_angle,          // output 37: writes the angle of a point
+    output wire        [7:0]  intensity_out,        // output 27: output intensity
+    output wire               empty,                // 1 if the line has one point
+    output wire               more                  // 1 if this is not the last interval
 );
 
     // Registers
-    // register 1: intensity of the light times k_s, at the highest point of the highlight
+    // register 1: intensity of the light, times k_s, at the peak of the highlight
     reg         [7:0]  amplitude_reg;
-    // register 2, s7.22: angle from a point to the next, in right angles
+    // register 2, s7.22: angle step from point to point, in right angles
     reg  signed [29:0] delta_zeta_reg;
     // register 3, s7.22: angle of the first point, in right angles
     reg  signed [29:0] zeta_start_reg;
-    reg         [11:0] length_reg;      // intervals of the line: one less than its points
-    // register 8, s7.22: angle of the point, in right angles; wraps around
+    reg         [11:0] length_reg;      // number of intervals: the number of points minus 1
+    // register 8, s7.22: angle of the current point, in right angles; wraps around
     reg  signed [29:0] angle;
-    reg         [11:0] intervals;       // register 5: intervals still to go
+    reg         [11:0] intervals;       // register 5: intervals that remain
     reg         [9:0]  cosine_word;     // u0.10
 
     wire amplitude_load = amplitude_write & idle;
@@ -55,42 +56,42 @@ module cosine_squared_datapath #(
     // adder 6, s7.22: angle of the next point
     wire signed [29:0] next_angle = angle + delta_zeta_reg;
 
-    // mux 7, s7.22: first point, or next
+    // mux 7, s7.22: angle of the first point, or of the next
     wire signed [29:0] angle_source = angle_source_select ? next_angle : zeta_start_reg;
 
     wire [11:0] intervals_less_one = intervals - 12'd1;
     wire [11:0] intervals_next = intervals_load ? length_reg : intervals_less_one;
     wire intervals_enable = intervals_load | intervals_count;
-    assign empty = length_reg == 12'd0;  // a line of one point
-    assign more = intervals > 12'd1;  // not the last interval
-    assign count = intervals_count;  // output 34: counts an interval
-    assign accumulate = angle_source_select;  // output 36: the next point, not the first
-    assign write_angle = angle_load;  // output 37: a point is written
+    assign empty = length_reg == 12'd0;  // 1 if the line has one point
+    assign more = intervals > 12'd1;  // 1 if this is not the last interval
+    assign count = intervals_count;  // output 34: counts down the intervals
+    assign accumulate = angle_source_select;  // output 36: 1 for a next point, 0 for the first
+    assign write_angle = angle_load;  // output 37: writes the angle of a point
     wire angle_negative = angle[29];
     wire [7:0] angle_upper = angle[29:22];
     wire angle_upper_any = |angle_upper;
     wire angle_small_positive = ~angle_upper_any;
     wire angle_small_negative = &angle_upper;
 
-    // from -90 degrees to less than 90: sign and integer bits agree
+    // 1 from -90 degrees to less than 90: sign and integer bits agree
     wire angle_within = angle_small_positive | angle_small_negative;
 
     wire [9:0] angle_leading = angle[21:12];  // u0.10
     wire [9:0] angle_complement = ~angle_leading;  // u0.10
 
-    // u0.10: cos is even
+    // u0.10: absolute angle, because cos is even
     wire [9:0] angle_magnitude = angle_negative ? angle_complement : angle_leading;
 
     wire [9:0] table_address_limited = angle_magnitude;  // u0.10
     wire [9:0] table_address = angle_within ? table_address_limited : 10'd1023;
 
-    // multiplier 13, u8.10: an output before it is rounded
+    // multiplier 13, u8.10: the output before rounding
     wire [17:0] intensity_product = cosine_word * amplitude_reg;
 
     wire [7:0] intensity_rounded = intensity_product[17:10] + {7'd0, intensity_product[9]};
-    assign intensity_out = intensity_rounded;  // output 27: intensity on the output
+    assign intensity_out = intensity_rounded;  // output 27: output intensity
 
-    // ROM 12: cos^2 in 2^10 steps of a right angle
+    // ROM 12: cos^2 at 2^10 angles of a right angle
     reg [9:0] cosine_rom [0:1023];
     initial $readmemh(COSINE_FILE, cosine_rom);
     always @(posedge clk) cosine_word <= cosine_rom[table_address];
@@ -131,7 +132,7 @@ module cosine_squared_datapath #(
         end
     end
 
-    // Unused bits, among them those that narrowing drops.
+    // Unused: bits that nothing reads, for example those that a narrower format drops.
     wire unused = &{1'b0, intensity_product[8:0]};
 
 `ifdef FORMAL

@@ -18,13 +18,13 @@ module lyon_control #(
 ) (
     input  wire clk,
     input  wire rst_n,                       // reset, active low
-    input  wire start,                       // begins a computation when not busy
-    input  wire more_shifts,                 // not the last shift
-    input  wire more,                        // not the last squaring
+    input  wire start,                       // starts a computation if not busy
+    input  wire more_shifts,                 // 1 if this is not the last shift
+    input  wire more,                        // 1 if this is not the last squaring
     output wire valid,                       // the results are on the outputs
-    output wire busy,                        // high from the clock after start to the end
+    output wire busy,                        // high from the clock after start to the last clock
     output wire done,                        // high in the last clock of a computation
-    output wire idle,                        // operands may be written
+    output wire idle,                        // 1 while operands can be written
     output wire shift_register_load,
     output wire remaining_start_select,
     output wire remaining_load,
@@ -35,14 +35,14 @@ module lyon_control #(
 );
 
     // Registers
-    reg        run;           // a microprogram is running
-    reg  [2:0] word_address;  // the microinstruction that is executed
+    reg        run;           // 1 while a microprogram runs
+    reg  [2:0] word_address;  // the address of the current microinstruction
 
-    assign busy = run;  // high from the clock after start to the end
+    assign busy = run;  // high from the clock after start to the last clock
     wire not_busy = ~busy;
-    assign idle = not_busy;  // operands may be written
+    assign idle = not_busy;  // 1 while operands can be written
 
-    // ROM control: the microprogram, a line for each microinstruction; fields: shift_register_load,
+    // ROM control: the microprogram, one word per microinstruction; fields: shift_register_load,
     // remaining_start_select, remaining_load, remaining_count, shift_input_select,
     // accumulator_load, multiplier4_operand_select, valid_word, loop_word, loop_condition,
     // loop_target, go_on
@@ -57,11 +57,11 @@ module lyon_control #(
     assign shift_input_select = control_word[9];
     assign accumulator_load = control_word[8];
     assign multiplier4_operand_select = control_word[7];
-    wire valid_word = control_word[6];  // the microinstruction sets valid
+    wire valid_word = control_word[6];  // 1 if the microinstruction sets valid
     wire loop_word = control_word[5];
     wire loop_condition = control_word[4];
     wire [2:0] loop_target = control_word[3:1];
-    wire go_on = control_word[0];  // 0 in the last microinstruction
+    wire go_on = control_word[0];  // 0 in the last microinstruction, else 1
     wire [2:0] following_word = word_address + 3'd1;
     wire condition = loop_condition ? more : more_shifts;
     wire loop_back = loop_word & condition;
@@ -90,7 +90,7 @@ module lyon_control #(
 
 `ifdef FORMAL
     always @* if (!$initstate) begin
-        assert (word_address <= 3'd5);  // no other address is reached
+        assert (word_address <= 3'd5);  // the address stays in the microprogram
         if (!run) assert (word_address == 3'd0);
     end
 `endif

@@ -7,25 +7,25 @@
 
 module lyon_datapath (
     input  wire               clk,
-    // s1.16: x of N - H, normal less half vector
+    // s1.16: x of N - H, the normal minus the half vector
     input  wire signed [17:0] dx,
     input  wire               dx_write,                    // writes dx
-    // s1.16: y of N - H, normal less half vector
+    // s1.16: y of N - H, the normal minus the half vector
     input  wire signed [17:0] dy,
     input  wire               dy_write,                    // writes dy
-    // s1.16: z of N - H, normal less half vector
+    // s1.16: z of N - H, the normal minus the half vector
     input  wire signed [17:0] dz,
     input  wire               dz_write,                    // writes dz
     // log2 of the specular exponent n, rounded
     input  wire        [3:0]  shift,
     input  wire               shift_write,                 // writes shift
-    input  wire        [7:0]  red,                         // intensity of the light times k_s
+    input  wire        [7:0]  red,                         // intensity of the light, times k_s
     input  wire               red_write,                   // writes red
-    input  wire        [7:0]  green,                       // intensity of the light times k_s
+    input  wire        [7:0]  green,                       // intensity of the light, times k_s
     input  wire               green_write,                 // writes green
-    input  wire        [7:0]  blue,                        // intensity of the light times k_s
+    input  wire        [7:0]  blue,                        // intensity of the light, times k_s
     input  wire               blue_write,                  // writes blue
-    input  wire               idle,                        // operands may be written
+    input  wire               idle,                        // 1 while operands can be written
     input  wire               shift_register_load,
     input  wire               remaining_start_select,
     input  wire               remaining_load,
@@ -33,11 +33,11 @@ module lyon_datapath (
     input  wire               shift_input_select,
     input  wire               accumulator_load,
     input  wire               multiplier4_operand_select,
-    output wire        [7:0]  red_out,                     // intensity on the output
-    output wire        [7:0]  green_out,                   // intensity on the output
-    output wire        [7:0]  blue_out,                    // intensity on the output
-    output wire               more_shifts,                 // not the last shift
-    output wire               more                         // not the last squaring
+    output wire        [7:0]  red_out,                     // output intensity
+    output wire        [7:0]  green_out,                   // output intensity
+    output wire        [7:0]  blue_out,                    // output intensity
+    output wire               more_shifts,                 // 1 if this is not the last shift
+    output wire               more                         // 1 if this is not the last squaring
 );
 
     // Constants
@@ -45,21 +45,21 @@ module lyon_datapath (
     localparam [16:0] ONE = 17'h10000;  // 1.0 in u1.16
 
     // Registers
-    reg  signed [17:0] dx_reg;            // s1.16: x of N - H, normal less half vector
-    reg  signed [17:0] dy_reg;            // s1.16: y of N - H, normal less half vector
-    reg  signed [17:0] dz_reg;            // s1.16: z of N - H, normal less half vector
+    reg  signed [17:0] dx_reg;            // s1.16: x of N - H, the normal minus the half vector
+    reg  signed [17:0] dy_reg;            // s1.16: y of N - H, the normal minus the half vector
+    reg  signed [17:0] dz_reg;            // s1.16: z of N - H, the normal minus the half vector
     reg         [3:0]  shift_reg;         // log2 of the specular exponent n, rounded
-    reg         [26:0] shift_register;    // u1.26: beta*D^2, once it has shifted
-    reg         [3:0]  remaining;         // shifts, then squarings, to come
-    reg         [7:0]  red_reg;           // intensity of the light times k_s
-    reg         [7:0]  green_reg;         // intensity of the light times k_s
-    reg         [7:0]  blue_reg;          // intensity of the light times k_s
-    reg         [15:0] accumulator;       // u0.16: the powers of the base, in the end f
-    // s3.32: multiplier1, delayed by a clock: the operands do not change
+    reg         [26:0] shift_register;    // u1.26: beta*D^2, after all shifts
+    reg         [3:0]  remaining;         // shifts that remain, then squarings that remain
+    reg         [7:0]  red_reg;           // intensity of the light, times k_s
+    reg         [7:0]  green_reg;         // intensity of the light, times k_s
+    reg         [7:0]  blue_reg;          // intensity of the light, times k_s
+    reg         [15:0] accumulator;       // u0.16: the powers of the base, at the end f
+    // s3.32: multiplier1, delayed by one clock, because the operands do not change
     reg  signed [35:0] multiplier1_held;
-    // s3.32: multiplier2, delayed by a clock: the operands do not change
+    // s3.32: multiplier2, delayed by one clock, because the operands do not change
     reg  signed [35:0] multiplier2_held;
-    // s3.32: multiplier3, delayed by a clock: the operands do not change
+    // s3.32: multiplier3, delayed by one clock, because the operands do not change
     reg  signed [35:0] multiplier3_held;
 
     wire dx_load = dx_write & idle;
@@ -78,7 +78,7 @@ module lyon_datapath (
 
     wire [23:0] distance_rounded = adder2[35:12];  // u4.20
     wire shift_load = shift_write & idle;
-    wire [3:0] remaining_start = remaining_start_select ? shift_reg : SQUARINGS;  // what is counted
+    wire [3:0] remaining_start = remaining_start_select ? shift_reg : SQUARINGS;  // the count
     wire [3:0] remaining_less_one = remaining - 4'd1;
     wire [3:0] remaining_next = remaining_load ? remaining_start : remaining_less_one;
     wire remaining_enable = remaining_load | remaining_count;
@@ -91,30 +91,33 @@ module lyon_datapath (
     // u1.26: loads or shifts
     wire [26:0] shift_input = shift_input_select ? doubled : {3'd0, distance_at_least_shift};
 
-    assign more_shifts = |remaining;  // not the last shift
+    assign more_shifts = |remaining;  // 1 if this is not the last shift
     wire red_load = red_write & idle;
     wire green_load = green_write & idle;
     wire blue_load = blue_write & idle;
-    wire [16:0] beta_distance = shift_register[26:10];  // u1.16: beta*D^2, to the point of f
-    wire comparator = beta_distance < ONE;  // beta*D^2 is below 1.0
-    wire [15:0] inverse = ~beta_distance[15:0];  // u0.16: 1.0 - beta*D^2, less an ulp
+
+    // u1.16: beta*D^2, with as many fraction bits as f
+    wire [16:0] beta_distance = shift_register[26:10];
+
+    wire comparator = beta_distance < ONE;  // 1 if beta*D^2 is below 1.0
+    wire [15:0] inverse = ~beta_distance[15:0];  // u0.16: 1.0 - beta*D^2 - 1 ulp
     wire [15:0] base = comparator ? inverse : 16'd0;  // u0.16: base of the power, or 0
 
-    // u0.16: what multiplier 4 squares
+    // u0.16: the number that multiplier 4 squares
     wire [15:0] multiplier4_operand = multiplier4_operand_select ? accumulator : base;
 
     wire [31:0] multiplier4 = multiplier4_operand * multiplier4_operand;  // multiplier 4, u0.32
     wire [15:0] square = multiplier4[31:16];  // u0.16
-    wire [23:0] red_product = accumulator * red_reg;  // u8.16: an output before it is rounded
+    wire [23:0] red_product = accumulator * red_reg;  // u8.16: the output before rounding
     wire [7:0] red_intensity = red_product[23:16] + {7'd0, red_product[15]};
-    assign red_out = red_intensity;  // intensity on the output
-    wire [23:0] green_product = accumulator * green_reg;  // u8.16: an output before it is rounded
+    assign red_out = red_intensity;  // output intensity
+    wire [23:0] green_product = accumulator * green_reg;  // u8.16: the output before rounding
     wire [7:0] green_intensity = green_product[23:16] + {7'd0, green_product[15]};
-    assign green_out = green_intensity;  // intensity on the output
-    wire [23:0] blue_product = accumulator * blue_reg;  // u8.16: an output before it is rounded
+    assign green_out = green_intensity;  // output intensity
+    wire [23:0] blue_product = accumulator * blue_reg;  // u8.16: the output before rounding
     wire [7:0] blue_intensity = blue_product[23:16] + {7'd0, blue_product[15]};
-    assign blue_out = blue_intensity;  // intensity on the output
-    assign more = remaining > 4'd1;  // not the last squaring
+    assign blue_out = blue_intensity;  // output intensity
+    assign more = remaining > 4'd1;  // 1 if this is not the last squaring
 
     always @(posedge clk) begin
         if (dx_load) begin
@@ -182,7 +185,7 @@ module lyon_datapath (
         multiplier3_held <= multiplier3;
     end
 
-    // Unused bits, among them those that narrowing drops.
+    // Unused: bits that nothing reads, for example those that a narrower format drops.
     wire unused = &{1'b0, adder2[11:0], adder2[36], multiplier4[15:0], red_product[14:0],
             green_product[14:0], blue_product[14:0]};
 

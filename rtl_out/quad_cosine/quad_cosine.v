@@ -5,58 +5,60 @@
 //
 // Source: Seed 000, the claimed device: quadruple cosine
 //
-// Latency: valid 4 clocks after start, then a result every clock, as many as the operands say.
+// Latency: valid 4 clocks after start, then a result every clock; the operands give their number.
 //
-// Formats: uI.F is unsigned, sI.F two's complement, with I integer bits (a sign bit apart) and F
-// fraction bits; the value of a signal is its integer times 2^-F.
+// Formats: uI.F is unsigned with I integer bits and F fraction bits. sI.F is two's complement with
+// one sign bit more. The value of a signal is its integer times 2^-F.
 //
 //  rst_n                     reset, active low, synchronous
-//  start                     begins a computation when the device is not busy
+//  start                     starts a computation if not busy
 //  amplitude         u8.0    operand, written by amplitude_write
 //  delta_zeta        s1.26   operand, written by delta_zeta_write
 //  zeta_start        s1.26   operand, written by zeta_start_write
 //  length            u12.0   operand, written by length_write
 //  exponent          u10.0   operand, written by exponent_write
 //  valid                     results are on the outputs
-//  busy                      high from the clock after start to the end
+//  busy                      high from the clock after start to the last clock
 //  done                      high in the last clock of a computation
 //  count                     status
 //  accumulate                status
 //  write_angle               status
 //  intensity_out     u8.0    result
 //
-// Angles are in right angles: 1.0 is 90 degrees. The register holds one turn and wraps around where
-// angles do, so no line overflows it. The intensity is 0 where the angle is not in -90 (included)
-// to 90 degrees, and where the stretched angle is 90 degrees or more.
+// The unit of angles is the right angle: 1.0 is 90 degrees. The register holds one turn and wraps
+// around as angles do, so no line can overflow it. The intensity is 0 if the angle is below -90
+// degrees, or 90 degrees or more, or if the size of the stretched angle is 90 degrees or more.
 //
-// A start makes length + 1 points, one a clock: valid is high for each. Output 37 (write_angle)
-// writes the angle of a point; valid, which is the same net in the patent, follows it by two
-// clocks, for register 8 and for the synchronous ROM 12. busy is high to the last point and done is
-// high with it.
+// A start computes length + 1 points, one per clock. valid is high for each point. Output 37
+// (write_angle) writes the angle of a point. In the patent valid is the same net; here valid
+// follows by two clocks, for register 8 and for the synchronous ROM 12. busy is high until the last
+// point, and done is high together with the last point.
 //
-// Decoder 10 picks k = 1 for n = 1, 2 for n = 2, 4 for n = 3 to 6 and 16 for all other n, with n =
-// 0 among them: its root is 0 and its intensity the amplitude wherever the surface faces. The
-// patent drives four address bits of ROM 12 with the decoder's outputs 30 to 33; here their number
-// drives two, and the ROM is a quarter as large. Its nine bits of n cannot hold 1000; ten can.
+// Decoder 10 selects k = 1 for n = 1, 2 for n = 2, 4 for n = 3 to 6, and 16 for all other n. This
+// includes n = 0, whose root is 0: its intensity is the amplitude wherever the surface faces the
+// half vector. In the patent, the decoder outputs 30 to 33 drive four address bits of ROM 12. Here
+// the number of the output drives two address bits, so the ROM is a quarter as large. The patent
+// has nine bits for n, which cannot hold 1000; here n has ten bits.
 //
-// The patent's counter 5 is written by its strobe and used up by a line. Here the operand length
-// keeps its value and loads the counter with the first point, so that a line can be repeated by
-// start alone. A length of 0 makes one point: the microinstruction that adds is left out, as the
-// patent's borrow from an empty counter leaves it out.
+// In the patent, a strobe writes counter 5, and a line uses the count up. Here the operand length
+// keeps its value and loads the counter at the first point, so a start alone repeats the line. A
+// length of 0 gives one point: the microprogram skips the addition, as the borrow from an empty
+// counter does in the patent.
 //
-// The default has 26 fraction bits of the angle: over the longest line, of 4095 intervals, the
-// host's roundings of delta_zeta and zeta_start add up to at most 2^11 ulps. The formula falls by
-// at most 30.6 in a right angle (n = 1000), so that an amplitude of 255 drifts by at most 255 *
-// 30.6 * 2^(11 - 26) = 0.24 units. With the contract's 0.93 and half a unit for the rounding of the
-// amplitude itself this is 1.67 units from the host's unrounded numbers. The accumulator adds
-// exactly, and only multiplier 11 drops bits.
+// By default an angle has 26 fraction bits. Over the longest line, with 4095 intervals, the host's
+// roundings of delta_zeta and zeta_start add up to at most 2^11 ulps. The slope of the formula is
+// at most 30.6 per right angle (n = 1000). So with an amplitude of 255 the result drifts by at most
+// 255 * 30.6 * 2^(11 - 26) = 0.24 units. With the contract's 0.93 units and half a unit for the
+// rounding of the amplitude, the error against the host's unrounded numbers is at most 1.67 units.
+// The accumulator adds exactly; only multiplier 11 drops bits.
 //
-// The root sqrt(n/k) is applied by multiplier 11 alone; the seed's formulas (13) and (16) apply it
-// to the operands a second time. Output 28 is busy, high from start to end, as trigger 39 drives
-// it.
+// Only multiplier 11 applies the root sqrt(n/k). The formulas (13) and (16) of the source apply it
+// to the operands a second time. Output 28 is busy, which trigger 39 drives high from start to the
+// end.
 //
-// Writes while busy are ignored. The output follows the operand registers of amplitude and
-// exponent: it holds from valid until one of them is written or the next computation begins.
+// Writes while busy are ignored. The output depends on the operand registers of amplitude and
+// exponent: it keeps its value from valid until one of them is written or the next computation
+// starts.
 //
 // Generated by Glint. To regenerate: glint generate quad_cosine.toml
 // Generated files belong to their user, without conditions.
@@ -70,38 +72,39 @@ module quad_cosine #(
 ) (
     input  wire               clk,
     input  wire               rst_n,             // reset, active low
-    input  wire               start,             // begins a computation when not busy
-    // input 15: intensity of the light times k_s, at the highest point of the highlight
+    input  wire               start,             // starts a computation if not busy
+    // input 15: intensity of the light, times k_s, at the peak of the highlight
     input  wire        [7:0]  amplitude,
     input  wire               amplitude_write,   // input 16: writes amplitude
-    // input 17, s1.26: angle from a point to the next, in right angles
+    // input 17, s1.26: angle step from point to point, in right angles
     input  wire signed [27:0] delta_zeta,
     input  wire               delta_zeta_write,  // input 18: writes delta_zeta
     // input 19, s1.26: angle of the first point, in right angles
     input  wire signed [27:0] zeta_start,
     input  wire               zeta_start_write,  // input 20: writes zeta_start
-    // input 23: intervals of the line: one less than its points
+    // input 23: number of intervals: the number of points minus 1
     input  wire        [11:0] length,
     input  wire               length_write,      // input 24: writes length
     input  wire        [9:0]  exponent,          // input 21: specular exponent n
     input  wire               exponent_write,    // input 22: writes exponent
     output wire               valid,             // the results are on the outputs
-    output wire               busy,              // high from the clock after start to the end
+    // high from the clock after start to the last clock
+    output wire               busy,
     output wire               done,              // high in the last clock of a computation
-    output wire               count,             // output 34: counts an interval
-    output wire               accumulate,        // output 36: the next point, not the first
-    output wire               write_angle,       // output 37: a point is written
-    output wire        [7:0]  intensity_out      // output 27: intensity on the output
+    output wire               count,             // output 34: counts down the intervals
+    output wire               accumulate,        // output 36: 1 for a next point, 0 for the first
+    output wire               write_angle,       // output 37: writes the angle of a point
+    output wire        [7:0]  intensity_out      // output 27: output intensity
 );
 
-    // Between the control unit and the datapath
-    wire idle;                 // operands may be written
+    // Signals between control unit and datapath
+    wire idle;                 // 1 while operands can be written
     wire angle_load;           // line 37
     wire angle_source_select;  // line 36
     wire intervals_load;
     wire intervals_count;      // line 34
-    wire empty;                // a line of one point
-    wire more;                 // not the last interval
+    wire empty;                // 1 if the line has one point
+    wire more;                 // 1 if this is not the last interval
 
     quad_cosine_control #(
         .CONTROL_FILE(CONTROL_FILE)

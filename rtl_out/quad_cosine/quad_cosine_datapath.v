@@ -10,31 +10,32 @@ module quad_cosine_datapath #(
     parameter COSINE_FILE = "quad_cosine_cosine.mem"
 ) (
     input  wire               clk,
-    // input 15: intensity of the light times k_s, at the highest point of the highlight
+    // input 15: intensity of the light, times k_s, at the peak of the highlight
     input  wire        [7:0]  amplitude,
     input  wire               amplitude_write,      // input 16: writes amplitude
-    // input 17, s1.26: angle from a point to the next, in right angles
+    // input 17, s1.26: angle step from point to point, in right angles
     input  wire signed [27:0] delta_zeta,
     input  wire               delta_zeta_write,     // input 18: writes delta_zeta
     // input 19, s1.26: angle of the first point, in right angles
     input  wire signed [27:0] zeta_start,
     input  wire               zeta_start_write,     // input 20: writes zeta_start
-    // input 23: intervals of the line: one less than its points
+    // input 23: number of intervals: the number of points minus 1
     input  wire        [11:0] length,
     input  wire               length_write,         // input 24: writes length
     input  wire        [9:0]  exponent,             // input 21: specular exponent n
     input  wire               exponent_write,       // input 22: writes exponent
-    input  wire               idle,                 // operands may be written
+    input  wire               idle,                 // 1 while operands can be written
     input  wire               angle_load,           // line 37
     input  wire               angle_source_select,  // line 36
     input  wire               intervals_load,
     input  wire               intervals_count,      // line 34
-    output wire               count,                // output 34: counts an interval
-    output wire               accumulate,           // output 36: the next point, not the first
-    output wire               write_angle,          // output 37: a point is written
-    output wire        [7:0]  intensity_out,        // output 27: intensity on the output
-    output wire               empty,                // a line of one point
-    output wire               more                  // not the last interval
+    output wire               count,                // output 34: counts down the intervals
+    // output 36: 1 for a next point, 0 for the first
+    output wire               accumulate,
+    output wire               write_angle,          // output 37: writes the angle of a point
+    output wire        [7:0]  intensity_out,        // output 27: output intensity
+    output wire               empty,                // 1 if the line has one point
+    output wire               more                  // 1 if this is not the last interval
 );
 
     // Constants
@@ -42,16 +43,16 @@ module quad_cosine_datapath #(
     localparam [9:0] HIGH_EXPONENTS = 10'd7;
 
     // Registers
-    // register 1: intensity of the light times k_s, at the highest point of the highlight
+    // register 1: intensity of the light, times k_s, at the peak of the highlight
     reg         [7:0]  amplitude_reg;
-    // register 2, s1.26: angle from a point to the next, in right angles
+    // register 2, s1.26: angle step from point to point, in right angles
     reg  signed [27:0] delta_zeta_reg;
     // register 3, s1.26: angle of the first point, in right angles
     reg  signed [27:0] zeta_start_reg;
-    reg         [11:0] length_reg;      // intervals of the line: one less than its points
-    // register 8, s1.26: angle of the point, in right angles; wraps around
+    reg         [11:0] length_reg;      // number of intervals: the number of points minus 1
+    // register 8, s1.26: angle of the current point, in right angles; wraps around
     reg  signed [27:0] angle;
-    reg         [11:0] intervals;       // register 5: intervals still to go
+    reg         [11:0] intervals;       // register 5: intervals that remain
     reg         [9:0]  exponent_reg;    // register 4: specular exponent n
     reg         [16:0] root_word;       // u3.14
     reg         [9:0]  cosine_word;     // u0.10
@@ -64,17 +65,17 @@ module quad_cosine_datapath #(
     // adder 6, s1.26: angle of the next point
     wire signed [27:0] next_angle = angle + delta_zeta_reg;
 
-    // mux 7, s1.26: first point, or next
+    // mux 7, s1.26: angle of the first point, or of the next
     wire signed [27:0] angle_source = angle_source_select ? next_angle : zeta_start_reg;
 
     wire [11:0] intervals_less_one = intervals - 12'd1;
     wire [11:0] intervals_next = intervals_load ? length_reg : intervals_less_one;
     wire intervals_enable = intervals_load | intervals_count;
-    assign empty = length_reg == 12'd0;  // a line of one point
-    assign more = intervals > 12'd1;  // not the last interval
-    assign count = intervals_count;  // output 34: counts an interval
-    assign accumulate = angle_source_select;  // output 36: the next point, not the first
-    assign write_angle = angle_load;  // output 37: a point is written
+    assign empty = length_reg == 12'd0;  // 1 if the line has one point
+    assign more = intervals > 12'd1;  // 1 if this is not the last interval
+    assign count = intervals_count;  // output 34: counts down the intervals
+    assign accumulate = angle_source_select;  // output 36: 1 for a next point, 0 for the first
+    assign write_angle = angle_load;  // output 37: writes the angle of a point
     wire exponent_load = exponent_write & idle;
     wire angle_negative = angle[27];
     wire [1:0] angle_upper = angle[27:26];
@@ -82,13 +83,13 @@ module quad_cosine_datapath #(
     wire angle_small_positive = ~angle_upper_any;
     wire angle_small_negative = &angle_upper;
 
-    // from -90 degrees to less than 90: sign and integer bits agree
+    // 1 from -90 degrees to less than 90: sign and integer bits agree
     wire angle_within = angle_small_positive | angle_small_negative;
 
     wire [16:0] angle_leading = angle[25:9];  // u0.17
     wire [16:0] angle_complement = ~angle_leading;  // u0.17
 
-    // u0.17: cos is even
+    // u0.17: absolute angle, because cos is even
     wire [16:0] angle_magnitude = angle_negative ? angle_complement : angle_leading;
 
     // multiplier 11, u3.31: sqrt(n/k) * |angle|, in right angles
@@ -109,23 +110,24 @@ module quad_cosine_datapath #(
     wire power_4_or_16 = power_4 | power_16;
     wire power_2_or_16 = power_2 | power_16;
 
-    // block 10: the number of the decoder's output that is 1
+    // block 10: the number of the decoder output that is 1
     wire [1:0] power_code = {power_4_or_16, power_2_or_16};
 
-    wire [12:0] table_address = {power_code, table_step};  // which table, and where in it
+    // the number of the table, and the address in it
+    wire [12:0] table_address = {power_code, table_step};
 
-    // multiplier 13, u8.10: an output before it is rounded
+    // multiplier 13, u8.10: the output before rounding
     wire [17:0] intensity_product = cosine_word * amplitude_reg;
 
     wire [7:0] intensity_rounded = intensity_product[17:10] + {7'd0, intensity_product[9]};
-    assign intensity_out = intensity_rounded;  // output 27: intensity on the output
+    assign intensity_out = intensity_rounded;  // output 27: output intensity
 
-    // ROM 9: sqrt(n/k), k as decoder 10 picks it for n; n is the address
+    // ROM 9: sqrt(n/k), where decoder 10 selects k for n; the address is n
     reg [16:0] root_rom [0:1023];
     initial $readmemh(ROOT_FILE, root_rom);
     always @(posedge clk) root_word <= root_rom[exponent_reg];
 
-    // ROM 12: cos^k for k = 1, 2, 4, 16, one table after another; 2^11 steps of a right angle each
+    // ROM 12: four tables, cos^k for k = 1, 2, 4, 16, each at 2^11 angles of a right angle
     reg [9:0] cosine_rom [0:8191];
     initial $readmemh(COSINE_FILE, cosine_rom);
     always @(posedge clk) cosine_word <= cosine_rom[table_address];
@@ -172,7 +174,7 @@ module quad_cosine_datapath #(
         end
     end
 
-    // Unused bits, among them those that narrowing drops.
+    // Unused: bits that nothing reads, for example those that a narrower format drops.
     wire unused = &{1'b0, scaled_angle[19:0], intensity_product[8:0]};
 
 `ifdef FORMAL

@@ -14,18 +14,18 @@ module quadratic_datapath #(
     // input 2, u1.20: c, the cosine of the angle between normal and half vector
     input  wire [20:0] cos_gamma,
     input  wire        cos_gamma_write,  // input 2: writes cos_gamma
-    input  wire [7:0]  red,              // input 3: intensity of the light times k_s
+    input  wire [7:0]  red,              // input 3: intensity of the light, times k_s
     input  wire        red_write,        // input 3: writes red
-    input  wire [7:0]  green,            // input 4: intensity of the light times k_s
+    input  wire [7:0]  green,            // input 4: intensity of the light, times k_s
     input  wire        green_write,      // input 4: writes green
-    input  wire [7:0]  blue,             // input 5: intensity of the light times k_s
+    input  wire [7:0]  blue,             // input 5: intensity of the light, times k_s
     input  wire        blue_write,       // input 5: writes blue
-    input  wire        idle,             // operands may be written
+    input  wire        idle,             // 1 while operands can be written
     input  wire        difference_load,
     input  wire        intensity_load,
-    output wire [7:0]  red_out,          // output 1: intensity on the output
-    output wire [7:0]  green_out,        // output 2: intensity on the output
-    output wire [7:0]  blue_out          // output 3: intensity on the output
+    output wire [7:0]  red_out,          // output 1: output intensity
+    output wire [7:0]  green_out,        // output 2: output intensity
+    output wire [7:0]  blue_out          // output 3: output intensity
 );
 
     // Constants
@@ -35,12 +35,12 @@ module quadratic_datapath #(
     reg         [9:0]  exponent_reg;      // register 1: specular exponent n
     // register 2, u1.20: c, the cosine of the angle between normal and half vector
     reg         [20:0] cos_gamma_reg;
-    reg         [7:0]  red_reg;           // register 3: intensity of the light times k_s
-    reg         [7:0]  green_reg;         // register 4: intensity of the light times k_s
-    reg         [7:0]  blue_reg;          // register 5: intensity of the light times k_s
+    reg         [7:0]  red_reg;           // register 3: intensity of the light, times k_s
+    reg         [7:0]  green_reg;         // register 4: intensity of the light, times k_s
+    reg         [7:0]  blue_reg;          // register 5: intensity of the light, times k_s
     reg  signed [17:0] difference;        // s-2.19: c^2 - c, from -0.25 to 0
     reg         [15:0] intensity;         // u0.16: the reflectance f
-    // u2.40: multiplier5, delayed by a clock: the operands do not change
+    // u2.40: multiplier5, delayed by one clock, because the operands do not change
     reg         [41:0] multiplier5_held;
     reg         [17:0] coefficient_word;  // u10.8
 
@@ -53,7 +53,7 @@ module quadratic_datapath #(
     wire blue_load = blue_write & idle;
     wire [41:0] multiplier5 = cos_gamma_reg * cos_gamma_reg;  // multiplier 5, u2.40: c^2
 
-    // s1.40: -c, less an ulp of the square
+    // s1.40: -c - 1 ulp of the square
     wire signed [41:0] inverters = ~{1'b0, cos_gamma_reg, 20'd0};
 
     // adder 1, s1.40: c^2 - c
@@ -70,23 +70,23 @@ module quadratic_datapath #(
     wire [15:0] clamped_limited = (|adder2[34:27]) ? 16'hffff : adder2[26:11];  // u0.16
     wire [15:0] clamped = adder2[35] ? 16'd0 : clamped_limited;  // u0.16
 
-    // multiplier 2, u8.16: an output before it is rounded
+    // multiplier 2, u8.16: the output before rounding
     wire [23:0] red_product = intensity * red_reg;
 
     wire [7:0] red_intensity = red_product[23:16] + {7'd0, red_product[15]};
-    assign red_out = red_intensity;  // output 1: intensity on the output
+    assign red_out = red_intensity;  // output 1: output intensity
 
-    // multiplier 3, u8.16: an output before it is rounded
+    // multiplier 3, u8.16: the output before rounding
     wire [23:0] green_product = intensity * green_reg;
 
     wire [7:0] green_intensity = green_product[23:16] + {7'd0, green_product[15]};
-    assign green_out = green_intensity;  // output 2: intensity on the output
+    assign green_out = green_intensity;  // output 2: output intensity
 
-    // multiplier 4, u8.16: an output before it is rounded
+    // multiplier 4, u8.16: the output before rounding
     wire [23:0] blue_product = intensity * blue_reg;
 
     wire [7:0] blue_intensity = blue_product[23:16] + {7'd0, blue_product[15]};
-    assign blue_out = blue_intensity;  // output 3: intensity on the output
+    assign blue_out = blue_intensity;  // output 3: output intensity
 
     // ROM coefficient: a(n), minimax, for an exponent n (the address)
     reg [17:0] coefficient_rom [0:1023];
@@ -139,7 +139,7 @@ module quadratic_datapath #(
         multiplier5_held <= multiplier5;
     end
 
-    // Unused bits, among them those that narrowing drops.
+    // Unused: bits that nothing reads, for example those that a narrower format drops.
     wire unused = &{1'b0, adder1[20:0], adder1[41:39], multiplier1[36], adder2[10:0],
             red_product[14:0], green_product[14:0], blue_product[14:0]};
 

@@ -20,22 +20,22 @@ module rough_datapath #(
     // input 61: sign of dgamma: 0 for cos(gamma + dgamma), 1 for cos(gamma - dgamma)
     input  wire        dgamma_negative,
     input  wire        dgamma_negative_write,  // input 62: writes dgamma_negative
-    input  wire [7:0]  red,                    // input 32: intensity of the light times k_s
+    input  wire [7:0]  red,                    // input 32: intensity of the light, times k_s
     input  wire        red_write,              // input 33: writes red
-    input  wire [7:0]  green,                  // input 34: intensity of the light times k_s
+    input  wire [7:0]  green,                  // input 34: intensity of the light, times k_s
     input  wire        green_write,            // input 35: writes green
-    input  wire [7:0]  blue,                   // input 36: intensity of the light times k_s
+    input  wire [7:0]  blue,                   // input 36: intensity of the light, times k_s
     input  wire        blue_write,             // input 37: writes blue
-    input  wire        idle,                   // operands may be written
+    input  wire        idle,                   // 1 while operands can be written
     input  wire [1:0]  operand_select,         // lines 45, 46
     input  wire        mux17_select,           // line 47
     input  wire        reg19_sin_gamma_load,   // line 48
     input  wire        reg11_cos_cos_load,     // line 49
     input  wire        reg12_sin_sin_load,     // line 50
     input  wire        reg13_result_load,      // line 51
-    output wire [7:0]  red_out,                // output 40: intensity on the output
-    output wire [7:0]  green_out,              // output 41: intensity on the output
-    output wire [7:0]  blue_out                // output 42: intensity on the output
+    output wire [7:0]  red_out,                // output 40: output intensity
+    output wire [7:0]  green_out,              // output 41: output intensity
+    output wire [7:0]  blue_out                // output 42: output intensity
 );
 
     // Constants
@@ -60,18 +60,20 @@ module rough_datapath #(
     reg         [9:0]  exponent_reg;         // register 3: specular exponent n
     // register 4: sign of dgamma: 0 for cos(gamma + dgamma), 1 for cos(gamma - dgamma)
     reg                dgamma_negative_reg;
-    reg         [7:0]  red_reg;              // register 5: intensity of the light times k_s
-    reg         [7:0]  green_reg;            // register 6: intensity of the light times k_s
-    reg         [7:0]  blue_reg;             // register 7: intensity of the light times k_s
+    reg         [7:0]  red_reg;              // register 5: intensity of the light, times k_s
+    reg         [7:0]  green_reg;            // register 6: intensity of the light, times k_s
+    reg         [7:0]  blue_reg;             // register 7: intensity of the light, times k_s
     reg         [21:0] reg19_sin_gamma;      // register 19, u0.22: sin gamma
     reg         [22:0] reg11_cos_cos;        // register 11, u1.22: cos gamma * cos dgamma
     reg         [21:0] reg12_sin_sin;        // register 12, u0.22: sin gamma * sin dgamma
-    // register 13, s0.16: n/2*(cos(gamma +- dgamma) - 1), then f
+    // register 13, s0.16: n/2*(cos(gamma +- dgamma) - 1), later f
     reg  signed [16:0] reg13_result;
     reg         [13:0] sine_rest_held;       // u0.14
-    reg  signed [23:0] mux8_held;            // s23.0: what the microinstruction before selected
-    reg         [21:0] mux9_held;            // what the microinstruction before selected
-    // facing, delayed by a clock: the operands do not change
+    // s23.0: the input that the previous microinstruction selected
+    reg  signed [23:0] mux8_held;
+    // the input that the previous microinstruction selected
+    reg         [21:0] mux9_held;
+    // facing, delayed by one clock, because the operands do not change
     reg                facing_held;
     reg         [34:0] sine_word;
 
@@ -87,44 +89,44 @@ module rough_datapath #(
     wire green_load = green_write & idle;
     wire blue_load = blue_write & idle;
 
-    // mux 17, u1.20: the cosine whose sine is looked up
+    // mux 17, u1.20: the cosine that addresses the sine table
     wire [20:0] mux17 = mux17_select ? cos_dgamma_reg : cos_gamma_reg;
 
-    // u1.20: mux 17, ahead by a microinstruction
+    // u1.20: mux 17, one microinstruction earlier
     wire [20:0] sine_of = reg19_sin_gamma_load ? cos_dgamma_reg : mux17;
 
     wire [20:0] complement = ONE - sine_of;  // u1.20: 1.0 - cos
-    wire sine_in_range0 = |complement[20:18];  // u is in range 0 or in one above
+    wire sine_in_range0 = |complement[20:18];  // 1 if u is in range 0 or above
     wire [8:0] sine_word0 = sine_in_range0 ? {3'd6, complement[19:14]} : {1'b0, complement[17:10]};
     wire [13:0] sine_rest0 = sine_in_range0 ? complement[13:0] : {complement[9:0], 4'd0};  // u0.14
-    wire sine_in_range3 = |complement[20:12];  // u is in range 3 or in one above
+    wire sine_in_range3 = |complement[20:12];  // 1 if u is in range 3 or above
     wire [9:0] sine_word3 = sine_in_range3 ? {4'd7, complement[13:8]} : {5'd16, complement[11:7]};
 
     // u0.14
     wire [13:0] sine_rest3 = sine_in_range3 ? {complement[7:0], 6'd0} : {complement[6:0], 7'd0};
 
-    wire sine_in_range2 = |complement[20:14];  // u is in range 2 or in one above
+    wire sine_in_range2 = |complement[20:14];  // 1 if u is in range 2 or above
     wire [9:0] sine_word2 = sine_in_range2 ? {3'd2, complement[15:9]} : sine_word3;
     wire [13:0] sine_rest2 = sine_in_range2 ? {complement[8:0], 5'd0} : sine_rest3;  // u0.14
-    wire sine_in_range1 = |complement[20:16];  // u is in range 1 or in one above
+    wire sine_in_range1 = |complement[20:16];  // 1 if u is in range 1 or above
     wire [9:0] sine_word1 = sine_in_range1 ? {1'b0, sine_word0} : sine_word2;
     wire [13:0] sine_rest1 = sine_in_range1 ? sine_rest0 : sine_rest2;  // u0.14
-    wire sine_in_range5 = |complement[20:8];  // u is in range 5 or in one above
+    wire sine_in_range5 = |complement[20:8];  // 1 if u is in range 5 or above
     wire [9:0] sine_word5 = sine_in_range5 ? {6'd34, complement[9:6]} : {7'd70, complement[7:5]};
 
     // u0.14
     wire [13:0] sine_rest5 = sine_in_range5 ? {complement[5:0], 8'd0} : {complement[4:0], 9'd0};
 
-    wire sine_in_range8 = |complement[20:2];  // u is in range 8 or in one above
+    wire sine_in_range8 = |complement[20:2];  // 1 if u is in range 8 or above
     wire [9:0] sine_word8 = sine_in_range8 ? {8'd144, complement[3:2]} : {8'd145, complement[1:0]};
     wire [13:0] sine_rest8 = sine_in_range8 ? {complement[1:0], 12'd0} : 14'd0;  // u0.14
-    wire sine_in_range7 = |complement[20:4];  // u is in range 7 or in one above
+    wire sine_in_range7 = |complement[20:4];  // 1 if u is in range 7 or above
     wire [9:0] sine_word7 = sine_in_range7 ? {7'd71, complement[5:3]} : sine_word8;
     wire [13:0] sine_rest7 = sine_in_range7 ? {complement[2:0], 11'd0} : sine_rest8;  // u0.14
-    wire sine_in_range6 = |complement[20:6];  // u is in range 6 or in one above
+    wire sine_in_range6 = |complement[20:6];  // 1 if u is in range 6 or above
     wire [9:0] sine_word6 = sine_in_range6 ? sine_word5 : sine_word7;
     wire [13:0] sine_rest6 = sine_in_range6 ? sine_rest5 : sine_rest7;  // u0.14
-    wire sine_in_range4 = |complement[20:10];  // u is in range 4 or in one above
+    wire sine_in_range4 = |complement[20:10];  // 1 if u is in range 4 or above
     wire [9:0] sine_word4 = sine_in_range4 ? sine_word1 : sine_word6;
     wire [13:0] sine_rest4 = sine_in_range4 ? sine_rest1 : sine_rest6;  // u0.14
     wire [21:0] sine_base = sine_word[34:13];  // u0.22
@@ -133,16 +135,16 @@ module rough_datapath #(
     wire [21:0] sine_rise_cut = {5'd0, sine_rise[26:10]};  // u0.22
     wire [22:0] sine_sum = {1'b0, sine_base} + {1'b0, sine_rise_cut};  // u1.22
 
-    // u0.22: sine of the addressed cosine
+    // u0.22: sine of the cosine that addresses the table
     wire [21:0] sine_value = sine_sum[22] ? 22'h3fffff : sine_sum[21:0];
 
     // adder 31, s0.22: register 12 - 1.0
     wire signed [22:0] adder31 = {1'b0, reg12_sin_sin} - ONE_2;
 
     wire [22:0] raised12 = {1'b0, reg12_sin_sin} + ONE_2;  // u1.22: register 12 + 1.0, by wiring
-    wire signed [23:0] inverse12 = ~{1'b0, raised12};  // s1.22: -(register 12) - 1.0, less an ulp
+    wire signed [23:0] inverse12 = ~{1'b0, raised12};  // s1.22: -(register 12) - 1.0 - 1 ulp
 
-    // mux 14, s1.22: what adder 15 adds to register 11
+    // mux 14, s1.22: the number that adder 15 adds to register 11
     wire signed [23:0] mux14 = dgamma_negative_reg ? {adder31[22], adder31} : inverse12;
 
     wire subtracts = ~dgamma_negative_reg;  // carry-in of adder 15
@@ -177,16 +179,16 @@ module rough_datapath #(
         endcase
     end
 
-    // multiplier 10: the shared product; its point depends on the operands
+    // multiplier 10: the shared product; its number of fraction bits depends on the operands
     wire [44:0] multiplier10 = mux8_held[22:0] * mux9_held;
 
-    // what the product of a negative operand is too large by, above its sign
+    // correction of the product for a negative operand
     wire [9:0] multiplier10_excess = mux8_held[23] ? mux9_held[9:0] : 10'd0;
 
     wire [22:0] cos_cos = multiplier10[40:18];  // u1.22
     wire [21:0] sin_sin = multiplier10[43:22];  // u0.22
     wire [10:0] multiplier10_upper = multiplier10[33:23] - {1'b0, multiplier10_excess};
-    wire squares = operand_select[0];  // V2: which of its two products register 13 takes
+    wire squares = operand_select[0];  // V2: which of the two products register 13 loads
 
     // s10.32: n/2 * adder 15, or the square of adder 16
     wire signed [42:0] line_or_square = squares ? {9'd0, multiplier10[33:0]} : {multiplier10_upper,
@@ -200,29 +202,23 @@ module rough_datapath #(
     wire signed [16:0] result = (line_or_square[42] & ~(&line_or_square[41:32])) ? RESULT_LEAST :
             result_limited;
 
-    wire facing = |cos_gamma_reg;  // the surface faces the half vector
+    wire facing = |cos_gamma_reg;  // 1 if the surface faces the half vector
     wire signed [16:0] facing_result = facing_held ? result : MINUS_ONE;  // s0.16
 
     // u0.16: the reflectance, once register 13 holds the square
     wire [15:0] f = reg13_result[15:0];
 
-    wire [23:0] red_product = f * red_reg;  // multiplier 20, u8.16: an output before it is rounded
+    wire [23:0] red_product = f * red_reg;  // multiplier 20, u8.16: the output before rounding
     wire [7:0] red_intensity = red_product[23:16] + {7'd0, red_product[15]};
-    assign red_out = red_intensity;  // output 40: intensity on the output
-
-    // multiplier 21, u8.16: an output before it is rounded
-    wire [23:0] green_product = f * green_reg;
-
+    assign red_out = red_intensity;  // output 40: output intensity
+    wire [23:0] green_product = f * green_reg;  // multiplier 21, u8.16: the output before rounding
     wire [7:0] green_intensity = green_product[23:16] + {7'd0, green_product[15]};
-    assign green_out = green_intensity;  // output 41: intensity on the output
-
-    // multiplier 22, u8.16: an output before it is rounded
-    wire [23:0] blue_product = f * blue_reg;
-
+    assign green_out = green_intensity;  // output 41: output intensity
+    wire [23:0] blue_product = f * blue_reg;  // multiplier 22, u8.16: the output before rounding
     wire [7:0] blue_intensity = blue_product[23:16] + {7'd0, blue_product[15]};
-    assign blue_out = blue_intensity;  // output 42: intensity on the output
+    assign blue_out = blue_intensity;  // output 42: output intensity
 
-    // ROM 18: value at the start of a segment (u0.22), then its rise over the segment in units of
+    // ROM 18: value at the start of a segment (u0.22), then the rise over the segment in units of
     // 2^-18 (13 bits)
     reg [34:0] sine_rom [0:583];
     initial $readmemh(SINE_FILE, sine_rom);
@@ -301,7 +297,7 @@ module rough_datapath #(
         facing_held <= facing;
     end
 
-    // Unused bits, among them those that narrowing drops.
+    // Unused: bits that nothing reads, for example those that a narrower format drops.
     wire unused = &{1'b0, sine_rise[9:0], multiplier10[44], line_or_square[15:0], red_product[14:0],
             green_product[14:0], blue_product[14:0]};
 

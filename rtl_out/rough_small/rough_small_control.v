@@ -1,13 +1,13 @@
 // rough_small_control: sequencer and control ROM of rough_small
 //
 // Microprogram:
-//    0  operands cos gamma, cos dgamma; sine of gamma addressed
+//    0  operands <- cos gamma, cos dgamma; ROM address <- cos gamma
 //    1  19 <- sin gamma; 11 <- cos gamma * cos dgamma
-//    2  operands sin dgamma, sin gamma
+//    2  operands <- sin dgamma, sin gamma
 //    3  12 <- sin gamma * sin dgamma
-//    4  operands adder 15, n/2
+//    4  operands <- adder 15, n/2
 //    5  13 <- n/2 * (cos(gamma +- dgamma) - 1)
-//    6  operands adder 16, adder 16
+//    6  operands <- adder 16, adder 16
 //    7  13 <- (... + 1)^2
 //    8  valid: intensities on the outputs
 //    9  end: clears the triggers and counter 29  (end)
@@ -22,11 +22,11 @@ module rough_small_control #(
 ) (
     input  wire       clk,
     input  wire       rst_n,                 // reset, active low
-    input  wire       start,                 // begins a computation when not busy
+    input  wire       start,                 // starts a computation if not busy
     output wire       valid,                 // the results are on the outputs
-    output wire       busy,                  // high from the clock after start to the end
+    output wire       busy,                  // high from the clock after start to the last clock
     output wire       done,                  // high in the last clock of a computation
-    output wire       idle,                  // operands may be written
+    output wire       idle,                  // 1 while operands can be written
     output wire [1:0] operand_select,        // lines 45, 46
     output wire       mux17_select,          // line 47
     output wire       reg19_sin_gamma_load,  // line 48
@@ -36,14 +36,14 @@ module rough_small_control #(
 );
 
     // Registers
-    reg        run;           // a microprogram is running
-    reg  [3:0] word_address;  // the microinstruction that is executed
+    reg        run;           // 1 while a microprogram runs
+    reg  [3:0] word_address;  // the address of the current microinstruction
 
-    assign busy = run;  // high from the clock after start to the end
+    assign busy = run;  // high from the clock after start to the last clock
     wire not_busy = ~busy;
-    assign idle = not_busy;  // operands may be written
+    assign idle = not_busy;  // 1 while operands can be written
 
-    // ROM control: the microprogram, a line for each microinstruction; fields: operand_select,
+    // ROM control: the microprogram, one word per microinstruction; fields: operand_select,
     // mux17_select, reg19_sin_gamma_load, reg11_cos_cos_load, reg12_sin_sin_load,
     // reg13_result_load, valid_word, go_on
     reg [8:0] control_rom [0:9];
@@ -56,8 +56,8 @@ module rough_small_control #(
     assign reg11_cos_cos_load = control_word[4];  // line 49
     assign reg12_sin_sin_load = control_word[3];  // line 50
     assign reg13_result_load = control_word[2];  // line 51
-    wire valid_word = control_word[1];  // line 43: the microinstruction sets valid
-    wire go_on = control_word[0];  // line 44: 0 in the last microinstruction
+    wire valid_word = control_word[1];  // line 43: 1 if the microinstruction sets valid
+    wire go_on = control_word[0];  // line 44: 0 in the last microinstruction, else 1
     wire [3:0] following_word = word_address + 4'd1;
     wire [3:0] next_word = go_on ? following_word : 4'd0;
     wire next_run = run ? go_on : start;
@@ -83,7 +83,7 @@ module rough_small_control #(
 
 `ifdef FORMAL
     always @* if (!$initstate) begin
-        assert (word_address <= 4'd9);  // no other address is reached
+        assert (word_address <= 4'd9);  // the address stays in the microprogram
         if (!run) assert (word_address == 4'd0);
     end
 `endif

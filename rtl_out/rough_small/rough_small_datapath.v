@@ -20,22 +20,22 @@ module rough_small_datapath #(
     // input 61: sign of dgamma: 0 for cos(gamma + dgamma), 1 for cos(gamma - dgamma)
     input  wire        dgamma_negative,
     input  wire        dgamma_negative_write,  // input 62: writes dgamma_negative
-    input  wire [7:0]  red,                    // input 32: intensity of the light times k_s
+    input  wire [7:0]  red,                    // input 32: intensity of the light, times k_s
     input  wire        red_write,              // input 33: writes red
-    input  wire [7:0]  green,                  // input 34: intensity of the light times k_s
+    input  wire [7:0]  green,                  // input 34: intensity of the light, times k_s
     input  wire        green_write,            // input 35: writes green
-    input  wire [7:0]  blue,                   // input 36: intensity of the light times k_s
+    input  wire [7:0]  blue,                   // input 36: intensity of the light, times k_s
     input  wire        blue_write,             // input 37: writes blue
-    input  wire        idle,                   // operands may be written
+    input  wire        idle,                   // 1 while operands can be written
     input  wire [1:0]  operand_select,         // lines 45, 46
     input  wire        mux17_select,           // line 47
     input  wire        reg19_sin_gamma_load,   // line 48
     input  wire        reg11_cos_cos_load,     // line 49
     input  wire        reg12_sin_sin_load,     // line 50
     input  wire        reg13_result_load,      // line 51
-    output wire [7:0]  red_out,                // output 40: intensity on the output
-    output wire [7:0]  green_out,              // output 41: intensity on the output
-    output wire [7:0]  blue_out                // output 42: intensity on the output
+    output wire [7:0]  red_out,                // output 40: output intensity
+    output wire [7:0]  green_out,              // output 41: output intensity
+    output wire [7:0]  blue_out                // output 42: output intensity
 );
 
     // Constants
@@ -60,18 +60,20 @@ module rough_small_datapath #(
     reg         [7:0]  exponent_reg;         // register 3: specular exponent n
     // register 4: sign of dgamma: 0 for cos(gamma + dgamma), 1 for cos(gamma - dgamma)
     reg                dgamma_negative_reg;
-    reg         [7:0]  red_reg;              // register 5: intensity of the light times k_s
-    reg         [7:0]  green_reg;            // register 6: intensity of the light times k_s
-    reg         [7:0]  blue_reg;             // register 7: intensity of the light times k_s
+    reg         [7:0]  red_reg;              // register 5: intensity of the light, times k_s
+    reg         [7:0]  green_reg;            // register 6: intensity of the light, times k_s
+    reg         [7:0]  blue_reg;             // register 7: intensity of the light, times k_s
     reg         [19:0] reg19_sin_gamma;      // register 19, u0.20: sin gamma
     reg         [20:0] reg11_cos_cos;        // register 11, u1.20: cos gamma * cos dgamma
     reg         [19:0] reg12_sin_sin;        // register 12, u0.20: sin gamma * sin dgamma
-    // register 13, s0.14: n/2*(cos(gamma +- dgamma) - 1), then f
+    // register 13, s0.14: n/2*(cos(gamma +- dgamma) - 1), later f
     reg  signed [14:0] reg13_result;
     reg         [11:0] sine_rest_held;       // u0.12
-    reg  signed [21:0] mux8_held;            // s21.0: what the microinstruction before selected
-    reg         [19:0] mux9_held;            // what the microinstruction before selected
-    // facing, delayed by a clock: the operands do not change
+    // s21.0: the input that the previous microinstruction selected
+    reg  signed [21:0] mux8_held;
+    // the input that the previous microinstruction selected
+    reg         [19:0] mux9_held;
+    // facing, delayed by one clock, because the operands do not change
     reg                facing_held;
     reg         [31:0] sine_word;
 
@@ -87,38 +89,38 @@ module rough_small_datapath #(
     wire green_load = green_write & idle;
     wire blue_load = blue_write & idle;
 
-    // mux 17, u1.18: the cosine whose sine is looked up
+    // mux 17, u1.18: the cosine that addresses the sine table
     wire [18:0] mux17 = mux17_select ? cos_dgamma_reg : cos_gamma_reg;
 
-    // u1.18: mux 17, ahead by a microinstruction
+    // u1.18: mux 17, one microinstruction earlier
     wire [18:0] sine_of = reg19_sin_gamma_load ? cos_dgamma_reg : mux17;
 
     wire [18:0] complement = ONE - sine_of;  // u1.18: 1.0 - cos
-    wire sine_in_range0 = |complement[18:16];  // u is in range 0 or in one above
+    wire sine_in_range0 = |complement[18:16];  // 1 if u is in range 0 or above
     wire [7:0] sine_word0 = sine_in_range0 ? {2'd2, complement[17:12]} : {1'b0, complement[15:9]};
     wire [11:0] sine_rest0 = sine_in_range0 ? complement[11:0] : {complement[8:0], 3'd0};  // u0.12
-    wire sine_in_range2 = |complement[18:12];  // u is in range 2 or in one above
+    wire sine_in_range2 = |complement[18:12];  // 1 if u is in range 2 or above
     wire [8:0] sine_word2 = sine_in_range2 ? {3'd3, complement[13:8]} : {4'd8, complement[11:7]};
 
     // u0.12
     wire [11:0] sine_rest2 = sine_in_range2 ? {complement[7:0], 4'd0} : {complement[6:0], 5'd0};
 
-    wire sine_in_range1 = |complement[18:14];  // u is in range 1 or in one above
+    wire sine_in_range1 = |complement[18:14];  // 1 if u is in range 1 or above
     wire [8:0] sine_word1 = sine_in_range1 ? {1'b0, sine_word0} : sine_word2;
     wire [11:0] sine_rest1 = sine_in_range1 ? sine_rest0 : sine_rest2;  // u0.12
-    wire sine_in_range4 = |complement[18:8];  // u is in range 4 or in one above
+    wire sine_in_range4 = |complement[18:8];  // 1 if u is in range 4 or above
     wire [8:0] sine_word4 = sine_in_range4 ? {5'd18, complement[9:6]} : {6'd40, complement[7:5]};
 
     // u0.12
     wire [11:0] sine_rest4 = sine_in_range4 ? {complement[5:0], 6'd0} : {complement[4:0], 7'd0};
 
-    wire sine_in_range6 = |complement[18:4];  // u is in range 6 or in one above
+    wire sine_in_range6 = |complement[18:4];  // 1 if u is in range 6 or above
     wire [8:0] sine_word6 = sine_in_range6 ? {7'd82, complement[5:4]} : {5'd19, complement[3:0]};
     wire [11:0] sine_rest6 = sine_in_range6 ? {complement[3:0], 8'd0} : 12'd0;  // u0.12
-    wire sine_in_range5 = |complement[18:6];  // u is in range 5 or in one above
+    wire sine_in_range5 = |complement[18:6];  // 1 if u is in range 5 or above
     wire [8:0] sine_word5 = sine_in_range5 ? sine_word4 : sine_word6;
     wire [11:0] sine_rest5 = sine_in_range5 ? sine_rest4 : sine_rest6;  // u0.12
-    wire sine_in_range3 = |complement[18:10];  // u is in range 3 or in one above
+    wire sine_in_range3 = |complement[18:10];  // 1 if u is in range 3 or above
     wire [8:0] sine_word3 = sine_in_range3 ? sine_word1 : sine_word5;
     wire [11:0] sine_rest3 = sine_in_range3 ? sine_rest1 : sine_rest5;  // u0.12
     wire [19:0] sine_base = sine_word[31:12];  // u0.20
@@ -127,16 +129,16 @@ module rough_small_datapath #(
     wire [19:0] sine_rise_cut = {5'd0, sine_rise[23:9]};  // u0.20
     wire [20:0] sine_sum = {1'b0, sine_base} + {1'b0, sine_rise_cut};  // u1.20
 
-    // u0.20: sine of the addressed cosine
+    // u0.20: sine of the cosine that addresses the table
     wire [19:0] sine_value = sine_sum[20] ? 20'hfffff : sine_sum[19:0];
 
     // adder 31, s0.20: register 12 - 1.0
     wire signed [20:0] adder31 = {1'b0, reg12_sin_sin} - ONE_2;
 
     wire [20:0] raised12 = {1'b0, reg12_sin_sin} + ONE_2;  // u1.20: register 12 + 1.0, by wiring
-    wire signed [21:0] inverse12 = ~{1'b0, raised12};  // s1.20: -(register 12) - 1.0, less an ulp
+    wire signed [21:0] inverse12 = ~{1'b0, raised12};  // s1.20: -(register 12) - 1.0 - 1 ulp
 
-    // mux 14, s1.20: what adder 15 adds to register 11
+    // mux 14, s1.20: the number that adder 15 adds to register 11
     wire signed [21:0] mux14 = dgamma_negative_reg ? {adder31[20], adder31} : inverse12;
 
     wire subtracts = ~dgamma_negative_reg;  // carry-in of adder 15
@@ -171,16 +173,16 @@ module rough_small_datapath #(
         endcase
     end
 
-    // multiplier 10: the shared product; its point depends on the operands
+    // multiplier 10: the shared product; its number of fraction bits depends on the operands
     wire [40:0] multiplier10 = mux8_held[20:0] * mux9_held;
 
-    // what the product of a negative operand is too large by, above its sign
+    // correction of the product for a negative operand
     wire [7:0] multiplier10_excess = mux8_held[21] ? mux9_held[7:0] : 8'd0;
 
     wire [20:0] cos_cos = multiplier10[36:16];  // u1.20
     wire [19:0] sin_sin = multiplier10[39:20];  // u0.20
     wire [8:0] multiplier10_upper = multiplier10[29:21] - {1'b0, multiplier10_excess};
-    wire squares = operand_select[0];  // V2: which of its two products register 13 takes
+    wire squares = operand_select[0];  // V2: which of the two products register 13 loads
 
     // s8.28: n/2 * adder 15, or the square of adder 16
     wire signed [36:0] line_or_square = squares ? {7'd0, multiplier10[29:0]} : {multiplier10_upper,
@@ -194,29 +196,23 @@ module rough_small_datapath #(
     wire signed [14:0] result = (line_or_square[36] & ~(&line_or_square[35:28])) ? RESULT_LEAST :
             result_limited;
 
-    wire facing = |cos_gamma_reg;  // the surface faces the half vector
+    wire facing = |cos_gamma_reg;  // 1 if the surface faces the half vector
     wire signed [14:0] facing_result = facing_held ? result : MINUS_ONE;  // s0.14
 
     // u0.14: the reflectance, once register 13 holds the square
     wire [13:0] f = reg13_result[13:0];
 
-    wire [21:0] red_product = f * red_reg;  // multiplier 20, u8.14: an output before it is rounded
+    wire [21:0] red_product = f * red_reg;  // multiplier 20, u8.14: the output before rounding
     wire [7:0] red_intensity = red_product[21:14] + {7'd0, red_product[13]};
-    assign red_out = red_intensity;  // output 40: intensity on the output
-
-    // multiplier 21, u8.14: an output before it is rounded
-    wire [21:0] green_product = f * green_reg;
-
+    assign red_out = red_intensity;  // output 40: output intensity
+    wire [21:0] green_product = f * green_reg;  // multiplier 21, u8.14: the output before rounding
     wire [7:0] green_intensity = green_product[21:14] + {7'd0, green_product[13]};
-    assign green_out = green_intensity;  // output 41: intensity on the output
-
-    // multiplier 22, u8.14: an output before it is rounded
-    wire [21:0] blue_product = f * blue_reg;
-
+    assign green_out = green_intensity;  // output 41: output intensity
+    wire [21:0] blue_product = f * blue_reg;  // multiplier 22, u8.14: the output before rounding
     wire [7:0] blue_intensity = blue_product[21:14] + {7'd0, blue_product[13]};
-    assign blue_out = blue_intensity;  // output 42: intensity on the output
+    assign blue_out = blue_intensity;  // output 42: output intensity
 
-    // ROM 18: value at the start of a segment (u0.20), then its rise over the segment in units of
+    // ROM 18: value at the start of a segment (u0.20), then the rise over the segment in units of
     // 2^-17 (12 bits)
     reg [31:0] sine_rom [0:331];
     initial $readmemh(SINE_FILE, sine_rom);
@@ -295,7 +291,7 @@ module rough_small_datapath #(
         facing_held <= facing;
     end
 
-    // Unused bits, among them those that narrowing drops.
+    // Unused: bits that nothing reads, for example those that a narrower format drops.
     wire unused = &{1'b0, sine_rise[8:0], multiplier10[40], line_or_square[13:0], red_product[12:0],
             green_product[12:0], blue_product[12:0]};
 

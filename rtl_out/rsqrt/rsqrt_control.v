@@ -16,26 +16,26 @@ module rsqrt_control #(
 ) (
     input  wire clk,
     input  wire rst_n,           // reset, active low
-    input  wire start,           // begins a computation when not busy
+    input  wire start,           // starts a computation if not busy
     output wire valid,           // the results are on the outputs
-    output wire busy,            // high from the clock after start to the end
+    output wire busy,            // high from the clock after start to the last clock
     output wire done,            // high in the last clock of a computation
-    output wire idle,            // operands may be written
+    output wire idle,            // 1 while operands can be written
     output wire result_load,
     output wire sum1_load,
     output wire factors_select
 );
 
     // Registers
-    reg        run;           // a microprogram is running
-    reg  [1:0] word_address;  // the microinstruction that is executed
+    reg        run;           // 1 while a microprogram runs
+    reg  [1:0] word_address;  // the address of the current microinstruction
 
-    assign busy = run;  // high from the clock after start to the end
+    assign busy = run;  // high from the clock after start to the last clock
     wire not_busy = ~busy;
-    assign idle = not_busy;  // operands may be written
+    assign idle = not_busy;  // 1 while operands can be written
 
-    // ROM control: the microprogram, a line for each microinstruction; fields: result_load,
-    // sum1_load, factors_select, valid_word, go_on
+    // ROM control: the microprogram, one word per microinstruction; fields: result_load, sum1_load,
+    // factors_select, valid_word, go_on
     reg [4:0] control_rom [0:3];
     initial $readmemb(CONTROL_FILE, control_rom);
     wire [4:0] control_word = control_rom[word_address];
@@ -43,8 +43,8 @@ module rsqrt_control #(
     assign result_load = control_word[4];
     assign sum1_load = control_word[3];
     assign factors_select = control_word[2];
-    wire valid_word = control_word[1];  // the microinstruction sets valid
-    wire go_on = control_word[0];  // 0 in the last microinstruction
+    wire valid_word = control_word[1];  // 1 if the microinstruction sets valid
+    wire go_on = control_word[0];  // 0 in the last microinstruction, else 1
     wire [1:0] following_word = word_address + 2'd1;
     wire [1:0] next_word = go_on ? following_word : 2'd0;
     wire next_run = run ? go_on : start;
@@ -70,7 +70,7 @@ module rsqrt_control #(
 
 `ifdef FORMAL
     always @* if (!$initstate) begin
-        assert (word_address <= 2'd3);  // no other address is reached
+        assert (word_address <= 2'd3);  // the address stays in the microprogram
         if (!run) assert (word_address == 2'd0);
     end
 `endif

@@ -11,7 +11,7 @@ module rsqrt_datapath #(
     input  wire        clk,
     input  wire [16:0] x,               // u1.16: the operand
     input  wire        x_write,         // writes x
-    input  wire        idle,            // operands may be written
+    input  wire        idle,            // 1 while operands can be written
     input  wire        result_load,
     input  wire        sum1_load,
     input  wire        factors_select,
@@ -50,8 +50,8 @@ module rsqrt_datapath #(
     wire [16:0] kept0 = added0[17:1];  // u1.16
     assign result_out = result;  // u1.16
 
-    // ROM coefficients: coefficients of the segment's polynomial, that of the lowest power in the
-    // top bits
+    // ROM coefficients: coefficients of the polynomial of a segment, the constant term in the top
+    // bits
     reg [34:0] coefficients_rom [0:15];
     initial $readmemh(COEFFICIENTS_FILE, coefficients_rom);
     always @(posedge clk) coefficients_word <= coefficients_rom[number[15:12]];
@@ -74,7 +74,7 @@ module rsqrt_datapath #(
         end
     end
 
-    // Unused bits, among them those that narrowing drops.
+    // Unused: bits that nothing reads, for example those that a narrower format drops.
     wire unused = &{1'b0, x_reg[16], product[3:0], added1[13], added0[0], added0[18]};
 
 `ifdef FORMAL

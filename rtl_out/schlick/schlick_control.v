@@ -1,8 +1,8 @@
 // schlick_control: sequencer and control ROM of schlick
 //
 // Microprogram:
-//    0  operands cos gamma, n
-//    1  cos gamma by n*(1 - cos gamma) + cos gamma
+//    0  operands <- cos gamma, n
+//    1  quotient <- cos gamma / (n*(1 - cos gamma) + cos gamma)
 //    2  next bit of the quotient  (to 2 while quotient_more)
 //    3  result  (end)
 //
@@ -16,12 +16,12 @@ module schlick_control #(
 ) (
     input  wire clk,
     input  wire rst_n,                     // reset, active low
-    input  wire start,                     // begins a computation when not busy
-    input  wire quotient_more,             // the next bit is not the last
+    input  wire start,                     // starts a computation if not busy
+    input  wire quotient_more,             // 1 if the next quotient bit is not the last
     output wire valid,                     // the results are on the outputs
-    output wire busy,                      // high from the clock after start to the end
+    output wire busy,                      // high from the clock after start to the last clock
     output wire done,                      // high in the last clock of a computation
-    output wire idle,                      // operands may be written
+    output wire idle,                      // 1 while operands can be written
     output wire quotient_divisor_load,
     output wire quotient_remainder_load,
     output wire quotient_load,
@@ -34,16 +34,16 @@ module schlick_control #(
     localparam [1:0] LOOP_START = 2'd2;
 
     // Registers
-    reg        run;           // a microprogram is running
-    reg  [1:0] word_address;  // the microinstruction that is executed
+    reg        run;           // 1 while a microprogram runs
+    reg  [1:0] word_address;  // the address of the current microinstruction
 
-    assign busy = run;  // high from the clock after start to the end
+    assign busy = run;  // high from the clock after start to the last clock
     wire not_busy = ~busy;
-    assign idle = not_busy;  // operands may be written
+    assign idle = not_busy;  // 1 while operands can be written
 
-    // ROM control: the microprogram, a line for each microinstruction; fields:
-    // quotient_divisor_load, quotient_remainder_load, quotient_load, quotient_remaining_load,
-    // quotient_remaining_count, quotient_source_select, valid_word, loop_word, go_on
+    // ROM control: the microprogram, one word per microinstruction; fields: quotient_divisor_load,
+    // quotient_remainder_load, quotient_load, quotient_remaining_load, quotient_remaining_count,
+    // quotient_source_select, valid_word, loop_word, go_on
     reg [8:0] control_rom [0:3];
     initial $readmemb(CONTROL_FILE, control_rom);
     wire [8:0] control_word = control_rom[word_address];
@@ -54,9 +54,9 @@ module schlick_control #(
     assign quotient_remaining_load = control_word[5];
     assign quotient_remaining_count = control_word[4];
     assign quotient_source_select = control_word[3];
-    wire valid_word = control_word[2];  // the microinstruction sets valid
+    wire valid_word = control_word[2];  // 1 if the microinstruction sets valid
     wire loop_word = control_word[1];
-    wire go_on = control_word[0];  // 0 in the last microinstruction
+    wire go_on = control_word[0];  // 0 in the last microinstruction, else 1
     wire [1:0] following_word = word_address + 2'd1;
     wire condition = quotient_more;
     wire loop_back = loop_word & condition;
@@ -85,7 +85,7 @@ module schlick_control #(
 
 `ifdef FORMAL
     always @* if (!$initstate) begin
-        assert (word_address <= 2'd3);  // no other address is reached
+        assert (word_address <= 2'd3);  // the address stays in the microprogram
         if (!run) assert (word_address == 2'd0);
     end
 `endif

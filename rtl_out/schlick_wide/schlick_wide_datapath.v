@@ -12,23 +12,23 @@ module schlick_wide_datapath (
     input  wire        cos_gamma_write,           // writes cos_gamma
     input  wire [9:0]  exponent,                  // specular exponent n
     input  wire        exponent_write,            // writes exponent
-    input  wire [11:0] red,                       // intensity of the light times k_s
+    input  wire [11:0] red,                       // intensity of the light, times k_s
     input  wire        red_write,                 // writes red
-    input  wire [11:0] green,                     // intensity of the light times k_s
+    input  wire [11:0] green,                     // intensity of the light, times k_s
     input  wire        green_write,               // writes green
-    input  wire [11:0] blue,                      // intensity of the light times k_s
+    input  wire [11:0] blue,                      // intensity of the light, times k_s
     input  wire        blue_write,                // writes blue
-    input  wire        idle,                      // operands may be written
+    input  wire        idle,                      // 1 while operands can be written
     input  wire        quotient_divisor_load,
     input  wire        quotient_remainder_load,
     input  wire        quotient_load,
     input  wire        quotient_remaining_load,
     input  wire        quotient_remaining_count,
     input  wire        quotient_source_select,
-    output wire [11:0] red_out,                   // intensity on the output
-    output wire [11:0] green_out,                 // intensity on the output
-    output wire [11:0] blue_out,                  // intensity on the output
-    output wire        quotient_more              // the next bit is not the last
+    output wire [11:0] red_out,                   // output intensity
+    output wire [11:0] green_out,                 // output intensity
+    output wire [11:0] blue_out,                  // output intensity
+    output wire        quotient_more              // 1 if the next quotient bit is not the last
 );
 
     // Constants
@@ -39,15 +39,15 @@ module schlick_wide_datapath (
     // Registers
     reg  [20:0] cos_gamma_reg;       // u1.20: cosine of the angle between normal and half vector
     reg  [9:0]  exponent_reg;        // specular exponent n
-    reg  [11:0] red_reg;             // intensity of the light times k_s
-    reg  [11:0] green_reg;           // intensity of the light times k_s
-    reg  [11:0] blue_reg;            // intensity of the light times k_s
+    reg  [11:0] red_reg;             // intensity of the light, times k_s
+    reg  [11:0] green_reg;           // intensity of the light, times k_s
+    reg  [11:0] blue_reg;            // intensity of the light, times k_s
     reg  [29:0] quotient_divisor;    // u10.20: the divisor
-    // u10.20: the dividend, then what the bits so far leave of it, at most the divisor
+    // u10.20: the dividend, later the remainder, at most the divisor
     reg  [29:0] quotient_remainder;
-    reg  [13:0] quotient;            // u0.14: the quotient, which bits enter at the bottom
-    reg  [3:0]  quotient_remaining;  // bits to come after the next
-    // u1.20: complement, delayed by a clock: the operands do not change
+    reg  [13:0] quotient;            // u0.14: the quotient; each step shifts in one bit
+    reg  [3:0]  quotient_remaining;  // quotient bits after the next one
+    // u1.20: complement, delayed by one clock, because the operands do not change
     reg  [20:0] complement_held;
 
     wire cos_gamma_over = cos_gamma[20];
@@ -59,8 +59,8 @@ module schlick_wide_datapath (
     wire blue_load = blue_write & idle;
     wire [20:0] complement = ONE - cos_gamma_reg;  // u1.20: 1.0 - cos gamma
     wire [30:0] scaled = complement_held * exponent_reg;  // u11.20: n*(1 - cos gamma)
-    wire facing = |cos_gamma_reg;  // the surface faces the half vector
-    wire dark = ~facing;  // an ulp for the divisor, which n = 0 would leave at 0
+    wire facing = |cos_gamma_reg;  // 1 if the surface faces the half vector
+    wire dark = ~facing;  // 1 ulp, which keeps the divisor above 0 for n = 0
     wire [30:0] denominator = scaled + {10'd0, cos_gamma_reg} + {30'd0, dark};  // u11.20
     wire [29:0] divisor = denominator[29:0];  // u10.20: n - n*cos gamma + cos gamma, never 0
     wire [29:0] quotient_dividend = {9'd0, cos_gamma_reg};  // u10.20
@@ -71,10 +71,10 @@ module schlick_wide_datapath (
 
     wire quotient_remaining_enable = quotient_remaining_load | quotient_remaining_count;
 
-    // s11.20: negative where the divisor does not fit
+    // s11.20: negative if the divisor exceeds the remainder
     wire signed [31:0] quotient_trial = {1'b0, quotient_remainder, 1'b0} - {2'd0, quotient_divisor};
 
-    wire quotient_bit = ~quotient_trial[31];  // the divisor fits: the next bit of the quotient
+    wire quotient_bit = ~quotient_trial[31];  // the next quotient bit: 1 if the divisor fits
 
     // s11.20
     wire signed [31:0] quotient_left = quotient_bit ? quotient_trial : {1'b0, quotient_remainder,
@@ -85,16 +85,16 @@ module schlick_wide_datapath (
     // u10.20
     wire [29:0] quotient_source = quotient_source_select ? quotient_stepped : quotient_dividend;
 
-    assign quotient_more = |quotient_remaining;  // the next bit is not the last
-    wire [25:0] red_product = quotient * red_reg;  // u12.14: an output before it is rounded
+    assign quotient_more = |quotient_remaining;  // 1 if the next quotient bit is not the last
+    wire [25:0] red_product = quotient * red_reg;  // u12.14: the output before rounding
     wire [11:0] red_intensity = red_product[25:14] + {11'd0, red_product[13]};
-    assign red_out = red_intensity;  // intensity on the output
-    wire [25:0] green_product = quotient * green_reg;  // u12.14: an output before it is rounded
+    assign red_out = red_intensity;  // output intensity
+    wire [25:0] green_product = quotient * green_reg;  // u12.14: the output before rounding
     wire [11:0] green_intensity = green_product[25:14] + {11'd0, green_product[13]};
-    assign green_out = green_intensity;  // intensity on the output
-    wire [25:0] blue_product = quotient * blue_reg;  // u12.14: an output before it is rounded
+    assign green_out = green_intensity;  // output intensity
+    wire [25:0] blue_product = quotient * blue_reg;  // u12.14: the output before rounding
     wire [11:0] blue_intensity = blue_product[25:14] + {11'd0, blue_product[13]};
-    assign blue_out = blue_intensity;  // intensity on the output
+    assign blue_out = blue_intensity;  // output intensity
 
     always @(posedge clk) begin
         if (cos_gamma_load) begin
@@ -154,7 +154,7 @@ module schlick_wide_datapath (
         complement_held <= complement;
     end
 
-    // Unused bits, among them those that narrowing drops.
+    // Unused: bits that nothing reads, for example those that a narrower format drops.
     wire unused = &{1'b0, denominator[30], quotient_left[31:30], red_product[12:0],
             green_product[12:0], blue_product[12:0]};
 

@@ -12,18 +12,18 @@ module threshold_levels_datapath (
     input  wire        cos_gamma_write,  // input 1: writes cos_gamma
     input  wire [9:0]  exponent,         // input 2: specular exponent n
     input  wire        exponent_write,   // input 2: writes exponent
-    input  wire [7:0]  red,              // input 3: intensity of the light times k_s
+    input  wire [7:0]  red,              // input 3: intensity of the light, times k_s
     input  wire        red_write,        // input 3: writes red
-    input  wire [7:0]  green,            // input 4: intensity of the light times k_s
+    input  wire [7:0]  green,            // input 4: intensity of the light, times k_s
     input  wire        green_write,      // input 4: writes green
-    input  wire [7:0]  blue,             // input 5: intensity of the light times k_s
+    input  wire [7:0]  blue,             // input 5: intensity of the light, times k_s
     input  wire        blue_write,       // input 5: writes blue
-    input  wire        idle,             // operands may be written
+    input  wire        idle,             // 1 while operands can be written
     input  wire        scaled_load,
     input  wire        intensity_load,
-    output wire [7:0]  red_out,          // output 1: intensity on the output
-    output wire [7:0]  green_out,        // output 2: intensity on the output
-    output wire [7:0]  blue_out          // output 3: intensity on the output
+    output wire [7:0]  red_out,          // output 1: output intensity
+    output wire [7:0]  green_out,        // output 2: output intensity
+    output wire [7:0]  blue_out          // output 3: output intensity
 );
 
     // Constants
@@ -36,11 +36,11 @@ module threshold_levels_datapath (
     // register 1, u1.20: cosine of the angle between normal and half vector
     reg         [20:0] cos_gamma_reg;
     reg         [9:0]  exponent_reg;   // register 2: specular exponent n
-    reg         [7:0]  red_reg;        // register 3: intensity of the light times k_s
-    reg         [7:0]  green_reg;      // register 4: intensity of the light times k_s
-    reg         [7:0]  blue_reg;       // register 5: intensity of the light times k_s
+    reg         [7:0]  red_reg;        // register 3: intensity of the light, times k_s
+    reg         [7:0]  green_reg;      // register 4: intensity of the light, times k_s
+    reg         [7:0]  blue_reg;       // register 5: intensity of the light, times k_s
     reg  signed [16:0] scaled;         // s0.16: n/2*(cos gamma - 1), not below -1.0
-    reg         [15:0] intensity;      // u0.16: the reflectance f: what the gates passed
+    reg         [15:0] intensity;      // u0.16: the reflectance f, the output of the gates
     reg         [15:0] levels_word;    // u0.16
 
     wire cos_gamma_over = cos_gamma[20];
@@ -63,29 +63,29 @@ module threshold_levels_datapath (
     wire [16:0] adder2 = scaled + BASE_ONE;  // adder 2, u1.16: base of the square, 0 ... 1.0
     wire [33:0] multiplier2 = adder2 * adder2;  // multiplier 2, u2.32
     wire [15:0] square = (|multiplier2[33:32]) ? 16'hffff : multiplier2[31:16];  // u0.16
-    wire comparator = square < levels_word;  // the square is below the level of visibility
+    wire comparator = square < levels_word;  // 1 if the square is below the level of visibility
     wire visible = ~comparator;
-    wire facing = |cos_gamma_reg;  // the surface faces the half vector
-    wire pass = facing & visible;  // opens the gates
-    wire [15:0] gates = pass ? square : 16'd0;  // u0.16: block of keys: the square or 0
+    wire facing = |cos_gamma_reg;  // 1 if the surface faces the half vector
+    wire pass = facing & visible;  // 1 opens the gates
+    wire [15:0] gates = pass ? square : 16'd0;  // u0.16: block of keys: the square, or 0
 
-    // multiplier 3, u8.16: an output before it is rounded
+    // multiplier 3, u8.16: the output before rounding
     wire [23:0] red_product = intensity * red_reg;
 
     wire [7:0] red_intensity = red_product[23:16] + {7'd0, red_product[15]};
-    assign red_out = red_intensity;  // output 1: intensity on the output
+    assign red_out = red_intensity;  // output 1: output intensity
 
-    // multiplier 4, u8.16: an output before it is rounded
+    // multiplier 4, u8.16: the output before rounding
     wire [23:0] green_product = intensity * green_reg;
 
     wire [7:0] green_intensity = green_product[23:16] + {7'd0, green_product[15]};
-    assign green_out = green_intensity;  // output 2: intensity on the output
+    assign green_out = green_intensity;  // output 2: output intensity
 
-    // multiplier 5, u8.16: an output before it is rounded
+    // multiplier 5, u8.16: the output before rounding
     wire [23:0] blue_product = intensity * blue_reg;
 
     wire [7:0] blue_intensity = blue_product[23:16] + {7'd0, blue_product[15]};
-    assign blue_out = blue_intensity;  // output 3: intensity on the output
+    assign blue_out = blue_intensity;  // output 3: output intensity
 
     // ROM levels: the smallest f that is shown for an exponent n (the address)
     reg [15:0] levels_rom [0:1023];
@@ -1159,7 +1159,7 @@ module threshold_levels_datapath (
         end
     end
 
-    // Unused bits, among them those that narrowing drops.
+    // Unused: bits that nothing reads, for example those that a narrower format drops.
     wire unused = &{1'b0, multiplier1[4:0], multiplier2[15:0], red_product[14:0],
             green_product[14:0], blue_product[14:0]};
 

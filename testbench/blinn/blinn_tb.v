@@ -1,12 +1,13 @@
 // blinn_tb: self-checking bench of blinn
 //
-// Run it with any simulator from a directory that holds the files of both folders, for example
+// To run it, copy the files of both folders into one directory and use any simulator, for example
 //   $ iverilog -g2012 -s blinn_tb -o sim blinn*.v
 //   $ ./sim
 // or, with Verilator 5,
 //   $ verilator --binary --timing --top blinn_tb blinn*.v
 //   $ obj_dir/Vblinn_tb
-// Inputs change on the falling edge of the clock; outputs are compared just before the rising edge.
+// Inputs change on the falling edge of the clock. The bench compares outputs just before the rising
+// edge.
 //
 // Generated files belong to their user, without conditions.
 
@@ -17,8 +18,8 @@ module blinn_tb #(
     parameter EXPECTED_FILE = "blinn_expected.mem"
 );
     localparam CLOCKS     = 2941;
-    localparam KNOWN_FROM = 14;  // results are compared from this clock on
-    localparam REPORTED   = 20;  // differences that are printed
+    localparam KNOWN_FROM = 14;  // the first clock in which results are compared
+    localparam REPORTED   = 20;  // the number of differences to print
 
     reg [61:0] stimulus [0:CLOCKS-1];
     reg [42:0] expected [0:CLOCKS-1];
@@ -46,8 +47,8 @@ module blinn_tb #(
     wire [7:0]  blue_out;
 
     integer clock;
-    // Initial values stand here and not in the process below: Verilator 5.006 takes a variable for
-    // constant after a loop with delays when the process has set it before the loop.
+    // The initial values are set here and not in the process below, because Verilator 5.006 treats
+    // a variable as constant after a loop with delays if the process has set it before the loop.
     integer errors = 0;
     reg was_reset = 1'b0;  // the control unit is in a known state
 
@@ -74,17 +75,17 @@ module blinn_tb #(
         .blue_out(blue_out)
     );
 
-    // Prints the microinstruction that is executed.
+    // Prints the address and the name of the current microinstruction.
     task write_microinstruction;
         begin
             $write("microinstruction ");
             case (dut.control.word_address)
-                4'd0: $write("0 (distance from the cosine)");
-                4'd1: $write("1 (ratio <- those from 1 on)");
+                4'd0: $write("0 (distance <- 1 - cos gamma)");
+                4'd1: $write("1 (ratio <- coefficients from 1 on)");
                 4'd2: $write("2 (ratio <- all coefficients)");
-                4'd3: $write("3 (factor <- way * ratio)");
+                4'd3: $write("3 (factor <- distance * ratio)");
                 4'd4: $write("4 (halvings <- n * factor)");
-                4'd5: $write("5 (power <- those from 1 on)");
+                4'd5: $write("5 (power <- coefficients from 1 on)");
                 4'd6: $write("6 (power <- all coefficients)");
                 4'd7: $write("7 (reflectance <- 2^-halvings)");
                 4'd8: $write("8 (result)");

@@ -1,8 +1,8 @@
-// cosine_power_registers_formal: what is proved of cosine_power_registers
+// cosine_power_registers_formal: formal properties of cosine_power_registers
 //
-// For formal tools alone. All inputs are free. The core is abstracted to its handshake: busy from
-// the clock after start to done, with any results. To prove it, from a directory that holds the
-// files of both folders:
+// For formal tools only. All inputs are arbitrary. A stub with the handshake of the core replaces
+// the core: busy is high from the clock after start to done, and the results are arbitrary. To
+// prove the properties, run in a directory with the files of both folders:
 //   $ yosys -q cosine_power_registers_formal.ys
 //   $ yosys-smtbmc -s z3 --unroll -t 3 cosine_power_registers_formal.smt2
 //   $ yosys-smtbmc -s z3 --unroll -i -t 2 cosine_power_registers_formal.smt2
@@ -45,7 +45,7 @@ module cosine_power (
     assign done = run & ends;
     always @(posedge clk) run <= rst_n & (run ? ~done : start);
 
-    // A computation begins with all of its operands, and when the one before is over.
+    // A computation starts only after the computation before it has ended, and loads all operands.
     always @* if (!$initstate && start) begin
         assert (!run);
         assert (cos_gamma_write);
@@ -90,7 +90,7 @@ module cosine_power_registers_formal (
         .irq(irq)
     );
 
-    // Internal signals that the proof refers to.
+    // Internal signals of the design that the assertions read.
     (* hierconn *) wire \dut.start ;
     (* hierconn *) wire \dut.start_on_write ;
     (* hierconn *) wire [3:0] \dut.start_word ;
@@ -114,7 +114,7 @@ module cosine_power_registers_formal (
     (* hierconn *) wire [7:0] \dut.core.green_out ;
     (* hierconn *) wire [7:0] \dut.core.blue_out ;
 
-    // The reset comes first; the state before it is arbitrary.
+    // The reset is active in the first clock. The state before it is arbitrary.
     always @* if ($initstate) assume (!rst_n);
 
     localparam WORDS = 14;
@@ -129,19 +129,20 @@ module cosine_power_registers_formal (
                 || write_word == 5 && write_bytes[0] && write_data[0]);
 
     always @* if (!$initstate) begin
-        // A request waits only for a computation, which ends; only requests are answered.
+        // A request waits only while a computation runs. There is no answer without a request.
         if (write && !write_answer) assert (asks_start && (dut.start || dut.core.run));
         if (read && !read_answer) assert (is_result && (dut.start || dut.core.run));
         if (!write) assert (!write_answer);
         if (!read) assert (!read_answer);
-        // A result that is read is that of a computation that is over.
+        // A result is read only after the computation has ended.
         if (read_answer && is_result) assert (!dut.start && !dut.core.run);
-        // What is not in the map, and nothing else, is an error.
+        // An access is an error exactly if its address is not in the map or, for a write,
+        // read-only.
         assert (write_error == !write_mapped);
         assert (read_error == (read_word >= WORDS));
         assert (dut.core.rst_n == rst_n);
         assert (irq == (dut.interrupt_enable && dut.interrupt_pending));
-        // What was written is what the core computes with.
+        // The core gets the operands that were written.
         assert (dut.core.cos_gamma == dut.operand_cos_gamma);
         assert (dut.core.exponent == dut.operand_exponent);
         assert (dut.core.red == dut.operand_red);
@@ -149,7 +150,7 @@ module cosine_power_registers_formal (
         assert (dut.core.blue == dut.operand_blue);
     end
 
-    // What was taken in the clock before.
+    // Whether a register was written in the clock before, and the address of that write.
     reg took;
     reg [31:0] took_word;
     always @(posedge clk) begin
@@ -160,8 +161,8 @@ module cosine_power_registers_formal (
     wire took_enable = took && took_word == 6;
     wire took_pending = took && took_word == 7;
     always @(posedge clk) if (!$initstate && $past(!$initstate)) begin
-        // A register is read in the clock after its request, all of its bits; operands as they were
-        // written, and results as 0 before the first.
+        // In the clock after its request, a read shows all bits of its register: an operand as it
+        // was written, and 0 for a result before the first computation has ended.
         if ($past(read_error)) assert (read_data == 0);
         if ($past(read_answer && is_result)) assert (!dut.core.run);
         if ($past(read_word) == 0) begin
@@ -209,9 +210,9 @@ module cosine_power_registers_formal (
         end
     end
     always @(posedge clk) if (!$initstate && $past(!$initstate) && $past(rst_n)) begin
-        // A computation starts once for each write that asks for it, and for nothing else.
+        // Each write that asks for a start starts one computation, and nothing else starts one.
         assert (dut.start == $past(write_answer && asks_start));
-        // The registers change where they are written, in those bytes, and nowhere else.
+        // A write changes the enabled bytes of the addressed register, and nothing else.
         assert (dut.start_on_write == (took_control && $past(write_bytes[0])
                 ? $past(write_data[1]) : $past(dut.start_on_write)));
         assert (dut.start_word == (took_control && $past(write_bytes[1])

@@ -1,8 +1,8 @@
-// cosine_power_wb_formal: what is proved of cosine_power_wb
+// cosine_power_wb_formal: formal properties of cosine_power_wb
 //
-// For formal tools alone: every input is free, the master's too, which may even give a request up.
-// In place of the registers stands anything that answers requests at any time. To prove it, from a
-// directory that holds the files of both folders:
+// For formal tools only. All inputs are arbitrary, also those from the master, which may even
+// abandon a request. A stub that answers requests at arbitrary times replaces the registers. To
+// prove the properties, run in a directory with the files of both folders:
 //   $ yosys -q cosine_power_wb_formal.ys
 //   $ yosys-smtbmc -s z3 --unroll -t 3 cosine_power_wb_formal.smt2
 //   $ yosys-smtbmc -s z3 --unroll -i -t 2 cosine_power_wb_formal.smt2
@@ -65,7 +65,7 @@ module cosine_power_wb_formal (
         .irq(irq)
     );
 
-    // Internal signals that the proof refers to.
+    // Internal signals of the design that the assertions read.
     (* hierconn *) wire \dut.write ;
     (* hierconn *) wire \dut.read ;
     (* hierconn *) wire \dut.write_answer ;
@@ -80,16 +80,16 @@ module cosine_power_wb_formal (
     (* hierconn *) wire [3:0] \dut.registers.write_bytes ;
     (* hierconn *) wire [5:2] \dut.registers.read_at ;
 
-    // The reset comes first; the state before it is arbitrary.
+    // The reset is active in the first clock. The state before it is arbitrary.
     always @* if ($initstate) assume (wb_rst_i);
 
     wire answered = wb_ack_o || wb_err_o;
     always @* if (!$initstate) begin
-        // One answer at a time, and a request is asked of the registers until it has one.
+        // At most one of ack and err is high. A request goes to the registers until it is answered.
         assert (!(wb_ack_o && wb_err_o));
         assert (dut.write == (wb_cyc_i && wb_stb_i && wb_we_i && !answered));
         assert (dut.read == (wb_cyc_i && wb_stb_i && !wb_we_i && !answered));
-        // What reaches them is the request.
+        // The registers get the address, data and byte enables of the request.
         assert (\dut.registers.rst_n == !wb_rst_i && irq == \dut.registers.irq );
         if (dut.write) begin
             assert (\dut.registers.write_at == wb_adr_i[5:2]);
@@ -97,11 +97,12 @@ module cosine_power_wb_formal (
             assert (\dut.registers.write_bytes == wb_sel_i);
         end
         if (dut.read) assert (\dut.registers.read_at == wb_adr_i[5:2]);
-        // The data are those of the registers, which show them in the clock after their answer.
+        // The data come from the registers, which show them in the clock after their answer.
         assert (wb_dat_o == \dut.registers.read_data );
     end
     always @(posedge wb_clk_i) if (!$initstate && $past(!$initstate)) begin
-        // An answer is given once, in the clock after that of the registers, and only to a request.
+        // Each request gets one answer, in the clock after the registers answered. Without a
+        // request there is no answer.
         assert (wb_ack_o == $past(!wb_rst_i && (dut.write_answer && !dut.write_error
                 || dut.read_answer && !dut.read_error)));
         assert (wb_err_o == $past(!wb_rst_i && (dut.write_answer && dut.write_error

@@ -1,14 +1,14 @@
 // cosine_power_wb_tb: self-checking bench of cosine_power_wb
 //
-// Run it with any simulator from a directory that holds the files of both folders, for example
+// To run it, copy the files of both folders into one directory and use any simulator, for example
 //   $ iverilog -g2012 -s cosine_power_wb_tb -o sim cosine_power*.v
 //   $ ./sim
 // or, with Verilator 5,
 //   $ verilator --binary --timing --top cosine_power_wb_tb cosine_power*.v
 //   $ obj_dir/Vcosine_power_wb_tb
-// The points of the core's bench are written and started in turn in each way that there is, and the
-// results are read. Inputs change on the falling edge of the clock; outputs are read just before
-// the rising edge.
+// The bench writes the operands of points of the core's bench, starts each computation in one of
+// the possible ways in turn, and reads the results. Inputs change on the falling edge of the clock.
+// Outputs are read just before the rising edge.
 //
 // Generated files belong to their user, without conditions.
 
@@ -19,12 +19,12 @@ module cosine_power_wb_tb #(
     parameter RECEIVED_FILE = "cosine_power_received.mem"
 );
     localparam POINTS   = 116;
-    localparam EVERY    = 1;  // one of so many is computed
-    localparam PARTS    = 5;  // registers of operands
-    localparam RESULTS  = 1;  // registers of results
-    localparam WORDS    = 14;  // registers
-    localparam LIMIT    = 1164;  // clocks until an answer
-    localparam REPORTED = 20;  // differences that are printed
+    localparam EVERY    = 1;  // the bench computes one point in so many
+    localparam PARTS    = 5;  // the number of operand registers
+    localparam RESULTS  = 1;  // the number of result registers
+    localparam WORDS    = 14;  // the number of registers
+    localparam LIMIT    = 1164;  // the most clocks until an answer
+    localparam REPORTED = 20;  // the number of differences to print
     localparam [31:0] STATUS = 32'h10, CONTROL = 32'h14, ENABLE = 32'h18, PENDING = 32'h1c;
 
     reg [63:0] sent [0:POINTS-1];
@@ -32,7 +32,7 @@ module cosine_power_wb_tb #(
     reg [63:0] point;
     reg [23:0] result;
 
-    // Initial values stand here: see cosine_power_tb.
+    // The initial values are set here: cosine_power_tb.v says why.
     reg clk = 1'b0;
     reg reset = 1'b1;
     reg irq_enabled = 1'b0;
@@ -66,7 +66,7 @@ module cosine_power_wb_tb #(
         end
     endtask
 
-    // A clock, to just before its rising edge; outputs are as they are then.
+    // Waits until just before the next rising edge of the clock, when outputs can be read.
     task wait_a_clock;
         begin
             waited = waited + 1;
@@ -101,7 +101,7 @@ module cosine_power_wb_tb #(
         .irq(irq)
     );
 
-    // A cycle, after clocks with one of its two signals alone.
+    // Does one bus cycle, after clocks in which only one of cyc and stb is high.
     task access(input [31:0] address, input writes, input [31:0] data, input [3:0] bytes);
         begin
             accesses = accesses + 1;
@@ -129,7 +129,7 @@ module cosine_power_wb_tb #(
                 got = dat_o;
                 @(negedge clk);
             end
-            // The master may go on at once.
+            // The next cycle may begin in the next clock.
             cyc = random[3];
             stb = 1'b0;
             we = random[4];
@@ -149,7 +149,8 @@ module cosine_power_wb_tb #(
             default: part_at = 32'd0;
         endcase
     endfunction
-    // What is written, with any bits above the operand, and what is read back.
+    // part_word is the word that the bench writes, with arbitrary bits above the operand. part_mask
+    // has the bits that read back.
     function [31:0] part_word(input integer number);
         case (number)
             0: part_word = {{8{point[0]}}, point[23:0]};
@@ -200,7 +201,7 @@ module cosine_power_wb_tb #(
         end
     endtask
 
-    // Both ways, an error.
+    // A write must fail. A read must fail too if `reads` is 1, and must not if it is 0.
     task expect_error(input [31:0] address, input reads);
         begin
             access(address, 1'b1, 32'hffff_ffff, 4'hf);
@@ -214,7 +215,7 @@ module cosine_power_wb_tb #(
         for (part = 0; part < PARTS; part = part + 1) write(part_at(part), part_word(part), 4'hf);
     endtask
 
-    // Byte by byte, with other data beside each.
+    // Writes each byte of a word alone, with wrong data in the bytes that are not enabled.
     task write_bytes;
         for (part = 0; part < PARTS; part = part + 1) begin
             write(part_at(part), part_word(part) ^ 32'hffff_ff00, 4'b0001);
@@ -236,7 +237,7 @@ module cosine_power_wb_tb #(
         end
     endtask
 
-    // The registers as a reset leaves them.
+    // Reads all registers and expects their values after a reset.
     task expect_reset;
         begin
             point = 0;
@@ -255,7 +256,8 @@ module cosine_power_wb_tb #(
         end
     endtask
 
-    // The start word is the part's; nothing starts but by a write of its register with a byte.
+    // Makes the register of the chosen part the start register, and writes it. Before that, it
+    // checks that writes in which the byte of the start bit is not enabled start nothing.
     task start_by_write(input integer chosen);
         begin
             write(CONTROL, 32'd2 | part_at(chosen) << 6, 4'b1111);
@@ -298,7 +300,7 @@ module cosine_power_wb_tb #(
                 write(CONTROL, 32'd1, 4'b0001);
             end
             if (number / EVERY % 4 == 2) begin
-                // Those of another point do not matter now.
+                // The operands of another point must not change this computation.
                 point = ~point;
                 write_operands;
                 expect_operands;
@@ -316,7 +318,7 @@ module cosine_power_wb_tb #(
             expect_results;
             number = number + EVERY;
         end
-        // A reset ends what is under way.
+        // A reset ends the computation.
         write(ENABLE, 32'd1, 4'b1111);
         write(CONTROL, 32'd1, 4'b0001);
         reset = 1'b1;

@@ -1,10 +1,10 @@
-// cosine_power_pipelined_axis_formal: what is proved of cosine_power_pipelined_axis
+// cosine_power_pipelined_axis_formal: formal properties of cosine_power_pipelined_axis
 //
-// For formal tools alone. All inputs are free, the sender's too. The core is abstracted to its
-// handshake, which
+// For formal tools only. All inputs are arbitrary, also those from the sender. A stub with the
+// handshake of the core replaces the core: points leave its 10 stages in the order in which they
+// came, with arbitrary results. The core has this handshake by the proof of
 //   cosine_power_pipelined_formal.sv
-// proves of it: points leave its 10 stages in the order in which they came, with any results. To
-// prove it, from a directory that holds the files of both folders:
+// To prove the properties, run in a directory with the files of both folders:
 //   $ yosys -q cosine_power_pipelined_axis_formal.ys
 //   $ yosys-smtbmc -s z3 --unroll -t 3 cosine_power_pipelined_axis_formal.smt2
 //   $ yosys-smtbmc -s z3 --unroll -i -t 2 cosine_power_pipelined_axis_formal.smt2
@@ -30,7 +30,7 @@ module cosine_power_pipelined (
     output wire [7:0] blue_out
 );
     (* anyseq *) reg [23:0] any;
-    reg [9:0] points;  // the stages that have one, the first in bit 0
+    reg [9:0] points;  // the stages that hold a point; the first stage is bit 0
     reg [23:0] shown;
     assign out_valid = points[9];
     assign in_ready = out_ready | ~out_valid;
@@ -44,7 +44,7 @@ module cosine_power_pipelined (
     assign blue_out = shown[23:16];
 endmodule
 
-// The delay line of tlast and tuser, as registers: a test holds its memory against these.
+// Registers replace the memory of the delay line of tlast and tuser.
 module cosine_power_pipelined_delay #(
     parameter WIDTH = 8,
     parameter WORDS = 2,
@@ -89,7 +89,7 @@ module cosine_power_pipelined_axis_formal (
         .m_axis_tready(m_axis_tready)
     );
 
-    // Internal signals that the proof refers to.
+    // Internal signals of the design that the assertions read.
     (* hierconn *) wire \dut.held ;
     (* hierconn *) wire [23:0] \dut.held_results ;
     (* hierconn *) wire [1:0] \dut.held_side ;
@@ -110,13 +110,13 @@ module cosine_power_pipelined_axis_formal (
     (* hierconn *) wire [7:0] \dut.core.green_out ;
     (* hierconn *) wire [7:0] \dut.core.blue_out ;
 
-    // The reset comes first; the state before it is arbitrary.
+    // The reset is active in the first clock. The state before it is arbitrary.
     always @* if ($initstate) assume (!aresetn);
 
     wire give = m_axis_tvalid && m_axis_tready;
     wire leaves = dut.core.out_valid && dut.core.out_ready;
 
-    // One of the points, whichever, on its way through the stages.
+    // Follows one arbitrary point through the stages.
     (* anyseq *) reg marks;
     reg was_marked;
     wire marked = marks && !was_marked && s_axis_tvalid && s_axis_tready;
@@ -133,8 +133,8 @@ module cosine_power_pipelined_axis_formal (
         if (marked) its_side <= {s_axis_tlast, s_axis_tuser};
     end
 
-    // Points that left the core and that were given, modulo more than there can be between, and one
-    // of them, whichever.
+    // The numbers of points that left the core and that the receiver accepted, modulo 4. Fewer than
+    // 4 can be in between. `chosen` is the number of one arbitrary point.
     reg [1:0] left;
     reg [1:0] given;
     (* anyconst *) reg [1:0] chosen;
@@ -161,21 +161,22 @@ module cosine_power_pipelined_axis_formal (
 
     always @(posedge aclk) if (!$initstate) begin
         if ($past(aresetn)) begin
-            // What is offered stays, as it is, until it is taken.
+            // A valid transfer stays unchanged until the receiver accepts it.
             if ($past(m_axis_tvalid && !m_axis_tready)) begin
                 assert (m_axis_tvalid);
                 assert (m_axis_tdata == $past(m_axis_tdata));
                 assert (m_axis_tuser == $past(m_axis_tuser));
                 assert (m_axis_tlast == $past(m_axis_tlast));
             end
-            // Progress: what leaves the core is offered in the next clock, for the receiver or not,
-            // and the core moves in the clock after a transfer is taken or could have been.
+            // Progress: results that leave the core are valid on m_axis in the next clock, whether
+            // or not the receiver is ready. The core advances in the clock after the receiver
+            // accepted a transfer or could have accepted one.
             if ($past(leaves)) assert (m_axis_tvalid);
             if ($past(m_axis_tready || !m_axis_tvalid)) assert (dut.core.out_ready);
         end else begin
             assert (!m_axis_tvalid && dut.core.out_ready);
         end
-        // The core computes with what is sent, when it is sent.
+        // The core gets the operands in the clock in which they are sent.
         assert (dut.core.rst_n == aresetn);
         assert (dut.core.in_valid == s_axis_tvalid);
         assert (dut.core.in_ready == s_axis_tready);
@@ -184,16 +185,17 @@ module cosine_power_pipelined_axis_formal (
         assert (dut.core.red == s_axis_tdata[47:40]);
         assert (dut.core.green == s_axis_tdata[55:48]);
         assert (dut.core.blue == s_axis_tdata[63:56]);
-        // tuser and tlast move with their point.
+        // tuser and tlast advance with their point.
         if (mark[9]) assert (dut.core.out_valid && dut.results_side == its_side);
-        // What is given is what the core computed, in its order, and tuser and tlast with it.
+        // The transfers on m_axis carry the results of the core in the same order, each with its
+        // tuser and tlast.
         if (give && given == chosen) begin
             assert (m_axis_tdata == its_results);
             assert ({m_axis_tlast, m_axis_tuser} == its_last_side);
         end
     end
 
-    // Inductive invariants.
+    // Invariants that make the properties inductive.
     always @* if (!$initstate) begin
         assert ((mark & ~dut.core.points) == 0);
         if (!was_marked) assert (mark == 0);

@@ -1,14 +1,15 @@
 // cosine_power_pipelined_axis_tb: self-checking bench of cosine_power_pipelined_axis
 //
-// Run it with any simulator from a directory that holds the files of both folders, for example
+// To run it, copy the files of both folders into one directory and use any simulator, for example
 //   $ iverilog -g2012 -s cosine_power_pipelined_axis_tb -o sim cosine_power_pipelined*.v
 //   $ ./sim
 // or, with Verilator 5,
 //   $ verilator --binary --timing --top cosine_power_pipelined_axis_tb cosine_power_pipelined*.v
 //   $ obj_dir/Vcosine_power_pipelined_axis_tb
-// The points of the core's bench are sent, and what comes back is compared. By turns nobody
-// pauses, the sender does, the receiver does, and both do; a reset in the midst begins it anew.
-// Inputs change on the falling edge of the clock; outputs are read just before the rising edge.
+// The bench sends the points of the core's bench and compares the transfers that come back. In
+// turn, neither side pauses, the sender pauses, the receiver pauses, and both pause. A second reset
+// in the middle starts the sequence again. Inputs change on the falling edge of the clock. Outputs
+// are read just before the rising edge.
 //
 // Generated files belong to their user, without conditions.
 
@@ -20,13 +21,13 @@ module cosine_power_pipelined_axis_tb #(
 );
     localparam SENT     = 2057;
     localparam RECEIVED = 2057;
-    localparam PASSES   = 1;  // through all of them
-    localparam PAUSE    = 21;  // clocks, at most
-    localparam TURN     = 6 * PAUSE;  // clocks until another one pauses
-    localparam ABORTED  = 7 * TURN / 2;  // clocks before the second reset
-    localparam LIMIT    = 3861;  // clocks without a transfer
+    localparam PASSES   = 1;  // how often the bench sends all transfers
+    localparam PAUSE    = 21;  // the most clocks of one pause
+    localparam TURN     = 6 * PAUSE;  // clocks until the next combination of pausing sides
+    localparam ABORTED  = 7 * TURN / 2;  // the clock of the second reset
+    localparam LIMIT    = 3861;  // the most clocks without a transfer
     localparam USER     = 1;
-    localparam REPORTED = 20;  // differences that are printed
+    localparam REPORTED = 20;  // the number of differences to print
 
     reg [63:0] sent [0:SENT-1];
     reg [23:0] received [0:RECEIVED-1];
@@ -60,11 +61,11 @@ module cosine_power_pipelined_axis_tb #(
         .m_axis_tready(m_axis_tready)
     );
 
-    // Initial values stand here: see cosine_power_pipelined_tb.
+    // The initial values are set here: cosine_power_pipelined_tb.v says why.
     integer clock = 0;
     integer offered = 0;  // the number of the next transfer to be sent
-    integer taken = 0;  // of the next to be received
-    integer source = 0;  // of the one that it comes of
+    integer taken = 0;  // the number of the next transfer to be received
+    integer source = 0;  // the number of the sent transfer that it belongs to
     integer sender_pauses = 0;
     integer receiver_pauses = 0;
     integer waited = 0;
@@ -76,7 +77,8 @@ module cosine_power_pipelined_axis_tb #(
     reg over = 1'b0;
     reg [31:0] random = 32'd1;
 
-    // tlast and tuser of a transfer: the top bit, and all of them over and over.
+    // The marks of transfer `number`: the top bit is its tlast, and repetitions of all bits its
+    // tuser.
     function [31:0] marks(input integer number);
         marks = (number + 1) * 32'h9e3779b1;
     endfunction
@@ -123,7 +125,7 @@ module cosine_power_pipelined_axis_tb #(
             end
             m_axis_tready = receiver_pauses == 0;
             #1;
-            // What is there without an offer means nothing.
+            // While tvalid is low, the other signals carry wrong values, which must not matter.
             s_axis_tdata = s_axis_tvalid ? sent[offered % SENT] : ~sent[0];
             s_axis_tuser = sent_users[0:0] ^ {USER{!s_axis_tvalid}};
             s_axis_tlast = sent_marks[31] == s_axis_tvalid;

@@ -1,12 +1,13 @@
 // cosine_power_pipelined_tb: self-checking bench of cosine_power_pipelined
 //
-// Run it with any simulator from a directory that holds the files of both folders, for example
+// To run it, copy the files of both folders into one directory and use any simulator, for example
 //   $ iverilog -g2012 -s cosine_power_pipelined_tb -o sim cosine_power_pipelined*.v
 //   $ ./sim
 // or, with Verilator 5,
 //   $ verilator --binary --timing --top cosine_power_pipelined_tb cosine_power_pipelined*.v
 //   $ obj_dir/Vcosine_power_pipelined_tb
-// Inputs change on the falling edge of the clock; outputs are compared just before the rising edge.
+// Inputs change on the falling edge of the clock. The bench compares outputs just before the rising
+// edge.
 //
 // Generated files belong to their user, without conditions.
 
@@ -17,8 +18,8 @@ module cosine_power_pipelined_tb #(
     parameter EXPECTED_FILE = "cosine_power_pipelined_expected.mem"
 );
     localparam CLOCKS     = 3797;
-    localparam KNOWN_FROM = 13;  // results are compared from this clock on
-    localparam REPORTED   = 20;  // differences that are printed
+    localparam KNOWN_FROM = 13;  // the first clock in which results are compared
+    localparam REPORTED   = 20;  // the number of differences to print
 
     reg [57:0] stimulus [0:CLOCKS-1];
     reg [25:0] expected [0:CLOCKS-1];
@@ -40,8 +41,8 @@ module cosine_power_pipelined_tb #(
     wire [7:0]  blue_out;
 
     integer clock;
-    // Initial values stand here and not in the process below: Verilator 5.006 takes a variable for
-    // constant after a loop with delays when the process has set it before the loop.
+    // The initial values are set here and not in the process below, because Verilator 5.006 treats
+    // a variable as constant after a loop with delays if the process has set it before the loop.
     integer errors = 0;
     reg was_reset = 1'b0;  // the control unit is in a known state
 

@@ -1,12 +1,13 @@
 // cosine_squared_tb: self-checking bench of cosine_squared
 //
-// Run it with any simulator from a directory that holds the files of both folders, for example
+// To run it, copy the files of both folders into one directory and use any simulator, for example
 //   $ iverilog -g2012 -s cosine_squared_tb -o sim cosine_squared*.v
 //   $ ./sim
 // or, with Verilator 5,
 //   $ verilator --binary --timing --top cosine_squared_tb cosine_squared*.v
 //   $ obj_dir/Vcosine_squared_tb
-// Inputs change on the falling edge of the clock; outputs are compared just before the rising edge.
+// Inputs change on the falling edge of the clock. The bench compares outputs just before the rising
+// edge.
 //
 // Generated files belong to their user, without conditions.
 
@@ -17,8 +18,8 @@ module cosine_squared_tb #(
     parameter EXPECTED_FILE = "cosine_squared_expected.mem"
 );
     localparam CLOCKS     = 13369;
-    localparam KNOWN_FROM = 7;  // results are compared from this clock on
-    localparam REPORTED   = 20;  // differences that are printed
+    localparam KNOWN_FROM = 7;  // the first clock in which results are compared
+    localparam REPORTED   = 20;  // the number of differences to print
 
     reg [85:0] stimulus [0:CLOCKS-1];
     reg [13:0] expected [0:CLOCKS-1];
@@ -44,8 +45,8 @@ module cosine_squared_tb #(
     wire        [7:0]  intensity_out;
 
     integer clock;
-    // Initial values stand here and not in the process below: Verilator 5.006 takes a variable for
-    // constant after a loop with delays when the process has set it before the loop.
+    // The initial values are set here and not in the process below, because Verilator 5.006 treats
+    // a variable as constant after a loop with delays if the process has set it before the loop.
     integer errors = 0;
     reg was_reset = 1'b0;  // the control unit is in a known state
 
@@ -70,7 +71,7 @@ module cosine_squared_tb #(
         .intensity_out(intensity_out)
     );
 
-    // Prints the microinstruction that is executed.
+    // Prints the address and the name of the current microinstruction.
     task write_microinstruction;
         begin
             $write("microinstruction ");
@@ -78,7 +79,7 @@ module cosine_squared_tb #(
                 3'd0: $write("0 (operands)");
                 3'd1: $write("1 (angle <- zeta_start: first point)");
                 3'd2: $write("2 (angle <- angle + delta_zeta: next point)");
-                3'd3: $write("3 (last point a clock away)");
+                3'd3: $write("3 (last point follows in one clock)");
                 3'd4: $write("4 (last point on the output)");
                 default: $write("unknown");
             endcase

@@ -1,7 +1,7 @@
 // lyon_formal: properties of the handshake of lyon
 //
-// For formal tools alone: every input is free. To prove it, from a directory that holds the files
-// of both folders:
+// For formal tools only. All inputs are arbitrary. To prove the properties, run in a directory with
+// the files of both folders:
 //   $ yosys -q lyon_formal.ys
 //   $ yosys-smtbmc --unroll -s z3 -t 8 lyon_formal.smt2
 //   $ yosys-smtbmc --unroll -s z3 -i -t 8 lyon_formal.smt2
@@ -64,14 +64,14 @@ module lyon_formal (
         .blue_out(blue_out)
     );
 
-    // The reset comes first; the state before it is arbitrary.
+    // The reset is active in the first clock. The state before it is arbitrary.
     always @* if ($initstate) assume (!rst_n);
 
-    // Clocks since start.
+    // The number of clocks since start.
     reg [6:0] age;
     always @(posedge clk) age <= busy ? age + 7'd1 : 7'd1;
 
-    // The microinstruction that is executed, and the counters of loops.
+    // The address of the current microinstruction, and the counters of loops.
     (* hierconn *) wire [2:0] \dut.control.word_address ;
     wire [2:0] word = \dut.control.word_address ;
     (* hierconn *) wire [3:0] \dut.datapath.remaining ;
@@ -79,19 +79,20 @@ module lyon_formal (
 
     always @(posedge clk) if (!$initstate) begin
         if (!$past(rst_n)) begin
-            // Idle after reset, whatever the state was before.
+            // After a reset the core is idle, whatever the state before it was.
             assert (!busy && !done);
         end else if (!$past(busy)) begin
-            // Idle until start, busy from the clock after it.
+            // The core is idle until start and busy from the clock after it.
             assert (busy == $past(start));
         end else begin
-            // Busy up to the clock of done.
+            // The core is busy up to the clock of done.
             assert (busy == !$past(done));
         end
         if (done) assert (busy);
         if (valid) assert (busy);
         if (busy) begin
-            // Every computation ends in time: its clocks so far, and the most that can follow.
+            // Every computation ends in time: the clocks so far, plus the most clocks from the
+            // current microinstruction to the end, are within the promised number.
             assert (age <= 7'd36);
             case (word)
                 3'd0: assert (age + 7'd35 <= 7'd36);
@@ -102,7 +103,7 @@ module lyon_formal (
                 3'd5: assert (age <= 7'd36);
             endcase
         end
-        // No computation ends without a result.
+        // Every computation ends with a result.
         if (done) assert (valid);
     end
 endmodule

@@ -1,6 +1,6 @@
 """lyon_pipelined: bench in Python.
 
-Needs cocotb 2.1 and Icarus Verilog; from the directory that holds rtl_out/ and testbench/:
+The bench needs cocotb 2.1 and Icarus Verilog. Run it in the directory with rtl_out/ and testbench/:
 
     $ python testbench/lyon_pipelined/test_lyon_pipelined.py
 
@@ -15,7 +15,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
 import cocotb
 import glint_cocotb
-from glint_cocotb import (  # noqa: F401 - cocotb runs what is imported here
+from glint_cocotb import (  # noqa: F401 - cocotb runs imported tests
     bubbles_and_stalls_change_nothing,
     points_are_exact,
     random_points_follow_the_formula,
@@ -25,7 +25,7 @@ from glint_cocotb import (  # noqa: F401 - cocotb runs what is imported here
 
 @cocotb.test()
 async def worked_example(dut: Any) -> None:
-    """The example of the manifest, by hand."""
+    """The worked example of the manifest."""
     pipeline = await glint_cocotb.Pipeline.after_reset(dut)
     shown = await pipeline.compute(
         dx=2047,  # 0.0312347412109375

@@ -1,9 +1,9 @@
-// quad_cosine_axis_formal: what is proved of quad_cosine_axis
+// quad_cosine_axis_formal: formal properties of quad_cosine_axis
 //
-// For formal tools alone. All inputs are free, the sender's too. The core is abstracted to its
-// handshake: busy from the clock after start to done, results while it is busy, one more
-// than its length, after any time and with any values. To prove it, from a directory that holds the
-// files of both folders:
+// For formal tools only. All inputs are arbitrary, also those from the sender. A stub with the
+// handshake of the core replaces the core: busy is high from the clock after start to done, and
+// during that time the stub shows length + 1 results, at arbitrary times and with arbitrary values.
+// To prove the properties, run in a directory with the files of both folders:
 //   $ yosys -q quad_cosine_axis_formal.ys
 //   $ yosys-smtbmc -s z3 --unroll -t 3 quad_cosine_axis_formal.smt2
 //   $ yosys-smtbmc -s z3 --unroll -i -t 2 quad_cosine_axis_formal.smt2
@@ -58,7 +58,7 @@ module quad_cosine (
     assign done = run & ends & ended;
     always @(posedge clk) run <= rst_n & (run ? ~done : start);
 
-    // A computation begins with all of its operands, and when the one before is over.
+    // A computation starts only after the computation before it has ended, and loads all operands.
     always @(posedge clk) if (!$initstate && start) begin
         assert (!run);
         assert (amplitude_write);
@@ -70,7 +70,8 @@ module quad_cosine (
     always @* if (!$initstate && computing) assert (run);
 endmodule
 
-// In place of the buffer, any memory: at one place, whichever, it is known what it holds.
+// An abstract memory replaces the buffer. Only the word at one arbitrary address, `watched`, is
+// stored. A read of any other address gives an arbitrary value.
 module quad_cosine_axis_buffer #(
     parameter WIDTH = 1
 ) (
@@ -117,7 +118,7 @@ module quad_cosine_axis_formal (
         .m_axis_tready(m_axis_tready)
     );
 
-    // Internal signals that the proof refers to.
+    // Internal signals of the design that the assertions read.
     (* hierconn *) wire \dut.start ;
     (* hierconn *) wire \dut.valid ;
     (* hierconn *) wire \dut.waiting ;
@@ -140,11 +141,11 @@ module quad_cosine_axis_formal (
     (* hierconn *) wire [9:0] \dut.core.exponent ;
     (* hierconn *) wire [7:0] \dut.core.intensity_out ;
 
-    // The reset comes first; the state before it is arbitrary.
+    // The reset is active in the first clock. The state before it is arbitrary.
     always @* if ($initstate) assume (!aresetn);
 
-    // Lines taken and begun, and points given, modulo more than there can be under way. The number
-    // of the point that is computed next is write_at.
+    // The numbers of lines that were accepted and started, and of points that came out, modulo more
+    // than can be on their way. write_at is the number of the next point of the core.
     reg [1:0] taken;
     reg [1:0] begun;
     reg [12:0] given;
@@ -162,12 +163,12 @@ module quad_cosine_axis_formal (
         end
     end
 
-    // One of them, whichever, and what belongs to it.
+    // One arbitrary line, with its operands, tuser and results.
     (* anyconst *) reg [1:0] chosen_line;
     reg [103:0] its_operands;
     reg [0:0] its_user;
     reg [9:0] its_results;
-    // The point that is offered comes from the watched place of the buffer.
+    // Whether the transfer on m_axis comes from the watched address of the buffer.
     reg its_turn;
     reg [9:0] its_turn_results;
     wire [7:0] results = {
@@ -190,7 +191,8 @@ module quad_cosine_axis_formal (
         if (dut.read) its_turn_results <= its_results;
     end
 
-    // Clocks in which nothing is taken although the core is idle and what it computed is gone.
+    // Counts clocks without an accepted transfer although the core is idle and its results have
+    // left.
     reg [1:0] waited;
     wire idle = !dut.core.run && dut.write_at == dut.read_at;
     always @(posedge aclk) begin
@@ -200,22 +202,22 @@ module quad_cosine_axis_formal (
 
     always @(posedge aclk) if (!$initstate) begin
         if ($past(aresetn)) begin
-            // Progress: what is sent waits for the core and for the receiver alone.
+            // Progress: a transfer waits only for the core and for the receiver.
             if ($past(s_axis_tready && !s_axis_tvalid)) assert (s_axis_tready);
             assert (waited <= 2);
-            // What is offered stays, as it is, until it is taken.
+            // A valid transfer stays unchanged until the receiver accepts it.
             if ($past(m_axis_tvalid && !m_axis_tready)) begin
                 assert (m_axis_tvalid);
                 assert (m_axis_tdata == $past(m_axis_tdata));
                 assert (m_axis_tuser == $past(m_axis_tuser));
                 assert (m_axis_tlast == $past(m_axis_tlast));
             end
-            // An offer does not wait for the receiver.
+            // m_axis_tvalid does not wait for m_axis_tready.
             if ($past(dut.write_at != dut.read_at)) assert (m_axis_tvalid);
         end else begin
             assert (!m_axis_tvalid && !s_axis_tready);
         end
-        // The core computes with what was sent, in its order.
+        // The core computes with the operands that were sent, in the same order.
         if (dut.start && begun == chosen_line) begin
             assert (dut.core.amplitude == its_operands[7:0]);
             assert (dut.core.delta_zeta == its_operands[35:8]);
@@ -223,13 +225,14 @@ module quad_cosine_axis_formal (
             assert (dut.core.length == its_operands[83:72]);
             assert (dut.core.exponent == its_operands[97:88]);
         end
-        // What is given is what the core computed, in its order, and tuser and tlast with it.
+        // The transfers on m_axis carry the results of the core in the same order, each with its
+        // tuser and tlast.
         if (give && its_turn) begin
             assert ({m_axis_tuser, m_axis_tlast, m_axis_tdata} == its_turn_results);
         end
     end
 
-    // Inductive invariants.
+    // Invariants that make the properties inductive.
     always @* if (!$initstate) begin
         assert (!(s_axis_tready && dut.waiting));
         if (waited != 0) assert (s_axis_tready || dut.waiting);
@@ -240,11 +243,11 @@ module quad_cosine_axis_formal (
             assert (dut.operands_user == its_user);
         end
         if (dut.core.computing && begun - 2'd1 == chosen_line) assert (dut.user == its_user);
-        // There is a place for everything that is to come.
+        // The buffer has room for all points of the line that are still to come.
         assert (dut.next_line - dut.write_at == dut.core.to_come);
         assert (stored <= reserved);
         assert (reserved <= 13'h1000);
-        // Every point is given in its turn.
+        // The points leave the buffer in order.
         assert (given + m_axis_tvalid == dut.read_at);
         if (watched_from_read < stored) assert (dut.buffer.watched_word == its_results);
         if (m_axis_tvalid && its_turn) begin

@@ -1,7 +1,7 @@
 // quad_cosine_formal: properties of the handshake of quad_cosine
 //
-// For formal tools alone: every input is free. To prove it, from a directory that holds the files
-// of both folders:
+// For formal tools only. All inputs are arbitrary. To prove the properties, run in a directory with
+// the files of both folders:
 //   $ yosys -q quad_cosine_formal.ys
 //   $ yosys-smtbmc --unroll -s z3 -t 8 quad_cosine_formal.smt2
 //   $ yosys-smtbmc --unroll -s z3 -i -t 8 quad_cosine_formal.smt2
@@ -58,14 +58,14 @@ module quad_cosine_formal (
         .intensity_out(intensity_out)
     );
 
-    // The reset comes first; the state before it is arbitrary.
+    // The reset is active in the first clock. The state before it is arbitrary.
     always @* if ($initstate) assume (!rst_n);
 
-    // Clocks since start.
+    // The number of clocks since start.
     reg [13:0] age;
     always @(posedge clk) age <= busy ? age + 14'd1 : 14'd1;
 
-    // The microinstruction that is executed, and the counters of loops.
+    // The address of the current microinstruction, and the counters of loops.
     (* hierconn *) wire [2:0] \dut.control.word_address ;
     wire [2:0] word = \dut.control.word_address ;
     (* hierconn *) wire [11:0] \dut.datapath.intervals ;
@@ -73,19 +73,20 @@ module quad_cosine_formal (
 
     always @(posedge clk) if (!$initstate) begin
         if (!$past(rst_n)) begin
-            // Idle after reset, whatever the state was before.
+            // After a reset the core is idle, whatever the state before it was.
             assert (!busy && !done);
         end else if (!$past(busy)) begin
-            // Idle until start, busy from the clock after it.
+            // The core is idle until start and busy from the clock after it.
             assert (busy == $past(start));
         end else begin
-            // Busy up to the clock of done.
+            // The core is busy up to the clock of done.
             assert (busy == !$past(done));
         end
         if (done) assert (busy);
         if (valid) assert (busy);
         if (busy) begin
-            // Every computation ends in time: its clocks so far, and the most that can follow.
+            // Every computation ends in time: the clocks so far, plus the most clocks from the
+            // current microinstruction to the end, are within the promised number.
             assert (age <= 14'h1004);
             case (word)
                 3'd0: assert (age + 14'h1003 <= 14'h1004);
@@ -95,9 +96,9 @@ module quad_cosine_formal (
                 3'd4: assert (age <= 14'h1004);
             endcase
         end
-        // No computation ends without a result.
+        // Every computation ends with a result.
         if (done) assert (valid);
-        // From the clock that the manifest promises a result a clock, to the end.
+        // From the clock that the manifest promises to the end, every clock has a result.
         assert (valid == (busy && age >= 14'd4));
     end
 endmodule

@@ -1,12 +1,13 @@
 // quad_cosine_tb: self-checking bench of quad_cosine
 //
-// Run it with any simulator from a directory that holds the files of both folders, for example
+// To run it, copy the files of both folders into one directory and use any simulator, for example
 //   $ iverilog -g2012 -s quad_cosine_tb -o sim quad_cosine*.v
 //   $ ./sim
 // or, with Verilator 5,
 //   $ verilator --binary --timing --top quad_cosine_tb quad_cosine*.v
 //   $ obj_dir/Vquad_cosine_tb
-// Inputs change on the falling edge of the clock; outputs are compared just before the rising edge.
+// Inputs change on the falling edge of the clock. The bench compares outputs just before the rising
+// edge.
 //
 // Generated files belong to their user, without conditions.
 
@@ -17,8 +18,8 @@ module quad_cosine_tb #(
     parameter EXPECTED_FILE = "quad_cosine_expected.mem"
 );
     localparam CLOCKS     = 24444;
-    localparam KNOWN_FROM = 8;  // results are compared from this clock on
-    localparam REPORTED   = 20;  // differences that are printed
+    localparam KNOWN_FROM = 8;  // the first clock in which results are compared
+    localparam REPORTED   = 20;  // the number of differences to print
 
     reg [92:0] stimulus [0:CLOCKS-1];
     reg [13:0] expected [0:CLOCKS-1];
@@ -46,8 +47,8 @@ module quad_cosine_tb #(
     wire        [7:0]  intensity_out;
 
     integer clock;
-    // Initial values stand here and not in the process below: Verilator 5.006 takes a variable for
-    // constant after a loop with delays when the process has set it before the loop.
+    // The initial values are set here and not in the process below, because Verilator 5.006 treats
+    // a variable as constant after a loop with delays if the process has set it before the loop.
     integer errors = 0;
     reg was_reset = 1'b0;  // the control unit is in a known state
 
@@ -74,7 +75,7 @@ module quad_cosine_tb #(
         .intensity_out(intensity_out)
     );
 
-    // Prints the microinstruction that is executed.
+    // Prints the address and the name of the current microinstruction.
     task write_microinstruction;
         begin
             $write("microinstruction ");
@@ -82,7 +83,7 @@ module quad_cosine_tb #(
                 3'd0: $write("0 (operands)");
                 3'd1: $write("1 (angle <- zeta_start: first point)");
                 3'd2: $write("2 (angle <- angle + delta_zeta: next point)");
-                3'd3: $write("3 (last point a clock away)");
+                3'd3: $write("3 (last point follows in one clock)");
                 3'd4: $write("4 (last point on the output)");
                 default: $write("unknown");
             endcase

@@ -1,7 +1,7 @@
-// quadratic_pipelined_formal: what is proved of the handshake of quadratic_pipelined
+// quadratic_pipelined_formal: formal properties of the handshake of quadratic_pipelined
 //
-// For formal tools alone: every input is free. To prove it, from a directory that holds the files
-// of both folders:
+// For formal tools only. All inputs are arbitrary. To prove the properties, run in a directory with
+// the files of both folders:
 //   $ yosys -q quadratic_pipelined_formal.ys
 //   $ yosys-smtbmc --unroll -s z3 -t 2 quadratic_pipelined_formal.smt2
 //   $ yosys-smtbmc --unroll -s z3 -i -t 2 quadratic_pipelined_formal.smt2
@@ -46,14 +46,14 @@ module quadratic_pipelined_formal (
         .blue_out(blue_out)
     );
 
-    // The reset comes first; the state before it is arbitrary.
+    // The reset is active in the first clock. The state before it is arbitrary.
     always @* if ($initstate) assume (!rst_n);
 
-    // Which stage of the pipeline has a point.
+    // The stages that hold a point.
     (* hierconn *) wire [8:1] \dut.valid ;
     wire [8:1] present = \dut.valid ;
 
-    // The same for a queue beside it: all points in it move together, unless a result waits.
+    // A reference model of these bits. All points advance together, unless a result waits.
     wire moves = out_ready | ~out_valid;
     reg  [8:1] queue;
     always @(posedge clk) begin
@@ -62,13 +62,13 @@ module quadratic_pipelined_formal (
     end
 
     always @(posedge clk) if (!$initstate) begin
-        // No point is lost, none is doubled, and none comes sooner or later than the stages let it:
-        // out_valid follows from the points that were taken, whatever out_ready is.
+        // No point is lost or duplicated, and every point takes the same number of moves: out_valid
+        // equals that of the reference model, whatever out_ready does.
         assert (present == queue);
         assert (out_valid == queue[8]);
-        // A point is taken whenever no result waits.
+        // The core accepts a point whenever no result waits.
         assert (in_ready == moves);
-        // A result that waits stays as it is.
+        // A waiting result stays unchanged.
         if ($past(rst_n && out_valid && !out_ready)) begin
             assert (out_valid);
             assert ($stable(red_out));

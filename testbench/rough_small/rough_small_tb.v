@@ -1,12 +1,13 @@
 // rough_small_tb: self-checking bench of rough_small
 //
-// Run it with any simulator from a directory that holds the files of both folders, for example
+// To run it, copy the files of both folders into one directory and use any simulator, for example
 //   $ iverilog -g2012 -s rough_small_tb -o sim rough_small*.v
 //   $ ./sim
 // or, with Verilator 5,
 //   $ verilator --binary --timing --top rough_small_tb rough_small*.v
 //   $ obj_dir/Vrough_small_tb
-// Inputs change on the falling edge of the clock; outputs are compared just before the rising edge.
+// Inputs change on the falling edge of the clock. The bench compares outputs just before the rising
+// edge.
 //
 // Generated files belong to their user, without conditions.
 
@@ -17,8 +18,8 @@ module rough_small_tb #(
     parameter EXPECTED_FILE = "rough_small_expected.mem"
 );
     localparam CLOCKS     = 9376;
-    localparam KNOWN_FROM = 19;  // results are compared from this clock on
-    localparam REPORTED   = 20;  // differences that are printed
+    localparam KNOWN_FROM = 19;  // the first clock in which results are compared
+    localparam REPORTED   = 20;  // the number of differences to print
 
     reg [79:0] stimulus [0:CLOCKS-1];
     reg [26:0] expected [0:CLOCKS-1];
@@ -49,8 +50,8 @@ module rough_small_tb #(
     wire [7:0]  blue_out;
 
     integer clock;
-    // Initial values stand here and not in the process below: Verilator 5.006 takes a variable for
-    // constant after a loop with delays when the process has set it before the loop.
+    // The initial values are set here and not in the process below, because Verilator 5.006 treats
+    // a variable as constant after a loop with delays if the process has set it before the loop.
     integer errors = 0;
     reg was_reset = 1'b0;  // the control unit is in a known state
 
@@ -80,18 +81,18 @@ module rough_small_tb #(
         .blue_out(blue_out)
     );
 
-    // Prints the microinstruction that is executed.
+    // Prints the address and the name of the current microinstruction.
     task write_microinstruction;
         begin
             $write("microinstruction ");
             case (dut.control.word_address)
-                4'd0: $write("0 (operands cos gamma, cos dgamma; sine of gamma addressed)");
+                4'd0: $write("0 (operands <- cos gamma, cos dgamma; ROM address <- cos gamma)");
                 4'd1: $write("1 (19 <- sin gamma; 11 <- cos gamma * cos dgamma)");
-                4'd2: $write("2 (operands sin dgamma, sin gamma)");
+                4'd2: $write("2 (operands <- sin dgamma, sin gamma)");
                 4'd3: $write("3 (12 <- sin gamma * sin dgamma)");
-                4'd4: $write("4 (operands adder 15, n/2)");
+                4'd4: $write("4 (operands <- adder 15, n/2)");
                 4'd5: $write("5 (13 <- n/2 * (cos(gamma +- dgamma) - 1))");
-                4'd6: $write("6 (operands adder 16, adder 16)");
+                4'd6: $write("6 (operands <- adder 16, adder 16)");
                 4'd7: $write("7 (13 <- (... + 1)^2)");
                 4'd8: $write("8 (valid: intensities on the outputs)");
                 4'd9: $write("9 (end: clears the triggers and counter 29)");

@@ -1,7 +1,7 @@
 // rsqrt_formal: properties of the handshake of rsqrt
 //
-// For formal tools alone: every input is free. To prove it, from a directory that holds the files
-// of both folders:
+// For formal tools only. All inputs are arbitrary. To prove the properties, run in a directory with
+// the files of both folders:
 //   $ yosys -q rsqrt_formal.ys
 //   $ yosys-smtbmc -s z3 -t 7 rsqrt_formal.smt2
 //   $ yosys-smtbmc -s z3 -i -t 7 rsqrt_formal.smt2
@@ -36,28 +36,28 @@ module rsqrt_formal (
         .result_out(result_out)
     );
 
-    // The reset comes first; the state before it is arbitrary.
+    // The reset is active in the first clock. The state before it is arbitrary.
     always @* if ($initstate) assume (!rst_n);
 
-    // Clocks since start.
+    // The number of clocks since start.
     reg [2:0] age;
     always @(posedge clk) age <= busy ? age + 3'd1 : 3'd1;
 
     always @(posedge clk) if (!$initstate) begin
         if (!$past(rst_n)) begin
-            // Idle after reset, whatever the state was before.
+            // After a reset the core is idle, whatever the state before it was.
             assert (!busy && !done);
         end else if (!$past(busy)) begin
-            // Idle until start, busy from the clock after it.
+            // The core is idle until start and busy from the clock after it.
             assert (busy == $past(start));
         end else begin
-            // Busy up to the clock of done.
+            // The core is busy up to the clock of done.
             assert (busy == !$past(done));
         end
         if (done) assert (busy);
         if (valid) assert (busy);
         if ($past(rst_n)) begin
-            // The clocks that the manifest promises.
+            // valid and done are high exactly in the clocks that the manifest promises.
             assert (valid == (busy && age == 3'd4));
             assert (done == (busy && age == 3'd4));
             if (busy) assert (age <= 3'd4);

@@ -1,12 +1,13 @@
 // rsqrt_tb: self-checking bench of rsqrt
 //
-// Run it with any simulator from a directory that holds the files of both folders, for example
+// To run it, copy the files of both folders into one directory and use any simulator, for example
 //   $ iverilog -g2012 -s rsqrt_tb -o sim rsqrt*.v
 //   $ ./sim
 // or, with Verilator 5,
 //   $ verilator --binary --timing --top rsqrt_tb rsqrt*.v
 //   $ obj_dir/Vrsqrt_tb
-// Inputs change on the falling edge of the clock; outputs are compared just before the rising edge.
+// Inputs change on the falling edge of the clock. The bench compares outputs just before the rising
+// edge.
 //
 // Generated files belong to their user, without conditions.
 
@@ -17,8 +18,8 @@ module rsqrt_tb #(
     parameter EXPECTED_FILE = "rsqrt_expected.mem"
 );
     localparam CLOCKS     = 564;
-    localparam KNOWN_FROM = 8;  // results are compared from this clock on
-    localparam REPORTED   = 20;  // differences that are printed
+    localparam KNOWN_FROM = 8;  // the first clock in which results are compared
+    localparam REPORTED   = 20;  // the number of differences to print
 
     reg [19:0] stimulus [0:CLOCKS-1];
     reg [19:0] expected [0:CLOCKS-1];
@@ -35,8 +36,8 @@ module rsqrt_tb #(
     wire [16:0] result_out;
 
     integer clock;
-    // Initial values stand here and not in the process below: Verilator 5.006 takes a variable for
-    // constant after a loop with delays when the process has set it before the loop.
+    // The initial values are set here and not in the process below, because Verilator 5.006 treats
+    // a variable as constant after a loop with delays if the process has set it before the loop.
     integer errors = 0;
     reg was_reset = 1'b0;  // the control unit is in a known state
 
@@ -52,7 +53,7 @@ module rsqrt_tb #(
         .result_out(result_out)
     );
 
-    // Prints the microinstruction that is executed.
+    // Prints the address and the name of the current microinstruction.
     task write_microinstruction;
         begin
             $write("microinstruction ");

@@ -1,12 +1,13 @@
 // schlick_tb: self-checking bench of schlick
 //
-// Run it with any simulator from a directory that holds the files of both folders, for example
+// To run it, copy the files of both folders into one directory and use any simulator, for example
 //   $ iverilog -g2012 -s schlick_tb -o sim schlick*.v
 //   $ ./sim
 // or, with Verilator 5,
 //   $ verilator --binary --timing --top schlick_tb schlick*.v
 //   $ obj_dir/Vschlick_tb
-// Inputs change on the falling edge of the clock; outputs are compared just before the rising edge.
+// Inputs change on the falling edge of the clock. The bench compares outputs just before the rising
+// edge.
 //
 // Generated files belong to their user, without conditions.
 
@@ -17,8 +18,8 @@ module schlick_tb #(
     parameter EXPECTED_FILE = "schlick_expected.mem"
 );
     localparam CLOCKS     = 1704;
-    localparam KNOWN_FROM = 18;  // results are compared from this clock on
-    localparam REPORTED   = 20;  // differences that are printed
+    localparam KNOWN_FROM = 18;  // the first clock in which results are compared
+    localparam REPORTED   = 20;  // the number of differences to print
 
     reg [61:0] stimulus [0:CLOCKS-1];
     reg [26:0] expected [0:CLOCKS-1];
@@ -45,8 +46,8 @@ module schlick_tb #(
     wire [7:0]  blue_out;
 
     integer clock;
-    // Initial values stand here and not in the process below: Verilator 5.006 takes a variable for
-    // constant after a loop with delays when the process has set it before the loop.
+    // The initial values are set here and not in the process below, because Verilator 5.006 treats
+    // a variable as constant after a loop with delays if the process has set it before the loop.
     integer errors = 0;
     reg was_reset = 1'b0;  // the control unit is in a known state
 
@@ -72,13 +73,13 @@ module schlick_tb #(
         .blue_out(blue_out)
     );
 
-    // Prints the microinstruction that is executed.
+    // Prints the address and the name of the current microinstruction.
     task write_microinstruction;
         begin
             $write("microinstruction ");
             case (dut.control.word_address)
-                2'd0: $write("0 (operands cos gamma, n)");
-                2'd1: $write("1 (cos gamma by n*(1 - cos gamma) + cos gamma)");
+                2'd0: $write("0 (operands <- cos gamma, n)");
+                2'd1: $write("1 (quotient <- cos gamma / (n*(1 - cos gamma) + cos gamma))");
                 2'd2: $write("2 (next bit of the quotient)");
                 2'd3: $write("3 (result)");
                 default: $write("unknown");

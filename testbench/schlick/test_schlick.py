@@ -1,6 +1,6 @@
 """schlick: bench in Python.
 
-Needs cocotb 2.1 and Icarus Verilog; from the directory that holds rtl_out/ and testbench/:
+The bench needs cocotb 2.1 and Icarus Verilog. Run it in the directory with rtl_out/ and testbench/:
 
     $ python testbench/schlick/test_schlick.py
 
@@ -15,7 +15,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
 import cocotb
 import glint_cocotb
-from glint_cocotb import (  # noqa: F401 - cocotb runs what is imported here
+from glint_cocotb import (  # noqa: F401 - cocotb runs imported tests
     computations_are_exact,
     formula_holds_at_random_points,
     held_start_repeats,
@@ -26,7 +26,7 @@ from glint_cocotb import (  # noqa: F401 - cocotb runs what is imported here
 
 @cocotb.test()
 async def worked_example(dut: Any) -> None:
-    """The example of the manifest, by hand."""
+    """The worked example of the manifest."""
     core = await glint_cocotb.Core.after_reset(dut)
     shown = await core.compute(
         cos_gamma=1032192,  # 0.984375

@@ -1,13 +1,15 @@
 // shading_pipelined_tb: self-checking bench of shading_pipelined
 //
-// Run it with any simulator from a directory that holds the files of both folders, for example
+// To run it, copy the files of both folders into one directory and use any simulator, for example
 //   $ iverilog -g2012 -s shading_pipelined_tb -o sim shading_pipelined*.v
 //   $ ./sim
 // or, with Verilator 5,
 //   $ verilator --binary --timing --top shading_pipelined_tb shading_pipelined*.v
 //   $ obj_dir/Vshading_pipelined_tb
-// Inputs change on the falling edge of the clock; outputs are compared just before the rising edge.
-// To keep the bench short, its computations notice faults in one of 2 words of the memories.
+// Inputs change on the falling edge of the clock. The bench compares outputs just before the rising
+// edge.
+// To keep the bench short, its points cover only one in 2 words of the memories: a
+// wrong bit in another word may go unnoticed.
 //
 // Generated files belong to their user, without conditions.
 
@@ -18,8 +20,8 @@ module shading_pipelined_tb #(
     parameter EXPECTED_FILE = "shading_pipelined_expected.mem"
 );
     localparam CLOCKS     = 11565;
-    localparam KNOWN_FROM = 24;  // results are compared from this clock on
-    localparam REPORTED   = 20;  // differences that are printed
+    localparam KNOWN_FROM = 24;  // the first clock in which results are compared
+    localparam REPORTED   = 20;  // the number of differences to print
 
     reg [228:0] stimulus [0:CLOCKS-1];
     reg [25:0] expected [0:CLOCKS-1];
@@ -55,8 +57,8 @@ module shading_pipelined_tb #(
     wire        [7:0]  blue_out;
 
     integer clock;
-    // Initial values stand here and not in the process below: Verilator 5.006 takes a variable for
-    // constant after a loop with delays when the process has set it before the loop.
+    // The initial values are set here and not in the process below, because Verilator 5.006 treats
+    // a variable as constant after a loop with delays if the process has set it before the loop.
     integer errors = 0;
     reg was_reset = 1'b0;  // the control unit is in a known state
 

@@ -1,12 +1,13 @@
 // threshold_tb: self-checking bench of threshold
 //
-// Run it with any simulator from a directory that holds the files of both folders, for example
+// To run it, copy the files of both folders into one directory and use any simulator, for example
 //   $ iverilog -g2012 -s threshold_tb -o sim threshold*.v
 //   $ ./sim
 // or, with Verilator 5,
 //   $ verilator --binary --timing --top threshold_tb threshold*.v
 //   $ obj_dir/Vthreshold_tb
-// Inputs change on the falling edge of the clock; outputs are compared just before the rising edge.
+// Inputs change on the falling edge of the clock. The bench compares outputs just before the rising
+// edge.
 //
 // Generated files belong to their user, without conditions.
 
@@ -17,8 +18,8 @@ module threshold_tb #(
     parameter EXPECTED_FILE = "threshold_expected.mem"
 );
     localparam CLOCKS     = 6304;
-    localparam KNOWN_FROM = 9;  // results are compared from this clock on
-    localparam REPORTED   = 20;  // differences that are printed
+    localparam KNOWN_FROM = 9;  // the first clock in which results are compared
+    localparam REPORTED   = 20;  // the number of differences to print
 
     reg [61:0] stimulus [0:CLOCKS-1];
     reg [26:0] expected [0:CLOCKS-1];
@@ -45,8 +46,8 @@ module threshold_tb #(
     wire [7:0]  blue_out;
 
     integer clock;
-    // Initial values stand here and not in the process below: Verilator 5.006 takes a variable for
-    // constant after a loop with delays when the process has set it before the loop.
+    // The initial values are set here and not in the process below, because Verilator 5.006 treats
+    // a variable as constant after a loop with delays if the process has set it before the loop.
     integer errors = 0;
     reg was_reset = 1'b0;  // the control unit is in a known state
 
@@ -72,12 +73,12 @@ module threshold_tb #(
         .blue_out(blue_out)
     );
 
-    // Prints the microinstruction that is executed.
+    // Prints the address and the name of the current microinstruction.
     task write_microinstruction;
         begin
             $write("microinstruction ");
             case (dut.control.word_address)
-                2'd0: $write("0 (operands; ROM(n) addressed)");
+                2'd0: $write("0 (operands are written; ROM address <- n)");
                 2'd1: $write("1 (scaled <- n/2 * (cos gamma - 1))");
                 2'd2: $write("2 (intensity <- (scaled + 1)^2, or 0 below ROM(n))");
                 2'd3: $write("3 (result)");

@@ -1,9 +1,9 @@
-// threshold_levels_axis_formal: what is proved of threshold_levels_axis
+// threshold_levels_axis_formal: formal properties of threshold_levels_axis
 //
-// For formal tools alone. All inputs are free, the sender's too. The core is abstracted to its
-// handshake: busy from the clock after start to done, results while it is busy, exactly
-// one, after any time and with any values. To prove it, from a directory that holds the
-// files of both folders:
+// For formal tools only. All inputs are arbitrary, also those from the sender. A stub with the
+// handshake of the core replaces the core: busy is high from the clock after start to done, and
+// during that time the stub shows one result, at an arbitrary time and with arbitrary values.
+// To prove the properties, run in a directory with the files of both folders:
 //   $ yosys -q threshold_levels_axis_formal.ys
 //   $ yosys-smtbmc -s z3 --unroll -t 3 threshold_levels_axis_formal.smt2
 //   $ yosys-smtbmc -s z3 --unroll -i -t 2 threshold_levels_axis_formal.smt2
@@ -50,7 +50,7 @@ module threshold_levels (
     assign done = run & ends & ended;
     always @(posedge clk) run <= rst_n & (run ? ~done : start);
 
-    // A computation begins with all of its operands, and when the one before is over.
+    // A computation starts only after the computation before it has ended, and loads all operands.
     always @(posedge clk) if (!$initstate && start) begin
         assert (!run);
         assert (cos_gamma_write);
@@ -92,7 +92,7 @@ module threshold_levels_axis_formal (
         .m_axis_tready(m_axis_tready)
     );
 
-    // Internal signals that the proof refers to.
+    // Internal signals of the design that the assertions read.
     (* hierconn *) wire \dut.start ;
     (* hierconn *) wire \dut.valid ;
     (* hierconn *) wire \dut.waiting ;
@@ -116,10 +116,11 @@ module threshold_levels_axis_formal (
     (* hierconn *) wire [7:0] \dut.core.green_out ;
     (* hierconn *) wire [7:0] \dut.core.blue_out ;
 
-    // The reset comes first; the state before it is arbitrary.
+    // The reset is active in the first clock. The state before it is arbitrary.
     always @* if ($initstate) assume (!aresetn);
 
-    // Points taken, begun, computed and given, modulo more than there can be under way.
+    // The numbers of points that were accepted, started, computed and that came out, modulo 8.
+    // Fewer than 8 points can be on their way.
     reg [2:0] taken;
     reg [2:0] begun;
     reg [2:0] computed;
@@ -140,7 +141,7 @@ module threshold_levels_axis_formal (
         end
     end
 
-    // One of them, whichever, and what belongs to it.
+    // One arbitrary point, with its operands, tuser and results.
     (* anyconst *) reg [2:0] chosen;
     wire [2:0] chosen_line = chosen;
     reg its_last;
@@ -161,7 +162,8 @@ module threshold_levels_axis_formal (
         if (dut.valid && computed == chosen) its_results <= {its_user, its_last, results};
     end
 
-    // Clocks in which nothing is taken although the core is idle and what it computed is gone.
+    // Counts clocks without an accepted transfer although the core is idle and its results have
+    // left.
     reg [1:0] waited;
     wire idle = !dut.core.run && m_axis_tready;
     always @(posedge aclk) begin
@@ -171,22 +173,22 @@ module threshold_levels_axis_formal (
 
     always @(posedge aclk) if (!$initstate) begin
         if ($past(aresetn)) begin
-            // Progress: what is sent waits for the core and for the receiver alone.
+            // Progress: a transfer waits only for the core and for the receiver.
             if ($past(s_axis_tready && !s_axis_tvalid)) assert (s_axis_tready);
             assert (waited <= 2);
-            // What is offered stays, as it is, until it is taken.
+            // A valid transfer stays unchanged until the receiver accepts it.
             if ($past(m_axis_tvalid && !m_axis_tready)) begin
                 assert (m_axis_tvalid);
                 assert (m_axis_tdata == $past(m_axis_tdata));
                 assert (m_axis_tuser == $past(m_axis_tuser));
                 assert (m_axis_tlast == $past(m_axis_tlast));
             end
-            // An offer does not wait for the receiver.
+            // m_axis_tvalid does not wait for m_axis_tready.
             if ($past(dut.valid)) assert (m_axis_tvalid);
         end else begin
             assert (!m_axis_tvalid && !s_axis_tready);
         end
-        // The core computes with what was sent, in its order.
+        // The core computes with the operands that were sent, in the same order.
         if (dut.start && begun == chosen_line) begin
             assert (dut.core.cos_gamma == its_operands[20:0]);
             assert (dut.core.exponent == its_operands[33:24]);
@@ -194,13 +196,14 @@ module threshold_levels_axis_formal (
             assert (dut.core.green == its_operands[55:48]);
             assert (dut.core.blue == its_operands[63:56]);
         end
-        // What is given is what the core computed, in its order, and tuser and tlast with it.
+        // The transfers on m_axis carry the results of the core in the same order, each with its
+        // tuser and tlast.
         if (give && given == chosen) begin
             assert ({m_axis_tuser, m_axis_tlast, m_axis_tdata} == its_results);
         end
     end
 
-    // Inductive invariants.
+    // Invariants that make the properties inductive.
     always @* if (!$initstate) begin
         assert (!(s_axis_tready && dut.waiting));
         if (waited != 0) assert (s_axis_tready || dut.waiting && !dut.held);

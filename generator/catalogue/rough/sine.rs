@@ -35,7 +35,7 @@ pub(super) fn sine_rom<'d>(
     };
     let entry = |segment: Segment| segmented::chord(segment, shape, sine);
     segmented::interpolate(d, "sine", u, &cut, shape, entry, Some(18))
-        .doc("sine of the addressed cosine")
+        .doc("sine of the cosine that addresses the table")
 }
 
 /// Builds the table of the patent: one entry for each bucket of cosines, with the sine at the middle of the bucket.
@@ -63,5 +63,5 @@ fn direct_sine<'d>(
         .rom("sine", address, formats.sine, &words, keys.synchronous)
         .block(18)
         .doc(&format!("sine ({}) at the middle of a bucket of the cosine", formats.sine));
-    rom.out().doc("sine of the addressed cosine")
+    rom.out().doc("sine of the cosine that addresses the table")
 }

@@ -332,7 +332,7 @@ fn of_results(results: &[PortPlacement], design: &Design) -> Vec<BusRegister> {
     vec![BusRegister {
         name: "results".to_owned(),
         place: results[0].parts[0].place,
-        doc: "All results; a read waits for the computation that is under way".to_owned(),
+        doc: "All results; a read waits until the computation has ended".to_owned(),
         bits: fields,
     }]
 }
@@ -352,7 +352,7 @@ fn own(port: &PortPlacement, access: Access, doc: &str) -> Vec<BusRegister> {
         };
         // Software reads a signed result with copies of its sign bit above it, and an operand as it was written.
         let (width, raw) = match access {
-            Access::Read if port.format.signed => (WORD, "raw, with copies of the sign"),
+            Access::Read if port.format.signed => (WORD, "raw, sign-extended"),
             _ => (part.width, "raw"),
         };
         let value = bits("value", (0, width), access, 0, raw);

@@ -17,11 +17,13 @@ use glint_rtl::verilog::text::comment;
 /// The number of bits of each factor of the DSP block.
 const WIDTH: usize = 18;
 
-const PORTABLE: &str = "The portable form, for simulators and synthesis alike. On ECP5 the file of the same name in \
-                        ecp5/ takes its place: there the register is that of the DSP block.";
+const PORTABLE: &str = "This is the portable form, for simulation and synthesis. For ECP5, use the file of the \
+                        same name in ecp5/ instead: there the register is the output register of the DSP \
+                        block.";
 
-const ECP5: &str = "For ECP5: a DSP block with its output register and no other. nextpnr-ecp5 times the ways into the \
-                    block, which end in that register, and those from it. The portable form is in the directory above.";
+const ECP5: &str = "This is the form for ECP5: a DSP block in which only the output register is used. \
+                    nextpnr-ecp5 times the paths into the block, which end in that register, and the paths \
+                    from the register. The portable form is in the directory above.";
 
 /// Adds the multiplier module of a pipeline: the portable file and the file for the pipeline's target. Adds nothing unless
 /// `pipeline.multipliers` is "registered", which puts the register behind a product into the DSP block.
@@ -33,7 +35,7 @@ pub fn files(job: &EmitJob, files: &mut OutputFiles) -> Result<()> {
         return Ok(());
     };
     let name = job.naming.multiplier();
-    let title = format!("{name}: a product, and the register that takes it while `enable` is high");
+    let title = format!("{name}: a multiplier with an output register, which loads while `enable` is high");
     let header = |form: &str| -> Vec<String> {
         let mut lines = comment(0, &title);
         lines.push("//".to_owned());

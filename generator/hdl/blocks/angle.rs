@@ -33,13 +33,14 @@ pub fn fold<'d>(d: &'d Designer, angle: Signal<'d>, fraction: i32) -> Folded<'d>
     let negative = d.all(&format!("{name}_small_negative"), upper);
     let within = d
         .or(&format!("{name}_within"), positive, negative)
-        .doc("from -90 degrees to less than 90: sign and integer bits agree");
+        .doc("1 from -90 degrees to less than 90: sign and integer bits agree");
     let leading = angle
         .bits((frac - fraction) as u32, Format::unsigned(0, fraction))
         .named(&format!("{name}_leading"));
     let complement = d.not(&format!("{name}_complement"), leading);
     let magnitude =
-        d.choose(&format!("{name}_magnitude"), sign, [leading, complement]).doc("cos is even");
+        d.choose(&format!("{name}_magnitude"), sign, [leading, complement]).doc("absolute angle, because cos \
+                                                                                 is even");
     Folded { magnitude, within }
 }
 

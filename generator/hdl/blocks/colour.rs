@@ -46,7 +46,7 @@ impl<'d> Colours<'d> {
         for (at, name) in names.into_iter().enumerate() {
             let own = blocks.map(|blocks| blocks[at]);
             let mut operand =
-                designer.operand(name, format).doc("intensity of the light times k_s");
+                designer.operand(name, format).doc("intensity of the light, times k_s");
             if let Some(blocks) = own {
                 operand = operand.block(blocks.register).inputs(blocks.inputs.0, blocks.inputs.1);
             }
@@ -62,7 +62,7 @@ impl<'d> Colours<'d> {
         let format = Format::unsigned(bits, 0);
         let mut operand = designer
             .operand("amplitude", format)
-            .doc("intensity of the light times k_s, at the highest point of the highlight");
+            .doc("intensity of the light, times k_s, at the peak of the highlight");
         if let Some(blocks) = blocks {
             operand = operand.block(blocks.register).inputs(blocks.inputs.0, blocks.inputs.1);
         }
@@ -77,17 +77,17 @@ impl<'d> Colours<'d> {
     pub fn outputs_in_turn(&self, f: Signal<'d>, rounding: Rounding) -> Vec<Step> {
         let d = self.designer;
         let operands = self.channels.iter().map(|channel| channel.operand.q());
-        let colour = d.mux("colour", operands).doc("the colour that is multiplied");
+        let colour = d.mux("colour", operands).doc("the colour that is multiplied by f");
         let product =
-            d.mul("colour_product", f, colour.out()).doc("an output before it is rounded");
+            d.mul("colour_product", f, colour.out()).doc("the output before rounding");
         let narrowed =
             d.narrow("colour_rounded", product, self.format, rounding, Overflow::Saturate);
         let mut steps = Vec::new();
         for Channel { name, operand, blocks } in &self.channels {
             let register_name = intensity_name(name);
-            let register = d.register(&register_name, self.format).doc("holds the output");
+            let register = d.register(&register_name, self.format).doc("output register");
             register.takes(narrowed);
-            let out = d.output(&format!("{name}_out"), register.q()).doc("intensity on the output");
+            let out = d.output(&format!("{name}_out"), register.q()).doc("output intensity");
             if let Some(blocks) = blocks {
                 let _ = out.block(blocks.output);
             }
@@ -118,12 +118,12 @@ impl<'d> Colours<'d> {
             let Channel { name, operand, blocks } = channel;
             let mut product = d
                 .mul(&format!("{name}_product"), f, operand.q())
-                .doc("an output before it is rounded");
+                .doc("the output before rounding");
             let exact =
                 if staged { d.pipeline(&format!("{name}_product_held"), product) } else { product };
             let rounded = intensity_name(name);
             let narrowed = d.narrow(&rounded, exact, self.format, rounding, Overflow::Saturate);
-            let mut out = d.output(&format!("{name}_out"), narrowed).doc("intensity on the output");
+            let mut out = d.output(&format!("{name}_out"), narrowed).doc("output intensity");
             if let Some(blocks) = blocks {
                 product = product.block(blocks.multiplier);
                 out = out.block(blocks.output);

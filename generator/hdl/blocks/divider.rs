@@ -87,20 +87,20 @@ impl<'d> Divider<'d> {
         held.takes(aligned_divisor);
         let remainder = d
             .register(&part("remainder"), format)
-            .doc("the dividend, then what the bits so far leave of it, at most the divisor");
+            .doc("the dividend, later the remainder, at most the divisor");
         let quotient = d
             .register(name, Format::unsigned(0, quotient_bits))
-            .doc("the quotient, which bits enter at the bottom");
+            .doc("the quotient; each step shifts in one bit");
         let most = i128::from(quotient_bits) - 1;
         let last = d.raw_constant(&part("last"), most, Format::holding(0, most, 0));
-        let remaining = d.down_counter(&part("remaining"), last).doc("bits to come after the next");
+        let remaining = d.down_counter(&part("remaining"), last).doc("quotient bits after the next one");
 
         let doubled = remainder.q().shift_left(1).with_fraction(frac);
         let trial =
-            d.sub(&part("trial"), doubled, held.q()).doc("negative where the divisor does not fit");
+            d.sub(&part("trial"), doubled, held.q()).doc("negative if the divisor exceeds the remainder");
         let negative = trial.bit(trial.format().width() - 1);
         let bit =
-            d.not(&part("bit"), negative).doc("the divisor fits: the next bit of the quotient");
+            d.not(&part("bit"), negative).doc("the next quotient bit: 1 if the divisor fits");
         let left = d.choose(&part("left"), bit, [doubled, trial]);
         let stepped = cut(&part("stepped"), left);
         let source = d.mux(&part("source"), [dividend, stepped]);
@@ -115,7 +115,7 @@ impl<'d> Divider<'d> {
             source,
             dividend,
             stepped,
-            more: d.any(&part("more"), remaining.q()).doc("the next bit is not the last"),
+            more: d.any(&part("more"), remaining.q()).doc("1 if the next quotient bit is not the last"),
         }
     }
 

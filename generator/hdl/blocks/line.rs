@@ -71,18 +71,18 @@ impl<'d> Line<'d> {
         blocks: Option<LineBlocks>,
     ) -> Self {
         let delta =
-            d.operand("delta_zeta", format).doc("angle from a point to the next, in right angles");
+            d.operand("delta_zeta", format).doc("angle step from point to point, in right angles");
         let mut start =
             d.operand("zeta_start", format).doc("angle of the first point, in right angles");
         let mut length = d
             .operand("length", Format::unsigned(length_bits, 0))
-            .doc("intervals of the line: one less than its points");
+            .doc("number of intervals: the number of points minus 1");
         let mut angle =
-            d.register("angle", format).doc("angle of the point, in right angles; wraps around");
+            d.register("angle", format).doc("angle of the current point, in right angles; wraps around");
         let mut sum =
             d.add_modulo("next_angle", angle.q(), delta.q(), None).doc("angle of the next point");
-        let mut next = d.mux("angle_source", [start.q(), sum]).doc("first point, or next");
-        let mut intervals = d.down_counter("intervals", length.q()).doc("intervals still to go");
+        let mut next = d.mux("angle_source", [start.q(), sum]).doc("angle of the first point, or of the next");
+        let mut intervals = d.down_counter("intervals", length.q()).doc("intervals that remain");
         if let Some(blocks) = blocks {
             let OperandBlocks { inputs, register } = blocks.delta;
             let _ = delta.block(register).inputs(inputs.0, inputs.1);
@@ -96,13 +96,13 @@ impl<'d> Line<'d> {
         }
         angle.takes(next.out());
         let none = d.raw_constant("no_interval", 0, length.q().format());
-        let empty = d.equal("empty", length.q(), none).doc("a line of one point");
+        let empty = d.equal("empty", length.q(), none).doc("1 if the line has one point");
         let last = d.raw_constant("last_interval", 1, length.q().format());
-        let more = d.less("more", last, intervals.q()).doc("not the last interval");
+        let more = d.less("more", last, intervals.q()).doc("1 if this is not the last interval");
         let shown = [
-            ("count", intervals.counting(), "counts an interval"),
-            ("accumulate", next.select(), "the next point, not the first"),
-            ("write_angle", angle.loading(), "a point is written"),
+            ("count", intervals.counting(), "counts down the intervals"),
+            ("accumulate", next.select(), "1 for a next point, 0 for the first"),
+            ("write_angle", angle.loading(), "writes the angle of a point"),
         ];
         let numbers = blocks.map(|blocks| [blocks.count, blocks.select, blocks.write]);
         for (at, (name, line, doc)) in shown.into_iter().enumerate() {
@@ -159,7 +159,7 @@ impl<'d> Line<'d> {
 fn drain(left: u32) -> String {
     match left {
         0 => "last point on the output".to_owned(),
-        1 => "last point a clock away".to_owned(),
-        left => format!("last point {left} clocks away"),
+        1 => "last point follows in one clock".to_owned(),
+        left => format!("last point follows in {left} clocks"),
     }
 }

@@ -177,7 +177,8 @@ pub fn interpolate<'d>(
     let rom = d
         .rom(name, address, word, &packed, shape.synchronous)
         .doc(&format!(
-            "value at the start of a segment (u0.{}), then its rise over the segment in units of 2^-{} ({} bits)",
+            "value at the start of a segment (u0.{}), then the rise over the segment in units of 2^-{} ({} \
+             bits)",
             shape.fraction, shape.slope_fraction, slope_bits
         ))
         .comments(
@@ -242,7 +243,7 @@ fn address_and_rest<'d>(
         let low = blocks[at].bits - 2;
         let top = u.format().width() - low;
         d.any(&format!("{name}_in_range{at}"), u.bits(low, Format::unsigned(top as i32, 0)))
-            .doc(&format!("u is in range {at} or in one above"))
+            .doc(&format!("1 if u is in range {at} or above"))
     };
     let picker = Picker { d, name, arms: &arms, in_range: &in_range };
     picker.pick(0, arms.len())

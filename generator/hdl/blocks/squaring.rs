@@ -22,7 +22,7 @@ impl<'d> Squarings<'d> {
     #[track_caller]
     pub fn new(designer: &'d Designer, count: u32) -> Self {
         let counter = (count > 1).then(|| {
-            designer.down_counter("remaining", start(designer, count)).doc("squarings to come")
+            designer.down_counter("remaining", start(designer, count)).doc("squarings that remain")
         });
         Self { designer, counter, start: None }
     }
@@ -38,7 +38,7 @@ impl<'d> Squarings<'d> {
     ) -> (Self, Counter<'d>, Vec<StepSetting>) {
         let mux = (count > 1).then(|| {
             let squarings = start(designer, count);
-            let mux = designer.mux("remaining_start", [squarings, other]).doc("what is counted");
+            let mux = designer.mux("remaining_start", [squarings, other]).doc("the count");
             (mux, squarings)
         });
         let from = mux.map_or(other, |(mux, _)| mux.out());
@@ -75,7 +75,7 @@ impl<'d> Squarings<'d> {
         let mut steps = vec![step(&format!("{name} <- base^2"), of_base)];
         if let Some(remaining) = self.counter {
             let one = self.designer.raw_constant("one_left", 1, remaining.q().format());
-            let more = self.designer.less("more", one, remaining.q()).doc("not the last squaring");
+            let more = self.designer.less("more", one, remaining.q()).doc("1 if this is not the last squaring");
             let square = format!("{name} <- {name}^2");
             let settings = again.into_iter().chain([
                 register.load(),

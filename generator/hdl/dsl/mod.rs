@@ -110,9 +110,9 @@ use glint_base::fixed::Format;
 use glint_base::interval;
 
 /// The note on writes and results of a device whose operands have buffers.
-const BUFFERED_NOTE: &str = "Operands have buffers: a write at any time is for the next computation, and start takes what \
-                             was written, also in the clock of done. The outputs hold from valid at least until the next \
-                             computation begins.";
+const BUFFERED_NOTE: &str = "Operands have buffers. A write at any time is for the next computation, and start \
+                             loads the buffers into the operand registers, also in the clock of done. The \
+                             outputs keep their values from valid at least until the next computation starts.";
 
 /// Builds a [`Design`] from a hardware description; the [module documentation](self) has an example.
 pub struct Designer {
@@ -206,12 +206,12 @@ impl Designer {
         designer.set_doc(reset, "reset, active low");
         designer.start = designer.add_named("start", Format::BIT, Driver::Input);
         designer.port(designer.start, Role::Start);
-        designer.set_doc(designer.start, "begins a computation when not busy");
+        designer.set_doc(designer.start, "starts a computation if not busy");
         designer.run =
             designer.add_register("run", Format::BIT, Format::BIT.range(), RegisterKind::Sequencer);
-        designer.set_doc(designer.run, "a microprogram is running");
+        designer.set_doc(designer.run, "1 while a microprogram runs");
         designer.idle = designer.add_named("idle", Format::BIT, Driver::Undriven);
-        designer.set_doc(designer.idle, "operands may be written");
+        designer.set_doc(designer.idle, "1 while operands can be written");
         designer.inner.borrow_mut().partition = Partition::Datapath;
         designer
     }
@@ -399,9 +399,9 @@ impl Designer {
         }
         let taken = Driver::Op(Op::And(self.start, self.idle));
         let taken = self.add_named("operands_load", Format::BIT, taken);
-        self.set_doc(taken, "a start that is heard");
-        self.set_doc(self.start, "begins a computation when not busy, or in the last clock of one");
-        self.set_doc(self.idle, "a start is heard: not busy, or the last clock of a computation");
+        self.set_doc(taken, "start, if it is accepted");
+        self.set_doc(self.start, "starts a computation if not busy, or in the last clock of one");
+        self.set_doc(self.idle, "1 while start is accepted: not busy, or the last clock of a computation");
         self.inner.borrow_mut().taken = Some(taken);
     }
 

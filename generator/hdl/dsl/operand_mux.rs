@@ -126,7 +126,7 @@ impl Designer {
         let amount = self.add_net(&format!("{name}_excess"), format, range, Driver::Op(op), true);
         let amount = self
             .signal(amount)
-            .doc("what the product of a negative operand is too large by, above its sign");
+            .doc("correction of the product for a negative operand");
         (out, Some(Excess { amount, low }))
     }
 }
@@ -149,7 +149,7 @@ impl<'d> OperandMux<'d> {
     #[track_caller]
     pub fn held(self) -> Self {
         let name = format!("{}_held", self.name);
-        let doc = "what the microinstruction before selected";
+        let doc = "the input that the previous microinstruction selected";
         let out = self.designer.pipeline(&name, self.out).doc(doc);
         Self { out, delay: self.delay + 1, ..self }
     }

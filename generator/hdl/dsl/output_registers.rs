@@ -31,13 +31,13 @@ pub(super) fn insert(d: &Designer, program: &mut MicroprogramSource) {
         Some(field) => {
             let load = StepSetting::field(d, field, 1, "outputs.load".to_owned());
             loaded(d, &mut program.steps, &load);
-            "Writes while busy are ignored. The outputs are registers: they hold from valid until the next \
-             computation has its results."
+            "Writes while busy are ignored. The outputs are registers. They keep their values from valid until \
+             the next computation has its results."
         }
         None => {
             d.with(|inner| inner.valid = follows.map(|(signal, clocks)| (signal, clocks + 1)));
             followed(&mut program.steps);
-            "Writes while busy are ignored. The outputs are registers, a clock behind the datapath."
+            "Writes while busy are ignored. The outputs are registers, one clock behind the datapath."
         }
     };
     d.replace_note(note);
@@ -63,7 +63,7 @@ fn behind(d: &Designer, port: NetId, kind: RegisterKind, enable: Option<NetId>) 
     let q = d.located(net.location, || {
         d.add_register(&format!("{}_reg", net.name), net.format, range, kind)
     });
-    d.set_doc(q, "holds the output");
+    d.set_doc(q, "output register");
     d.connect(q, source, enable);
     d.with(|inner| {
         let shown = &mut inner.design.nets[port.index()];

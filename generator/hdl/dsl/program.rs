@@ -237,10 +237,10 @@ pub(crate) fn assemble(d: &Designer, program: &MicroprogramSource) {
         });
     };
     if let Some(valid) = fields.valid {
-        describe(valid, "the microinstruction sets valid", lines.map(|[valid, _]| valid));
+        describe(valid, "1 if the microinstruction sets valid", lines.map(|[valid, _]| valid));
     }
     let line = lines.map(|[_, go_on]| go_on);
-    describe(fields.go_on, "0 in the last microinstruction", line);
+    describe(fields.go_on, "0 in the last microinstruction, else 1", line);
     let microinstructions = microinstructions(d, steps, &sequences, &fields, &conditions);
     let sequencer = Sequencer { fields, conditions, targets, address_width };
     sequencer.build(d, microinstructions, program.location);

@@ -92,7 +92,7 @@ impl Designer {
             Some(taken) => {
                 let (own, kind) = (format!("{name}_buffer"), RegisterKind::Buffer);
                 let buffer = self.add_register(&own, data.format(), data.range(), kind);
-                self.set_doc(buffer, "for the next computation");
+                self.set_doc(buffer, "buffer for the next computation");
                 self.connect(buffer, data.id(), Some(strobe));
                 // If the strobe and `start` come in the same clock, the register loads the written value directly.
                 let (name, range) = (format!("{name}_next"), data.range());

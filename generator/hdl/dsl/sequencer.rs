@@ -55,7 +55,7 @@ impl Sequencer {
         let one = d.raw_constant("one_word", 1, wide).id();
 
         let address = d.add_register("word_address", wide, (0, last_word), RegisterKind::Sequencer);
-        d.set_doc(address, "the microinstruction that is executed");
+        d.set_doc(address, "the address of the current microinstruction");
         let following = op("following_word", wide, Op::Add { a: address, b: one, carry: None });
         // The next address while the microprogram continues: the target of a loop or jump, or the following address.
         let mut onward = following;
@@ -90,7 +90,7 @@ impl Sequencer {
                 (busy, bit("advance", Op::And(run, released)))
             }
         };
-        d.set_doc(busy, "high from the clock after start to the end");
+        d.set_doc(busy, "high from the clock after start to the last clock");
         d.connect(address, next, Some(advance));
         let overlaps = d.with(|inner| inner.taken.is_some());
         let (next_run, idle) = if overlaps {
@@ -143,9 +143,9 @@ fn valid_line(d: &Designer) -> NetId {
         let (name, kind) = (format!("valid_in_{left}"), RegisterKind::Internal);
         let q = d.add_register(&name, Format::BIT, (0, 1), kind);
         let doc = match left {
-            0 => "a result has come through the datapath".to_owned(),
-            1 => "a result is a clock away".to_owned(),
-            left => format!("a result is {left} clocks away"),
+            0 => "a result has passed the datapath".to_owned(),
+            1 => "a result follows in one clock".to_owned(),
+            left => format!("a result follows in {left} clocks"),
         };
         d.set_doc(q, &doc);
         d.connect(q, source, None);
@@ -240,7 +240,7 @@ fn control_rom(
     let data = d.add_named("control_word", format, Driver::Undriven);
     let names: Vec<&str> = fields.iter().map(|field| field.name.as_str()).collect();
     let doc = vec![format!(
-        "the microprogram, a line for each microinstruction; fields: {}",
+        "the microprogram, one word per microinstruction; fields: {}",
         names.join(", ")
     )];
     d.with(|inner| {

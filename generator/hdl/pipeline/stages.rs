@@ -163,8 +163,8 @@ impl StageBuilder<'_> {
 
     /// Makes the input ports, and reserves the names of the output ports.
     fn ports(&mut self, unrolled: &Unrolled, options: &Options) {
-        self.port("rst_n", 1, Role::Reset, "reset, active low: drops the points on their way");
-        self.port("in_valid", 1, Role::InValid, "the operands are those of a point");
+        self.port("rst_n", 1, Role::Reset, "reset, active low: discards all points in the pipeline");
+        self.port("in_valid", 1, Role::InValid, "the operands are valid");
         for (at, &operand) in unrolled.operands.iter().enumerate() {
             let net = self.sequential.net(operand).clone();
             let id = self.net(net.name.clone(), 0, net.format, Driver::Input);
@@ -179,10 +179,10 @@ impl StageBuilder<'_> {
             }
         }
         if options.side > 0 {
-            self.port("side_in", options.side, Role::SideIn, "travels with the point");
+            self.port("side_in", options.side, Role::SideIn, "side data, delayed like the point");
         }
         if options.stall {
-            self.port("out_ready", 1, Role::OutReady, "the results are taken in this clock");
+            self.port("out_ready", 1, Role::OutReady, "the receiver accepts the results");
         }
         // No other net may take the name of an output port.
         let outputs =
@@ -244,7 +244,7 @@ impl StageBuilder<'_> {
             let what = if stage == latency {
                 "the results are on the outputs".to_owned()
             } else {
-                format!("stage {stage} has a point")
+                format!("stage {stage} holds a point")
             };
             self.documented(id, &what);
             self.pipeline.handshake.push(id);
@@ -262,7 +262,7 @@ impl StageBuilder<'_> {
             self.design.nets[empty.index()].named = false;
             let op = Driver::Op(Op::Or(ready, empty));
             let advance = self.net("advance".to_owned(), latency, Format::BIT, op);
-            self.documented(advance, "every point moves on by a stage");
+            self.documented(advance, "all points advance by one stage");
             self.advance = Some(advance);
             self.pipeline.handshake.extend([empty, advance]);
         }
@@ -273,7 +273,7 @@ impl StageBuilder<'_> {
         };
         if let Some(ready) = ready {
             let in_ready = self.net("in_ready".to_owned(), latency, Format::BIT, Driver::Op(ready));
-            self.documented(in_ready, "a point that is offered is taken in this clock");
+            self.documented(in_ready, "the pipeline accepts a point");
             self.pipeline.handshake.push(in_ready);
             self.design.ports.push(Port { net: in_ready, role: Role::InReady });
         }
@@ -295,7 +295,7 @@ impl StageBuilder<'_> {
             }
             let driver = Driver::Op(Op::Relabel(side));
             let out = self.net("side_out".to_owned(), latency, format, driver);
-            self.documented(out, "side_in of the point whose results are on the outputs");
+            self.documented(out, "side_in of the point on the outputs");
             self.design.ports.push(Port { net: out, role: Role::SideOut });
         }
     }
@@ -315,7 +315,8 @@ impl StageBuilder<'_> {
         let bits = usize::BITS - last.leading_zeros();
         let format = Format::unsigned(bits as i32, 0);
         let slot = self.net(self.free("slot".to_owned()), 1, format, Driver::Undriven);
-        self.documented(slot, "the point in stage s is there in slot s modulo the interval");
+        self.documented(slot, "counts clocks modulo the interval: a point leaves stage s in slot s modulo the \
+                               interval");
         self.pipeline.handshake.push(slot);
         self.pipeline.slot = Some(slot);
         let first = self.is_slot(slot, 0);
@@ -352,7 +353,7 @@ impl StageBuilder<'_> {
         let here = self.is_slot(slot, number);
         let op = self.advance.map_or(Op::Relabel(here), |advance| Op::And(advance, here));
         let load = self.net(self.free(format!("load_{number}")), 0, Format::BIT, Driver::Op(op));
-        self.documented(load, &format!("points move on from slot {number}"));
+        self.documented(load, &format!("the stages of slot {number} advance"));
         self.pipeline.handshake.push(load);
         self.pipeline.loads.insert(number, load);
         Some(load)
@@ -371,7 +372,7 @@ impl StageBuilder<'_> {
                 let name = self.free(format!("{name}_{letter}"));
                 let format = integer(unit.signed, width);
                 let q = self.net(name, stage - 1, format, Driver::Undriven);
-                self.documented(q, "the factor of the slot's product")
+                self.documented(q, "factor of the product of this slot")
             });
             let wide = integer(unit.signed, unit.widths[0] + unit.widths[1]);
             let op = Driver::Op(Op::Mul(factors[0], factors[1]));

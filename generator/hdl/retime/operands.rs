@@ -326,7 +326,7 @@ fn add_register(design: &mut Design, net: NetId, taken: &mut HashSet<String>) ->
     }
     // The register is 0 from power-up to its first load.
     let range = (of.range.0.min(0), of.range.1.max(0));
-    let doc = format!("{}, delayed by a clock: the operands do not change", of.name);
+    let doc = format!("{}, delayed by one clock, because the operands do not change", of.name);
     let q = design.add_net(Net { name, range, block: None, doc, named: true, ..of });
     design.add_register(q, RegisterKind::Internal).data = Some(net);
     q

@@ -1,12 +1,12 @@
 
-// Values on their way, WORDS + 1 registers long. A slot of a small memory gives the value that it
-// holds and takes a new one; its turn comes again when all others have had theirs.
+// Delays a value by WORDS + 1 enabled clocks. The memory is a circular buffer: each enabled clock
+// reads the oldest word, replaces it by the new value, and advances slot to the next word.
 /* verilator lint_off DECLFILENAME */
 module delay #(
     parameter WIDTH  = 8,
     parameter WORDS  = 2,
-    parameter BITS   = 1,  // of the number of a slot
-    parameter MEMORY = 1   // 0: registers in place of the memory
+    parameter BITS   = 1,  // the width of slot
+    parameter MEMORY = 1   // 1: a memory, 0: registers
 ) (
     input  wire             clk, rst_n, enable,
     input  wire [WIDTH-1:0] entering,
@@ -17,7 +17,7 @@ module delay #(
             localparam [BITS-1:0] LAST = WORDS[BITS-1:0] - 1'b1;
             reg  [BITS-1:0]  slot;
             reg  [WIDTH-1:0] words [0:WORDS-1];
-            // Of a power of two the number after the last is 0.
+            // If WORDS is a power of two, slot + 1 wraps around by itself.
             wire around = WORDS != 1 << BITS && slot == LAST;
             always @(posedge clk) begin
                 if (!rst_n) slot <= {BITS{1'b0}};

@@ -11,7 +11,7 @@ use super::writer;
 use crate::netlist::{DelayLine, NetId};
 
 const TITLE: &str =
-    "Delay lines: what nothing reads for several stages goes through small memories";
+    "Delay lines: a small memory delays values that no logic reads for several stages";
 
 /// The number of words of a delay line's memory, and the net that enables its steps. It is `None` if the line steps on every
 /// clock.

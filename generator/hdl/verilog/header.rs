@@ -86,8 +86,8 @@ pub fn regenerated(origin: &Origin) -> Vec<String> {
 fn latency(timing: &HandshakeTiming) -> Vec<String> {
     let valid = timing.start_to_valid.map(|clocks| format!("valid {clocks} clocks after start"));
     let more = timing.valid_to_valid.map(|clocks| match clocks {
-        1 => "then a result every clock, as many as the operands say".to_owned(),
-        clocks => format!("then a result every {clocks} clocks, as many as the operands say"),
+        1 => "then a result every clock; the operands give their number".to_owned(),
+        clocks => format!("then a result every {clocks} clocks; the operands give their number"),
     });
     let start =
         timing.start_to_start.map(|clocks| format!("the next start {clocks} clocks after start"));
@@ -102,29 +102,30 @@ fn latency(timing: &HandshakeTiming) -> Vec<String> {
 fn stages(pipeline: &Pipeline) -> String {
     let (clocks, clock) = (pipeline.stages.len(), pipeline.clock_mhz);
     let stall = if pipeline.stall {
-        "While out_valid is high and out_ready low, all points stay where they are, and in_ready is low."
+        "While out_valid is high and out_ready is low, no point advances and in_ready is low."
     } else {
-        "It does not stall: results are on the outputs for one clock."
+        "The pipeline cannot stall: results are on the outputs for one clock."
     };
     let products =
-        if pipeline.registered.is_empty() { "" } else { ", products in registered multipliers" };
+        if pipeline.registered.is_empty() { "" } else { ", with registered multipliers" };
     let every = match pipeline.interval {
         1 => "clock".to_owned(),
-        clocks => format!("{clocks} clocks, when in_ready says so"),
+        clocks => format!("{clocks} clocks, while in_ready is high"),
     };
     format!(
-        "Pipeline: a point every {every}, its results {clocks} clocks later; stages for {clock:.0} MHz on {}{products}. {stall}",
+        "Pipeline: it accepts a point every {every}, and the results follow {clocks} clocks later. The stages \
+         are scheduled for {clock:.0} MHz on {}{products}. {stall}",
         pipeline.target
     )
 }
 
 /// Returns the paragraph that explains the formats `uI.F` and `sI.F`.
 fn formats(design: &Design) -> String {
-    let mut text = "Formats: uI.F is unsigned, sI.F two's complement, with I integer bits (a sign bit apart) and F \
-                    fraction bits; the value of a signal is its integer times 2^-F."
+    let mut text = "Formats: uI.F is unsigned with I integer bits and F fraction bits. sI.F is two's \
+                    complement with one sign bit more. The value of a signal is its integer times 2^-F."
         .to_owned();
     if design.nets.iter().any(|net| net.format.int < 0) {
-        text += " With negative I the first fraction bits are always 0 and left out.";
+        text += " If I is negative, the first -I fraction bits are always 0 and have no wires.";
     }
     text
 }
@@ -139,22 +140,22 @@ fn ports(design: &Design) -> Vec<String> {
         let role = match port.role {
             Role::Reset => "reset, active low, synchronous".to_owned(),
             Role::Start if design.control.overlaps => {
-                "begins a computation when not busy, or with done".to_owned()
+                "starts a computation if not busy, or with done".to_owned()
             }
-            Role::Start => "begins a computation when the device is not busy".to_owned(),
+            Role::Start => "starts a computation if not busy".to_owned(),
             Role::Operand { strobe } => format!("operand, written by {}", name(strobe)),
             Role::Strobe => continue,
             Role::Valid => "results are on the outputs".to_owned(),
-            Role::Busy => "high from the clock after start to the end".to_owned(),
+            Role::Busy => "high from the clock after start to the last clock".to_owned(),
             Role::Done => "high in the last clock of a computation".to_owned(),
             Role::Result => "result".to_owned(),
             Role::Status => "status".to_owned(),
-            Role::InValid => "a point is offered: the operands are its own".to_owned(),
-            Role::InReady => "the point that is offered is taken in this clock".to_owned(),
+            Role::InValid => "the operands are valid".to_owned(),
+            Role::InReady => "the pipeline accepts the point".to_owned(),
             Role::Point => "operand".to_owned(),
-            Role::SideIn => "travels with the point".to_owned(),
-            Role::SideOut => "side_in of the point whose results these are".to_owned(),
-            Role::OutReady => "the results are taken in this clock".to_owned(),
+            Role::SideIn => "side data, delayed like the point".to_owned(),
+            Role::SideOut => "side_in of the point on the outputs".to_owned(),
+            Role::OutReady => "the receiver accepts the results".to_owned(),
         };
         let format = match net.format {
             Format::BIT => String::new(),

@@ -24,12 +24,12 @@ fn control(design: &Design) -> Vec<String> {
     let last = literal(design.control.microprogram.len() as u64 - 1, width);
     let mut lines = vec![
         "always @* if (!$initstate) begin".to_owned(),
-        format!("    assert ({address} <= {last});  // no other address is reached"),
+        format!("    assert ({address} <= {last});  // the address stays in the microprogram"),
         format!("    if (!{run}) assert ({address} == {});", literal(0, width)),
     ];
     if design.control.overlaps {
         lines.push(
-            "    assert (idle == (!busy || done));  // operands are taken by no other start"
+            "    assert (idle == (!busy || done));  // start is accepted only then"
                 .to_owned(),
         );
     }

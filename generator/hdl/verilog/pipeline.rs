@@ -87,7 +87,7 @@ fn reservations(unit: &Unit) -> Vec<String> {
         products.push(unit.serves[(slot + 1) % slots].as_deref().unwrap_or("-"));
     }
     let (numbers, products) = (numbers.join(", "), products.join(", "));
-    let text = format!("{}: in slots {numbers} it takes the factors of {products}", unit.name);
+    let text = format!("{}: in slots {numbers} it loads the factors of {products}", unit.name);
     comment(4, &ascii(&text))
 }
 
@@ -185,10 +185,10 @@ fn handshake(plan: &Plan, naming: &Naming, pipeline: &Pipeline) -> Vec<String> {
     writer::section(
         match pipeline.slot {
             None => {
-                "The handshake: a bit for each stage that has a point; all points move on together"
+                "The handshake: bit s is 1 while stage s holds a point; all points advance together"
             }
             Some(_) => {
-                "The handshake: a bit for each stage that has a point; points and slot move on together"
+                "The handshake: bit s is 1 while stage s holds a point; points and slot advance together"
             }
         },
         lines.into_iter().map(|line| format!("    {line}")).collect(),
@@ -204,8 +204,8 @@ fn enable(design: &Design, pipeline: &Pipeline) -> Option<NetId> {
 /// microinstructions only passes values on.
 fn title(number: usize, microinstructions: &[String]) -> Vec<String> {
     let what = match microinstructions {
-        [] => ": values on their way".to_owned(),
-        some => format!(", of the microinstructions {}", some.join("; ")),
+        [] => ": only delays values".to_owned(),
+        some => format!(", from the microinstructions: {}", some.join("; ")),
     };
     comment(4, &ascii(&format!("Stage {number}{what}")))
 }

@@ -31,7 +31,7 @@ pub fn module(
         }
     }
     let declarations = Row::declarations(&between);
-    let mut body = writer::section("Between the control unit and the datapath", declarations);
+    let mut body = writer::section("Signals between control unit and datapath", declarations);
     for (partition, interface) in units {
         body.push(String::new());
         body.extend(instance(plan, naming, partition, interface));

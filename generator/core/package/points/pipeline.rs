@@ -38,7 +38,7 @@ pub fn points_bench(design: &Design, limit: u32) -> Result<PointsBench> {
     let ready = design.port(|it| it == Role::InReady).filter(|_| slots);
     let text = fill!("points_pipeline.v" {
         list: &'a PointList = &list,
-        every: &'a str = if slots { "whenever it is taken" } else { "every clock" },
+        every: &'a str = if slots { "whenever in_ready is high" } else { "every clock" },
         taken: String = ready.map_or(String::new(), |it| format!(" && {}", port_name(it))),
         waits: String = match slots {
             true => format!("if ({} != {}) ", names.read, list.operands.len()),

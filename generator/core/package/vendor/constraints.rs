@@ -18,8 +18,8 @@ use crate::package::tops::Top;
 pub fn files(job: &EmitJob, tops: &[Top], clock_mhz: f64, files: &mut OutputFiles) -> Result<()> {
     for top in tops {
         for (ending, reader) in [
-            ("sdc", "For Quartus, nextpnr, OpenSTA and all that read SDC."),
-            ("xdc", "For Vivado: read_xdc -mode out_of_context."),
+            ("sdc", "This file is for Quartus, nextpnr, OpenSTA and other tools that read SDC."),
+            ("xdc", "This file is for Vivado: read_xdc -mode out_of_context."),
         ] {
             let text = fill!("constraints.sdc" {
                 top: &'a Top, regenerate: &'a str = job.regenerate(), clock_mhz: f64,
