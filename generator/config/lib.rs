@@ -39,15 +39,15 @@ pub use write::{brief, commented};
 
 /// The keys that every device has and that a [`Config`] stores in fields of its own, each with its meaning.
 const COMMON: [(&str, &str); 3] = [
-    ("device", "The device that is generated."),
+    ("device", "The device that Glint generates."),
     (
         "name",
-        "The name of the Verilog module and of its files: a Verilog identifier of at most 60 \
-         characters. By default the name of this file, with _ for -.",
+        "The name of the Verilog module and of its files: a Verilog identifier of at most 60 characters. The \
+         default is the name of this file, with _ in place of -.",
     ),
     (
         "strict",
-        "Refuse a configuration that misses the accuracy contract, rather than warn of it. True or \
-         false, default false.",
+        "Whether Glint refuses a configuration that misses the accuracy contract. If false, it only warns. \
+         True or false, default false.",
     ),
 ];

@@ -30,105 +30,125 @@ keys! {
     /// The values of the shared keys in a configuration.
     pub struct Shared {
         architecture: String = Key::choice("architecture", "sequential", &["sequential", "pipelined"],
-            "A microprogram on one set of arithmetic, or the same unrolled: a point every clock."),
+            "sequential: a microprogram on shared arithmetic, which takes several clocks for each point. \
+             pipelined: the unrolled microprogram, which accepts a point every clock."),
         target: String = Key::choice("pipeline.target", "ecp5", &TIMING_NAMES,
-            "Whose delays and multipliers decide what a stage of the pipeline does.")
+            "The FPGA family whose delays and multipliers determine the stages of the pipeline.")
             .only_when("architecture", "pipelined"),
         pipeline_clock_mhz: f64 = Key::number("pipeline.clock_mhz", 130.0, 1.0..=2000.0,
-            "The clock that every stage must reach; the schedule has the fewest registers for it.")
+            "The clock frequency in MHz that every stage must reach. The schedule has the fewest registers for \
+             it.")
             .only_when("architecture", "pipelined"),
         stages: u32 = Key::integer("pipeline.stages", 0, 0..=1000,
-            "The number of stages, in place of a clock; as fast as they allow. 0: pipeline.clock_mhz decides.")
+            "The number of stages, in place of a clock frequency. The schedule is then as fast as this number \
+             allows. With 0, pipeline.clock_mhz decides.")
             .only_when("architecture", "pipelined"),
         interval: String = Key::choice("pipeline.interval", "1", &INTERVALS,
-            "Clocks from a point to the next: a multiplier serves as many products. From 1 to the clocks of the sequential core, \
-             or as pipeline.rate or pipeline.max_multipliers asks for.")
+            "The number of clocks from one point to the next. One multiplier computes up to this many products \
+             of a point. The limit is the number of clocks of the sequential core. With auto, pipeline.rate or \
+             pipeline.max_multipliers decides.")
             .only_when("architecture", "pipelined"),
         rate: f64 = Key::number_or_zero("pipeline.rate", 0.001..=2000.0,
-            "Million points a second at least, at pipeline.clock_mhz: the interval is the longest that has them.")
+            "The least number of million points per second, at pipeline.clock_mhz. Glint chooses the longest \
+             interval that reaches it.")
             .only_when("pipeline.interval", "auto"),
         max_multipliers: u32 = Key::integer("pipeline.max_multipliers", 0, 0..=1000,
-            "The most multipliers: the interval is the shortest that has no more. 0: pipeline.rate decides.")
+            "The largest number of multipliers. Glint chooses the shortest interval that needs no more. With \
+             0, pipeline.rate decides.")
             .only_when("pipeline.interval", "auto"),
         multipliers: String = Key::choice("pipeline.multipliers", "inferred", &["inferred", "registered"],
-            "Products as the synthesiser finds them, or in instances of <name>_multiplier, whose output register is that of \
-             the DSP block: faster, and every product takes a block.")
+            "inferred: the synthesiser chooses DSP blocks for products. registered: each product is an \
+             instance of <name>_multiplier, which uses the output register of a DSP block. This is faster, but \
+             every product takes a DSP block.")
             .only_when("pipeline.target", "ecp5"),
         stall: String = Key::choice("pipeline.stall", "ready", &["ready", "none"],
-            "Whether out_ready can hold the results back; without it every register moves in every clock.")
+            "ready: the pipeline stalls while out_ready is low. none: there is no out_ready, and all points \
+             advance in every clock.")
             .only_when("architecture", "pipelined"),
         delays: String = Key::choice("pipeline.delays", "memory", &["memory", "registers"],
-            "What holds values that no stage reads for some time: memory in look-up tables, where the target has such, \
-             or a register a stage.").only_when("architecture", "pipelined"),
+            "How the pipeline delays values that no logic reads for several stages. memory: small memories in \
+             look-up tables, if the target has them. registers: one register per stage.").only_when("architecture", "pipelined"),
         side: u32 = Key::integer("pipeline.side", 0, 0..=64,
-            "Bits of side_in and side_out, which travel with a point: a pixel's address, say.")
+            "The width of side_in and side_out, which carry data of a point past the pipeline. For example, \
+             the address of a pixel. 0 leaves the ports out.")
             .only_when("architecture", "pipelined"),
         output_registered: bool = Key::flag("output.registered", false,
-            "Registers behind results that are logic: a multiplier and a rounding adder for a colour. They are valid a clock later.")
+            "Adds output registers behind results that are logic, such as a multiplier and a rounding adder \
+             for a colour. The results are then valid one clock later.")
             .only_when("architecture", "sequential"),
         operands_buffered: bool = Key::flag("operands.buffered", false,
-            "Buffers that take operands while a point is computed. The next one then begins in the clock after the last of this one.")
+            "Adds buffers for operands, which can be written while the core computes. The next computation can \
+             then start in the clock after the last clock of this one.")
             .only_when("architecture", "sequential"),
         operands_logic: String = Key::choice("operands.logic", "registered", &["registered", "combinational"],
-            "Logic of operands alone: with registers in it where there is a clock to spare, or without.")
+            "registered: logic that depends only on operands has registers where a clock is free for them. \
+             combinational: such logic has no registers.")
             .only_when("architecture", "sequential"),
         stream: bool = Key::flag("interface.stream", false,
-            "Write an AXI4-Stream wrapper of the core, <name>_axis.v."),
+            "Writes an AXI4-Stream wrapper of the core, <name>_axis.v."),
         user_bits: u32 = Key::integer("interface.user_bits", 1, 1..=1024,
-            "Bits of tuser, the side channel that travels with a point.")
+            "The width of tuser, which carries data of a point past the core.")
             .only_when("interface.stream", "true"),
         data_width: String = Key::choice("interface.data_width", "bytes", &["bytes", "power-of-two"],
-            "Bytes of a transfer: as many as its numbers take, or a power of two, as DMA engines have it.")
+            "The number of bytes of a transfer. bytes: as many as the numbers need. power-of-two: the next \
+             power of two, which DMA engines need.")
             .only_when("interface.stream", "true"),
         keep: bool = Key::flag("interface.keep", false,
-            "Both streams have tkeep: all ones on m_axis, and not looked at on s_axis.")
+            "Adds tkeep to both streams. It is all ones on m_axis, and the core ignores it on s_axis.")
             .only_when("interface.stream", "true"),
         registers: String = Key::choice("interface.registers", "none", &["none", "axi-lite", "wishbone"],
-            "Write registers around the core: <name>_axil.v on AXI4-Lite, <name>_wb.v on Wishbone.")
+            "Writes a wrapper with bus registers: <name>_axil.v for AXI4-Lite, or <name>_wb.v for Wishbone.")
             .only_when("architecture", "sequential"),
         software: bool = Key::flag("package.software", false,
-            "Write software/<name>/: a bit-accurate model of the core in C."),
+            "Writes software/<name>/, a bit-exact model of the core in C."),
         recomputation: bool = Key::flag("package.recomputation", false,
-            "Write software/<name>/<name>_recompute.c: a program with MPFR that computes every combination of operands from formulas and \
-             memories, and prints the largest errors. For the devices function and expression, and up to 2^32 combinations.")
+            "Writes software/<name>/<name>_recompute.c. This program computes every combination of operands \
+             with the memories of the core, compares it with the formulas by MPFR, and prints the largest \
+             errors. It is for the devices function and expression, and for at most 2^32 combinations.")
             .only_when("package.software", "true"),
         memories: String = Key::choice("package.memories", "files", &["files", "inline", "case"],
-            "Whether ROM contents are .mem files, or stand in the Verilog, for flows that do not find files: as initial values, or as \
-             the choices of a case, for flows that drop those."),
+            "Where the contents of ROMs are. files: in .mem files. inline: in the Verilog as initial values, \
+             for flows that cannot find files. case: in the Verilog as a case statement, for flows that drop \
+             initial values."),
         rom_style: String = Key::choice("package.rom_style", "auto", &["auto", "block", "distributed"],
-            "Where ROMs that are read on the clock are to be, as their attribute rom_style says: block memory, look-up tables, or \
-             as the synthesiser finds."),
+            "The attribute rom_style of synchronous ROMs. block: block memory. distributed: look-up tables. \
+             auto: the synthesiser decides."),
         initial_values: bool = Key::flag("package.initial_values", false,
-            "Registers of the core are 0 before the first clock, but for those that ROMs are read into. Without it a simulation has unknown \
-             values until the first reset and the first writes; wrappers need their reset all the same.")
+            "Gives the registers of the core the initial value 0, except the output registers of ROMs. Without \
+             initial values, a simulation has unknown values until the first reset and the first writes. \
+             Wrappers need their reset in any case.")
             .only_when("architecture", "sequential"),
         litex: bool = Key::flag("package.litex", false,
-            "Write software/<name>/<name>_litex.py: the core as a module of LiteX.")
+            "Writes software/<name>/<name>_litex.py, the core as a LiteX module.")
             .only_when("package.memories", "inline"),
         constraints: bool = Key::flag("package.constraints", false,
-            "Write the clock as constraints: <top>.sdc and <top>.xdc."),
+            "Writes the clock constraints <top>.sdc and <top>.xdc."),
         clock_mhz: f64 = Key::number_or_zero("package.clock_mhz", 1.0..=2000.0,
-            "The frequency of the clock in constraints and vendors' projects. 0 for that of the pipeline, \
-             or 100 for a sequential core.")
+            "The clock frequency in MHz in constraints and vendor projects. 0 means the frequency of the \
+             pipeline, or 100 for a sequential core.")
             .only_when("package.constraints", "true"),
         vivado: bool = Key::flag("package.vivado", false,
-            "Write Tcl for Vivado: <name>_vivado.tcl builds, <name>_vivado_ip.tcl packages IP.")
+            "Writes Tcl scripts for Vivado: <name>_vivado.tcl builds, and <name>_vivado_ip.tcl packages IP.")
             .only_when("package.constraints", "true"),
         quartus: bool = Key::flag("package.quartus", false,
-            "Write Tcl for Quartus: <name>_quartus.tcl builds, <top>_hw.tcl is for Platform Designer.")
+            "Writes Tcl scripts for Quartus: <name>_quartus.tcl builds, and <top>_hw.tcl is for Platform \
+             Designer.")
             .only_when("package.constraints", "true"),
         ip_xact: bool = Key::flag("package.ip_xact", false,
-            "Write IP-XACT components (IEEE 1685-2014): <top>.xml."),
+            "Writes IP-XACT components (IEEE 1685-2014): <top>.xml."),
         vhdl: bool = Key::flag("package.vhdl", false,
-            "Write <name>.vhd: each module as a component of VHDL, and the core as an entity with ports of ieee.fixed_pkg."),
+            "Writes <name>.vhd: a VHDL component for each module, and an entity of the core with ports of \
+             ieee.fixed_pkg."),
         systemverilog: bool = Key::flag("package.systemverilog", false,
-            "Write <name>_pkg.sv: the numbers as types of SystemVerilog, with conversions from and to real."),
+            "Writes <name>_pkg.sv: the number formats as SystemVerilog types, with conversions from and to \
+             real."),
         vendor: String = Key::text("package.vendor", "glint", TextPattern::Name,
-            "The vendor for FuseSoC, IP-XACT, Vivado and Platform Designer; a domain name, as a rule."),
+            "The vendor name for FuseSoC, IP-XACT, Vivado and Platform Designer, usually a domain name."),
         version: String = Key::text("package.version", "0.1.0", TextPattern::Version,
             "The version of the core for FuseSoC, IP-XACT, Vivado and Platform Designer."),
         licence: String = Key::text("package.licence", "LicenseRef-belongs-to-its-user", TextPattern::Licence,
-            "The licence of the files for FuseSoC, of which only the characters are checked. What Glint generates belongs to its user."),
+            "The licence of the files for FuseSoC. Glint checks only the characters of this text. The \
+             generated files belong to their user."),
     }
 }
 

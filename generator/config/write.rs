@@ -101,8 +101,8 @@ fn remarked(line: &str, remark: &str) -> String {
 /// keys, the file is read as the same configuration.
 pub fn commented(schema: &Schema, config: &Config, given: &[String]) -> String {
     let mut text = comment(&format!(
-        "Glint configuration of the device \"{}\". All keys are shown. A key in a comment has its default, which adjusts to the keys \
-         that are set.",
+        "Glint configuration of the device \"{}\". It shows all keys. A key in a comment has its default, \
+         which adjusts to the keys that you set.",
         schema.device
     ));
     for ((key, value), doc) in common(config).into_iter().zip(super::COMMON.map(|c| c.1)) {

@@ -9,9 +9,9 @@ glint_config::keys! {
     /// example, `cosine.fraction` sets the number of fraction bits.
     pub struct Cosine {
         fraction: u32 = Key::integer("cosine.fraction", 20, 6..=24,
-            "Fraction bits of the cosine operands; 1.0 is representable."),
+            "Number of fraction bits of the cosine operands, which can be 1.0."),
         signed: bool = Key::flag("cosine.signed", false,
-            "The cosine port has a sign bit; a negative cosine gives 0."),
+            "Whether the cosine port has a sign bit. A negative cosine gives the result 0."),
     }
 }
 
@@ -51,7 +51,9 @@ glint_config::keys! {
     pub struct ColourKeys {
         bits: u32 = colour_bits(),
         multipliers: u32 = Key::choice("colour.multipliers", "3", &["1", "3"],
-            "Multipliers for f times the colours: one for each, or one for all, which takes three clocks a point more and saves DSP blocks. A pipeline has one for each.")
+            "Number of multipliers for f times the colours: one for each colour, or one for all colours. One \
+             multiplier saves DSP blocks and takes three more clocks for each point. A pipeline has one for \
+             each colour.")
             .only_when("architecture", "sequential").joined_later(),
     }
 }
@@ -102,7 +104,7 @@ glint_config::keys! {
     pub struct Intensity {
         fraction: u32 = intensity_fraction(16),
         rounding: Rounding = Key::rounding("intensity.rounding", "truncate",
-            "Rounding into the register that holds f."),
+            "Rounding mode of the register with f."),
         output_rounding: Rounding = output_rounding(),
     }
 }
@@ -125,9 +127,9 @@ glint_config::keys! {
     /// The keys of the range of specular exponents n for which a device's accuracy contract is stated.
     pub struct Domain {
         least: i64 = Key::integer("domain.exponent_min", 1, 0..=4095,
-            "The smallest n for which the accuracy contract is stated."),
+            "The smallest n of the accuracy contract."),
         most: i64 = Key::integer("domain.exponent_max", 1000, 1..=4095,
-            "The largest n for which the accuracy contract is stated."),
+            "The largest n of the accuracy contract."),
     }
 }
 
@@ -146,7 +148,7 @@ impl Domain {
 
 /// Makes the key `exponent.bits`, the width of the specular exponent n in bits.
 pub fn exponent_bits() -> Key {
-    Key::integer("exponent.bits", 10, 1..=12, "Bits of the specular exponent n.")
+    Key::integer("exponent.bits", 10, 1..=12, "Width of the specular exponent n.")
 }
 
 /// Makes the key `power`, the power m in the formulas of the devices `cosine-power` and `lyon`: 2, 4, 8 or 16.
@@ -155,13 +157,13 @@ pub fn power() -> Key {
         "power",
         "16",
         &["2", "4", "8", "16"],
-        "The power m: the larger, the closer to cos^n, and the more squarings.",
+        "The power m. A larger m is closer to cos^n and needs more squarings.",
     )
 }
 
 /// Makes the key `colour.bits`, the width of a colour operand and of an output in bits.
 pub fn colour_bits() -> Key {
-    Key::integer("colour.bits", 8, 1..=12, "Bits of a colour operand, and of an output.")
+    Key::integer("colour.bits", 8, 1..=12, "Width of the colour operands and of the outputs.")
 }
 
 /// Makes the key `intensity.fraction`, the number of fraction bits of the reflectance f, with the default `default`.
@@ -170,13 +172,13 @@ pub fn intensity_fraction(default: i64) -> Key {
         "intensity.fraction",
         default,
         6..=24,
-        "Fraction bits of the reflectance f, which multiplies the colours.",
+        "Number of fraction bits of the reflectance f, which multiplies the colours.",
     )
 }
 
 /// Makes the key `output.rounding`, the rounding of the colour outputs to integers.
 pub fn output_rounding() -> Key {
-    Key::rounding("output.rounding", "nearest", "Rounding of the colour outputs to integers.")
+    Key::rounding("output.rounding", "nearest", "Rounding mode of the colour outputs, which are integers.")
 }
 
 /// Makes the key `angle.fraction`, the number of fraction bits of an angle along a scan line, with the default `default`.
@@ -186,7 +188,8 @@ pub fn angle_fraction(default: i64) -> Key {
         "angle.fraction",
         default,
         4..=28,
-        "Fraction bits of the angles, in right angles. A line adds up their rounding: one bit more halves its drift.",
+        "Number of fraction bits of the angles, in right angles. The rounding errors of the angles add up \
+         along a line; one more bit halves their sum.",
     )
 }
 
@@ -197,7 +200,7 @@ pub fn table_address(default: i64) -> Key {
         "table.address",
         default,
         4..=14,
-        "Address bits of a table of the cosine's power in ROM 12, over a right angle.",
+        "Number of address bits of each table of cosine powers in ROM 12. A table covers one right angle.",
     )
 }
 
@@ -207,7 +210,7 @@ pub fn length_bits() -> Key {
         "length.bits",
         12,
         1..=12,
-        "Bits of the line's length l; a line has up to 2^bits points.",
+        "Width of the length of a line. A line has up to 2^bits points.",
     )
 }
 
@@ -218,7 +221,8 @@ pub fn line_stages(choices: &'static [&'static str]) -> Key {
         "line.stages",
         "2",
         choices,
-        "Clocks from a point's angle to its result: the fewest, or one for each memory and multiplier, at twice the frequency.",
+        "Number of clocks from the angle of a point to its result: the fewest, or one clock for each memory \
+         and multiplier, which doubles the frequency.",
     )
     .joined_later()
 }

@@ -11,7 +11,7 @@ glint_config::keys! {
     /// The values of a configuration of the device `cosine-squared`, one field for each of its keys.
     pub struct Keys {
         angle_integer: u32 = Key::integer("angle.integer", 7, 1..=8,
-            "Integer bits of the stretched angles, which are in right angles and signed."),
+            "Number of integer bits of the stretched angles, which are signed and in right angles."),
         angle_fraction: u32 = common::angle_fraction(22),
         table_address: u32 = common::table_address(10),
         length_bits: u32 = common::length_bits(),

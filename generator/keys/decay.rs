@@ -17,15 +17,16 @@ glint_config::keys! {
     pub struct Keys {
         operands: Operands = Operands::keys(),
         ratio_fraction: u32 = Key::integer("ratio.fraction", 16, 5..=20,
-            "Fraction bits of the decay over 1 - cos, which a table of polynomials gives.").drawn(5, 12),
+            "Number of fraction bits of the decay divided by 1 - cos, which a table of polynomials gives.").drawn(5, 12),
         ratio_degree: String = degree("ratio.degree"),
         decay_fraction: u32 = Key::integer("decay.fraction", 26, 12..=30,
-            "Fraction bits of the decay: f = 2^(-n*decay)."),
+            "Number of fraction bits of the decay, where f = 2^(-n*decay)."),
         coarse_fraction: u32 = Key::integer("decay.coarse_fraction", 18, 8..=30,
-            "Fraction bits with which a decay that is not small is multiplied by n; a small one keeps all."),
+            "Number of fraction bits of a large decay in its product with n. A decay below 1/4 keeps all \
+             fraction bits."),
         argument: u32 = Key::integer("exponential.argument", 18, 4..=20,
-            "Fraction bits of n*decay, of which a table of polynomials gives 2^-x.").drawn(4, 12),
-        fraction: u32 = Key::integer("exponential.fraction", 18, 5..=24, "Fraction bits of 2^-x.").drawn(5, 12),
+            "Number of fraction bits of n*decay. A table of polynomials computes 2^-x from them.").drawn(4, 12),
+        fraction: u32 = Key::integer("exponential.fraction", 18, 5..=24, "Number of fraction bits of 2^-x.").drawn(5, 12),
         degree: String = degree("exponential.degree"),
         f: Intensity = Intensity::keys(),
         domain: Domain = Domain::keys(),
@@ -38,7 +39,7 @@ fn degree(name: &'static str) -> Key {
         name,
         "auto",
         &["auto", "1", "2", "3"],
-        "The degree of the polynomials; by default that of the least cost.",
+        "The degree of the polynomials. The default has the least cost.",
     )
 }
 

@@ -11,24 +11,27 @@ glint_config::keys! {
     /// The values of a configuration of the device `dot-product`, one field for each of its keys.
     pub struct Keys {
         fraction: u32 = Key::integer("vector.fraction", 14, 2..=14,
-            "Fraction bits of a component of the normal, s1.F, which need not be a unit vector."),
+            "Number of fraction bits F of the components of the normal, whose format is s1.F. The normal may \
+             have any length."),
         other: u32 = Key::integer("half.fraction", 14, 2..=14,
-            "Fraction bits of a component of the half vector, s1.F, a unit vector."),
+            "Number of fraction bits F of the components of the half vector, a unit vector, whose format is \
+             s1.F."),
         two_sided: bool = two_sided(),
         address: u32 = normaliser::address(),
         inverse: u32 = normaliser::inverse(),
         factor: u32 = Key::integer("factor.bits", 18, 6..=24,
-            "Bits of both factors of the last product: the normal's length times the cosine, and the inverse of the length."),
+            "Width of both factors of the last product: the cosine times the length of the normal, and the \
+             inverse of the length."),
         kept: u32 = Key::integer("output.fraction", 14, 2..=20,
-            "Fraction bits of the cosine, u1.C."),
+            "Number of fraction bits C of the cosine, whose format is u1.C."),
         rounding: Rounding = Key::rounding("output.rounding", "nearest",
-            "How the cosine is rounded."),
+            "Rounding mode of the cosine."),
     }
 }
 
 /// Makes the key `two_sided`, with which a device takes the absolute value of a cosine and so lights both sides of a surface.
 pub(super) fn two_sided() -> Key {
-    let doc = "Light both sides of a surface: cosines lose their sign.";
+    let doc = "Lights both sides of a surface: the device uses the absolute value of cosines.";
     Key::flag("two_sided", false, doc).joined_later()
 }
 

@@ -31,27 +31,29 @@ glint_config::keys! {
     /// The values of a configuration of the device `expression`, one field for each of its keys.
     pub struct Keys {
         operands: TableEntries = Key::records("operands", &example_operands(), operand_fields(), None, 1..=8,
-            "The operands, in the order of the ports. Each has a whole format, by bits, or a domain, by from and to."),
+            "The operands, in the order of the ports. The field bits gives an operand a whole format; the \
+             fields from and to give it a domain."),
         parts: TableEntries = Key::records("let", &[], part_fields(), Some("formula"), 0..=32,
-            "Named parts of the formulas. Each may name operands, and parts before it."),
+            "Named parts of the formulas. The formula of a part may use operands and earlier parts."),
         results: TableEntries = Key::records("results", &example_results(), result_fields(), None, 1..=8,
-            "The results, in the order of the ports. Each is a formula of operands and named parts."),
+            "The results, in the order of the ports. The formula of a result may use operands and named parts."),
     }
 }
 
 fn operand_fields() -> Vec<Key> {
     vec![
         Key::integer("fraction", 12, -40..=40, "Fraction bits."),
-        Key::integer("bits", 12, 1..=32, "The width. The domain then is the whole format."),
-        Key::flag("signed", true, "With bits: whether the operand has a sign."),
-        Key::text("from", "-1", TextPattern::Formula, "The smallest operand."),
-        Key::text("to", "1", TextPattern::Formula, "The end of the domain."),
-        Key::flag("to_included", false, "Whether the end belongs to the domain."),
+        Key::integer("bits", 12, 1..=32, "The width. The domain is then the whole format."),
+        Key::flag("signed", true, "Together with bits: whether the operand is signed."),
+        Key::text("from", "-1", TextPattern::Formula, "The smallest value of the operand."),
+        Key::text("to", "1", TextPattern::Formula, "The upper end of the domain."),
+        Key::flag("to_included", false, "Whether the upper end belongs to the domain."),
         Key::choice(
             "outside",
             "anything",
             &["anything", "clamp"],
-            "What operands outside the domain give: any result, or the result of its nearer end.",
+            "The result for operands outside the domain. anything: any result. clamp: the result of the nearer \
+             end of the domain.",
         ),
     ]
 }
@@ -68,32 +70,33 @@ fn result_fields() -> Vec<Key> {
             "error",
             1.0,
             LEAST_ERROR..=LARGEST_ERROR,
-            "The result is nearer to the formula than this, in units of its last place.",
+            "The bound of the error against the formula, in units of the last place of the result.",
         ),
         Key::text(
             "error_relative",
             "2^-12",
             TextPattern::Formula,
-            "In place of error: the result is nearer to the formula than this part of the formula's value.",
+            "The bound of the relative error against the formula, in place of error.",
         ),
         Key::integer(
             "bits",
             12,
             1..=64,
-            "The width. Without it, the integer bits follow from the values.",
+            "The width. By default, the number of integer bits follows from the values.",
         ),
-        Key::flag("signed", true, "With bits: whether the result has a sign."),
+        Key::flag("signed", true, "Together with bits: whether the result is signed."),
         Key::choice(
             "overflow",
             "refuse",
             &["refuse", "saturate", "wrap"],
-            "With bits: what happens to values beyond them. refuse allows none.",
+            "Together with bits: how values outside the format are handled. refuse allows no such value.",
         ),
         Key::text(
             "where",
             "s > 0",
             TextPattern::Formula,
-            "A comparison: the error is promised for operands for which it holds.",
+            "A comparison of two formulas. The error bound holds for the operands for which the comparison is \
+             true.",
         ),
     ]
 }

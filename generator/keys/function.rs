@@ -19,33 +19,38 @@ glint_config::keys! {
         formula: String = Key::text("function.formula", "1 / sqrt(x)", TextPattern::Formula,
             "The function of the operand x."),
         samples: String = Key::text("function.samples", "", TextPattern::Samples,
-            "Measured points in place of a formula: the path of a CSV file with x and the result in each line, or the points \
-             themselves. The error is against the curve through them, a monotone cubic between each two.")
+            "Measured points in place of a formula: the path of a CSV file with x and the result in each line, \
+             or the points themselves. Glint connects the points by monotone cubic curves and states the error \
+             against these curves.")
             .joined_later(),
         from: String = Key::text("function.from", "1", TextPattern::Formula,
-            "The smallest operand of the domain."),
-        to: String = Key::text("function.to", "4", TextPattern::Formula, "The end of the domain."),
+            "The lower end of the domain."),
+        to: String = Key::text("function.to", "4", TextPattern::Formula, "The upper end of the domain."),
         to_included: bool = Key::flag("function.to_included", false,
-            "Whether the end belongs to the domain."),
+            "Whether the upper end belongs to the domain."),
         outside: Outside = Key::choice("function.outside", "clamp", Outside::WORDS,
-            "What operands outside the domain give: the result of its nearer end, that of a period of the domain's length, or any."),
-        operand: u32 = Key::integer("operand.fraction", 16, 0..=40, "Fraction bits of the operand.")
+            "The result for operands outside the domain. clamp: the result of the nearer end. wrap: the domain \
+             repeats as a period, so the result of the operand modulo the length of the domain. anything: any \
+             result."),
+        operand: u32 = Key::integer("operand.fraction", 16, 0..=40, "Number of fraction bits of the operand.")
             .drawn(4, 10),
-        result: u32 = Key::integer("result.fraction", 16, 0..=40, "Fraction bits of the result.")
+        result: u32 = Key::integer("result.fraction", 16, 0..=40, "Number of fraction bits of the result.")
             .drawn(4, 12),
         error: f64 = Key::number("result.error", 1.0, 0.5..=1024.0,
-            "Every result is nearer to the function than this, in units of its last place: 1.0 for one of the two \
-             neighbours, 0.51 for nearly always the nearer."),
+            "The bound of the error of every result, in units of its last place. With 1.0, a result is one of \
+             the two neighbours of the exact value. With 0.51, it is nearly always the nearer one."),
         degree: String = Key::choice("approximation.degree", "auto", &["auto", "0", "1", "2", "3"],
-            "The degree of the polynomials: 0 is a table of results. By default that of the least cost."),
+            "The degree of the polynomials. 0 is a table of results. The default has the least cost."),
         segments: String = Key::choice("approximation.segments", "auto",
             &["auto", "uniform", "octaves", "halving"],
-            "How the domain is cut: evenly, or ever shorter toward its low end (octaves) or its high end (halving), for \
-             functions that are steep there."),
+            "The segments of the domain. uniform: all segments are equally long. octaves: they become shorter \
+             toward the lower end. halving: they become shorter toward the upper end. Short segments suit an \
+             end where the function is steep."),
         reduction: Identity = Key::choice("approximation.reduction", "none", Identity::WORDS,
-            "The identity by which polynomials on a short domain serve the whole one: odd and even ones about 0, the quadrants of a \
-             sine, octaves (powers, roots, reciprocals, logarithms), the integer of an exponent as a shift. The bound is proved \
-             over the whole domain.")
+            "The range reduction, an identity with which polynomials on a short domain give the whole \
+             function. odd and even: symmetry about 0. quadrants: a sine or cosine over one period. octaves: \
+             powers, roots, reciprocals and logarithms. exponent: an exponential function, in which the \
+             integer part of the exponent becomes a shift. The error bound is proved over the whole domain.")
             .joined_later(),
     }
 }

@@ -22,15 +22,18 @@ glint_config::keys! {
     pub struct Keys {
         power: u32 = common::power(),
         scale: Scale = Key::choice("scale", "shift", Scale::WORDS,
-            "shift: as in the patent, beta is a power of two, and the operand is shift = log2 n, rounded. multiplier: beta = n/(2*power) for every n, by a fifth multiplier."),
+            "shift: as in the patent, beta is a power of two, and the operand is shift = log2 n, rounded. \
+             multiplier: a fifth multiplier gives beta = n/(2*power) for every n."),
         vector_fraction: u32 = Key::integer("vector.fraction", 16, 4..=20,
-            "Fraction bits of the components of D = N - H, which run from -2.0 up to 2.0."),
+            "Number of fraction bits of the components of D = N - H, which are from -2.0 to 2.0."),
         distance_fraction: u32 = Key::integer("distance.fraction", 20, 8..=28,
-            "Fraction bits of D^2, which n multiplies."),
+            "Number of fraction bits of D^2, which n multiplies."),
         distance_rounding: Rounding = Key::rounding("distance.rounding", "truncate",
-            "Rounding into the register that holds D^2."),
+            "Rounding mode of the register with D^2."),
         distance_multipliers: u32 = Key::choice("distance.multipliers", "3", &["1", "3"],
-            "Multipliers that square the components of D: one for each, or one for all, which takes two clocks a point more and saves DSP blocks. A pipeline has one for each.")
+            "Number of multipliers for the squares of the components of D: one for each component, or one for \
+             all. One multiplier saves DSP blocks and takes two more clocks for each point. A pipeline has one \
+             for each component.")
             .only_when("architecture", "sequential").joined_later(),
         exponent_bits: u32 = common::exponent_bits(),
         colours: ColourKeys = ColourKeys::keys(),

@@ -11,25 +11,27 @@ glint_config::keys! {
     /// sets the number of fraction bits of a component.
     pub struct Keys {
         fraction: u32 = Key::integer("vector.fraction", 14, 2..=14,
-            "Fraction bits of a component, s1.F."),
+            "Number of fraction bits F of the components of the vector, whose format is s1.F."),
         address: u32 = address(),
         inverse: u32 = inverse(),
-        kept: u32 = Key::integer("output.fraction", 14, 2..=20, "Fraction bits of a result, s1.C."),
+        kept: u32 = Key::integer("output.fraction", 14, 2..=20, "Number of fraction bits C of the results, \
+                                                                 whose format is s1.C."),
         rounding: Rounding = Key::rounding("output.rounding", "nearest",
-            "How the components of the unit vector are rounded."),
+            "Rounding mode of the components of the unit vector."),
     }
 }
 
 /// Makes the key `table.address`, the number of leading bits of the sum of squares that select a segment in the table of
 /// inverse roots.
 pub(super) fn address() -> Key {
-    let doc = "Leading bits of the sum of squares that choose a segment.";
+    let doc = "Number of leading bits of the sum of squares that select a segment.";
     Key::integer("table.address", 9, 3..=12, doc)
 }
 
 /// Makes the key `inverse.fraction`, the number of fraction bits of the inverse root that the table gives.
 pub(super) fn inverse() -> Key {
-    Key::integer("inverse.fraction", 20, 6..=24, "Fraction bits of the inverse root, u1.R.")
+    Key::integer("inverse.fraction", 20, 6..=24, "Number of fraction bits R of the inverse root, whose format \
+                                                  is u1.R.")
 }
 
 /// Returns the schema of the device `normaliser`: its configuration keys, and the check of their combinations.

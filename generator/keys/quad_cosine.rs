@@ -12,9 +12,9 @@ glint_config::keys! {
     pub struct Keys {
         angle_fraction: u32 = common::angle_fraction(26),
         angle_multiplied: u32 = Key::integer("angle.multiplied", 17, 4..=24,
-            "Fraction bits of the angle that multiplier 11 takes: the leading ones."),
+            "Number of leading fraction bits of the angle that multiplier 11 uses."),
         root_fraction: u32 = Key::integer("root.fraction", 14, 8..=20,
-            "Fraction bits of sqrt(n/k) in ROM 9."),
+            "Number of fraction bits of sqrt(n/k) in ROM 9."),
         table_address: u32 = common::table_address(11),
         length_bits: u32 = common::length_bits(),
         stages: u32 = common::line_stages(&["2", "7"]),

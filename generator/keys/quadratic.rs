@@ -21,14 +21,15 @@ glint_config::keys! {
     /// The values of a configuration of the device `quadratic`, one field for each of its keys.
     pub struct Keys {
         scheme: Scheme = Key::choice("coefficient.scheme", "minimax", Scheme::WORDS,
-            "ROM(n) holds a(n) = n - 1, which agrees with cos^n to the slope at its peak, or the a(n) whose largest error is least."),
-        fraction: u32 = Key::integer("coefficient.fraction", 8, 0..=12, "Fraction bits of a(n).")
+            "The contents of ROM(n). taylor: a(n) = n - 1, with which f has the slope of cos^n at its peak. \
+             minimax: the a(n) with the smallest maximum error."),
+        fraction: u32 = Key::integer("coefficient.fraction", 8, 0..=12, "Number of fraction bits of a(n).")
             .only_when("coefficient.scheme", "minimax"),
         operands: Operands = Operands::keys(),
         difference_fraction: u32 = Key::integer("difference.fraction", 19, 8..=28,
-            "Fraction bits of c^2 - c, which a(n) multiplies."),
+            "Number of fraction bits of c^2 - c, which a(n) multiplies."),
         difference_rounding: Rounding = Key::rounding("difference.rounding", "truncate",
-            "Rounding into the register that holds c^2 - c."),
+            "Rounding mode of the register with c^2 - c."),
         f: Intensity = Intensity::keys(),
         domain: Domain = Domain::keys(),
     }

@@ -36,29 +36,31 @@ glint_config::keys! {
     /// and `sine.fraction` do not apply.
     pub struct Keys {
         arithmetic: ArithmeticMode = Key::choice("arithmetic", "exact", ArithmeticMode::WORDS,
-            "exact: numbers with an integer position. patent: numbers modulo 1.0, as in UA 60139."),
+            "exact: numbers have an integer bit. patent: numbers are modulo 1.0, as in UA 60139."),
         clamp: bool = exact(Key::flag("clamp", true,
-            "Clamp a negative n/2*(cos - 1) + 1 to 0; without it a ring appears around the highlight.")),
+            "Clamps a negative n/2*(cos - 1) + 1 to 0. Without the clamp, a ring appears around the highlight.")),
         operands: Operands = exact_of(Operands::keys(), &["cosine.signed"]),
         product_fraction: u32 = exact(Key::integer("product.fraction", 22, 8..=28,
-            "Fraction bits of registers 11 and 12, the products of cosines and of sines.")),
+            "Number of fraction bits of registers 11 and 12, which hold the products of cosines and of sines.")),
         product_rounding: Rounding = exact(Key::rounding("product.rounding", "truncate",
-            "Rounding into registers 11 and 12.")),
+            "Rounding mode of registers 11 and 12.")),
         f: Intensity = exact_of(Intensity::keys(), &["intensity.fraction", "intensity.rounding"]),
         scheme: RomLayout = Key::choice("sine.scheme", "segmented", RomLayout::WORDS,
-            "ROM 18: segments that shrink toward cos = 1, with interpolation; or one entry a bucket, as in the patent."),
+            "The sine table in ROM 18. segmented: linear interpolation in segments that become shorter toward \
+             cos = 1. direct: one word for each address, as in the patent."),
         sine_fraction: u32 = exact(Key::integer("sine.fraction", 22, 8..=28,
-            "Fraction bits of the sine.")),
+            "Number of fraction bits of the sine.")),
         synchronous: bool = Key::flag("sine.synchronous", true,
-            "ROM 18 reads on the clock edge (block RAM) instead of at once (logic)."),
+            "Whether ROM 18 is read at the clock edge (block memory). If false, it is combinational (logic)."),
         address: u32 = Key::integer("sine.address", 12, 4..=16,
-            "Address bits of the direct table.")
+            "Number of address bits of the direct table.")
             .only_when("sine.scheme", "direct"),
         segments: Vec<u32> = Key::integers("sine.segments", &[6, 8, 7, 6, 5, 4, 3, 3, 2], 2..=10, 1..=11,
-            "log2 of the segments for each factor of four of 1 - cos, from the top.")
+            "Log2 of the number of segments for each range of 1 - cos, from the top. Each range is a factor of \
+             four, for example 1/4 to 1.")
             .only_when("sine.scheme", "segmented"),
         slope_fraction: u32 = Key::integer("sine.slope_fraction", 18, 8..=28,
-            "Fraction bits of the rise over a segment.")
+            "Number of fraction bits of the rise over a segment.")
             .only_when("sine.scheme", "segmented"),
         domain: Domain = Domain::keys(),
         deviation: f64 = Key::number("domain.deviation", 30.0, 0.0..=90.0,

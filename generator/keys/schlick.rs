@@ -11,8 +11,8 @@ glint_config::keys! {
     pub struct Keys {
         operands: Operands = Operands::keys(),
         fraction: u32 = Key {
-            doc: "Fraction bits of the reflectance f, the quotient; each takes a clock. It is truncated: \
-                  one bit more is as near as rounding.",
+            doc: "Number of fraction bits of the reflectance f, the quotient. Each bit takes one clock. The \
+                  quotient is truncated; one more bit is as accurate as rounding.",
             ..common::intensity_fraction(10)
         },
         output_rounding: Rounding = common::output_rounding(),

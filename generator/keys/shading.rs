@@ -32,25 +32,28 @@ glint_config::keys! {
     /// The values of a configuration of the device `shading`, one field for each of its keys.
     pub struct Keys {
         highlight: HighlightDevice = Key::choice("highlight", "cosine-power", HighlightDevice::WORDS,
-            "The device that makes the highlight of the cosine."),
+            "The device that computes the highlight from the cosine."),
         power: u32 = common::power().only_when("highlight", "cosine-power"),
         formula: String = Key::text(FORMULA, "x^32", TextPattern::Formula,
-            "The highlight as a function of the cosine x, without an exponent.")
+            "The highlight as a formula of the cosine x, without an exponent.")
             .only_when("highlight", "function"),
         lights: u32 = Key::integer("lights", 1, 1..=4,
-            "Lights, each with a light and a half vector of its own; their diffuse and specular light adds up."),
+            "Number of lights. Each light has its own light vector and half vector. Their diffuse and specular \
+             parts are added."),
         two_sided: bool = dot_product::two_sided(),
         normal: u32 = Key::integer("normal.fraction", 14, 6..=14,
-            "Fraction bits of a component of the normal, s1.F, which need not be a unit vector."),
+            "Number of fraction bits F of the components of the normal, whose format is s1.F. The normal may \
+             have any length."),
         light: u32 = Key::integer("light.fraction", 14, 6..=14,
-            "Fraction bits of a component of the light and the half vector, unit vectors, s1.F."),
+            "Number of fraction bits F of the components of the light vector and the half vector, which are \
+             unit vectors with the format s1.F."),
         cosine: u32 = Key::integer("cosine.fraction", 18, 12..=20,
-            "Fraction bits of the cosine between normal and half vector."),
+            "Number of fraction bits of the cosine between normal and half vector."),
         exponent_bits: u32 = common::exponent_bits().unless("highlight", "function"),
         colour_bits: u32 = Key::integer("colour.bits", 8, 2..=10,
-            "Bits of a coefficient of the material, and of a result."),
+            "Width of the coefficients of the material and of the results."),
         most: i64 = Key::integer("domain.exponent_max", 128, 16..=4095,
-            "The largest n for which the accuracy contract is stated.")
+            "The largest n of the accuracy contract.")
             .unless("highlight", "function"),
     }
 }

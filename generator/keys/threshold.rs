@@ -12,7 +12,9 @@ glint_config::keys! {
         operands: Operands = Operands::keys(),
         f: Intensity = Intensity::keys(),
         levels: Vec<u32> = Key::integers("visibility.levels", &[50], 0..=10_000, 1..=12,
-            "The levels in ROM(n), in hundredths of an output unit: one for each octave of n (up to 1, 2 to 3, 4 to 7, ...), of which the last holds for all above. A smaller f is shown as 0."),
+            "The levels of visibility in ROM(n), in hundredths of an output unit. There is one level for each \
+             octave of n (0 to 1, 2 to 3, 4 to 7, ...); the last level is for all larger n. An f below its \
+             level gives 0."),
         domain: Domain = Domain::keys(),
     }
 }

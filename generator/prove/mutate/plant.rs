@@ -99,8 +99,8 @@ fn plant_bit(design: &mut Design, net: NetId, bit: u32, how: BitChange) {
     }
 }
 
-/// Makes every cell, register input, register enable and ROM address that reads the net `from` read the net `to`, except the
-/// cells that drive the nets in `except`.
+/// Makes every cell, register input, register enable, ROM address and ROM enable that reads the net `from` read the net `to`,
+/// except the cells that drive the nets in `except`.
 fn redirect(design: &mut Design, from: NetId, to: NetId, except: &[NetId]) {
     let redirect = |net: &mut NetId| {
         if *net == from {
@@ -120,6 +120,7 @@ fn redirect(design: &mut Design, from: NetId, to: NetId, except: &[NetId]) {
     }
     for rom in &mut design.roms {
         redirect(&mut rom.address);
+        rom.enable.as_mut().map(redirect);
     }
 }
 
