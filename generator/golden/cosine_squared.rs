@@ -1,10 +1,11 @@
 //! The golden model and the accuracy contract of the device `cosine-squared`, which computes f = cos²(a·δ) for the points of a
 //! scan line.
 //!
-//! δ is the angle at a point of the line; a = √(n/2) with the specular exponent n; f is the reflectance, the factor by which the
-//! device multiplies an amplitude. The host multiplies its angles by a, so the device only sees the product a·δ. The golden model
-//! reads cos² from its own copy of the device's table, ROM 12; the contract compares the result with the exact formula. The
-//! source is a prototype (Abbas, Szirmay-Kalos, Horváth 2000), which the patent of `quad-cosine` (Glint calls it seed 000) cites.
+//! δ is the angle at a point of the line; a = √(n/2) with the specular exponent n; f is the reflectance, the factor by which
+//! the device multiplies an amplitude. The host multiplies its angles by a, so the device only sees the product a·δ. f is 0 if
+//! |a·δ| is a right angle or more. The golden model reads cos² from its own copy of the device's table, ROM 12; the contract
+//! compares the result with the exact formula. The source is a prototype (Abbas, Szirmay-Kalos, Horváth 2000), which the patent
+//! of `quad-cosine` (Glint calls it seed 000) cites.
 
 use std::f64::consts::FRAC_PI_2;
 

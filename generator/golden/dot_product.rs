@@ -1,8 +1,9 @@
 //! The golden model and the accuracy contract of the device `dot-product`, which computes cos γ = max(0, N·H / |N|).
 //!
-//! N is a vector of any length, such as an interpolated normal (operands `nx`, `ny`, `nz`); H is a unit vector, such as the half
-//! vector (`hx`, `hy`, `hz`); γ is the angle between them. With the key `two_sided` the result is |N·H| / |N|. The device
-//! multiplies N·H by 1/√(N·N), which it interpolates in a table. For example, N = (0, 0, 0.5) and H = (0, 0, 1) give 1.
+//! N is a vector of any length, such as an interpolated normal (operands `nx`, `ny`, `nz`); H is a unit vector, such as the
+//! half vector (`hx`, `hy`, `hz`); γ is the angle between them. With the key `two_sided` the result is |N·H| / |N|. The result
+//! is at most 1, and it is 0 if N = 0. The device multiplies N·H by 1/√(N·N), which it interpolates in a table. For example, N
+//! = (0, 0, 0.5) and H = (0, 0, 1) give 1.
 
 use std::sync::Arc;
 
@@ -101,8 +102,8 @@ impl CosineFormula {
         }
     }
 
-    /// Returns the raw value of the register `distance`: half of N·H, shifted so that the length of N is from 1 to 2. With
-    /// `two_sided` it is half of |N·H|.
+    /// Returns the raw value of the register `distance`: half of N·H, shifted so that the length of N is from 1 to 2, and
+    /// rounded. A negative N·H gives 0; with `two_sided` the value is half of |N·H|.
     fn distance(&self, sum: i64, shift: i64) -> i64 {
         self.distance.apply(if self.keys.two_sided { sum.abs() } else { sum } << shift)
     }

@@ -69,12 +69,14 @@ pub trait Model: CloneModel + Send + Sync {
     /// [`Model::inputs`].
     fn clock(&mut self, inputs: &[u64]);
 
-    /// Returns the model, in the state after power-up, of a variant of the device: each result that is combinational logic has a
-    /// register `<output>_reg` behind it. The microinstruction that raised `valid` loads these registers, and one more after it
-    /// raises `valid`. Other outputs do not change.
+    /// Returns the model, in the state after power-up, of a variant of the device: each result that is combinational logic has
+    /// a register `<output>_reg` behind it. The microinstruction that raised `valid` loads these registers, and one more after
+    /// it raises `valid`. If the device delays `valid`, every microinstruction loads the registers, and the delay becomes one
+    /// clock longer. Other outputs do not change. A copy of the model is returned if no result is combinational logic.
     ///
-    /// A model made from a [`frame::Frame`] has this variant, unless a condition decides what follows the microinstruction with
-    /// `valid`. Any other model has it only if its author wrote it; otherwise the result is `None`.
+    /// A model made from a [`frame::Frame`] has this variant, unless it does not delay `valid` and a condition decides what
+    /// follows a microinstruction with `valid`. Any other model has the variant only if its author wrote it; otherwise the
+    /// result is `None`.
     fn with_output_registers(&self) -> Option<Box<dyn Model>> {
         None
     }
@@ -84,8 +86,8 @@ pub trait Model: CloneModel + Send + Sync {
     /// the buffers; an operand that is written in the same clock gets the new value. The last clock of a computation also accepts
     /// `start`, so that the next computation follows at once.
     ///
-    /// A model made from a [`frame::Frame`] has this variant. Any other model has it only if its author wrote it; otherwise the
-    /// result is `None`.
+    /// A model made from a [`frame::Frame`] has this variant; without operands the variant behaves as the model itself. Any
+    /// other model has the variant only if its author wrote it; otherwise the result is `None`.
     fn with_operand_buffers(&self) -> Option<Box<dyn Model>> {
         None
     }
@@ -150,7 +152,7 @@ pub struct Output {
 }
 
 /// The accuracy contract of a device: the exact formula of each output, and a proven bound on the difference of the output from
-/// it.
+/// the formula.
 ///
 /// A device may have any number of outputs, signed or unsigned. A device that multiplies colours by a reflectance f uses a
 /// [`Highlight`] as its contract.

@@ -138,7 +138,8 @@ pub struct CosineTable {
     pub words: Vec<i64>,
     /// The largest distance of `cosᵏ` at the ends of a step from the middle of these two values.
     pub step: f64,
-    /// The largest distance of `cosᵏ` at the ends of a step from the word of the step, which is rounded.
+    /// The largest distance of `cosᵏ` at the ends of a step from the word of the step, which is rounded, plus a margin for the
+    /// errors of f64.
     pub total: f64,
     /// The largest slope of `cosᵏ`, as a difference per right angle.
     pub slope: f64,

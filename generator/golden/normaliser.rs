@@ -1,7 +1,7 @@
 //! The golden model and the accuracy contract of the device `normaliser`, which computes the unit vector v/|v| of a vector v.
 //!
-//! v has any length and the components `x`, `y`, `z`. The device shifts v, interpolates 1/√(v·v) in a table, and multiplies each
-//! component by it. For example, v = (0, 0, 0.5) gives (0, 0, 1).
+//! v has any length and the components `x`, `y`, `z`. The device shifts v, interpolates 1/√(v·v) in a table, and multiplies
+//! each component by it. For example, v = (0, 0, 0.5) gives (0, 0, 1). The zero vector gives the zero vector.
 
 use std::sync::Arc;
 

@@ -2,10 +2,11 @@
 //! ambient + Σ (diffuse·cos α + specular·f(cos γ)).
 //!
 //! The sum runs over the lights. α is the angle between the surface normal and the direction of a light, γ the angle between
-//! the normal and the half vector of the light; f is the highlight's formula, for example cⁿ with c = cos γ. `shading` consists
-//! of other devices, called its parts. For each light two `dot-product` devices compute the cosines from a normal of any
-//! length, and a highlight device such as `blinn` or `function` computes f. The golden model runs the golden models of the
-//! parts and adds their light, and the contract combines the proved error bounds of the parts.
+//! the normal and the half vector of the light; f is the highlight's formula, for example cⁿ with c = cos γ. A negative cosine
+//! counts as 0, or as positive with the key `two_sided`, and a colour saturates. `shading` consists of other devices, called
+//! its parts. For each light two `dot-product` devices compute the cosines from a normal of any length, and a highlight device
+//! such as `blinn` or `function` computes f. The golden model runs the golden models of the parts and adds their light, and the
+//! contract combines the proved error bounds of the parts.
 
 use std::sync::Arc;
 
