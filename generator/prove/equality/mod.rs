@@ -118,7 +118,8 @@ impl fmt::Display for OutputDifference {
 /// # Errors
 /// Fails if `pipeline` is no pipeline, if the designs have different operands, or if the core lacks an output of the pipeline.
 /// Fails also if a design shows no result (the core within 8192 clocks), if a design has a combinational loop, or if the solver
-/// cannot be run.
+/// cannot be run. Fails also if operands decide about `valid` within a microinstruction, or if they decide the next
+/// microinstruction otherwise than by a choice between two.
 pub fn compare(
     sequential: &Design,
     pipeline: &Design,
@@ -351,7 +352,8 @@ impl<'p> PipelineComparison<'p> {
 
     /// Executes the microprogram along one path, until the results are shown or a jump depends on operands. If the results are
     /// shown, the function compares them. At such a jump, it adds the paths that continue to `ways`. For example, a loop whose
-    /// trip count depends on an operand makes a path for each trip count. Fails if the core shows no result within 8192 clocks.
+    /// trip count depends on an operand makes a path for each trip count. Fails if the core shows no result within 8192 clocks,
+    /// or if operands decide about `valid` within a microinstruction.
     fn follow(
         &mut self,
         core: &Execution<'_>,

@@ -29,7 +29,8 @@ use glint_tools::Tool;
 pub enum TextVerdict {
     /// Every output is the same for every point.
     Equal(TextProof),
-    /// An output of the Verilog differs from the netlist. The text states for which values.
+    /// An output of the Verilog differs from the netlist, or a clock in which the pipeline waits changes a register or a memory
+    /// of the Verilog. The string states the difference and the values of the inputs.
     Different(String),
     /// The solver does not decide the question.
     Open(Open),
@@ -56,7 +57,8 @@ pub struct TextProof {
 /// [`glint_tools::elaborate`] for this Verilog. `limit` is the time limit of all answers of the solver together.
 ///
 /// # Errors
-/// Fails if the design is no pipeline, if the Verilog lacks an output of the netlist, or if the solver cannot be run.
+/// Fails if the design is no pipeline, if the Verilog lacks an output of the netlist or has an output of another width, or if
+/// the solver cannot be run.
 pub fn compare_text(
     design: &Design,
     text: &Value,

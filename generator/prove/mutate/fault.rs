@@ -143,8 +143,8 @@ impl Faults {
         self.0.push(NetlistFault { id, kind, site });
     }
 
-    /// Adds three faults for each bit of a net. Constants and renamed nets have no such faults. For example, a net `adder15` of
-    /// 4 bits has 12 such faults, from `adder15[0]:stuck-at-0` to `adder15[3]:inverted`.
+    /// Adds three faults for each bit of a net. Constants, renamed nets and undriven nets have no such faults. For example, a
+    /// net `adder15` of 4 bits has 12 such faults, from `adder15[0]:stuck-at-0` to `adder15[3]:inverted`.
     fn bits(&mut self, id: NetId, net: &Net) {
         if matches!(net.driver, Driver::Constant(_) | Driver::Undriven | Driver::Op(Op::Relabel(_)))
         {

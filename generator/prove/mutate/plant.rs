@@ -65,7 +65,8 @@ fn at_fault(design: &mut Design, sound: NetId, bit: u32, how: BitChange) -> Driv
     })
 }
 
-/// Plants a fault in bit `bit` of a net: in the data of a register, in what the design reads from a port, or in the net itself.
+/// Plants a fault in bit `bit` of a net. For a register, the fault is in its data and its reset value; for an input port, it is
+/// in the value that the design reads from the port; for any other net, it is in the net itself.
 fn plant_bit(design: &mut Design, net: NetId, bit: u32, how: BitChange) {
     match design.net(net).driver.clone() {
         // The checks compare the register's output, so the fault is in the value that the register takes.
