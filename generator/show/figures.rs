@@ -170,7 +170,8 @@ impl Figures {
         }
     }
 
-    /// Returns the longest path in words. For example, `first 0.4 → second 3.1 → third 7.9 ns`.
+    /// Returns the longest path in words. For example, `first 0.4 → second 3.1 → third 7.9 ns`. Call this function only if the
+    /// path has a point.
     pub fn path_in_words(&self) -> String {
         let steps = self.critical_path.iter().map(|step| format!("{} {:.1}", step.name, step.ns));
         format!("{} ns", Vec::from_iter(steps).join(" → "))

@@ -156,7 +156,7 @@ fn known(design: &Design) -> BTreeMap<&str, (u8, String)> {
 }
 
 /// Returns the name of a net in its module, without the names of instances and without the number of a bit. For example,
-/// `core.datapath.product[3]` is `product`.
+/// `core.datapath.product[3]` is `product`. A net outside the core gives an empty text.
 fn own_name(name: &str) -> &str {
     let inside = name.strip_prefix(CORE).and_then(|rest| rest.strip_prefix('.')).unwrap_or("");
     let units = ["control.", "datapath."];

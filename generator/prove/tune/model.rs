@@ -22,7 +22,7 @@ pub struct Features {
     /// The number of bits of muxes, for each input beyond the first. For example, a mux of 3 inputs of 8 bits counts 16.
     pub mux: f64,
     /// The number of bits of gates. A reduction counts a third of its operand's bits, and an equality a third of the bits of
-    /// both operands.
+    /// both operands. Inverters do not count.
     pub logic: f64,
     /// The number of bits of the ROMs that are made of look-up tables, divided by 16.
     pub rom: f64,

@@ -114,7 +114,8 @@ fn lockstep(subject: &CheckSubject<'_>, progress: &(dyn Fn(u64) + Sync)) -> Resu
 }
 
 /// Checks that the golden model is within the error bound of the formula in f64, for every combination of operands that the
-/// contract's sweep lists. A long check is replaced by its record, if one exists, and a part of the record is computed again.
+/// contract's sweep lists. A long check is replaced by its record, and a part of the record is computed again. Without a
+/// record, a long check is not run. A contract that states no bound has no such check.
 pub const CONTRACT: Check = Check {
     id: "contract",
     title: "Golden model against the formula",
@@ -215,7 +216,8 @@ fn without_record(subject: &CheckSubject<'_>, evaluations: u64) -> Finding {
     Finding { complete_with: Some(command), ..Finding::without(CheckVerdict::NotRun, why) }
 }
 
-/// Compares golden model and netlist clock by clock for every combination of operands, if the operands have few enough bits.
+/// Compares golden model and netlist clock by clock for every combination of operands. The check does not apply if the operands
+/// have too many bits for this.
 pub const CLOCKS: Check = Check {
     id: "clocks",
     title: "Golden model against simulation, every operand",
@@ -247,7 +249,8 @@ pub const CLOCKS: Check = Check {
 };
 
 /// Plants faults in the netlist of a sequential core, one at a time, and checks that the comparison with the golden model
-/// notices them. If more than 1 % of the faults are undecided, the verdict is [`CheckVerdict::Undecided`].
+/// notices them. Without full effort it plants at most 2048 faults. If more than 1 % of the faults are undecided, the verdict
+/// is [`CheckVerdict::Undecided`]. The check does not apply to a pipeline.
 pub const MUTATION: Check = Check {
     id: "mutation",
     title: "Faults in the netlist",

@@ -40,7 +40,8 @@ pub struct DeviceCurves {
     pub summary: String,
     /// The proven bound on the error of an output, in output units.
     pub bound_units: f64,
-    /// The largest value of a colour operand. An error of `f` multiplied by it is an error in output units.
+    /// The largest value of a colour operand; 0 for a device without colours. An error of `f` multiplied by this value is an
+    /// error in output units.
     pub largest_colour: f64,
     /// The largest errors for each exponent; empty if no operands of the device denote γ and n.
     pub exponents: Vec<AtExponent>,
@@ -138,9 +139,9 @@ fn places() -> Vec<f64> {
     even(0.0, REACH, PLACES)
 }
 
-/// Returns the signed error of the formula at each position of [`places`], and the largest fixed-point error near the
-/// position. Both errors are NaN for angles beyond 90°, at which there is no highlight. For example, the curve of n = 2 ends
-/// at √n·γ = 2.2. Returns `None` if the operands cannot represent `n`.
+/// Returns the signed error of the formula at each position of [`places`], and the largest fixed-point error near the position.
+/// Both errors are NaN for angles beyond 90°, at which there is no highlight. For example, the curve of n = 2 ends at √n·γ =
+/// 2.2. Returns `None` if the device is no highlight, or if its operands cannot represent `n`.
 fn over_angle(contract: &dyn Contract, n: f64) -> Option<Vec<AtAngle>> {
     let highlight = contract.highlight()?;
     let half = REACH / f64::from(PLACES) / 2.0;

@@ -158,7 +158,8 @@ impl Feed {
     /// device, for messages.
     ///
     /// # Errors
-    /// Fails if a picture cannot supply an operand, or if the device lacks the colour operands or their outputs.
+    /// Fails if a picture cannot supply an operand, or if the device lacks the colour operands or their outputs. Fails also if
+    /// a device that computes lines lacks an operand of a line, such as `delta_zeta`.
     pub fn new(device: &str, contract: &dyn Contract) -> Result<Self> {
         Self::with(device, contract, &[])
     }

@@ -33,7 +33,7 @@ impl Picture {
         Self { width, pixels: Vec::new() }
     }
 
-    /// Returns the number of pixel rows in the picture.
+    /// Returns the number of pixel rows in the picture. The width must not be 0.
     pub fn height(&self) -> u32 {
         (self.pixels.len() / self.width as usize) as u32
     }

@@ -136,8 +136,8 @@ impl Waves {
         Ok(Self::cut(design, "points through the pipeline", clocks.len(), lanes))
     }
 
-    /// Records the waveform of a core with a microprogram: the handshake, the microinstruction, the architectural registers,
-    /// and the results of one computation.
+    /// Records the waveform of a core with a microprogram: the handshake, the microinstruction, the architectural registers
+    /// that change, and the results of one computation.
     fn computation(core: &Core) -> Result<Self> {
         let design = &core.design;
         let Handshake { start, busy, valid, done, .. } = design.handshake()?;
@@ -172,8 +172,8 @@ impl Waves {
         Self { name: design.name.clone(), pipelined, what, clocks: shown, lanes }
     }
 
-    /// Returns the number of the first clock in which the signal `name` is 1. Returns `None` if the signal is not recorded, or
-    /// never 1.
+    /// Returns the number of the first clock in which the signal `name` is 1, among the clocks that the diagram shows. Returns
+    /// `None` if the signal is not recorded, or is 1 in none of these clocks.
     pub fn first(&self, name: &str) -> Option<u32> {
         let lane = self.lanes.iter().find(|lane| lane.name == name)?;
         let at = lane.values.iter().position(|value| value.as_deref() == Some("1"))?;

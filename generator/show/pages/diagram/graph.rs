@@ -34,7 +34,7 @@ pub struct DiagramBox {
     pub control: String,
     /// The text that appears when the pointer is on the box.
     pub title: String,
-    /// The stage of the box in a pipeline; `None` for a port.
+    /// The stage of the box in a pipeline; `None` for a port, and for every box of a sequential core.
     pub stage: Option<usize>,
 }
 

@@ -77,7 +77,7 @@ pub struct Routes {
 }
 
 impl Routes {
-    /// Returns the vertical position of the topmost wire.
+    /// Returns the vertical position of the topmost wire, or `f64::MAX` without wires.
     pub fn top(&self) -> f64 {
         let mut top = f64::MAX;
         for piece in self.nets.iter().flat_map(|net| &net.pieces) {
@@ -86,7 +86,7 @@ impl Routes {
         top
     }
 
-    /// Returns the vertical position of the lowest wire.
+    /// Returns the vertical position of the lowest wire, or 0 without wires. Positions grow downward.
     pub fn bottom(&self) -> f64 {
         let mut bottom: f64 = 0.0;
         for piece in self.nets.iter().flat_map(|net| &net.pieces) {
