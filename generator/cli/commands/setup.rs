@@ -119,7 +119,7 @@ struct SetUp {
 ///
 /// # Errors
 /// Fails if the configuration has problems, if an input is unknown, missing or not valid, if an operand would exceed its
-/// domain, or if the CSV file cannot be read.
+/// domain, or if the CSV file cannot be read. Fails also for a device without operands to set up, such as `shading`.
 pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) -> Result<bool> {
     let one = load_one(registry, &registry.schemas(), &arguments.config)?;
     let host = HostInputs::new(&one)?;

@@ -80,7 +80,7 @@ struct WorstReport<'a> {
 }
 
 /// Runs `glint worst`, which searches for the operands with the largest error of an output. Returns whether the errors of all
-/// configurations are within their bounds.
+/// configurations are within their bounds. If a contract states no bound, a finite error is within it.
 ///
 /// # Errors
 /// Fails if a configuration has problems or no output, or if a record cannot be read or written.

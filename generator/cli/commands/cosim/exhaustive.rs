@@ -33,8 +33,9 @@ const CORES: [u32; 3] = [1, 16, 1000];
 /// Returns whether everything holds.
 ///
 /// # Errors
-/// Fails if a configuration has problems, if the file of `--resume` belongs to another check or is damaged, or if a signal has
-/// interrupted the check.
+/// Fails if a configuration has problems, if the values of `--values` are not valid, if the file of `--resume` belongs to
+/// another check or is damaged, or if a signal has interrupted the check. `--resume` with several configurations is wrong
+/// usage.
 pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) -> Result<bool> {
     let loaded = load(registry, &arguments.configs.paths)?;
     if arguments.resume.is_some() && loaded.len() != 1 {
