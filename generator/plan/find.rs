@@ -1,4 +1,5 @@
-//! Finds the plan for the formulas of a statement, and proves the error of each result. It caches the plans that it has found.
+//! Finds the plan for the formulas of a statement, and proves the error of each result. It caches the plans that it has found,
+//! and the refusals.
 
 use std::collections::HashMap;
 use std::sync::{Arc, LazyLock, Mutex};
@@ -81,8 +82,8 @@ pub struct ProvedPlan {
 
 type FindResult = Result<Arc<ProvedPlan>, PlanRefusal>;
 
-/// Returns the plan for a statement, with proven error bounds. A plan that was found earlier comes from a cache, without a new
-/// search.
+/// Returns the plan for a statement, with proven error bounds. The same statement gets the same plan or the same refusal again
+/// from a cache, without a new search.
 ///
 /// # Errors
 /// Fails if a formula has no plan, or if no plan keeps the allowed errors. The refusal says why, and how to change the

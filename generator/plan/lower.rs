@@ -71,7 +71,8 @@ impl Guards {
         Self { bits: Vec::new(), style }
     }
 
-    /// Gives the rounding operation number `place` one more fraction bit.
+    /// Gives the rounding operation number `place` one more fraction bit. If the list has no entry for the operation, the
+    /// function first appends entries of 0.
     pub(super) fn add_bit(&mut self, place: usize) {
         if place >= self.bits.len() {
             self.bits.resize(place + 1, 0);

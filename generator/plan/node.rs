@@ -193,9 +193,9 @@ impl Operation {
     }
 }
 
-/// Returns the shifts with which hardware normalises a word of `width` bits, from the largest to the smallest. They are
-/// powers of two below `width`. For example, 8 bits need the shifts 4, 2 and 1, and by pairs 4 and 2. A word of one bit needs
-/// none.
+/// Returns the shifts with which hardware normalises a word of `width` bits, from the largest to the smallest. They are powers
+/// of two below `width`, which must be at least 1. For example, 8 bits need the shifts 4, 2 and 1, and by pairs 4 and 2. A word
+/// of one bit needs none.
 pub fn normalising_shifts(width: u32, by_pairs: bool) -> Vec<u32> {
     let least = if by_pairs { 2 } else { 1 };
     let mut shifts = Vec::new();

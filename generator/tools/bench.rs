@@ -58,9 +58,8 @@ impl fmt::Display for VerilogSimulator {
 /// `PASS rsqrt: 3210 clocks, no difference` is a verdict.
 ///
 /// # Errors
-/// Fails if the simulator is missing or rejects the sources (Verilator: or warns of them), or if no file is Verilog. Fails if
-/// building and running take more than `limit` together, or if the bench crashes or ends without a verdict. A failing bench is no
-/// error; the outcome says so.
+/// Fails as [`BuiltBench::build`] does. Fails if building and running take more than `limit` together, or if the bench crashes
+/// or ends without a verdict. A failing bench is no error; the outcome says so.
 pub fn run_bench<N: AsRef<str>, C: AsRef<[u8]>>(
     simulator: VerilogSimulator,
     files: &[(N, C)],
@@ -102,7 +101,7 @@ impl BuiltBench {
     ///
     /// # Errors
     /// Fails if the simulator is missing or rejects the sources (Verilator: or warns of them), or if building takes more than
-    /// `limit`.
+    /// `limit`. Fails also if no file is Verilog, or if a name contains a directory, begins with a dash, or occurs twice.
     pub fn build<N: AsRef<str>, C: AsRef<[u8]>>(
         simulator: VerilogSimulator,
         files: &[(N, C)],
