@@ -70,7 +70,7 @@ impl Expression {
     }
 
     /// Evaluates the formula with increasing precision until `enough` returns true for the value. Returns the last result, even
-    /// if it is not enough.
+    /// if it is not enough. Fails at the first part without a value, or if 1024 bits do not decide a comparison or a jump.
     fn decided(
         &self,
         operands: &[(&str, RBig)],
@@ -157,7 +157,8 @@ impl Comparison {
         self.decided(&Double, &left, &right).map_err(fault)
     }
 
-    /// Returns whether the comparison holds for the intervals of both sides; `None` if they do not decide it.
+    /// Returns whether the comparison holds for the intervals of both sides; `None` if they do not decide it. Fails if the
+    /// difference of both sides cannot be computed.
     pub(super) fn decided<A: Arithmetic>(
         &self,
         arithmetic: &A,
@@ -234,7 +235,7 @@ pub(super) fn binary<A: Arithmetic>(
 }
 
 /// Computes the remainder of a division, which is from 0 to below the divisor, or above it for a negative divisor. For example,
-/// the remainder of −1 by 4 is 3.
+/// the remainder of −1 by 4 is 3. Fails if the divisor may be 0, or if precise arithmetic does not decide the integer quotient.
 fn remainder<A: Arithmetic>(
     arithmetic: &A,
     a: &A::Value,

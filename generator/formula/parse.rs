@@ -233,7 +233,8 @@ impl Parser<'_> {
         Ok(Comparison { left, right, or_equal: sign.len() == 2 })
     }
 
-    /// Parses operators of the same precedence, which are applied from left to right. `part` parses an operand.
+    /// Parses operators of the same precedence, which are applied from left to right. `part` parses an operand. Fails at the
+    /// first mistake.
     fn chain(
         &mut self,
         signs: &[(&str, Operator)],
@@ -260,7 +261,8 @@ impl Parser<'_> {
         self.chain(&signs, Self::signed)
     }
 
-    /// Parses a power with a sign before it. The sign is applied after the power. For example, `-x^2` is −(x²).
+    /// Parses a power with a sign before it. The sign is applied after the power. For example, `-x^2` is −(x²). Fails at the
+    /// first mistake.
     fn signed(&mut self) -> Result<Expression, Fault> {
         let from = self.at;
         let mut negations = 0;
@@ -331,7 +333,8 @@ impl Parser<'_> {
         self.call(from, &token)
     }
 
-    /// Parses the arguments of a call of the function `name`. The opening parenthesis has been read.
+    /// Parses the arguments of a call of the function `name`. The opening parenthesis has been read. Fails if there is no such
+    /// function, or at the first mistake in an argument.
     fn call(&mut self, from: usize, name: &str) -> Result<Expression, Fault> {
         if name == "if" {
             let comparison = self.comparison()?;

@@ -144,7 +144,8 @@ impl Precise {
     }
 
     /// Returns the smallest interval that contains an operation's results at the four combinations of the intervals' limits. It
-    /// contains all results if the operation is monotone in each operand.
+    /// contains all results if the operation is monotone in each operand. Fails if an operation of the library fails, for
+    /// example because an exponent has too many bits.
     fn corners(
         &self,
         a: &PreciseValue,
@@ -161,7 +162,7 @@ impl Precise {
     }
 
     /// Returns the interval of a function that never falls. `down` and `up` compute the function with the two directions of
-    /// rounding.
+    /// rounding. Fails if an operation of the library fails, for example because an exponent has too many bits.
     fn rising(
         &self,
         a: &PreciseValue,
@@ -172,7 +173,8 @@ impl Precise {
     }
 
     /// Returns the interval of a sine or a cosine, whose slope is never steeper than 1. The function adds the length of the
-    /// interval, in both directions, to the value at its lower limit.
+    /// interval, in both directions, to the value at its lower limit. Fails if an operation of the library fails, for example
+    /// because an exponent has too many bits.
     fn wave(
         &self,
         a: &PreciseValue,
@@ -246,7 +248,7 @@ impl Precise {
     }
 }
 
-/// Returns the exact value if it is known, and otherwise the result of `compute`.
+/// Returns the exact value if it is known, and otherwise the result of `compute`. Fails if `compute` fails.
 fn or_computed(
     arithmetic: &Precise,
     exact: Option<Exact>,

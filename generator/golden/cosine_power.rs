@@ -128,7 +128,8 @@ impl Reflectance for PowerArithmetic {
     }
 
     /// Returns the largest n as an upper limit of the slope n·base^(m − 1), since the base is at most 1. At a right angle W is
-    /// (1 − n/m)^m if n is below m, and jumps from this value to 0. The result has this jump for the smallest n.
+    /// (1 − n/m)^m if n is below m, and jumps from this value to 0. The result has this jump for the smallest n. The result is
+    /// never `None`.
     fn variation(&self) -> Option<Variation> {
         let (least, most) = self.keys.domain.exponents();
         let power = f64::from(self.keys.power);

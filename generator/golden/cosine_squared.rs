@@ -116,7 +116,7 @@ impl Reflectance for SquaredArithmetic {
     }
 
     /// Returns the operands of a line of one point, at the angle `gamma`·√(n/2). The host multiplies angles by this root before
-    /// it writes them.
+    /// it writes them. The result is never `None`.
     fn at(&self, operands: &[Operand], gamma: f64, n: f64) -> Option<Vec<i64>> {
         let stretched = (n / 2.0).sqrt() * gamma;
         Some(vec![0, line::raw_angle(&operands[1], stretched), 0])
@@ -132,14 +132,14 @@ impl Reflectance for SquaredArithmetic {
     }
 
     /// Returns every step of ROM 12, an interval of angles with one word. The steps cover every angle that a line can reach.
-    /// For a right angle and beyond, the word is the table's last, 0, and the formula is 0 too.
+    /// For a right angle and beyond, the word is the table's last, 0, and the formula is 0 too. The result is never `None`.
     fn sweep(&self) -> Option<Sweep> {
         let last = (1 << self.keys.table_address) - 1;
         Some(Sweep::ranges([("step of the table", (0, last))]))
     }
 
     /// Returns the largest error over all angles in the step, of either sign. The formula falls from one end of the step to the
-    /// other, so the error is largest at an end.
+    /// other, so the error is largest at an end. The result is never `None`.
     fn sweep_error(&self, place: &[i64]) -> Option<f64> {
         let step = place[0];
         let word = self.table.words[step as usize];

@@ -145,7 +145,8 @@ impl Formula for CosineFormula {
     }
 
     /// Returns a normal of random length, and a unit vector that is close to the normal's direction or nearly at a right angle
-    /// to it. Highlights are near a cosine of 1, and at a cosine of 0 the result begins to be clamped.
+    /// to it. Highlights are near a cosine of 1, and at a cosine of 0 the result begins to be clamped. The result is never
+    /// `None`.
     fn hint(&self, unit: &mut dyn FnMut() -> f64) -> Option<Vec<i64>> {
         let normal = unit_vector(centred(unit));
         let off = centred(unit);
@@ -168,13 +169,13 @@ impl Formula for CosineFormula {
         Some([normal, half].concat())
     }
 
-    /// Returns every sum of squares N·N, as a raw value. The sum determines the inverse root.
+    /// Returns every sum of squares N·N, as a raw value. The sum determines the inverse root. The result is never `None`.
     fn sweep(&self) -> Option<Sweep> {
         Some(self.root.sweep())
     }
 
     /// Returns an upper limit of the error, in units. It is the actual error of the inverse root for this sum of squares, plus
-    /// the largest possible errors of the factors and of the rounding.
+    /// the largest possible errors of the factors and of the rounding. The result is never `None`.
     fn sweep_error(&self, place: &[i64]) -> Option<f64> {
         let [_, factors, rounding] = self.errors();
         let error = self.root.relative_error(place[0]) + factors + rounding;

@@ -112,7 +112,7 @@ impl Reflectance for SchlickArithmetic {
 
     /// Returns the largest n as an upper limit of the slope n/(n − n·c + c)², which is largest at an end: n at c = 1, and 1/n
     /// at c = 0. At c = 0 the formula is 0, as it is beyond a right angle. With n = 0 the formula is 1 for every c above 0, and
-    /// jumps to 0 at a right angle.
+    /// jumps to 0 at a right angle. The result is never `None`.
     fn variation(&self) -> Option<Variation> {
         let (least, most) = self.0.domain.exponents();
         Some(Variation { slope: most as f64, jump: if least > 0 { 0.0 } else { 1.0 } })

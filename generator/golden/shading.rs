@@ -331,7 +331,7 @@ impl Formula for Shading {
     }
 
     /// Returns random raw operands. The lights are in any direction, and the half vectors are near the normal, the nearer the
-    /// larger the exponent is. The colours are so dark that their sum does not saturate.
+    /// larger the exponent is. The colours are so dark that their sum does not saturate. The result is never `None`.
     fn hint(&self, unit: &mut dyn FnMut() -> f64) -> Option<Vec<i64>> {
         let Keys { normal, light, colour_bits, most, lights, .. } = self.keys;
         let direction = unit_vector(centred(unit));
@@ -360,7 +360,8 @@ impl Formula for Shading {
         Some(operands)
     }
 
-    /// Returns normals in one plane, under lights and half vectors along the z axis, with fixed colours and four exponents.
+    /// Returns normals in one plane, under lights and half vectors along the z axis, with fixed colours and four exponents. The
+    /// result is never `None`.
     fn sweep(&self) -> Option<Sweep> {
         let Keys { normal, light, colour_bits, most, .. } = self.keys;
         let (one, to_light, white) = (1 << normal, 1 << light, (1 << colour_bits) - 1);

@@ -203,7 +203,7 @@ impl<'s> Lowering<'s> {
     }
 
     /// Returns the node of the result with the index `number`, limited to its stated format if the result saturates. For any
-    /// other result, returns `node` itself.
+    /// other result, returns `node` itself. Fails if a node has too many bits.
     fn saturated(&mut self, number: usize, node: NodeId) -> Result<NodeId, PlanRefusal> {
         let StatedResult { name, width, .. } = &self.statement.results[number];
         let Some(StatedWidth { format, overflow: StatedOverflow::Saturate(_) }) = width else {
@@ -231,7 +231,7 @@ impl<'s> Lowering<'s> {
 
     /// Chooses a number of fraction bits, and returns the node that `make` adds with this number. The number is `frac` plus the
     /// guard bits of the next rounding operation. The operation is counted even if `make` rounds nothing, so that later
-    /// operations keep their numbers.
+    /// operations keep their numbers. Fails if `make` fails.
     fn rounding(
         &mut self,
         frac: i32,

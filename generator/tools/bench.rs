@@ -70,7 +70,8 @@ pub fn run_bench<N: AsRef<str>, C: AsRef<[u8]>>(
     run_bench_in(&search, simulator, files, top, limit)
 }
 
-/// Builds and runs a bench as [`run_bench`] does. Looks for the simulator on the search path `search` instead of `PATH`.
+/// Builds and runs a bench as [`run_bench`] does. Looks for the simulator on the search path `search` instead of `PATH`. Fails
+/// as [`run_bench`] does.
 pub(super) fn run_bench_in<N: AsRef<str>, C: AsRef<[u8]>>(
     search: &OsStr,
     simulator: VerilogSimulator,

@@ -218,7 +218,7 @@ impl Loaded {
 
     /// Does the same as [`Loaded::bound`], and warns about a module name with `__`. If the device's own keys are not all at
     /// their defaults, it also prints the contract's remarks on the formula as warnings. For the defaults, the page of the
-    /// catalogue has the remarks.
+    /// catalogue has the remarks. Fails as [`Loaded::bound`] does.
     fn contract(&self) -> Result<()> {
         self.bound()?;
         let config = &self.core.config;

@@ -74,7 +74,7 @@ impl Staging {
 }
 
 /// Moves the files in `staging` to their places below `out`, in the order of `made`. The manifest, which has the digests of the
-/// other files, must be the last one.
+/// other files, must be the last one. Fails if a file or a directory cannot be deleted, made or moved.
 fn place(out: &Path, staging: &Path, made: &[String]) -> Result<()> {
     for path in made {
         let (new, place) = (staging.join(path), out.join(path));
@@ -87,7 +87,8 @@ fn place(out: &Path, staging: &Path, made: &[String]) -> Result<()> {
 }
 
 /// Deletes everything that is in the way of a file: a directory in its place, or a file in the place of one of its directories.
-/// For example, a file `rtl_out/rough` must be deleted before `rtl_out/rough/rough.v` can be written.
+/// For example, a file `rtl_out/rough` must be deleted before `rtl_out/rough/rough.v` can be written. Fails if a file or a
+/// directory cannot be deleted.
 fn make_room(out: &Path, path: &str) -> Result<()> {
     let cannot = |path: &Path| format!("cannot delete `{}`, which is in the way", path.display());
     let ends = path.match_indices('/').map(|(at, _)| at).skip(1);

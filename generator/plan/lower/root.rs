@@ -166,7 +166,7 @@ impl Lowering<'_> {
     }
 
     /// Returns the node with 0 in place of its negative values, which come only from rounding. Returns the node itself if it is
-    /// exact or never negative.
+    /// exact or never negative. Fails if a node has too many bits.
     fn without_negative_rounding(&mut self, node: NodeId) -> Result<NodeId, PlanRefusal> {
         let is_negative = self.plan.node(node).range.0 < 0;
         if !is_negative || self.is_exact(node) {
@@ -177,7 +177,8 @@ impl Lowering<'_> {
         self.plan.maximum("not_negative", node, zero)
     }
 
-    /// Returns the node of `places` times the constant `factor`, or `places` itself if the factor is 1.
+    /// Returns the node of `places` times the constant `factor`, or `places` itself if the factor is 1. Fails if a node has too
+    /// many bits.
     fn multiple(&mut self, places: NodeId, factor: i32) -> Result<NodeId, PlanRefusal> {
         if factor == 1 {
             return Ok(places);

@@ -253,7 +253,8 @@ fn pairs(
     Ok(pairs)
 }
 
-/// Returns the branches of an operation on two formulas. `make` returns the term of the operation.
+/// Returns the branches of an operation on two formulas. `make` returns the term of the operation. Fails if one of the formulas
+/// has no translation.
 fn operation(
     operands: [&Expression; 2],
     make: fn(RealTermId, RealTermId) -> RealTerm,

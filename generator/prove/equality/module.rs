@@ -106,7 +106,7 @@ fn connection(cell: &Value, port: &str) -> Result<Connection> {
     bits(&cell["connections"][port])
 }
 
-/// Returns the bits at a port of a cell; no bits if the cell lacks the port.
+/// Returns the bits at a port of a cell; no bits if the cell lacks the port. Fails if the list of bits is malformed.
 fn optional_connection(cell: &Value, port: &str) -> Result<Connection> {
     match &cell["connections"][port] {
         Value::Null => Ok(Connection::new()),

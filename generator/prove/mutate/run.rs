@@ -119,7 +119,8 @@ impl Bench<'_> {
     }
 
     /// Searches for a point at which the mutant of a pipeline differs from the fault-free pipeline, and confirms it with the
-    /// golden model. Without such a point, or for a sequential core, the verdict is `Undecided`.
+    /// golden model. Without such a point, or for a sequential core, the verdict is `Undecided`. Fails if the mutant cannot be
+    /// simulated.
     fn searched(&self, mutant: &Design) -> Result<MutantVerdict> {
         let Some(beside) = &self.beside else {
             return Ok(MutantVerdict::Undecided);
@@ -131,7 +132,8 @@ impl Bench<'_> {
     }
 
     /// Returns the first difference in a short part of the default test, or `None` if there is no difference. If words of a
-    /// table are faulty, the part consists of the streams that read these words, because the fault can show only there.
+    /// table are faulty, the part consists of the streams that read these words, because the fault can show only there. Fails
+    /// if the mutant cannot be simulated.
     fn first_look(&self, mutant: &Design, site: &Site) -> Result<Option<Mismatch>> {
         let looks = match self.words(site) {
             Some(_) => self.places(site),
@@ -141,7 +143,7 @@ impl Bench<'_> {
     }
 
     /// Returns the first difference in some streams, or `None` if there is no difference. Each stream is a seed and the number
-    /// of results to compare.
+    /// of results to compare. Fails if the mutant cannot be simulated.
     fn shown(&self, mutant: &Design, streams: Vec<(u64, u64)>) -> Result<Option<Mismatch>> {
         for (seed, points) in streams {
             let mismatch = self.lockstep(mutant, seed)?.run_alone(points)?.mismatch;
@@ -154,6 +156,7 @@ impl Bench<'_> {
 
     /// Runs a mutant whose faulty table words are read only for a few operands, with these operands fixed. It then tries all
     /// operands if they have few enough bits. If no combination differs for any of the words, the verdict is `Equivalent`.
+    /// Fails if the mutant cannot be simulated.
     fn directed(
         &self,
         mutant: &Design,
@@ -200,7 +203,8 @@ impl Bench<'_> {
     }
 
     /// Returns the control operands of computations that read a word, one list of raw values by name for each. The computations
-    /// are part of the default test, or of a longer test if the default test does not read the word.
+    /// are part of the default test, or of a longer test if the default test does not read the word. Fails if the longer test
+    /// cannot be run.
     fn readings(&self, rom: RomId, word: usize) -> Result<Vec<OperandValues>> {
         let design = &self.sound;
         let mut readings: Vec<OperandValues> = self.tested.operands(design, rom, word).collect();
@@ -216,7 +220,8 @@ impl Bench<'_> {
     }
 
     /// Returns the first difference in the streams of a longer test that read a word, if the default test does not read it.
-    /// Returns `None` for a sequential core, whose operand registers give directed operands for the word instead.
+    /// Returns `None` for a sequential core, whose operand registers give directed operands for the word instead. Fails if the
+    /// mutant cannot be simulated.
     fn beyond_shows(&self, mutant: &Design, rom: RomId, word: usize) -> Result<Option<Mismatch>> {
         if self.latency == 0 || !self.tested.places(rom, word).is_empty() {
             return Ok(None);

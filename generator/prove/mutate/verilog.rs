@@ -331,7 +331,7 @@ impl VerilogText {
     }
 
     /// Returns the verdict of the benches on a mutant. If both benches pass, it also returns the built shipped bench, whose
-    /// directory has all files; otherwise `None`.
+    /// directory has all files; otherwise `None`. Fails if Icarus Verilog cannot build the longer bench.
     fn benches(
         &self,
         mutant: &[OutputFile],

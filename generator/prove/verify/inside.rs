@@ -150,7 +150,8 @@ fn record(subject: &CheckSubject<'_>) -> Result<Option<Record>> {
 }
 
 /// Runs the exhaustive check of the bound and returns its finding. If the check is long, it returns the finding of a record of
-/// the check, and repeats a part of the evaluations. Without such a record, the verdict is [`CheckVerdict::NotRun`].
+/// the check, and repeats a part of the evaluations. Without such a record, the verdict is [`CheckVerdict::NotRun`]. Fails if a
+/// record cannot be read, or if the check cannot be run.
 fn contract(subject: &CheckSubject<'_>, progress: &(dyn Fn(u64) + Sync)) -> Result<Finding> {
     let contract = subject.core.contract.as_ref();
     if !contract.bound().is_stated() {

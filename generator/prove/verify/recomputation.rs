@@ -102,7 +102,8 @@ impl ProgramCompiler<'_> {
         Ok((run.status.success(), run.output))
     }
 
-    /// Returns whether the compiler can compile a program that includes MPFR, so that MPFR is installed.
+    /// Returns whether the compiler can compile a program that includes MPFR, so that MPFR is installed. Fails if the compiler
+    /// cannot be run, or reaches the time limit.
     fn has_mpfr(&self) -> Result<bool> {
         let probe = "#include <mpfr.h>\nint main(void) { return 0; }\n";
         fs::write(self.dir.join("probe.c"), probe)

@@ -258,8 +258,8 @@ struct Portions<'a> {
 }
 
 impl Portions<'_> {
-    /// Computes the highlights of some rows of samples, and adds the finished rows of pixels to the picture. The number of
-    /// rows must be a multiple of the number of samples along a pixel.
+    /// Computes the highlights of some rows of samples, and adds the finished rows of pixels to the picture. The number of rows
+    /// must be a multiple of the number of samples along a pixel. Fails if the engine fails.
     fn add(&mut self, rows: &[Shaded], compare: bool) -> Result<()> {
         let mut points = Points::new(self.feed.operand_count());
         for row in rows {

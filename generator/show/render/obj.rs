@@ -54,8 +54,8 @@ impl ObjReader {
         Ok(())
     }
 
-    /// Adds a face of n corners as a fan of n − 2 triangles. For example, the face 1 2 3 4 is the triangles 1 2 3 and 1
-    /// 3 4.
+    /// Adds a face of n corners as a fan of n − 2 triangles. For example, the face 1 2 3 4 is the triangles 1 2 3 and 1 3 4.
+    /// Fails if a corner is not valid, or if there are fewer than three.
     fn face<'a>(&mut self, words: impl Iterator<Item = &'a str>) -> Result<()> {
         let corners: Vec<RawCorner> = words
             .map(|word| {
@@ -68,7 +68,8 @@ impl ObjReader {
         Ok(())
     }
 
-    /// Reads a corner: `v`, `v/vt`, `v//vn` or `v/vt/vn`. For example, `3//1` has vertex 3 and normal 1.
+    /// Reads a corner: `v`, `v/vt`, `v//vn` or `v/vt/vn`. For example, `3//1` has vertex 3 and normal 1. Fails if an index is
+    /// no integer or denotes no entry so far, or if there are more than two `/`.
     fn corner(&self, word: &str) -> Result<RawCorner> {
         let mut parts = word.split('/');
         let position = parts.next().unwrap_or_default();
@@ -87,7 +88,8 @@ impl ObjReader {
     }
 }
 
-/// Returns the first `N` words as finite numbers.
+/// Returns the first `N` words as finite numbers. Fails if there are fewer than `N` words, or if one of them is no finite
+/// number.
 fn numbers<'a, const N: usize>(
     what: &str,
     mut words: impl Iterator<Item = &'a str>,

@@ -141,7 +141,7 @@ impl Scene {
     }
 }
 
-/// Returns a ball, or the triangles of a `coarse` one.
+/// Returns a ball, or the triangles of a `coarse` one. Fails if the mesh cannot be made.
 fn ball(middle: Vector, radius: f64, coarse: bool) -> Result<Shape> {
     if coarse {
         Ok(Shape::Mesh(shapes::ball(middle, radius, [64, 32])?))

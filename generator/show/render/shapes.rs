@@ -75,7 +75,7 @@ fn vase_radius(height: f64) -> f64 {
 
 /// Makes a mesh whose corners are the values of `at` at evenly spaced (u, v) from 0 to 1. `steps` are the numbers of steps
 /// along u and v. If `closed` is set for a direction, `at` must repeat in it, and the last corners are the same as the first
-/// ones.
+/// ones. Fails if [`Mesh::new`] fails.
 fn grid(steps: [u32; 2], closed: [bool; 2], at: impl Fn(f64, f64) -> Vector) -> Result<Mesh> {
     let [columns, rows] = steps;
     let mut positions = Vec::new();

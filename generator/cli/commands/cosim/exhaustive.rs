@@ -83,7 +83,8 @@ pub fn read(path: &Path) -> Result<Option<ShardState>> {
 }
 
 /// Runs the job until the shard is done, and saves the state in `file` every few seconds, if a file is given. After a signal,
-/// it saves the state and fails with [`Failure::Interrupted`].
+/// it saves the state and fails with [`Failure::Interrupted`]. Fails also if the design cannot be simulated, or if the state
+/// cannot be saved.
 fn prove(
     output: OutputOptions,
     job: &Job<'_>,

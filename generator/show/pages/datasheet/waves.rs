@@ -93,7 +93,7 @@ impl Waves {
     }
 
     /// Records the waveform of a pipeline: the handshake, the operands while `in_valid` is 1, and the results while `out_valid`
-    /// is 1.
+    /// is 1. Fails if the simulation never shows the results.
     fn points(core: &Core) -> Result<Self> {
         let design = &core.design;
         let groups: [&[Role]; 6] = [
@@ -137,7 +137,7 @@ impl Waves {
     }
 
     /// Records the waveform of a core with a microprogram: the handshake, the microinstruction, the architectural registers
-    /// that change, and the results of one computation.
+    /// that change, and the results of one computation. Fails if the computation never ends.
     fn computation(core: &Core) -> Result<Self> {
         let design = &core.design;
         let Handshake { start, busy, valid, done, .. } = design.handshake()?;

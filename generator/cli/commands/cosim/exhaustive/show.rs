@@ -85,6 +85,7 @@ impl CommandReport for ProofReport<'_> {
 }
 
 /// Returns the first combination for which model and hardware differ, and writes its waveform. Returns `None` if they agree.
+/// Fails if the design cannot be simulated, or if the waveform cannot be written.
 fn found(
     one: &Loaded,
     job: &Job<'_>,
