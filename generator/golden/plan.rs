@@ -39,7 +39,7 @@ impl PlanModel {
 }
 
 /// Makes the device of a plan: a register for each value that the schedule of the plan stores. Result number k of the plan goes
-/// to the port with name number k of `outputs`.
+/// to the port with name number k of `outputs`. The function panics if the polynomials of a function are not known yet.
 pub(super) fn plan_device(
     operands: &[StatedOperand],
     plan: &ExpressionPlan,

@@ -43,7 +43,7 @@ pub struct Flow {
     yosys: Tool,
     /// nextpnr and icetime, or OpenSTA; empty if only the area is measured.
     others: Vec<Tool>,
-    /// The cell library, for a target of standard cells.
+    /// The cell library, for a target of standard cells; `None` for an FPGA.
     library: Option<CellLibrary>,
     versions: Vec<String>,
 }

@@ -79,11 +79,11 @@ pub struct TuningGoal {
     pub target: Target,
     /// The cost that the search minimises, such as the number of look-up tables.
     pub objective: Objective,
-    /// The lowest acceptable clock frequency in MHz, by the estimate.
+    /// The lowest acceptable clock frequency in MHz, by the estimate; `None` allows every clock.
     pub clock: Option<f64>,
-    /// The lowest acceptable rate in million points a second, by the estimate of the clock.
+    /// The lowest acceptable rate in million points a second, by the estimate of the clock; `None` allows every rate.
     pub rate: Option<f64>,
-    /// The largest acceptable number of DSP blocks.
+    /// The largest acceptable number of DSP blocks; `None` sets no limit.
     pub most_dsps: Option<u64>,
 }
 

@@ -13,7 +13,7 @@ pub struct Scene {
     pub objects: Vec<Object>,
     /// The lights, which are so far away that their directions are the same everywhere.
     pub lights: Vec<Light>,
-    /// The height map that tilts the normals of all objects.
+    /// The height map that tilts the normals of all objects; `None` for smooth surfaces.
     pub relief: Option<Relief>,
 }
 

@@ -62,7 +62,8 @@ impl<'a> Prover<'a> {
         }
     }
 
-    /// Returns whether the induction over clocks proves the fault at `site` equivalent.
+    /// Returns whether the induction over clocks proves the fault at `site` equivalent. A fault that changes a reset is never
+    /// proved by induction.
     fn by_induction(&self, site: &Site) -> bool {
         if self.changes_reset(site) {
             return false;

@@ -104,8 +104,9 @@ impl<'a> Windows<'a> {
         })
     }
 
-    /// Proves a fault equivalent: returns whether no combination of values in the window around it lets the fault change a value
-    /// outside.
+    /// Proves a fault equivalent: returns whether no combination of values in the window around the fault lets the fault change
+    /// a value outside. Returns `false` if this is not proved. A fault in a register, an input, an enable, a reset or the
+    /// control ROM is never proved here; a fault in words of another ROM that are never read always is.
     pub(super) fn proves(&self, site: &Site) -> bool {
         match site {
             Site::Words(rom, words) if *rom != self.design.control.rom => {

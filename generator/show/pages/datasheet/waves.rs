@@ -43,7 +43,7 @@ pub struct Waves {
 pub struct Lane {
     /// The name of the signal.
     pub name: String,
-    /// The number in the source's figure of the block that drives the signal.
+    /// The number in the source's figure of the block that drives the signal; `None` if the figure has no such number.
     pub number: Option<u16>,
     /// The style in which the lane is drawn.
     pub shape: LaneStyle,
