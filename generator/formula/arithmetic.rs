@@ -1,5 +1,5 @@
-//! Declares the interval arithmetic in which formulas are evaluated. It exists for two kinds of numbers: `f64`, which is fast,
-//! and numbers of any precision.
+//! Declares the interval arithmetic in which formulas are evaluated. The arithmetic exists for two kinds of numbers: `f64`,
+//! which is fast, and numbers of any precision.
 
 use std::cmp::Ordering;
 

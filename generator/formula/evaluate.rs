@@ -12,7 +12,7 @@ use super::{Comparison, Enclosure, Expression, Fault, Function, Kind, Operator};
 /// exponents need logarithms.
 const LARGEST_PRODUCT: u32 = 64;
 
-/// The precisions in bits. They are tried one after the other until every comparison and every jump is decided.
+/// The precisions in bits. The precisions are tried one after the other until every comparison and every jump is decided.
 const PRECISIONS: [usize; 3] = [128, 320, 1024];
 
 impl Expression {
@@ -28,11 +28,11 @@ impl Expression {
         self.evaluate(&Double, operands)
     }
 
-    /// Evaluates the formula for exact operands. It increases the precision until all comparisons and jumps are decided, and
-    /// until the `f64` limits of the result are at most two steps apart.
+    /// Evaluates the formula for exact operands. The function increases the precision until all comparisons and jumps are
+    /// decided, and until the `f64` limits of the result are at most two steps apart.
     ///
-    /// For example, `floor(x * 0.1)` is 3 for x = 30, although 0.1 is no `f64`. It is about a thousand times slower than
-    /// [`Expression::enclose`].
+    /// For example, `floor(x * 0.1)` is 3 for x = 30, although 0.1 is no `f64`. The function is about a thousand times slower
+    /// than [`Expression::enclose`].
     ///
     /// # Errors
     /// Fails as [`Expression::enclose`] does, or if 1024 bits do not decide a comparison or a jump.

@@ -68,15 +68,15 @@ const CONSTANTS: [(&str, f64); 2] = [("pi", std::f64::consts::PI), ("e", std::f6
 /// Another way to write the constant `pi`.
 const PI: &str = "π";
 
-/// The largest depth to which parts may be nested. It limits the recursion of the parser.
+/// The largest depth to which parts may be nested. This depth limits the recursion of the parser.
 const DEEPEST: usize = 200;
 
 /// The largest number of parts of a formula after its functions are replaced by their formulas. For example, `silu(x)` has 6
 /// parts more than x and contains x twice, so each `silu` around another doubles the number of parts.
 const MOST_PARTS: usize = 4096;
 
-/// Parses a formula. It may have sums, products, powers (`^` or `**`), parentheses, numbers, `pi`, `e`, names of operands,
-/// functions, `if(a < b, x, y)`, and the same in Python's notation, `x if a < b else y`.
+/// Parses a formula. The formula may have sums, products, powers (`^` or `**`), parentheses, numbers, `pi`, `e`, names of
+/// operands, functions, `if(a < b, x, y)`, and the same in Python's notation, `x if a < b else y`.
 ///
 /// # Errors
 /// Fails at the first mistake. The error has the location of the mistake.

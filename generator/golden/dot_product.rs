@@ -174,8 +174,8 @@ impl Formula for CosineFormula {
         Some(self.root.sweep())
     }
 
-    /// Returns an upper limit of the error, in units. It is the actual error of the inverse root for this sum of squares, plus
-    /// the largest possible errors of the factors and of the rounding. The result is never `None`.
+    /// Returns an upper limit of the error, in units. The limit is the actual error of the inverse root for this sum of
+    /// squares, plus the largest possible errors of the factors and of the rounding. The result is never `None`.
     fn sweep_error(&self, place: &[i64]) -> Option<f64> {
         let [_, factors, rounding] = self.errors();
         let error = self.root.relative_error(place[0]) + factors + rounding;

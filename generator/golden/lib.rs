@@ -5,9 +5,9 @@
 //! its error.
 //!
 //! A golden model never sees the hardware description, the netlist or the microcode, so that an error in one of them shows as a
-//! difference in simulation. It also computes its own tables, except in four devices. In `blinn` and `gauss` the description
-//! and the golden model read the same polynomials ([`glint_keys::decay`]), and in `function` and `expression` the same plan
-//! ([`glint_plan`]). Polynomials and plan are compared with the formulas instead, by exhaustive checks or by proofs.
+//! difference in simulation. The golden model also computes its own tables, except in four devices. In `blinn` and `gauss` the
+//! description and the golden model read the same polynomials ([`glint_keys::decay`]), and in `function` and `expression` the
+//! same plan ([`glint_plan`]). Polynomials and plan are compared with the formulas instead, by exhaustive checks or by proofs.
 
 pub mod blinn;
 pub mod contract;
@@ -387,8 +387,8 @@ pub struct Bound {
     pub f: f64,
     /// The bound on the error of an output, in units of its last bit. A highlight states it for the largest colour operand.
     pub units: f64,
-    /// The bound that the contract demands, in units: the contract is kept if `units` is below it. It is 1, or the error that the
-    /// configuration allows.
+    /// The bound that the contract demands, in units: the contract is kept if `units` is below it. The bound is 1, or the error
+    /// that the configuration allows.
     pub limit: f64,
     /// The contributions, in units of the output, each with the configuration key that governs it. Their sum is `units`.
     pub terms: Vec<Term>,
@@ -405,7 +405,8 @@ pub struct ComputedPart {
     pub format: Format,
     /// The part's share in the error of each output, in units of the output's last bit; 0 for a part that is exact.
     pub shares: Vec<f64>,
-    /// An estimate of the look-up tables of four inputs that the part takes. It is 0 for a part that only selects bits.
+    /// An estimate of the look-up tables of four inputs that the part takes. The estimate is 0 for a part that only selects
+    /// bits.
     pub cells: f64,
     /// The number of products that the part computes: in a pipeline each takes a multiplier of its own.
     pub products: usize,
@@ -424,7 +425,8 @@ pub struct Term {
 }
 
 impl Bound {
-    /// Returns the bound of a device that is no highlight. It is the sum of the terms, or infinite if there are no terms.
+    /// Returns the bound of a device that is no highlight. The bound is the sum of the terms, or infinite if there are no
+    /// terms.
     pub fn of(terms: Vec<Term>) -> Self {
         let sum: f64 = terms.iter().map(|term| term.units).sum();
         // A sum that is NaN limits nothing.

@@ -1,8 +1,8 @@
 //! The golden model of a plan, which is a list of fixed-point operations ([`glint_plan`]).
 //!
-//! The devices `function` and `expression` use it. It executes the operations in integers, with a register for each value that
-//! the schedule of the plan stores. It takes the plan from the planner, because a proof covers the plan: the proof compares the
-//! plan's results with the formulas.
+//! The devices `function` and `expression` use this model. The model executes the operations in integers, with a register for
+//! each value that the schedule of the plan stores. The model takes the plan from the planner, because a proof covers the plan:
+//! the proof compares the plan's results with the formulas.
 
 use std::sync::Arc;
 

@@ -92,7 +92,7 @@ fn grown(
 }
 
 /// Returns the same number of guard bits for all operations, with which every result keeps its allowed error; `None` if no
-/// number is enough. This finds a plan if [`grown`] gives one operation so many bits that a product is too wide.
+/// number is enough. The function finds a plan if [`grown`] gives one operation so many bits that a product is too wide.
 fn equally_many(
     statement: &ExpressionStatement,
     none: &Guards,

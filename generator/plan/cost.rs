@@ -110,7 +110,7 @@ fn cells_of_product(a: &PlanNode, b: &PlanNode) -> f64 {
 }
 
 /// Returns an estimate of the number of look-up tables that a function takes in a pipeline, including the operations of its
-/// range reduction. It is infinite if one of these operations has too many bits.
+/// range reduction. The estimate is infinite if one of these operations has too many bits.
 pub(super) fn cells_of_function(function: &TargetFunction, found: &Arc<Piecewise>) -> f64 {
     if found.reduction.is_some() {
         let plan = ExpressionPlan::of_function(function, found);

@@ -52,7 +52,7 @@ pub(super) struct Guards {
     pub(super) style: PlanStyle,
 }
 
-/// Choices that the planner makes for a whole plan. It tries several, and takes the smallest plan.
+/// Choices that the planner makes for a whole plan. The planner tries several choices, and takes the smallest plan.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct PlanStyle {
     /// The error that a table of polynomials may have, in units of the last bit of its result.
@@ -565,8 +565,8 @@ pub(super) fn has_functions_of_operands(statement: &ExpressionStatement) -> bool
     statement.results.iter().any(|result| result.formula.count(&is_function) > 0)
 }
 
-/// Returns the smallest part on which a formula depends: the formula is a function of the value of this part alone. It is the
-/// formula itself if the formula combines different parts. For example, the core of `1 / sqrt(x + y)` is `x + y`.
+/// Returns the smallest part on which a formula depends: the formula is a function of the value of this part alone. This part
+/// is the formula itself if the formula combines different parts. For example, the core of `1 / sqrt(x + y)` is `x + y`.
 fn core_of(formula: &Expression) -> &Expression {
     let parts = formula.parts();
     let varying: Vec<&Expression> =

@@ -98,8 +98,8 @@ pub struct Figures {
     pub device: String,
     /// The area of the core, without the registers that the measurement adds around it.
     pub area: Area,
-    /// The frequency of the core between the registers that the measurement adds around it. It is `None` for a target that is
-    /// not timed, and for a core that does not fit on the chip.
+    /// The frequency of the core between the registers that the measurement adds around it. The frequency is `None` for a
+    /// target that is not timed, and for a core that does not fit on the chip.
     #[serde(skip_serializing_if = "Option::is_none", default)]
     pub frequency: Option<Frequency>,
     /// The longest path between registers in the run with the median frequency, with the names of the description.

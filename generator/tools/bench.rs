@@ -165,7 +165,8 @@ impl BuiltBench {
         Ok(Self { simulator, top: top.to_owned(), program, build, dir })
     }
 
-    /// Returns the directory in which the bench runs. It contains the bench's files, and the files that the bench writes.
+    /// Returns the directory in which the bench runs. The directory contains the bench's files, and the files that the bench
+    /// writes.
     pub fn directory(&self) -> &Path {
         self.dir.path()
     }

@@ -1,5 +1,5 @@
-//! Finds the files that are in the directories of a configuration. It decides for each file whether Glint wrote the file,
-//! whether the user edited a file of Glint, or whether the file is foreign, which means that Glint never wrote it.
+//! Finds the files that are in the directories of a configuration. The module decides for each file whether Glint wrote the
+//! file, whether the user edited a file of Glint, or whether the file is foreign, which means that Glint never wrote it.
 
 use std::collections::BTreeMap;
 use std::fs;

@@ -103,8 +103,8 @@ impl Reflectance for LyonArithmetic {
         Some((1.0 - self.exact_distance(control) / 2.0).max(0.0))
     }
 
-    /// Returns every raw D² in the register (a word of D²) with every operand `shift` or `exponent`. They determine f, since
-    /// adders 1 and 2 and multipliers 1 to 3 are exact. The result is never `None`.
+    /// Returns every raw D² in the register (a word of D²) with every operand `shift` or `exponent`. These two numbers
+    /// determine f, since adders 1 and 2 and multipliers 1 to 3 are exact. The result is never `None`.
     fn sweep(&self) -> Option<Sweep> {
         let most = FARTHEST << self.keys.distance_fraction;
         Some(Sweep::ranges([

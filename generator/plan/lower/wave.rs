@@ -174,8 +174,8 @@ impl Lowering<'_> {
         })
     }
 
-    /// Returns the node of the reduced angle within a quadrant or an octant, a number from 0 to 1. It is `way` if the number of
-    /// the quadrant or octant is even, and 1 − `way` if the number is odd. Fails if a node has too many bits.
+    /// Returns the node of the reduced angle within a quadrant or an octant, a number from 0 to 1. The angle is `way` if the
+    /// number of the quadrant or octant is even, and 1 − `way` if the number is odd. Fails if a node has too many bits.
     fn folded(&mut self, name: &str, is_odd: NodeId, way: NodeId) -> Result<NodeId, PlanRefusal> {
         let one = self.plan.constant("whole", 1, 0)?;
         let back = self.plan.subtract("angle_back", one, way)?;

@@ -481,8 +481,8 @@ impl TextComparison<'_> {
     }
 
     /// Finds values of the unknowns for which all `wanted` terms are 1, and describes in words the two terms that then differ.
-    /// It tries 24 sets of random values, and the values `found` by the solver. Returns `None` if some `wanted` term is 0 for
-    /// each of them.
+    /// The function tries 24 sets of random values, and the values `found` by the solver. Returns `None` if some `wanted` term
+    /// is 0 for each of them.
     fn difference(
         &self,
         wanted: &[VectorTermId],

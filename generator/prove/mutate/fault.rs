@@ -65,7 +65,7 @@ pub enum Site {
 /// A fault in a netlist: one change at one place, with a name. For example, bit 3 of the net `adder15` stuck at 0.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NetlistFault {
-    /// The name of the fault, which no other fault of the design has. It is made of names in the design:
+    /// The name of the fault, which no other fault of the design has. The name is made of names in the design:
     /// `adder15[3]:stuck-at-0`. A fault of a ROM names the word: `coefficient@1005[2]` is a bit of word 1005, and
     /// `coefficient@1004,1005` swaps two words.
     pub id: String,

@@ -25,7 +25,7 @@ impl NetlistFault {
     }
 }
 
-/// Returns a copy of the design without the comments on nets and ROMs. It is cheaper to copy for each fault.
+/// Returns a copy of the design without the comments on nets and ROMs. This copy is cheaper to copy for each fault.
 pub(super) fn bare(design: &Design) -> Design {
     let mut bare = design.clone();
     for rom in &mut bare.roms {

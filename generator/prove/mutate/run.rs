@@ -1,8 +1,8 @@
 //! Plants faults one at a time in the netlist of a core, and finds the verdict on each: caught by a check, proved equivalent,
 //! or undecided.
 //!
-//! For each fault, the module tries in turn a short test, the proofs, the default test, and directed tests. It ends with the
-//! first that decides. In addition it finds whether the shipped bench notices the fault.
+//! For each fault, the module tries in turn a short test, the proofs, the default test, and directed tests. The module ends
+//! with the first check that decides. In addition it finds whether the shipped bench notices the fault.
 
 use std::sync::OnceLock;
 
@@ -22,8 +22,8 @@ use glint_core::cosim::{Lockstep, Mismatch};
 use glint_golden::Model;
 use glint_rtl::netlist::{Design, RomId};
 
-/// The number of points of the short test, which runs first. They are the first points of the default test's first stream, so a
-/// difference in them is a difference in the default test.
+/// The number of points of the short test, which runs first. These points are the first points of the default test's first
+/// stream, so a difference in them is a difference in the default test.
 const FIRST_POINTS: u64 = 256;
 
 /// The number of results of a longer test, and its seed. The longer test is searched for reads of words that the default test
@@ -32,7 +32,7 @@ const BEYOND_POINTS: u64 = 1_000_000;
 const BEYOND_SEED: u64 = 2;
 
 /// Plants each of the faults in turn, runs the checks on the mutant (the design with the fault), and returns the verdicts, in
-/// the order of `faults`. It calls `progress` after each fault.
+/// the order of `faults`. The function calls `progress` after each fault.
 ///
 /// # Errors
 /// Fails if a mutant cannot be simulated, or if golden model and fault-free simulation disagree. The message may have the id of
@@ -154,9 +154,9 @@ impl Bench<'_> {
         Ok(None)
     }
 
-    /// Runs a mutant whose faulty table words are read only for a few operands, with these operands fixed. It then tries all
-    /// operands if they have few enough bits. If no combination differs for any of the words, the verdict is `Equivalent`.
-    /// Fails if the mutant cannot be simulated.
+    /// Runs a mutant whose faulty table words are read only for a few operands, with these operands fixed. The function then
+    /// tries all operands if they have few enough bits. If no combination differs for any of the words, the verdict is
+    /// `Equivalent`. Fails if the mutant cannot be simulated.
     fn directed(
         &self,
         mutant: &Design,

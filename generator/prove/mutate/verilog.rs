@@ -268,7 +268,7 @@ impl VerilogText {
     }
 
     /// Plants each of the faults in turn, and returns the verdicts on it, in the order of `faults`. `limit` is the time limit
-    /// of each run of a tool. It calls `progress` after each fault.
+    /// of each run of a tool. The function calls `progress` after each fault.
     ///
     /// # Errors
     /// Fails if Verilator is missing, does not start, or does not end within `limit`; or if Yosys is missing. A missing Icarus

@@ -79,7 +79,7 @@ impl Netlist {
     }
 
     /// Checks that timing analysis includes the delay of every DSP block, which is every cell of the kind `kind`. `timed` gets
-    /// the name and the value of a parameter of such a cell. It returns whether the tool times a cell with this value.
+    /// the name and the value of a parameter of such a cell. `timed` returns whether the tool times a cell with this value.
     ///
     /// # Errors
     /// Fails at the first parameter for which `timed` returns false. `why` gets a text such as `REG_INPUTA_CLK is CLK0`, and

@@ -97,11 +97,11 @@ const ARCHITECTURE: [&str; 2] = ["architecture", "pipeline.interval"];
 /// Searches for the configuration with the smallest cost that meets `goal`. The search is local, so a smaller configuration may
 /// exist.
 ///
-/// `base` has the keys that are part of the user's question. The search changes the other keys, except the keys in `fixed`. It
-/// also tries pipelines if the goal has a rate or a limit of DSP blocks, and the target is an FPGA family. It tries no pipeline
-/// if `fixed` contains `pipeline.interval`, or contains `architecture` and `base` is sequential. Such a pipeline accepts a
-/// point (a set of operands) as seldom as the goal allows, so that several products can share a multiplier. `progress` is
-/// called with the number of configurations that were evaluated.
+/// `base` has the keys that are part of the user's question. The search changes the other keys, except the keys in `fixed`. The
+/// search also tries pipelines if the goal has a rate or a limit of DSP blocks, and the target is an FPGA family. The search
+/// tries no pipeline if `fixed` contains `pipeline.interval`, or contains `architecture` and `base` is sequential. Such a
+/// pipeline accepts a point (a set of operands) as seldom as the goal allows, so that several products can share a multiplier.
+/// `progress` is called with the number of configurations that were evaluated.
 ///
 /// # Errors
 /// Fails if `base` makes no design, or if the search finds no configuration that meets the goal. The message then says which
@@ -147,7 +147,7 @@ pub fn tune(
 
 /// Returns the pipelines that [`tune`] tries, the longest interval first. For example, a clock of 50 MHz and a rate of 10
 /// million points a second allow the intervals 5, 4, 3, 2 and 1. The list is empty if the goal has neither a rate nor a limit
-/// of DSP blocks, if the target is no FPGA family, or if the rate exceeds the clock. It is also empty if `fixed` contains
+/// of DSP blocks, if the target is no FPGA family, or if the rate exceeds the clock. The list is also empty if `fixed` contains
 /// `pipeline.interval`, or contains `architecture` and `base` is sequential.
 fn pipelines(device: &Device, base: &Config, fixed: &[&str], goal: &TuningGoal) -> Vec<Config> {
     let Some(family) = goal.target.family() else { return Vec::new() };

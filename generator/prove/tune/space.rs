@@ -20,8 +20,8 @@ const STEPS: [i64; 3] = [1, 2, 4];
 /// The tables of keys that define the computation and its domain.
 const STATEMENT: [&str; 2] = ["domain", "function"];
 
-/// The number of points at which formulas are compared. They are drawn like the points of a test: at most of them the formula
-/// is neither 0 nor flat.
+/// The number of points at which formulas are compared. The points are drawn like the points of a test: at most of them the
+/// formula is neither 0 nor flat.
 const POINTS: u32 = 600;
 
 /// The configuration keys of a device that `glint tune` may change when it searches for better configurations: the core keeps its
@@ -79,8 +79,8 @@ impl SearchSpace {
         true
     }
 
-    /// Returns whether a core has the same ports and the same formula as the base configuration. It must also have the same
-    /// number of microinstructions, unless `slower` was set for this search space.
+    /// Returns whether a core has the same ports and the same formula as the base configuration. The core must also have the
+    /// same number of microinstructions, unless `slower` was set for this search space.
     pub fn holds(&self, design: &Design, contract: &dyn Contract) -> bool {
         let own = &self.outside;
         own.ports == ports(design)

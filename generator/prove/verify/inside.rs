@@ -19,7 +19,8 @@ use glint_golden::{Contract, Sweep};
 /// The number of results that lockstep compares: without full effort, and with it.
 const POINTS: [u64; 2] = [TEST_POINTS, 100 * TEST_POINTS];
 
-/// The largest number of evaluations of the golden model in the check of the bound without full effort. They take some seconds.
+/// The largest number of evaluations of the golden model in the check of the bound without full effort. These evaluations take
+/// some seconds.
 const EVALUATIONS: u64 = 1 << 28;
 
 /// The approximate number of evaluations of `f` that are repeated for a recorded proof.

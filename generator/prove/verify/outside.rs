@@ -42,8 +42,8 @@ const COCOTB_VERSION: &str = "2.1.0";
 const GATE_POINTS: u64 = 40;
 
 /// Lets Gappa prove the error bound of the contract of a sequential core. If the statements cannot be written, or Gappa does
-/// not prove one in time, the check is unconfirmed. It is not failed, because another check shows the bound too. A pipeline has
-/// no such check.
+/// not prove one in time, the check is unconfirmed. The check is not failed, because another check shows the bound too. A
+/// pipeline has no such check.
 pub const CERTIFICATE: Check = Check {
     id: "certificate",
     title: "Proof of the error bound",
@@ -361,7 +361,7 @@ pub const FORMAL: Check = Check {
     },
 };
 
-/// Runs the emitted benches in Python with cocotb. They know the core only from its manifest.
+/// Runs the emitted benches in Python with cocotb. The benches know the core only from its manifest.
 pub const COCOTB: Check = Check {
     id: "cocotb",
     title: "Emitted Verilog driven from Python",

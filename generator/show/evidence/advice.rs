@@ -147,9 +147,9 @@ fn changes(
     changes
 }
 
-/// Returns the keys that the bound depends on, each with the values that differ from its own by `step`. These are the keys that
-/// the terms of the bound name, and the choices and flags in the tables of these keys. Keys of the table `domain`, and keys
-/// that do not apply, are left out.
+/// Returns the keys that the bound depends on, each with the values that differ from its own by `step`. A key counts if a term
+/// of the bound names it, or if it is a choice or a flag in the table of such a key. Keys of the table `domain`, and keys that
+/// do not apply, are left out.
 fn candidates(
     schema: &Schema,
     config: &Config,

@@ -75,14 +75,15 @@ struct AtAngle {
     fixed_point: f64,
 }
 
-/// Measures the error curves of a device in its default configuration. It calls `done` after each of [`STEPS`] steps.
+/// Measures the error curves of a device in its default configuration. The function calls `done` after each of [`STEPS`] steps.
 pub fn device(device: &Device, done: &(dyn Fn() + Sync)) -> DeviceCurves {
     let config = device.defaults();
     let contract = (device.contract)(&config);
     configuration(device, contract.as_ref(), done)
 }
 
-/// Measures the error curves of a configuration of a device, given its contract. It calls `done` after each of [`STEPS`] steps.
+/// Measures the error curves of a configuration of a device, given its contract. The function calls `done` after each of
+/// [`STEPS`] steps.
 pub fn configuration(
     device: &Device,
     contract: &dyn Contract,

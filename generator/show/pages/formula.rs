@@ -8,7 +8,7 @@ use super::markup::html;
 /// The functions that may have an exponent after the name, such as `cos^2(x)`. Parentheses around a single name are not shown.
 const FUNCTIONS: [&str; 4] = ["cos", "sin", "tan", "log"];
 
-/// The words that may occur between formulas. They are shown as text.
+/// The words that may occur between formulas. The page shows these words as text.
 const PROSE: [&str; 10] =
     ["by", "where", "stretched", "if", "for", "with", "when", "and", "or", "otherwise"];
 

@@ -1,7 +1,8 @@
 //! Reads the geometry of a mesh from a file in Wavefront's OBJ format.
 //!
-//! The reader takes vertices, normals, texture coordinates and faces. It ignores everything else, such as groups, materials and
-//! curves. It reports a mistake with its line number. Corners with and without normals may be mixed in one file.
+//! The reader takes vertices, normals, texture coordinates and faces. The reader ignores everything else, such as groups,
+//! materials and curves. The reader reports a mistake with its line number. Corners with and without normals may be mixed in
+//! one file.
 
 use anyhow::{Context, Result, anyhow, bail, ensure};
 

@@ -1,4 +1,5 @@
-//! Defines pictures with 8 bits for each colour channel. It joins, captions and compares pictures, and writes them as PNG.
+//! Defines pictures with 8 bits for each colour channel. The module joins, captions and compares pictures, and writes them as
+//! PNG.
 
 use anyhow::{Context, Result};
 use noto_sans_mono_bitmap::{FontWeight, RasterHeight, get_raster, get_raster_width};

@@ -20,7 +20,7 @@ use glint_core::cosim::batch::Points;
 pub struct Material {
     /// The share of the ambient light, which is white and has the strength of one light.
     pub ambient: f64,
-    /// The share of each light that is reflected diffusely. It is multiplied by the cosine of the light's angle.
+    /// The share of each light that is reflected diffusely. The share is multiplied by the cosine of the light's angle.
     pub diffuse: f64,
     /// The specular coefficient k_s: the share of each light that the highlight reflects. The reflectance f from the device
     /// multiplies it.

@@ -43,8 +43,8 @@ pub fn ball(middle: Vector, radius: f64, steps: [u32; 2]) -> Result<Mesh> {
     })
 }
 
-/// Makes a vase around the y axis with belly, neck and lip, open at the top. It reaches from y = −1 to y = 1. `steps` are the
-/// numbers of steps around the axis and along the wall.
+/// Makes a vase around the y axis with belly, neck and lip, open at the top. The vase reaches from y = −1 to y = 1. `steps` are
+/// the numbers of steps around the axis and along the wall.
 ///
 /// # Errors
 /// Fails if [`Mesh::new`] fails.

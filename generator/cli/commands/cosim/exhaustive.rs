@@ -29,8 +29,8 @@ const WORTH_SHARING: Duration = Duration::from_secs(60);
 const CORES: [u32; 3] = [1, 16, 1000];
 
 /// Runs `glint cosim --exhaustive`: measures the errors at all operands, and compares them with the bound of the accuracy
-/// contract. It also compares model and hardware clock by clock for every combination of operands, if there are not too many.
-/// Returns whether everything holds.
+/// contract. The command also compares model and hardware clock by clock for every combination of operands, if there are not
+/// too many. Returns whether everything holds.
 ///
 /// # Errors
 /// Fails if a configuration has problems, if the values of `--values` are not valid, if the file of `--resume` belongs to

@@ -123,8 +123,8 @@ impl<'a> Prover<'a> {
     }
 }
 
-/// Returns, for each microinstruction, a mask for each net: the bits that are compared in this microinstruction. They are the
-/// bits of outputs and of predicted registers, and in a pipeline also of checkpoints.
+/// Returns, for each microinstruction, a mask for each net: the bits that are compared in this microinstruction. The compared
+/// bits are the bits of outputs and of predicted registers, and in a pipeline also of checkpoints.
 fn compared_bits(design: &Design, length: usize) -> Vec<Vec<u64>> {
     let mut always: Vec<NetId> = design.outputs().map(|port| port.net).collect();
     for register in &design.registers {

@@ -66,8 +66,8 @@ pub fn format_text(format: Format) -> String {
     }
 }
 
-/// Returns a sentence with the changes of keys in [`PageInputs::advice`], which reduce the error bound. It is empty without
-/// advice.
+/// Returns a sentence with the changes of keys in [`PageInputs::advice`], which reduce the error bound. The sentence is empty
+/// without advice.
 pub fn limit(inputs: &PageInputs) -> String {
     match &inputs.advice {
         Some(advice) => format!("The key that helps most: {advice}."),

@@ -90,7 +90,7 @@ pub fn steps(synthesis: bool) -> usize {
     curves::STEPS + 1 + if synthesis { COMPARED.len() } else { 0 }
 }
 
-/// Makes the datasheet of a core. It calls `done` after each step of work, so that a caller can show progress.
+/// Makes the datasheet of a core. The function calls `done` after each step of work, so that a caller can show progress.
 ///
 /// # Errors
 /// Fails if a simulated computation of the device never ends, if synthesis fails, or if a picture or a chart cannot be drawn.

@@ -1,6 +1,6 @@
 //! Records the waveform of one computation, or of several points in a pipeline, with the built-in simulator.
 //!
-//! A waveform has one lane for each signal. It can be written as JSON for the drawing tool WaveDrom.
+//! A waveform has one lane for each signal. A waveform can be written as JSON for the drawing tool WaveDrom.
 
 use anyhow::Result;
 use serde_json::{Value, json};
@@ -337,9 +337,9 @@ fn text(format: Format, bits: u64) -> String {
     }
 }
 
-/// Returns the numbers of the clocks that the diagram shows of a computation with `clocks` clocks, in ascending order. It shows
-/// all clocks of a computation with at most 40 clocks, and otherwise the first 24 and the last 8. For example, it shows the
-/// clocks 0 to 23 and 92 to 99 of 100 clocks.
+/// Returns the numbers of the clocks that the diagram shows of a computation with `clocks` clocks, in ascending order. The
+/// diagram shows all clocks of a computation with at most 40 clocks, and otherwise the first 24 and the last 8. For example,
+/// the diagram shows the clocks 0 to 23 and 92 to 99 of 100 clocks.
 fn shown(clocks: usize) -> Vec<usize> {
     match clocks {
         0..=MOST => (0..clocks).collect(),

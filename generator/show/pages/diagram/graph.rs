@@ -183,7 +183,8 @@ impl<'a> GraphBuilder<'a> {
         }
     }
 
-    /// Adds the output ports: the results and the handshake. It leaves out `in_ready`, which carries no data of a point.
+    /// Adds the output ports: the results and the handshake. The function leaves out `in_ready`, which carries no data of a
+    /// point.
     fn outputs(&mut self, control: Option<usize>) {
         for port in self.design.outputs().filter(|port| port.role != Role::InReady) {
             let at = self.port(port.net, BoxForm::Output);

@@ -167,8 +167,8 @@ struct Router<'a> {
 }
 
 impl Router<'_> {
-    /// Returns the y coordinate of a box's output. It is in the middle of the box and its lanes, where the layout begins the
-    /// wires.
+    /// Returns the y coordinate of a box's output. The output is in the middle of the box and its lanes, where the layout
+    /// begins the wires.
     fn out(&self, at: usize) -> f64 {
         let body = &self.bodies[at];
         self.placement.middle[at].clamp(body.upper + EDGE, body.lower - EDGE)

@@ -181,8 +181,8 @@ fn as_json(
     value
 }
 
-/// Returns a difference as JSON. It has the keys of a difference in a random run, but `seed` is null, and `combination`,
-/// `clock_of_computation` and `operands` are added.
+/// Returns a difference as JSON. The object has the keys of a difference in a random run, but `seed` is null, and
+/// `combination`, `clock_of_computation` and `operands` are added.
 fn mismatch_json((difference, reproducer): &(Difference, Reproducer)) -> Value {
     let mut value = reproducer.json(&difference.mismatch);
     let operands: BTreeMap<&str, String> = difference

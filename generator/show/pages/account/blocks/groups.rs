@@ -327,9 +327,9 @@ impl<'a> Groups<'a> {
         operands
     }
 
-    /// Returns whether the sources of `operand` meet inside the block whose output is `head`, so that no joint is drawn. This
-    /// is so if the block itself is one of the sources, or if the gates at which the sources meet belong to the same
-    /// statement of the description as the block.
+    /// Returns whether the sources of `operand` meet inside the block whose output is `head`, so that no joint is drawn. The
+    /// sources meet inside if the block itself is one of the sources, or if the gates at which the sources meet belong to the
+    /// same statement of the description as the block.
     pub fn is_part(&self, operand: NetId, head: NetId) -> bool {
         if self.sources[operand.index()].contains(&head) {
             return true;

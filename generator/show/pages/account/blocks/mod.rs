@@ -71,7 +71,7 @@ pub struct Block {
     pub inputs: Vec<NetId>,
     /// For a mux, the select inputs: a field of the control word, or blocks.
     pub selected_by: Vec<NetId>,
-    /// The comment of the description on the block, one line. It may be empty.
+    /// The comment of the description on the block, one line. The comment may be empty.
     pub doc: String,
     /// The nets of the registers, ROMs and operators inside the block.
     pub cells: Vec<NetId>,
