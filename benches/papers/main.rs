@@ -1,10 +1,10 @@
 //! Measures the claims that the seeds make about their functions and devices. A seed is a document from which a device comes:
 //! `cargo run --release --manifest-path benches/papers/Cargo.toml -- DIR`.
 //!
-//! It writes two files into the new directory `DIR`: `report.html`, a page that needs no network, and `report.json` with all of
-//! its numbers. They contain error curves of every device, the plots that the seeds 000 to 002 describe, and their claims, each
-//! with a verdict. With Yosys on PATH, it synthesises W and Schlick's function. `--benchmark` also measures their speed in
-//! software and writes `benchmark.json`.
+//! The program writes two files into the new directory `DIR`: `report.html`, a page that needs no network, and `report.json`
+//! with all of its numbers. The files contain error curves of every device, the plots that the seeds 000 to 002 describe, and
+//! their claims, each with a verdict. With Yosys on PATH, the program synthesises W and Schlick's function. `--benchmark` also
+//! measures their speed in software and writes `benchmark.json`.
 
 mod evidence;
 

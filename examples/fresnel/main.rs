@@ -17,8 +17,8 @@
 //! ```
 //!
 //! where c is the cosine of the angle between the direction of the light and the half vector, and f0 is the reflectance at
-//! normal incidence: 0.04 for glass, 0.95 for silver. The device multiplies the three colours by f. It has one multiplier for
-//! f, which a microprogram of six microinstructions uses four times.
+//! normal incidence: 0.04 for glass, 0.95 for silver. The device multiplies the three colours by f. The device has one
+//! multiplier for f, which a microprogram of six microinstructions uses four times.
 //!
 //! A device has five parts: configuration keys, a description, a golden model, an accuracy contract, and a constant that ties
 //! them together. Keys and constant are in this file. The description is in `description.rs`; golden model and contract are in
@@ -33,8 +33,8 @@ use glint::config::{Config, Key, Problems, Schema};
 use glint::fixed::Rounding;
 use glint::registry::{Device, Registry};
 
-// The keys: what the user of the device may choose. `new` writes them into a commented file, with
-//    these sentences; a file with a wrong value is refused with its line and a remedy.
+// The configuration keys, which the user of the device may set. The command `new` writes the keys into a commented file, with
+// these sentences; a file with a wrong value is refused with its line and a remedy.
 
 glint::keys! {
     struct Keys {

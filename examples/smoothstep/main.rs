@@ -1,8 +1,8 @@
 //! Defines a device whose author has proved no bound on its error: smoothstep, 3·x² − 2·x³.
 //!
 //! An accuracy contract states how far an output may be from its formula. If nobody has worked that out, the author leaves out
-//! `terms`, and `certify` finds the bound. It translates the netlist and the microprogram to real numbers with roundings, and
-//! Gappa proves how far these are from the formula.
+//! `terms`, and `certify` finds the bound. The command translates the netlist and the microprogram to real numbers with
+//! roundings, and Gappa proves how far the results are from the formula.
 //!
 //! ```sh
 //! cargo run --release --example smoothstep -- new smoothstep > s.toml

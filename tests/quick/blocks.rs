@@ -1,7 +1,8 @@
-//! Tests the blocks of a block diagram: every register, ROM and operator of the netlist is in exactly one block, and the block
+//! Tests the blocks of a block diagram: every register, ROM and operator of the datapath is in exactly one block, and the block
 //! has the inputs that the operator reads.
 //!
-//! A default run draws ten configurations. It also checks the devices of `examples/` and devices that are composed of others.
+//! A default run draws ten configurations. The run also checks the devices of `examples/` and devices that are composed of
+//! others.
 
 #[allow(dead_code)]
 #[path = "../../examples/fresnel/main.rs"]

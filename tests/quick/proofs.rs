@@ -1,8 +1,8 @@
 //! Tests the recorded proofs of error bounds, `records/proofs/<name>.json`, against the program of today.
 //!
 //! A proof visits every place of a contract's sweep, which takes minutes; `glint cosim --exhaustive --json CONFIG` makes the
-//! record. The test compares the record's digest, its number of places and its largest errors. It visits an evenly spread part
-//! of the places again. A default run draws eight records.
+//! record. The test compares the record's digest, its number of places and its largest errors. The test visits an evenly spread
+//! part of the places again. A default run draws eight records.
 
 use std::collections::BTreeSet;
 use std::path::Path;

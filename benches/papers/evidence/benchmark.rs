@@ -1,7 +1,7 @@
 //! Measures the claim "2.3 times faster in software": times the function W and Schlick's function in pairs.
 //!
-//! Timings differ from run to run and from machine to machine. They are therefore only in `benchmark.json` and in a section of
-//! the page that exists only with `--benchmark`.
+//! Timings differ from run to run and from machine to machine. The timings are therefore only in `benchmark.json` and in a
+//! section of the page that exists only with `--benchmark`.
 
 use std::hint::black_box;
 use std::time::Instant;

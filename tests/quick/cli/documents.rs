@@ -1,5 +1,5 @@
-//! Runs the commands on the pages `docs/composing.md` and `docs/tutorial.md`, with the configurations that these pages show. It
-//! also tests that `docs/SUMMARY.md` lists every page.
+//! Runs the commands on the pages `docs/composing.md` and `docs/tutorial.md`, with the configurations that these pages show.
+//! The module also tests that `docs/SUMMARY.md` lists every page.
 
 use std::collections::BTreeSet;
 
