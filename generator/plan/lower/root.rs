@@ -14,7 +14,7 @@ use crate::refusal::PlanRefusal;
 /// If the largest value of a domain is less than this times the smallest, one table covers the domain.
 pub(super) const FEW_OCTAVES: f64 = 4.0;
 
-/// If a word is always at least 2 to the power of minus this, it is shortened before it is normalised.
+/// A wide word whose values are all at least 2 to the power of 1 minus this number, 2⁻¹¹, is shortened before it is normalised.
 const MOST_OCTAVES_BELOW_1: i32 = 12;
 
 /// Twice the exponent of a power. For example, −1 denotes the exponent −1/2.

@@ -32,7 +32,8 @@ const POINTS: [u64; 2] = [200, 20_000];
 /// Without full effort, the time limit for writing the statements for Gappa, and for proving one of them.
 const STATEMENT: Duration = Duration::from_secs(10);
 
-/// Without full effort, the time limit of the solver for the proof that a pipeline equals its sequential core.
+/// Without full effort, the time limit of the solver for each of two proofs: that a pipeline equals its sequential core, and
+/// that its Verilog equals its netlist.
 const EQUAL: Duration = Duration::from_secs(300);
 
 /// The version of cocotb that the benches in Python are written for.
