@@ -26,12 +26,12 @@ impl Enclosure {
         Self { low: value, high: value }
     }
 
-    /// Returns the interval from `low` to `high`.
+    /// Returns the interval from `low` to `high`, both included. `low` must not be above `high`.
     pub const fn between(low: f64, high: f64) -> Self {
         Self { low, high }
     }
 
-    /// Returns the number in the middle between both limits.
+    /// Returns the number in the middle between both limits, which must be finite.
     pub fn middle(self) -> f64 {
         self.low + (self.high - self.low) / 2.0
     }

@@ -167,7 +167,7 @@ pub trait Contract: Send + Sync {
     /// If a computation has several results, such as the points of a scan line, `index` is the number of the result, from 0.
     fn results(&self, operands: &[i64], index: u64, raw: &mut Vec<i64>);
 
-    /// Checks that the device shows its results at all.
+    /// Checks that the device shows its results at all. The default implementation always succeeds.
     ///
     /// # Errors
     /// Fails if the device never shows its results. The error says why, with a remedy.

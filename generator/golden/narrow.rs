@@ -36,7 +36,8 @@ impl Narrow {
         }
     }
 
-    /// Returns the raw value in the new format.
+    /// Returns the raw value in the new format: rounded, and replaced by the nearest end of the format's range if the value is
+    /// beyond this range.
     #[inline]
     pub fn apply(&self, raw: i64) -> i64 {
         (((raw + self.half) >> self.right) << self.left).clamp(self.min, self.max)

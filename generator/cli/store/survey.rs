@@ -92,7 +92,7 @@ struct Digests {
 }
 
 impl Digests {
-    /// Reads a manifest below `out`.
+    /// Reads a manifest below `out`. A file that is missing, or that is no manifest of Glint, gives no digests.
     fn read(manifest: &Path, out: &Path) -> Self {
         Self { manifest: relative_name(out, manifest), digests: parsed(manifest) }
     }

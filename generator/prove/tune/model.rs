@@ -54,7 +54,7 @@ fn family(target: Target) -> &'static Family {
 }
 
 impl Cost {
-    /// Estimates the cost of a design on a target.
+    /// Estimates the cost of a design on a target. For standard cells, the estimate is the one for ECP5.
     pub fn new(design: &Design, target: Target) -> Self {
         let family = family(target);
         let features = Features::new(design, target);
@@ -117,7 +117,7 @@ pub fn area(target: Target, luts: f64, dsps: u64, block_rams: u64) -> f64 {
 }
 
 impl Features {
-    /// Counts the features of a design on a target.
+    /// Counts the features of a design on a target. For standard cells, the counts are the ones for ECP5.
     pub fn new(design: &Design, target: Target) -> Self {
         let family = family(target);
         let mut sum = Self::default();

@@ -123,7 +123,7 @@ impl Mesh {
         Ok(Self { degenerate: all - kept.len(), triangles, positions, normals, textures })
     }
 
-    /// Returns the position of each corner of a triangle.
+    /// Returns the positions of the three corners of the triangle with the index `triangle`, in the order of the file.
     #[inline]
     pub fn corners(&self, triangle: usize) -> [Vector; 3] {
         self.triangles[triangle].map(|corner| self.positions[corner.position as usize])

@@ -61,7 +61,8 @@ impl Picture {
         captioned
     }
 
-    /// Joins pictures of the same height side by side.
+    /// Joins pictures side by side, the first one on the left. All pictures must have the height of the first one. An empty
+    /// list gives a picture without pixels.
     pub fn beside(pictures: &[&Self]) -> Self {
         let mut all = Self::new(pictures.iter().map(|picture| picture.width).sum());
         for row in 0..pictures.first().map_or(0, |picture| picture.height()) as usize {

@@ -50,7 +50,7 @@ pub struct Raster {
 }
 
 impl Raster {
-    /// Makes a raster with this number of samples.
+    /// Makes a raster with this number of columns and rows of samples, which cover the field of view of `camera`.
     pub fn new(columns: usize, rows: usize, camera: &Camera) -> Self {
         Self { columns, rows, half: camera.half() }
     }

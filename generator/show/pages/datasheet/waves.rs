@@ -285,7 +285,7 @@ fn clock_lane(clocks: usize) -> Lane {
     }
 }
 
-/// Returns the style for a signal of this format.
+/// Returns the style for a signal of this format: a bit, or a bus if the format has more bits than one.
 fn shape(format: Format) -> LaneStyle {
     if format.width() == 1 { LaneStyle::Bit } else { LaneStyle::Bus }
 }

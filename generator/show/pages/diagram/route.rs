@@ -127,7 +127,8 @@ pub fn lanes(graph: &DiagramGraph, back: &[bool]) -> Vec<Vec<usize>> {
     lanes
 }
 
-/// Routes the wires between the boxes of a placement.
+/// Routes the wires between the boxes of a placement. `bodies` are the positions of the boxes, and `lanes` the lanes that the
+/// function [`lanes`] returns for each box.
 pub fn routes(
     graph: &DiagramGraph,
     placement: &Placement,
