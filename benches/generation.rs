@@ -1,5 +1,7 @@
-//! The cost of generating: from the text of a configuration to all files in memory, the vectors of
-//! the bench and the proof of the error bound among them. On Linux the peak of memory is printed too.
+//! Measures the cost of generating two devices: from the text of a configuration to all files in memory, including the vectors
+//! of the bench and the proof of the error bound.
+//!
+//! It also measures the building of one large design. On Linux it prints the peak memory of the process.
 
 use std::fs;
 use std::hint::black_box;

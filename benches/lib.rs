@@ -1,4 +1,4 @@
-//! What the benchmarks share. `cargo bench -p glint-benches --bench paired` and `--bench generation` run them.
+//! Code that the benchmarks share. `cargo bench -p glint-benches --bench paired` and `--bench generation` run the benchmarks.
 
 use std::env;
 use std::path::Path;

@@ -1,24 +1,24 @@
-//! The built-in simulator against Verilator and Icarus Verilog, paired: the same stimulus, alternately, as
-//! ratios.
+//! Compares the speed of the built-in simulator with Verilator and Icarus Verilog, which get the same stimulus in alternating
+//! rounds.
 //!
 //! ```text
 //! cargo bench -p glint-benches --bench paired [-- CORE ...]
 //! ```
 //!
-//! For each device and each pipeline of `configs/`, or those that are named (`rough`, `rough_pipelined`), clocks
-//! per second and thread of
-//! - *design*: the built-in simulator through rust_hdl's `simulate()`, [`LANES`] streams side by side;
-//! - *golden*: the golden model beside it, every register and output compared on every clock (`Lockstep::replay`);
-//! - *cosim*: `Lockstep::run` as `glint cosim` uses it: the same with stimulus that is drawn meanwhile, and every result
-//!   measured against the formula;
-//! - Verilator: the emitted Verilog (`-O3`, for this processor) under `paired.cpp`, building excluded;
-//! - Icarus Verilog: `vvp` running the emitted bench, compiling excluded.
+//! For the default configuration and the pipeline of each device in `configs/`, or for the named cores (such as `rough` or
+//! `rough_pipelined`), it measures million clocks per second and thread of
+//! - *design*: the built-in simulator alone, with [`LANES`] streams side by side;
+//! - *golden*: the simulator with the golden model, with every register and output compared on every clock
+//!   (`Lockstep::replay`);
+//! - *cosim*: `Lockstep::run`, as `glint cosim` uses it, which also draws the stimulus and measures every result against the
+//!   formula;
+//! - Verilator: the emitted Verilog (`-O3`, for this processor) under `paired.cpp`, without the time to build;
+//! - Icarus Verilog: `vvp` with the emitted bench, without the time to compile.
 //!
-//! *design*, *golden*, Verilator and Icarus replay the same recorded streams from memory, the latter two one stream
-//! after the other; a sum over all results shows that they did. Figures are by processor time, because
-//! other programs disturb wall time more; each is the median of several rounds, and ratios are medians
-//! of the ratios within a round. The last column is wall time, all threads, compiling the design
-//! included.
+//! *design*, *golden*, Verilator and Icarus replay the same recorded streams from memory; Verilator and Icarus replay one
+//! stream after the other. Times are processor times, because other programs disturb wall time more. Each number is the median
+//! of several rounds, and each ratio is the median of the ratios within a round. The last column is the wall time from a
+//! configuration to the verdict on a million points, with all threads.
 
 use std::fmt::Write;
 use std::fs;

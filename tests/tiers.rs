@@ -1,4 +1,5 @@
-//! Says which tests a run of `cargo test` leaves out.
+//! Prints which tests this run of `cargo test` leaves out: without the feature `outside-tools`, the tests that run outside
+//! tools.
 
 fn main() {
     if cfg!(feature = "outside-tools") {

@@ -1,8 +1,10 @@
-//! Measures what the seeds claim of their functions and devices: `cargo run --release --manifest-path benches/papers/Cargo.toml -- DIR`.
+//! Measures the claims that the seeds make about their functions and devices. A seed is a document from which a device comes:
+//! `cargo run --release --manifest-path benches/papers/Cargo.toml -- DIR`.
 //!
-//! Writes `report.html`, one page that needs no network, and `report.json` with all of its figures into a new directory: error curves
-//! of every device, the plots that the seeds 000 to 002 describe, and their claims, each with a verdict. With Yosys on PATH, W and Schlick's
-//! function are synthesised. `--benchmark` also times them against each other, into `benchmark.json`.
+//! The program writes two files into the new directory `DIR`: `report.html`, a page that needs no network, and `report.json`
+//! with all of its numbers. The files contain error curves of every device, the plots that the seeds 000 to 002 describe, and
+//! their claims, each with a verdict. With Yosys on PATH, the program synthesises W and Schlick's function. `--benchmark` also
+//! measures their speed in software and writes `benchmark.json`.
 
 mod evidence;
 

@@ -1,5 +1,7 @@
-//! The description: blocks, wires and the microprogram. Every signal knows its format and its range, so that
-//! widths follow by themselves; only `narrow` gives bits up, and says how.
+//! Describes the hardware of the device: blocks, wires and the microprogram.
+//!
+//! Every signal knows its format and the interval of its values, from which the DSL computes the widths. Only `narrow` drops
+//! bits; its arguments state the rounding and the overflow.
 
 use super::Keys;
 use glint::config::Config;

@@ -1,5 +1,7 @@
-//! The golden model: the device once more, from the formula, in integers. It never looks at the description; that
-//! `cosim` finds both equal on every clock is what makes the description right. The contract follows.
+//! Defines the golden model of the device and its accuracy contract.
+//!
+//! The golden model computes the device's values in integers, from the formula and not from the description. `cosim` compares
+//! the two on every clock, so a mistake in either shows as a difference.
 
 use std::sync::Arc;
 

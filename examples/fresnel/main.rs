@@ -1,7 +1,6 @@
-//! A device of your own: Schlick's approximation of the Fresnel factor.
+//! Defines a device that is not in Glint's catalogue: Schlick's approximation of the Fresnel factor.
 //!
-//! Glint knows the devices of its catalogue. This program knows one that is not there, and has the
-//! whole command line for it:
+//! The program has Glint's whole command line, with this device as the only one:
 //!
 //! ```sh
 //! cargo run --release --example fresnel -- new fresnel > f.toml
@@ -10,20 +9,20 @@
 //! cargo run --release --example fresnel -- eval f.toml cos_half=0.1 f0=0.04
 //! ```
 //!
-//! Seen at a grazing angle, every surface is a mirror. C. Schlick ("An Inexpensive BRDF Model for
-//! Physically-based Rendering", Computer Graphics Forum 13(3), 1994) puts it as
+//! At a grazing angle, every surface reflects like a mirror. C. Schlick ("An Inexpensive BRDF Model for Physically-based
+//! Rendering", Computer Graphics Forum 13(3), 1994) approximates this by
 //!
 //! ```text
 //! f = f0 + (1 − f0)·(1 − c)⁵
 //! ```
 //!
-//! where c is the cosine between the direction of the light and the half vector, and f0 the
-//! reflectance at normal incidence: 0.04 for glass, 0.95 for silver. The device multiplies the three
-//! colours by it. It has one multiplier for f, which a microprogram of six words uses four times.
+//! where c is the cosine of the angle between the direction of the light and the half vector, and f0 is the reflectance at
+//! normal incidence: 0.04 for glass, 0.95 for silver. The device multiplies the three colours by f. The device has one
+//! multiplier for f, which a microprogram of six microinstructions uses four times.
 //!
-//! A device is five things: configuration keys, a description, a golden model, a contract, and the line that
-//! ties them together. Keys and line are here; the description is in `description.rs`, model and contract are
-//! in `golden.rs`, and these two share nothing but the keys.
+//! A device has five parts: configuration keys, a description, a golden model, an accuracy contract, and a constant that ties
+//! them together. Keys and constant are in this file. The description is in `description.rs`; golden model and contract are in
+//! `golden.rs`. Description and golden model share nothing but the keys.
 
 mod description;
 mod golden;
@@ -34,8 +33,8 @@ use glint::config::{Config, Key, Problems, Schema};
 use glint::fixed::Rounding;
 use glint::registry::{Device, Registry};
 
-// The keys: what the user of the device may choose. `new` writes them into a commented file, with
-//    these sentences; a file with a wrong value is refused with its line and a remedy.
+// The configuration keys, which the user of the device may set. The command `new` writes the keys into a commented file, with
+// these sentences; a file with a wrong value is refused with its line and a remedy.
 
 glint::keys! {
     struct Keys {

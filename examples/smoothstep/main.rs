@@ -1,16 +1,16 @@
-//! A device whose author has proved no bound of its error: smoothstep, 3·x² − 2·x³.
+//! Defines a device whose author has proved no bound on its error: smoothstep, 3·x² − 2·x³.
 //!
-//! A contract states how far an output may be from its formula. Where nobody has worked that out, `terms` is left out,
-//! and `certify` finds the bound: from netlist and microprogram it writes what the hardware computes as real numbers with
-//! roundings, and Gappa says how far they are from the expression of the formula.
+//! An accuracy contract states how far an output may be from its formula. If nobody has worked that out, the author leaves out
+//! `terms`, and `certify` finds the bound. The command translates the netlist and the microprogram to real numbers with
+//! roundings, and Gappa proves how far the results are from the formula.
 //!
 //! ```sh
 //! cargo run --release --example smoothstep -- new smoothstep > s.toml
 //! cargo run --release --example smoothstep -- certify s.toml
 //! ```
 //!
-//! The bound that it prints is proved, and may be stated as a `Term` from then on. Until it is, the commands that weigh errors say that no bound is
-//! stated, and `strict = true` refuses the configuration.
+//! The printed bound is proved, and the author may state it as a `Term`. Without a stated bound, the commands that compare
+//! errors with the bound say that no bound is stated, and `strict = true` refuses the configuration.
 
 use std::process::ExitCode;
 

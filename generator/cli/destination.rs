@@ -12,7 +12,7 @@ use anyhow::{Context, Result, bail};
 use super::directories::MadeDirectories;
 use glint_tools::transient::Directory;
 
-/// The file while it is written, in a directory of its own.
+/// The name of the file while Glint writes it, in a temporary directory next to its place.
 const UNFINISHED: &str = "unfinished";
 
 /// The destination of a file. The file is written under another name in the same directory, and moved to its place when it is
@@ -30,8 +30,8 @@ enum Sink {
 }
 
 impl Destination {
-    /// Makes sure that `path` can be written. A command must call it before it does any work for the file. If `path` is
-    /// a symbolic link, the file behind it is replaced, and not the link.
+    /// Makes sure that `path` can be written. A command must call this function before it does any work for the file. If `path`
+    /// is a symbolic link, the file to which the link leads is replaced, and not the link.
     ///
     /// # Errors
     /// Fails if `path` cannot be written, if a link leads nowhere, or if its directory cannot be made.
@@ -78,7 +78,7 @@ impl Destination {
     /// Returns the open file to which the caller must write.
     ///
     /// # Errors
-    /// Fails if the system has no more files.
+    /// Fails if the file cannot be opened.
     pub fn file(&self) -> Result<File> {
         let file = match &self.sink {
             Sink::Itself(file) => file.try_clone(),
@@ -110,14 +110,16 @@ impl Destination {
     /// Writes the whole file and moves it into its place.
     ///
     /// # Errors
-    /// Fails if the file cannot be written or moved; then nothing was changed.
+    /// Fails if the file cannot be written or moved; then the old file is unchanged. A pipe or a device may have received a
+    /// part of the contents.
     pub fn write(self, contents: impl AsRef<[u8]>) -> Result<()> {
         self.file()?.write_all(contents.as_ref()).with_context(|| cannot(&self.path))?;
         self.commit()
     }
 }
 
-/// Replaces the file `path` as a whole, or leaves it as it was. For example, a full disk leaves the old file unchanged.
+/// Replaces the file `path` as a whole, or leaves the old file unchanged, for example if the disk is full. A pipe or a device
+/// is written directly.
 ///
 /// # Errors
 /// Fails if the file cannot be written.
@@ -125,7 +127,7 @@ pub fn replace(path: &Path, contents: impl AsRef<[u8]>) -> Result<()> {
     Destination::open(path)?.write(contents)
 }
 
-/// Returns the message when it cannot be written.
+/// Returns the message for a file that cannot be written.
 fn cannot(path: &Path) -> String {
     format!("cannot write `{}`", path.display())
 }

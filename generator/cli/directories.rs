@@ -9,7 +9,7 @@ use anyhow::{Context, Result};
 /// is in them. For example, for `made/for/it.txt` in an empty directory these are `made` and `made/for`.
 #[derive(Default)]
 pub struct MadeDirectories {
-    /// The outermost first.
+    /// The paths of the directories, the outermost first.
     paths: Vec<PathBuf>,
 }
 

@@ -43,7 +43,7 @@ impl fmt::Display for Failure {
 
 impl std::error::Error for Failure {}
 
-/// Returns from a function with [`Failure::WrongUsage`]. It formats its arguments to the message.
+/// Returns from a function with [`Failure::WrongUsage`]. The macro formats its arguments to the message.
 macro_rules! wrong_usage {
     ($($text:tt)*) => { anyhow::bail!($crate::failure::Failure::WrongUsage(format!($($text)*))) };
 }
@@ -74,7 +74,7 @@ pub fn print_problems(problems: Vec<Value>) {
     super::tables::print_json(&json!({ "ok": false, "problems": problems }));
 }
 
-/// Returns the JSON of a problem that has no location in a configuration file. It has the same keys as a problem with a
+/// Returns the JSON of a problem that has no location in a configuration file. The object has the same keys as a problem with a
 /// location; all but `message` are null.
 pub fn problem(message: &str) -> Value {
     json!({ "file": null, "line": null, "column": null, "key": null, "message": message, "remedy": null })
@@ -120,7 +120,8 @@ pub fn warn(message: &str) {
     print_line(&format!("warning: {message}"));
 }
 
-/// Prints a line to standard error. It ignores a failure to write, because the failure could not be reported anywhere.
+/// Prints a line to standard error. The function ignores a failure to write, because the failure could not be reported
+/// anywhere.
 fn print_line(line: &str) {
     let _ = writeln!(std::io::stderr().lock(), "{line}");
 }

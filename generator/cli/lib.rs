@@ -201,8 +201,8 @@ pub fn run_with(
     run_from(registry, arguments)
 }
 
-/// Runs the command line `arguments`, whose first entry is the program's name, and returns its exit code. It installs no signal
-/// handler.
+/// Runs the command line `arguments`, whose first entry is the program's name, and returns its exit code. The function installs
+/// no signal handler.
 pub fn run_from(registry: &Registry, arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
     let arguments: Vec<OsString> = arguments.into_iter().collect();
     let cli = match parse(&arguments) {

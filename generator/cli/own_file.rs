@@ -37,7 +37,7 @@ impl OwnFile {
     }
 
     /// Returns the record `<name>.json`, if there is a directory for records. For example, `--out mutation` makes
-    /// `mutation/rough.json` the record of `rough`.
+    /// `mutation/rough.json` the record of `rough`. Returns `None` without a directory.
     ///
     /// # Errors
     /// Fails as [`OwnFile::new`] does.

@@ -26,9 +26,9 @@ use survey::Survey;
 /// Whether [`write()`] or [`write_sealed`] changed any file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Written {
-    /// They were there already, byte for byte.
+    /// No file changed: all files were there already, byte for byte.
     Unchanged,
-    /// They were written.
+    /// At least one file was written, replaced or deleted.
     Replaced,
 }
 
@@ -41,16 +41,17 @@ impl fmt::Display for Written {
     }
 }
 
-/// Writes the files of configuration `name` below the directory `out`. Files of the user stay unless they have the path of a file
-/// that must be written.
+/// Writes the files of the configuration `name` below the directory `out`, and deletes files of an earlier run that are no
+/// longer needed. Returns whether any file changed. A file of the user stays, unless it has the path of a file that must be
+/// written.
 ///
 /// # Errors
-/// Without `force`, fails if files of Glint's were edited, or if other files would be overwritten; `force` replaces
-/// them, and still keeps files that are not in the way. Fails if a directory cannot be written. After an error, the
-/// user's files are unchanged.
+/// Without `force`, fails if somebody edited a file that Glint wrote, or if a file that Glint did not write is in the way. With
+/// `force`, these files are replaced, and other files of the user still stay. Fails if a directory cannot be written. After an
+/// error without `force`, the user's files are unchanged.
 pub fn write(out: &Path, name: &str, files: &[OutputFile], force: bool) -> Result<Written> {
-    // If two runs write into one directory, the second waits: between its first file and its manifest the first one's
-    // files look foreign.
+    // If two runs write into one directory, the second run waits. Until the first run has written its manifest, the second run
+    // would take the new files for files of the user.
     create_directory(out)?;
     let _lock = locked(out);
     let found = Survey::new(out, name, files)?;
@@ -70,16 +71,16 @@ pub fn write(out: &Path, name: &str, files: &[OutputFile], force: bool) -> Resul
     Ok(Written::Replaced)
 }
 
-/// Waits until no other run writes below a directory, and keeps others waiting until the result is dropped. Returns `None` on a
-/// system that locks no directories.
+/// Waits until no other run of Glint writes below a directory, and locks the directory until the result is dropped. Returns
+/// `None`, without a lock, on a system that locks no directories.
 fn locked(directory: &Path) -> Option<fs::File> {
     let opened = fs::File::open(directory).ok()?;
     opened.lock().ok()?;
     Some(opened)
 }
 
-/// Returns the files below `out` that differ from `files` or are missing, and the files of Glint's that are no longer
-/// in `files`. For example, `rtl_out/rough/rough.v` after somebody edited it.
+/// Returns the paths of the files below `out` that differ from `files` or are missing, and of the files that Glint wrote
+/// earlier and that are no longer in `files`. For example, `rtl_out/rough/rough.v` after somebody edited this file.
 ///
 /// # Errors
 /// Fails if a file cannot be read.
@@ -87,10 +88,10 @@ pub fn differences(out: &Path, name: &str, files: &[OutputFile]) -> Result<Vec<S
     Ok(Survey::new(out, name, files)?.different)
 }
 
-/// Writes a single file that contains the digest of its own text.
+/// Writes a single file that contains the digest of its own text, and returns whether the file changed.
 ///
 /// # Errors
-/// Without `force`, fails if there is a file that Glint did not write or that was edited since. Fails if a directory
+/// Without `force`, fails if Glint did not write the file that is there, or if somebody edited it since. Fails if the file
 /// cannot be written. After a failure, the old file is still there.
 pub fn write_sealed(path: &Path, text: &str, seal: Seal, force: bool) -> Result<Written> {
     if may_write(path, seal, force)?.is_some_and(|found| found == text.as_bytes()) {
@@ -104,7 +105,8 @@ pub fn write_sealed(path: &Path, text: &str, seal: Seal, force: bool) -> Result<
 /// Checks that [`write_sealed`] may replace the file at `path`, and returns its contents; `None` if there is no file.
 ///
 /// # Errors
-/// Without `force`, fails if Glint did not write the file, or if it was edited since. Fails if it cannot be read.
+/// Without `force`, fails if Glint did not write the file, or if somebody edited the file since. Fails if the file cannot be
+/// read.
 pub fn may_write(path: &Path, seal: Seal, force: bool) -> Result<Option<Vec<u8>>> {
     let found = contents(path)?;
     if let Some(found) = &found
@@ -122,7 +124,7 @@ pub fn may_write(path: &Path, seal: Seal, force: bool) -> Result<Option<Vec<u8>>
 /// Checks that a command without `--force` may replace the file at `path`, if there is one.
 ///
 /// # Errors
-/// Fails if Glint did not write the file, or if it was edited since. Fails if it cannot be read.
+/// Fails if Glint did not write the file, if somebody edited the file since, or if the file cannot be read.
 pub fn may_replace(path: &Path, seal: Seal) -> Result<()> {
     let is_own = contents(path)?.is_none_or(|found| is_sealed(&found, seal));
     ensure!(is_own, "{}\nmove it away, or choose another --out", not_glints(path));
@@ -153,7 +155,7 @@ pub fn differs(out: &Path, file: &OutputFile) -> Result<bool> {
     let path = out.join(&file.path);
     match fs::read(&path) {
         Ok(found) => Ok(found != file.contents.as_bytes()),
-        // Or a file where a directory should be, or the other way around.
+        // The file is missing, or a file is in the place of a directory, or a directory is in the place of the file.
         Err(error)
             if [ErrorKind::NotFound, ErrorKind::NotADirectory, ErrorKind::IsADirectory]
                 .contains(&error.kind()) =>

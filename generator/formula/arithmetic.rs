@@ -1,5 +1,5 @@
-//! Declares the interval arithmetic in which formulas are evaluated. It exists for two kinds of numbers: `f64`, which is fast,
-//! and numbers of any precision.
+//! Declares the interval arithmetic in which formulas are evaluated. The arithmetic exists for two kinds of numbers: `f64`,
+//! which is fast, and numbers of any precision.
 
 use std::cmp::Ordering;
 
@@ -31,17 +31,20 @@ pub(super) trait Arithmetic {
 
     fn multiply(&self, a: &Self::Value, b: &Self::Value) -> Result<Self::Value, String>;
 
-    /// Returns the interval of a / b. The caller must make sure that the interval `b` does not contain 0.
+    /// Returns the interval of a / b. The caller must make sure that the interval `b` does not contain 0. Only precise
+    /// arithmetic can fail: if an exponent has too many bits.
     fn divide(&self, a: &Self::Value, b: &Self::Value) -> Result<Self::Value, String>;
 
-    /// Returns the interval of the product of `exponent` factors `a`. `exponent` must be at least 1.
+    /// Returns the interval of the product of `exponent` factors `a`. `exponent` must be at least 1. Only precise arithmetic
+    /// can fail: if an exponent has too many bits.
     fn repeated_product(&self, a: &Self::Value, exponent: u32) -> Result<Self::Value, String>;
 
     /// Returns the interval of a to the power of b. The caller must make sure that no number in the interval `a` is below 0.
+    /// Only precise arithmetic can fail: if an exponent has too many bits.
     fn power(&self, a: &Self::Value, b: &Self::Value) -> Result<Self::Value, String>;
 
     /// Returns the interval of the values of `function` for `a`. The caller must make sure that the whole interval `a` is
-    /// within the domain of the function.
+    /// within the domain of the function. Only precise arithmetic can fail: if an exponent has too many bits.
     fn function(&self, function: Function, a: &Self::Value) -> Result<Self::Value, String>;
 
     fn minimum(&self, a: &Self::Value, b: &Self::Value) -> Self::Value;

@@ -26,12 +26,12 @@ impl Enclosure {
         Self { low: value, high: value }
     }
 
-    /// Returns the interval from `low` to `high`.
+    /// Returns the interval from `low` to `high`, both included. `low` must not be above `high`.
     pub const fn between(low: f64, high: f64) -> Self {
         Self { low, high }
     }
 
-    /// Returns the number in the middle between both limits.
+    /// Returns the number in the middle between both limits, which must be finite.
     pub fn middle(self) -> f64 {
         self.low + (self.high - self.low) / 2.0
     }
@@ -61,8 +61,8 @@ impl Enclosure {
         Self { low: low - margin(low), high: high + margin(high) }
     }
 
-    /// Returns the smallest interval that contains the results of `of` at the four combinations of the intervals' limits. It
-    /// contains all results if the function is monotone in each operand.
+    /// Returns the smallest interval that contains the results of `of` at the four combinations of the intervals' limits. The
+    /// interval contains all results if the function is monotone in each operand.
     fn corners(self, other: Self, of: impl Fn(f64, f64) -> Self) -> Self {
         let first = of(self.low, other.low);
         if self.low == self.high && other.low == other.high {

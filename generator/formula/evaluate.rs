@@ -12,7 +12,7 @@ use super::{Comparison, Enclosure, Expression, Fault, Function, Kind, Operator};
 /// exponents need logarithms.
 const LARGEST_PRODUCT: u32 = 64;
 
-/// The precisions in bits. They are tried one after the other until every comparison and every jump is decided.
+/// The precisions in bits. The precisions are tried one after the other until every comparison and every jump is decided.
 const PRECISIONS: [usize; 3] = [128, 320, 1024];
 
 impl Expression {
@@ -28,11 +28,11 @@ impl Expression {
         self.evaluate(&Double, operands)
     }
 
-    /// Evaluates the formula for exact operands. It increases the precision until all comparisons and jumps are decided, and
-    /// until the `f64` limits of the result are at most two steps apart.
+    /// Evaluates the formula for exact operands. The function increases the precision until all comparisons and jumps are
+    /// decided, and until the `f64` limits of the result are at most two steps apart.
     ///
-    /// For example, `floor(x * 0.1)` is 3 for x = 30, although 0.1 is no `f64`. It is about a thousand times slower than
-    /// [`Expression::enclose`].
+    /// For example, `floor(x * 0.1)` is 3 for x = 30, although 0.1 is no `f64`. The function is about a thousand times slower
+    /// than [`Expression::enclose`].
     ///
     /// # Errors
     /// Fails as [`Expression::enclose`] does, or if 1024 bits do not decide a comparison or a jump.
@@ -70,7 +70,7 @@ impl Expression {
     }
 
     /// Evaluates the formula with increasing precision until `enough` returns true for the value. Returns the last result, even
-    /// if it is not enough.
+    /// if it is not enough. Fails at the first part without a value, or if 1024 bits do not decide a comparison or a jump.
     fn decided(
         &self,
         operands: &[(&str, RBig)],
@@ -157,7 +157,8 @@ impl Comparison {
         self.decided(&Double, &left, &right).map_err(fault)
     }
 
-    /// Returns whether the comparison holds for the intervals of both sides; `None` if they do not decide it.
+    /// Returns whether the comparison holds for the intervals of both sides; `None` if they do not decide it. Fails if the
+    /// difference of both sides cannot be computed.
     pub(super) fn decided<A: Arithmetic>(
         &self,
         arithmetic: &A,
@@ -234,7 +235,7 @@ pub(super) fn binary<A: Arithmetic>(
 }
 
 /// Computes the remainder of a division, which is from 0 to below the divisor, or above it for a negative divisor. For example,
-/// the remainder of −1 by 4 is 3.
+/// the remainder of −1 by 4 is 3. Fails if the divisor may be 0, or if precise arithmetic does not decide the integer quotient.
 fn remainder<A: Arithmetic>(
     arithmetic: &A,
     a: &A::Value,

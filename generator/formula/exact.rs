@@ -14,7 +14,7 @@ use super::{Function, Operator};
 /// known.
 const MOST_BITS: usize = 1 << 14;
 
-/// The largest exponent that is tried if a logarithm is divided by another logarithm.
+/// If a logarithm is divided by another logarithm, only exponents below this number are tried.
 const LARGEST_LOGARITHM: usize = 1100;
 
 /// A value that is known exactly.
@@ -186,8 +186,8 @@ fn root(value: &RBig, degree: usize) -> Option<RBig> {
     Some(RBig::from_parts(IBig::from(numerator), denominator))
 }
 
-/// Returns the integer k with baseᵏ = value. Returns `None` if there is no such integer up to ±1100. Both numbers must be above
-/// 0. For example, the value 1/8 and the base 2 give −3.
+/// Returns the integer k with baseᵏ = value. Returns `None` if there is no such integer from −1099 to 1099, or if the base is
+/// 1. Both numbers must be above 0. For example, the value 1/8 and the base 2 give −3.
 fn logarithm(value: &RBig, base: &RBig) -> Option<isize> {
     if base.is_one() {
         return None;

@@ -31,8 +31,8 @@ pub struct Expression {
     pub kind: Kind,
     /// The range of bytes in the text from which this part was parsed; 0..0 if it comes from no text.
     pub span: Range<usize>,
-    /// The value, if the part contains no operand and no word of a ROM, and has a value. It is computed only once, because
-    /// formulas are evaluated at millions of operands.
+    /// The value, if the part contains no operand and no word of a ROM, and has a value. The value is computed only once,
+    /// because formulas are evaluated at millions of operands.
     constant: Option<Enclosure>,
 }
 
@@ -93,8 +93,8 @@ pub enum Operator {
     Sub,
     Mul,
     Div,
-    /// The remainder of the first number divided by the second. It lies between 0 and the second number. For example, −1 and 4
-    /// give 3.
+    /// The remainder of the first number divided by the second. The remainder lies between 0 and the second number. For
+    /// example, −1 and 4 give 3.
     Mod,
     Power,
     Min,
@@ -147,8 +147,8 @@ impl Expression {
         Self::new(Kind::Operand(name.to_owned()), 0..0)
     }
 
-    /// Makes a formula of this kind, which was parsed from the bytes `span` of a text. It computes the value of a constant
-    /// formula.
+    /// Makes a formula of this kind, which was parsed from the bytes `span` of a text. The function also computes the value of
+    /// a constant formula.
     pub fn new(kind: Kind, span: Range<usize>) -> Self {
         let mut formula = Self { kind, span, constant: None };
         let is_constant = formula.parts().iter().all(|part| part.constant.is_some())

@@ -68,15 +68,15 @@ const CONSTANTS: [(&str, f64); 2] = [("pi", std::f64::consts::PI), ("e", std::f6
 /// Another way to write the constant `pi`.
 const PI: &str = "π";
 
-/// The largest depth to which parts may be nested. It limits the recursion of the parser.
+/// The largest depth to which parts may be nested. This depth limits the recursion of the parser.
 const DEEPEST: usize = 200;
 
 /// The largest number of parts of a formula after its functions are replaced by their formulas. For example, `silu(x)` has 6
 /// parts more than x and contains x twice, so each `silu` around another doubles the number of parts.
 const MOST_PARTS: usize = 4096;
 
-/// Parses a formula. It may have sums, products, powers (`^` or `**`), parentheses, numbers, `pi`, `e`, names of operands,
-/// functions, `if(a < b, x, y)`, and the same in Python's notation, `x if a < b else y`.
+/// Parses a formula. The formula may have sums, products, powers (`^` or `**`), parentheses, numbers, `pi`, `e`, names of
+/// operands, functions, `if(a < b, x, y)`, and the same in Python's notation, `x if a < b else y`.
 ///
 /// # Errors
 /// Fails at the first mistake. The error has the location of the mistake.
@@ -233,7 +233,8 @@ impl Parser<'_> {
         Ok(Comparison { left, right, or_equal: sign.len() == 2 })
     }
 
-    /// Parses operators of the same precedence, which are applied from left to right. `part` parses an operand.
+    /// Parses operators of the same precedence, which are applied from left to right. `part` parses an operand. Fails at the
+    /// first mistake.
     fn chain(
         &mut self,
         signs: &[(&str, Operator)],
@@ -260,7 +261,8 @@ impl Parser<'_> {
         self.chain(&signs, Self::signed)
     }
 
-    /// Parses a power with a sign before it. The sign is applied after the power. For example, `-x^2` is −(x²).
+    /// Parses a power with a sign before it. The sign is applied after the power. For example, `-x^2` is −(x²). Fails at the
+    /// first mistake.
     fn signed(&mut self) -> Result<Expression, Fault> {
         let from = self.at;
         let mut negations = 0;
@@ -331,7 +333,8 @@ impl Parser<'_> {
         self.call(from, &token)
     }
 
-    /// Parses the arguments of a call of the function `name`. The opening parenthesis has been read.
+    /// Parses the arguments of a call of the function `name`. The opening parenthesis has been read. Fails if there is no such
+    /// function, or at the first mistake in an argument.
     fn call(&mut self, from: usize, name: &str) -> Result<Expression, Fault> {
         if name == "if" {
             let comparison = self.comparison()?;

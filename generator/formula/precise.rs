@@ -1,8 +1,8 @@
-//! Interval arithmetic of any precision. It also stores a value exactly if the value is known exactly.
+//! Interval arithmetic of any precision. The module also stores a value exactly if the value is known exactly.
 //!
-//! It is slow, so it only decides questions that `f64` intervals leave open. These are the side of a jump on which a value
-//! lies, for example of `floor` at 1, and values beyond the range of `f64`. For example, `exp(1000)` in `1 / (1 + exp(1000))`
-//! is beyond this range.
+//! The arithmetic is slow, so it only decides questions that `f64` intervals leave open. Such questions are the side of a jump
+//! on which a value lies, for example of `floor` at 1, and values beyond the range of `f64`. For example, `exp(1000)` in `1 /
+//! (1 + exp(1000))` is beyond this range.
 
 use std::cmp::Ordering;
 
@@ -143,8 +143,9 @@ impl Precise {
         Self::rounded(self.down.mul(a, b), self.up.mul(a, b))
     }
 
-    /// Returns the smallest interval that contains an operation's results at the four combinations of the intervals' limits. It
-    /// contains all results if the operation is monotone in each operand.
+    /// Returns the smallest interval that contains an operation's results at the four combinations of the intervals' limits.
+    /// The interval contains all results if the operation is monotone in each operand. Fails if an operation of the library
+    /// fails, for example because an exponent has too many bits.
     fn corners(
         &self,
         a: &PreciseValue,
@@ -161,7 +162,7 @@ impl Precise {
     }
 
     /// Returns the interval of a function that never falls. `down` and `up` compute the function with the two directions of
-    /// rounding.
+    /// rounding. Fails if an operation of the library fails, for example because an exponent has too many bits.
     fn rising(
         &self,
         a: &PreciseValue,
@@ -172,7 +173,8 @@ impl Precise {
     }
 
     /// Returns the interval of a sine or a cosine, whose slope is never steeper than 1. The function adds the length of the
-    /// interval, in both directions, to the value at its lower limit.
+    /// interval, in both directions, to the value at its lower limit. Fails if an operation of the library fails, for example
+    /// because an exponent has too many bits.
     fn wave(
         &self,
         a: &PreciseValue,
@@ -204,8 +206,8 @@ impl Precise {
 
     /// Returns the interval of the error function of a number that is not below 0.
     ///
-    /// The series is erf(x) = 2x / √π · exp(−x²) · (1 + 2x²/3 + (2x²)²/(3·5) + …), whose terms are all positive. It ends as
-    /// soon as each further term is less than half of the previous one, so that their sum is less than the last term.
+    /// The series is erf(x) = 2x / √π · exp(−x²) · (1 + 2x²/3 + (2x²)²/(3·5) + …), whose terms are all positive. The series
+    /// ends as soon as each further term is less than half of the previous one, so that their sum is less than the last term.
     fn error_function(&self, x: &BigFloat) -> Result<PreciseValue, String> {
         let one = self.integer(1);
         let x = PreciseValue::between(x.clone(), x.clone());
@@ -246,7 +248,7 @@ impl Precise {
     }
 }
 
-/// Returns the exact value if it is known, and otherwise the result of `compute`.
+/// Returns the exact value if it is known, and otherwise the result of `compute`. Fails if `compute` fails.
 fn or_computed(
     arithmetic: &Precise,
     exact: Option<Exact>,

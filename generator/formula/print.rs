@@ -10,8 +10,8 @@ const POWER: u8 = 3;
 const ATOM: u8 = 4;
 
 impl Expression {
-    /// Returns the formula as a Python expression, which can be evaluated after `from math import *`. [`super::parse()`] can
-    /// parse it too. For example, `x^2 + 1` becomes `x ** 2.0 + 1.0`.
+    /// Returns the formula as a Python expression, which can be evaluated after `from math import *`. The function `exp2` needs
+    /// Python 3.11. [`super::parse()`] can parse the expression too. For example, `x^2 + 1` becomes `x ** 2.0 + 1.0`.
     pub fn python(&self) -> String {
         python(self).0
     }

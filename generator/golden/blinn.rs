@@ -1,8 +1,8 @@
 //! The golden model and the accuracy contract of the device `blinn`, which computes f = cⁿ.
 //!
 //! c = cos γ, where γ is the angle between the surface normal and the half vector; n is the specular exponent; f is the
-//! reflectance, the factor by which the device multiplies colours. This is Blinn's formula. The module [`decay`] computes it as
-//! 2^(−n·decay), for `blinn` and `gauss`. The decay of `blinn` is −log₂ c.
+//! reflectance, the factor by which the device multiplies colours. f is 0 if c ≤ 0. This is Blinn's formula. The module
+//! [`decay`] computes it as 2^(−n·decay), for `blinn` and `gauss`. The decay of `blinn` is −log₂ c.
 
 use super::decay;
 use super::{Contract, Model};

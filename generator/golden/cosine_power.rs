@@ -1,9 +1,10 @@
 //! The golden model and the accuracy contract of the device `cosine-power`, which computes f = (n/m·(c − 1) + 1)^m.
 //!
-//! c = cos γ, where γ is the angle between the surface normal and the half vector; n is the specular exponent; the configuration
-//! chooses m = 2, 4, 8 or 16; f is the reflectance, the factor by which the device multiplies colours. f is 0 if the base is
-//! negative. The source is the paper "A model for reproducing the specular component of colour in computer graphics" (in
-//! Ukrainian; Glint calls it seed 002). The paper calls the function W(n, γ) and proposes it as an approximation of cⁿ.
+//! c = cos γ, where γ is the angle between the surface normal and the half vector; n is the specular exponent; the
+//! configuration chooses m = 2, 4, 8 or 16; f is the reflectance, the factor by which the device multiplies colours. f is 0 if
+//! the base is negative, or if c ≤ 0. The source is the paper "A model for reproducing the specular component of colour in
+//! computer graphics" (in Ukrainian; Glint calls it seed 002). The paper calls the function W(n, γ) and proposes it as an
+//! approximation of cⁿ.
 
 use std::sync::Arc;
 
@@ -49,8 +50,8 @@ impl PowerArithmetic {
         self.scaled.apply((self.keys.operands.cosine.one() - cosine) * exponent)
     }
 
-    /// Returns the raw base: the inverse of the accumulator, `1.0 − ulp − accumulator`. It is 0 for a surface that faces away,
-    /// which has the cosine 0.
+    /// Returns the raw base: the bitwise inverse of the accumulator, `1.0 − ulp − accumulator`. The base is 0 for a surface
+    /// that faces away, which has the cosine 0.
     #[inline]
     fn base(&self, cosine: i64, accumulator: i64) -> i64 {
         if cosine == 0 { 0 } else { self.largest - accumulator }
@@ -127,7 +128,8 @@ impl Reflectance for PowerArithmetic {
     }
 
     /// Returns the largest n as an upper limit of the slope n·base^(m − 1), since the base is at most 1. At a right angle W is
-    /// (1 − n/m)^m if n is below m, and jumps from this value to 0. The result has this jump for the smallest n.
+    /// (1 − n/m)^m if n is below m, and jumps from this value to 0. The result has this jump for the smallest n. The result is
+    /// never `None`.
     fn variation(&self) -> Option<Variation> {
         let (least, most) = self.keys.domain.exponents();
         let power = f64::from(self.keys.power);

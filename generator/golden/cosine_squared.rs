@@ -1,10 +1,11 @@
 //! The golden model and the accuracy contract of the device `cosine-squared`, which computes f = cos²(a·δ) for the points of a
 //! scan line.
 //!
-//! δ is the angle at a point of the line; a = √(n/2) with the specular exponent n; f is the reflectance, the factor by which the
-//! device multiplies an amplitude. The host multiplies its angles by a, so the device only sees the product a·δ. The golden model
-//! reads cos² from its own copy of the device's table, ROM 12; the contract compares the result with the exact formula. The
-//! source is a prototype (Abbas, Szirmay-Kalos, Horváth 2000), which the patent of `quad-cosine` (Glint calls it seed 000) cites.
+//! δ is the angle at a point of the line; a = √(n/2) with the specular exponent n; f is the reflectance, the factor by which
+//! the device multiplies an amplitude. The host multiplies its angles by a, so the device only sees the product a·δ. f is 0 if
+//! |a·δ| is a right angle or more. The golden model reads cos² from its own copy of the device's table, ROM 12; the contract
+//! compares the result with the exact formula. The source is a prototype (Abbas, Szirmay-Kalos, Horváth 2000), which the patent
+//! of `quad-cosine` (Glint calls it seed 000) cites.
 
 use std::f64::consts::FRAC_PI_2;
 
@@ -115,7 +116,7 @@ impl Reflectance for SquaredArithmetic {
     }
 
     /// Returns the operands of a line of one point, at the angle `gamma`·√(n/2). The host multiplies angles by this root before
-    /// it writes them.
+    /// it writes them. The result is never `None`.
     fn at(&self, operands: &[Operand], gamma: f64, n: f64) -> Option<Vec<i64>> {
         let stretched = (n / 2.0).sqrt() * gamma;
         Some(vec![0, line::raw_angle(&operands[1], stretched), 0])
@@ -131,14 +132,14 @@ impl Reflectance for SquaredArithmetic {
     }
 
     /// Returns every step of ROM 12, an interval of angles with one word. The steps cover every angle that a line can reach.
-    /// For a right angle and beyond, the word is the table's last, 0, and the formula is 0 too.
+    /// For a right angle and beyond, the word is the table's last, 0, and the formula is 0 too. The result is never `None`.
     fn sweep(&self) -> Option<Sweep> {
         let last = (1 << self.keys.table_address) - 1;
         Some(Sweep::ranges([("step of the table", (0, last))]))
     }
 
     /// Returns the largest error over all angles in the step, of either sign. The formula falls from one end of the step to the
-    /// other, so the error is largest at an end.
+    /// other, so the error is largest at an end. The result is never `None`.
     fn sweep_error(&self, place: &[i64]) -> Option<f64> {
         let step = place[0];
         let word = self.table.words[step as usize];

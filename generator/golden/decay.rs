@@ -3,7 +3,7 @@
 //! c = cos γ, where γ is the angle between the surface normal and the half vector; n is the specular exponent; f is the
 //! reflectance, the factor by which the devices multiply colours. The decay is a function of c alone: −log₂ c in `blinn`, which
 //! makes f = cⁿ, and γ²/(2 ln 2) in `gauss`, which makes f = exp(−n·γ²/2). For example, c = 0.5 and n = 2 give the decay 1 in
-//! `blinn`, and f = 0.25.
+//! `blinn`, and f = 0.25. In both devices f is 0 if c ≤ 0.
 
 #[cfg(test)]
 mod tests;
@@ -71,8 +71,8 @@ impl DecayArithmetic {
     /// `gauss`, the octave is always 0, and c is not doubled. For example, with 4 fraction bits, c = 5/16 has octave 1 and
     /// distance 5 in `blinn`.
     ///
-    /// If the fraction bits of c are all 0 (c = 0 or 1.0), the octave in `blinn` is all ones, as in the hardware. The
-    /// reflectance does not depend on the octave and the distance then.
+    /// If the fraction bits of c are all 0 (c = 0 or 1.0), all bits of the octave in `blinn` are 1, as in the hardware. The
+    /// reflectance of such a c does not depend on the octave and the distance.
     #[inline]
     fn operand(&self, cosine: i64) -> (i64, i64) {
         let one = self.keys.operands.cosine.one();

@@ -154,7 +154,8 @@ pub trait Formula: Send + Sync {
         Vec::new()
     }
 
-    /// Returns the parts of the computation, as [`Contract::parts`] does.
+    /// Returns the parts of the computation, as [`Contract::parts`] does. The default is an empty list: the parts are not
+    /// known.
     fn parts(&self) -> Vec<ComputedPart> {
         Vec::new()
     }
@@ -177,7 +178,7 @@ pub trait Formula: Send + Sync {
         Vec::new()
     }
 
-    /// Returns whether an output wraps, as [`Contract::wraps`] does.
+    /// Returns whether an output wraps, as [`Contract::wraps`] does. The default is `false`.
     fn wraps(&self) -> bool {
         false
     }

@@ -1,8 +1,9 @@
 //! The golden model and the accuracy contract of the device `dot-product`, which computes cos γ = max(0, N·H / |N|).
 //!
-//! N is a vector of any length, such as an interpolated normal (operands `nx`, `ny`, `nz`); H is a unit vector, such as the half
-//! vector (`hx`, `hy`, `hz`); γ is the angle between them. With the key `two_sided` the result is |N·H| / |N|. The device
-//! multiplies N·H by 1/√(N·N), which it interpolates in a table. For example, N = (0, 0, 0.5) and H = (0, 0, 1) give 1.
+//! N is a vector of any length, such as an interpolated normal (operands `nx`, `ny`, `nz`); H is a unit vector, such as the
+//! half vector (`hx`, `hy`, `hz`); γ is the angle between them. With the key `two_sided` the result is |N·H| / |N|. The result
+//! is at most 1, and it is 0 if N = 0. The device multiplies N·H by 1/√(N·N), which it interpolates in a table. For example, N
+//! = (0, 0, 0.5) and H = (0, 0, 1) give 1.
 
 use std::sync::Arc;
 
@@ -101,8 +102,8 @@ impl CosineFormula {
         }
     }
 
-    /// Returns the raw value of the register `distance`: half of N·H, shifted so that the length of N is from 1 to 2. With
-    /// `two_sided` it is half of |N·H|.
+    /// Returns the raw value of the register `distance`: half of N·H, shifted so that the length of N is from 1 to 2, and
+    /// rounded. A negative N·H gives 0; with `two_sided` the value is half of |N·H|.
     fn distance(&self, sum: i64, shift: i64) -> i64 {
         self.distance.apply(if self.keys.two_sided { sum.abs() } else { sum } << shift)
     }
@@ -144,7 +145,8 @@ impl Formula for CosineFormula {
     }
 
     /// Returns a normal of random length, and a unit vector that is close to the normal's direction or nearly at a right angle
-    /// to it. Highlights are near a cosine of 1, and at a cosine of 0 the result begins to be clamped.
+    /// to it. Highlights are near a cosine of 1, and at a cosine of 0 the result begins to be clamped. The result is never
+    /// `None`.
     fn hint(&self, unit: &mut dyn FnMut() -> f64) -> Option<Vec<i64>> {
         let normal = unit_vector(centred(unit));
         let off = centred(unit);
@@ -167,13 +169,13 @@ impl Formula for CosineFormula {
         Some([normal, half].concat())
     }
 
-    /// Returns every sum of squares N·N, as a raw value. The sum determines the inverse root.
+    /// Returns every sum of squares N·N, as a raw value. The sum determines the inverse root. The result is never `None`.
     fn sweep(&self) -> Option<Sweep> {
         Some(self.root.sweep())
     }
 
-    /// Returns an upper limit of the error, in units. It is the actual error of the inverse root for this sum of squares, plus
-    /// the largest possible errors of the factors and of the rounding.
+    /// Returns an upper limit of the error, in units. The limit is the actual error of the inverse root for this sum of
+    /// squares, plus the largest possible errors of the factors and of the rounding. The result is never `None`.
     fn sweep_error(&self, place: &[i64]) -> Option<f64> {
         let [_, factors, rounding] = self.errors();
         let error = self.root.relative_error(place[0]) + factors + rounding;

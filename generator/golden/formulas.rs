@@ -1,11 +1,12 @@
 //! The exact formulas of the devices, computed in f64 without rounding to fixed point.
 //!
-//! The formulas come from three documents in Ukrainian, which Glint calls seeds. Seed 000 is a patent on shading along scan
-//! lines, and seed 001 is the patent UA 60139 on rough surfaces. Seed 002 is the paper "A model for reproducing the specular
-//! component of colour in computer graphics", which proposes the function W. In all of them c = cos γ, where γ is the angle
-//! between the surface normal and the half vector; n is the specular exponent; the result f, in 0 … 1, is the reflectance by
-//! which a device multiplies colours. A surface that faces away (c ≤ 0) has f = 0. Angles are in radians. Transcendental
-//! functions come from `libm`, so that every machine computes the same values.
+//! The formulas come from three documents in Ukrainian, which Glint calls seeds, and from sources that they cite. Seed 000 is a
+//! patent on shading along scan lines, and seed 001 is the patent UA 60139 on rough surfaces. Seed 002 is the paper "A model
+//! for reproducing the specular component of colour in computer graphics", which proposes the function W. In all formulas c =
+//! cos γ, where γ is the angle between the surface normal and the half vector; n is the specular exponent; the result f, in 0 …
+//! 1, is the reflectance by which a device multiplies colours. A surface that faces away (c ≤ 0) has f = 0, except in [`lyon`],
+//! [`cosine_squared`] and [`stretched_cosine`], which do not know γ. Angles are in radians. Transcendental functions come from
+//! `libm`, so that every machine computes the same values.
 
 use std::f64::consts::FRAC_PI_2;
 

@@ -15,8 +15,8 @@ use glint_formula::{Enclosure, parse};
 use glint_keys::function::{found, operand};
 use glint_plan::ExpressionPlan;
 
-/// The number of pieces of a domain in which a slope is enclosed. It is a power of two, so that the ends of the pieces are
-/// exact.
+/// The number of pieces of a domain in which a slope is enclosed. The number is a power of two, so that the ends of the pieces
+/// are exact.
 const PIECES: u32 = 4096;
 
 /// Returns the device that evaluates the piecewise polynomial `it` of the function.

@@ -5,9 +5,9 @@
 //! its error.
 //!
 //! A golden model never sees the hardware description, the netlist or the microcode, so that an error in one of them shows as a
-//! difference in simulation. It also computes its own tables, except in four devices. In `blinn` and `gauss` the description
-//! and the golden model read the same polynomials ([`glint_keys::decay`]), and in `function` and `expression` the same plan
-//! ([`glint_plan`]). Polynomials and plan are compared with the formulas instead, by exhaustive checks or by proofs.
+//! difference in simulation. The golden model also computes its own tables, except in four devices. In `blinn` and `gauss` the
+//! description and the golden model read the same polynomials ([`glint_keys::decay`]), and in `function` and `expression` the
+//! same plan ([`glint_plan`]). Polynomials and plan are compared with the formulas instead, by exhaustive checks or by proofs.
 
 pub mod blinn;
 pub mod contract;
@@ -69,12 +69,14 @@ pub trait Model: CloneModel + Send + Sync {
     /// [`Model::inputs`].
     fn clock(&mut self, inputs: &[u64]);
 
-    /// Returns the model, in the state after power-up, of a variant of the device: each result that is combinational logic has a
-    /// register `<output>_reg` behind it. The microinstruction that raised `valid` loads these registers, and one more after it
-    /// raises `valid`. Other outputs do not change.
+    /// Returns the model, in the state after power-up, of a variant of the device: each result that is combinational logic has
+    /// a register `<output>_reg` behind it. The microinstruction that raised `valid` loads these registers, and one more after
+    /// it raises `valid`. If the device delays `valid`, every microinstruction loads the registers, and the delay becomes one
+    /// clock longer. Other outputs do not change. A copy of the model is returned if no result is combinational logic.
     ///
-    /// A model made from a [`frame::Frame`] has this variant, unless a condition decides what follows the microinstruction with
-    /// `valid`. Any other model has it only if its author wrote it; otherwise the result is `None`.
+    /// A model made from a [`frame::Frame`] has this variant, unless it does not delay `valid` and a condition decides what
+    /// follows a microinstruction with `valid`. Any other model has the variant only if its author wrote it; otherwise the
+    /// result is `None`.
     fn with_output_registers(&self) -> Option<Box<dyn Model>> {
         None
     }
@@ -84,8 +86,8 @@ pub trait Model: CloneModel + Send + Sync {
     /// the buffers; an operand that is written in the same clock gets the new value. The last clock of a computation also accepts
     /// `start`, so that the next computation follows at once.
     ///
-    /// A model made from a [`frame::Frame`] has this variant. Any other model has it only if its author wrote it; otherwise the
-    /// result is `None`.
+    /// A model made from a [`frame::Frame`] has this variant; without operands the variant behaves as the model itself. Any
+    /// other model has the variant only if its author wrote it; otherwise the result is `None`.
     fn with_operand_buffers(&self) -> Option<Box<dyn Model>> {
         None
     }
@@ -150,7 +152,7 @@ pub struct Output {
 }
 
 /// The accuracy contract of a device: the exact formula of each output, and a proven bound on the difference of the output from
-/// it.
+/// the formula.
 ///
 /// A device may have any number of outputs, signed or unsigned. A device that multiplies colours by a reflectance f uses a
 /// [`Highlight`] as its contract.
@@ -165,7 +167,7 @@ pub trait Contract: Send + Sync {
     /// If a computation has several results, such as the points of a scan line, `index` is the number of the result, from 0.
     fn results(&self, operands: &[i64], index: u64, raw: &mut Vec<i64>);
 
-    /// Checks that the device shows its results at all.
+    /// Checks that the device shows its results at all. The default implementation always succeeds.
     ///
     /// # Errors
     /// Fails if the device never shows its results. The error says why, with a remedy.
@@ -385,8 +387,8 @@ pub struct Bound {
     pub f: f64,
     /// The bound on the error of an output, in units of its last bit. A highlight states it for the largest colour operand.
     pub units: f64,
-    /// The bound that the contract demands, in units: the contract is kept if `units` is below it. It is 1, or the error that the
-    /// configuration allows.
+    /// The bound that the contract demands, in units: the contract is kept if `units` is below it. The bound is 1, or the error
+    /// that the configuration allows.
     pub limit: f64,
     /// The contributions, in units of the output, each with the configuration key that governs it. Their sum is `units`.
     pub terms: Vec<Term>,
@@ -403,7 +405,8 @@ pub struct ComputedPart {
     pub format: Format,
     /// The part's share in the error of each output, in units of the output's last bit; 0 for a part that is exact.
     pub shares: Vec<f64>,
-    /// An estimate of the look-up tables of four inputs that the part takes. It is 0 for a part that only selects bits.
+    /// An estimate of the look-up tables of four inputs that the part takes. The estimate is 0 for a part that only selects
+    /// bits.
     pub cells: f64,
     /// The number of products that the part computes: in a pipeline each takes a multiplier of its own.
     pub products: usize,
@@ -422,7 +425,8 @@ pub struct Term {
 }
 
 impl Bound {
-    /// Returns the bound of a device that is no highlight. It is the sum of the terms, or infinite if there are no terms.
+    /// Returns the bound of a device that is no highlight. The bound is the sum of the terms, or infinite if there are no
+    /// terms.
     pub fn of(terms: Vec<Term>) -> Self {
         let sum: f64 = terms.iter().map(|term| term.units).sum();
         // A sum that is NaN limits nothing.

@@ -19,9 +19,9 @@ pub fn raw_angle(operand: &Operand, angle: f64) -> i64 {
     raw.clamp(low, high)
 }
 
-/// Adds the accumulator, which computes the angles of the points along a scan line, to `frame`. It consists of control block
-/// 14, counter 5, adder 6, mux 7 and register 8 of seed 000. Its operands are `delta_zeta`, `zeta_start` and `length`. The
-/// angles have the format `format`.
+/// Adds the accumulator, which computes the angles of the points along a scan line, to `frame`. The accumulator consists of
+/// control block 14, counter 5, adder 6, mux 7 and register 8 of seed 000. Its operands are `delta_zeta`, `zeta_start` and
+/// `length`. The angles have the format `format`.
 ///
 /// Returns the slot of register 8, which holds the angle of the current point, and the microinstructions. The outputs show a
 /// point `stages` clocks after the pulse on output 37 (`write_angle`) that loads its angle.
@@ -138,7 +138,8 @@ pub struct CosineTable {
     pub words: Vec<i64>,
     /// The largest distance of `cosᵏ` at the ends of a step from the middle of these two values.
     pub step: f64,
-    /// The largest distance of `cosᵏ` at the ends of a step from the word of the step, which is rounded.
+    /// The largest distance of `cosᵏ` at the ends of a step from the word of the step, which is rounded, plus a margin for the
+    /// errors of f64.
     pub total: f64,
     /// The largest slope of `cosᵏ`, as a difference per right angle.
     pub slope: f64,

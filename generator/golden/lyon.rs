@@ -2,8 +2,9 @@
 //!
 //! D = N − H is the difference of the unit normal N and the unit half vector H (operands `dx`, `dy`, `dz`); D² is its squared
 //! length; β = n/(2·m) with the specular exponent n; the configuration chooses m, a power of two; f is the reflectance, the
-//! factor by which the device multiplies colours. The source is the patent US 5 739 820, which the patent of the device
-//! `quad-cosine` (Glint calls it seed 000) cites.
+//! factor by which the device multiplies colours. The device takes n itself as the operand `exponent`, or log₂ n, rounded, as
+//! the operand `shift`. The source is the patent US 5 739 820, which the patent of the device `quad-cosine` (Glint calls it
+//! seed 000) cites.
 
 mod contract;
 #[cfg(test)]

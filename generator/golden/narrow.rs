@@ -4,7 +4,8 @@
 
 use glint_base::fixed::{Format, Rounding};
 
-/// A conversion of raw values with a fixed number of fraction bits to one format. It rounds, and limits the result to the format.
+/// A conversion of raw values with a fixed number of fraction bits to one format. The conversion rounds, and limits the result
+/// to the format.
 ///
 /// It returns the same value as [`Format::narrow`] with `Overflow::Saturate`, but works on `i64`. For example, from 3 fraction
 /// bits to a rounded `s0.1` the raw value 5 gives 1, and so does 12.
@@ -35,7 +36,8 @@ impl Narrow {
         }
     }
 
-    /// Returns the raw value in the new format.
+    /// Returns the raw value in the new format: rounded, and replaced by the nearest end of the format's range if the value is
+    /// beyond this range.
     #[inline]
     pub fn apply(&self, raw: i64) -> i64 {
         (((raw + self.half) >> self.right) << self.left).clamp(self.min, self.max)

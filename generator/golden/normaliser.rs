@@ -1,7 +1,7 @@
 //! The golden model and the accuracy contract of the device `normaliser`, which computes the unit vector v/|v| of a vector v.
 //!
-//! v has any length and the components `x`, `y`, `z`. The device shifts v, interpolates 1/√(v·v) in a table, and multiplies each
-//! component by it. For example, v = (0, 0, 0.5) gives (0, 0, 1).
+//! v has any length and the components `x`, `y`, `z`. The device shifts v, interpolates 1/√(v·v) in a table, and multiplies
+//! each component by it. For example, v = (0, 0, 0.5) gives (0, 0, 1). The zero vector gives the zero vector.
 
 use std::sync::Arc;
 
@@ -126,20 +126,21 @@ impl Formula for Normaliser {
     }
 
     /// Returns a vector in a random direction. Its length is drawn evenly over octaves, because the shift depends on the
-    /// octave.
+    /// octave. The result is never `None`.
     fn hint(&self, unit: &mut dyn FnMut() -> f64) -> Option<Vec<i64>> {
         let most = exp2(1 + self.keys.fraction as i32)
             * libm::exp2(-unit() * f64::from(self.keys.fraction));
         Some((0..3).map(|_| ((2.0 * unit() - 1.0) * most).round() as i64).collect())
     }
 
-    /// Returns every sum of squares. The sum determines the inverse root, and so the largest error of a component.
+    /// Returns every sum of squares. The sum determines the inverse root, and so the largest error of a component. The result
+    /// is never `None`.
     fn sweep(&self) -> Option<Sweep> {
         Some(self.root.sweep())
     }
 
-    /// Returns an upper limit of the error, in units, of a component that is as long as the vector. It is the error of the
-    /// inverse root for this sum of squares, plus the error of the rounding.
+    /// Returns an upper limit of the error, in units, of a component that is as long as the vector. The limit is the error of
+    /// the inverse root for this sum of squares, plus the error of the rounding. The result is never `None`.
     fn sweep_error(&self, place: &[i64]) -> Option<f64> {
         let error = self.root.relative_error(place[0]) + self.rounding_error();
         Some(error * exp2(self.keys.kept as i32))

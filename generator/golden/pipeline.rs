@@ -1,15 +1,15 @@
 //! Models which point each stage of a pipeline contains, clock by clock. A point is one set of operands, on its way to its
 //! results.
 //!
-//! The model predicts the handshake of a pipeline. It computes no results.
+//! The model predicts the handshake of a pipeline, and computes no results.
 
 use std::collections::VecDeque;
 
 /// The points in the stages of a pipeline.
 ///
-/// At a rising edge either all points move to the next stage or none does. They stay if the last stage contains a point whose
-/// results nobody takes (`out_ready` is low). A pipeline with an interval of more than 1 accepts a new point only at every
-/// `interval`-th move.
+/// At a rising edge either all points move to the next stage or none does. The points stay if the last stage contains a point
+/// whose results nobody takes (`out_ready` is low). A pipeline with an interval of more than 1 accepts a new point only at
+/// every `interval`-th move.
 #[derive(Clone, Debug)]
 pub struct Occupancy<P> {
     /// The point of each stage, from stage 1 on, or `None`. The last stage has the results.

@@ -1,8 +1,8 @@
 //! The golden model of a plan, which is a list of fixed-point operations ([`glint_plan`]).
 //!
-//! The devices `function` and `expression` use it. It executes the operations in integers, with a register for each value that
-//! the schedule of the plan stores. It takes the plan from the planner, because a proof covers the plan: the proof compares the
-//! plan's results with the formulas.
+//! The devices `function` and `expression` use this model. The model executes the operations in integers, with a register for
+//! each value that the schedule of the plan stores. The model takes the plan from the planner, because a proof covers the plan:
+//! the proof compares the plan's results with the formulas.
 
 use std::sync::Arc;
 
@@ -39,7 +39,7 @@ impl PlanModel {
 }
 
 /// Makes the device of a plan: a register for each value that the schedule of the plan stores. Result number k of the plan goes
-/// to the port with name number k of `outputs`.
+/// to the port with name number k of `outputs`. The function panics if the polynomials of a function are not known yet.
 pub(super) fn plan_device(
     operands: &[StatedOperand],
     plan: &ExpressionPlan,

@@ -1,7 +1,7 @@
 //! Evaluates a piecewise polynomial in a golden model by Horner's rule in integers. Each partial sum has a register.
 //!
-//! The golden models of `blinn`, `gauss`, `function` and `expression` use it. They read the same table of coefficients as the
-//! hardware, because another check compares this table with the formula.
+//! The golden models of `blinn`, `gauss`, `function` and `expression` use this module. The models read the same table of
+//! coefficients as the hardware, because another check compares this table with the formula.
 
 use std::sync::Arc;
 

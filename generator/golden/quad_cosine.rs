@@ -2,8 +2,9 @@
 //! scan line.
 //!
 //! δ is the angle at a point of the line; n is the specular exponent, which decides whether k is 1, 2, 4 or 16; f is the
-//! reflectance, the factor by which the device multiplies an amplitude. f approximates cosⁿδ: for example, n = 4 gives k = 4 and
-//! exactly cos⁴δ. The source is a patent that claims this device; Glint calls it seed 000.
+//! reflectance, the factor by which the device multiplies an amplitude. f approximates cosⁿδ: for example, n = 4 gives k = 4
+//! and exactly cos⁴δ. f is 0 if |δ| or |√(n/k)·δ| exceeds a right angle. The source is a patent that claims this device; Glint
+//! calls it seed 000.
 
 mod contract;
 #[cfg(test)]

@@ -2,7 +2,7 @@
 //!
 //! c = cos γ, where γ is the angle between the surface normal and the half vector; n is the specular exponent; a(n) is a
 //! coefficient that the device reads from a table, ROM(n); f is the reflectance, the factor by which the device multiplies
-//! colours. The source is the patent UA 20998, which the patent UA 60139 (Glint calls it seed 001) cites.
+//! colours. f is 0 if c ≤ 0. The source is the patent UA 20998, which the patent UA 60139 (Glint calls it seed 001) cites.
 
 pub mod coefficient;
 #[cfg(test)]

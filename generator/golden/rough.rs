@@ -1,9 +1,10 @@
 //! The golden model and the accuracy contract of the device `rough`, which computes f = (n/2·(cos(γ ± dγ) − 1) + 1)².
 //!
-//! γ is the angle between the surface normal and the half vector; dγ is the deviation of the normal on a rough surface; n is the
-//! specular exponent; f is the reflectance, the factor by which the device multiplies colours. The operands are cos γ and cos dγ,
-//! and a table gives the sines. The source is the patent UA 60139 (Glint calls it seed 001); the golden model follows the steps
-//! that the patent describes.
+//! γ is the angle between the surface normal and the half vector; dγ is the deviation of the normal on a rough surface; n is
+//! the specular exponent; f is the reflectance, the factor by which the device multiplies colours. The operands are cos γ and
+//! cos dγ, and a table gives the sines. A negative base of the square counts as 0, except with `clamp = false`, and f is 0 if
+//! cos γ ≤ 0. The source is the patent UA 60139 (Glint calls it seed 001); the golden model follows the steps that the patent
+//! describes.
 
 mod analysis;
 mod bound;

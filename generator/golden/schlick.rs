@@ -1,9 +1,9 @@
 //! The golden model and the accuracy contract of the device `schlick`, which computes f = c / (n − n·c + c).
 //!
 //! c = cos γ, where γ is the angle between the surface normal and the half vector; n is the specular exponent; f is the
-//! reflectance, the factor by which the device multiplies colours. This is Schlick's approximation of cⁿ; the source is the paper
-//! "A model for reproducing the specular component of colour in computer graphics" (in Ukrainian; Glint calls it seed 002). For
-//! example, c = 0.5 and n = 1 give 0.5.
+//! reflectance, the factor by which the device multiplies colours. This is Schlick's approximation of cⁿ; the source is the
+//! paper "A model for reproducing the specular component of colour in computer graphics" (in Ukrainian; Glint calls it seed
+//! 002). f is 0 if c ≤ 0. For example, c = 0.5 and n = 1 give 0.5.
 
 use super::contract::{self, ErrorShare};
 use super::frame::{Frame, idle, step};
@@ -14,8 +14,8 @@ use glint_base::fixed::{Format, exp2, mask};
 use glint_config::Config;
 use glint_keys::schlick::Keys;
 
-/// The arithmetic of the device. Cosines, divisors and remainders are in ulps of the cosine, and the quotient
-/// is f.
+/// The integer arithmetic of the device. Cosines, divisors and remainders are raw values with the fraction bits of the cosine;
+/// the quotient is the raw f.
 struct SchlickArithmetic(Keys);
 
 impl SchlickArithmetic {
@@ -112,7 +112,7 @@ impl Reflectance for SchlickArithmetic {
 
     /// Returns the largest n as an upper limit of the slope n/(n − n·c + c)², which is largest at an end: n at c = 1, and 1/n
     /// at c = 0. At c = 0 the formula is 0, as it is beyond a right angle. With n = 0 the formula is 1 for every c above 0, and
-    /// jumps to 0 at a right angle.
+    /// jumps to 0 at a right angle. The result is never `None`.
     fn variation(&self) -> Option<Variation> {
         let (least, most) = self.0.domain.exponents();
         Some(Variation { slope: most as f64, jump: if least > 0 { 0.0 } else { 1.0 } })

@@ -2,10 +2,11 @@
 //! ambient + Σ (diffuse·cos α + specular·f(cos γ)).
 //!
 //! The sum runs over the lights. α is the angle between the surface normal and the direction of a light, γ the angle between
-//! the normal and the half vector of the light; f is the highlight's formula, for example cⁿ with c = cos γ. `shading` consists
-//! of other devices, called its parts. For each light two `dot-product` devices compute the cosines from a normal of any
-//! length, and a highlight device such as `blinn` or `function` computes f. The golden model runs the golden models of the
-//! parts and adds their light, and the contract combines the proved error bounds of the parts.
+//! the normal and the half vector of the light; f is the highlight's formula, for example cⁿ with c = cos γ. A negative cosine
+//! counts as 0, or as positive with the key `two_sided`, and a colour saturates. `shading` consists of other devices, called
+//! its parts. For each light two `dot-product` devices compute the cosines from a normal of any length, and a highlight device
+//! such as `blinn` or `function` computes f. The golden model runs the golden models of the parts and adds their light, and the
+//! contract combines the proved error bounds of the parts.
 
 use std::sync::Arc;
 
@@ -330,7 +331,7 @@ impl Formula for Shading {
     }
 
     /// Returns random raw operands. The lights are in any direction, and the half vectors are near the normal, the nearer the
-    /// larger the exponent is. The colours are so dark that their sum does not saturate.
+    /// larger the exponent is. The colours are so dark that their sum does not saturate. The result is never `None`.
     fn hint(&self, unit: &mut dyn FnMut() -> f64) -> Option<Vec<i64>> {
         let Keys { normal, light, colour_bits, most, lights, .. } = self.keys;
         let direction = unit_vector(centred(unit));
@@ -359,7 +360,8 @@ impl Formula for Shading {
         Some(operands)
     }
 
-    /// Returns normals in one plane, under lights and half vectors along the z axis, with fixed colours and four exponents.
+    /// Returns normals in one plane, under lights and half vectors along the z axis, with fixed colours and four exponents. The
+    /// result is never `None`.
     fn sweep(&self) -> Option<Sweep> {
         let Keys { normal, light, colour_bits, most, .. } = self.keys;
         let (one, to_light, white) = (1 << normal, 1 << light, (1 << colour_bits) - 1);

@@ -1,9 +1,9 @@
 //! Makes the table of sines of the device `rough`, ROM 18, for its golden model. The hardware description computes its own
 //! table.
 //!
-//! The table maps a cosine x to the sine √(1 − x²). It has one entry for each bucket (an interval of x), or straight segments
-//! that become shorter toward x = 1. x is a raw value with C fraction bits from 0 to 2^C; a sine has the format u0.S, with S
-//! fraction bits.
+//! The table maps a cosine x to the sine √(1 − x²). The table has one entry for each bucket (an interval of x), or straight
+//! segments that become shorter toward x = 1. x is a raw value with C fraction bits from 0 to 2^C; a sine has the format u0.S,
+//! with S fraction bits.
 
 use super::curve::{self, SegmentedCurve};
 use glint_base::fixed::exp2;

@@ -3,8 +3,8 @@
 //!
 //! c = cos γ, where γ is the angle between the surface normal and the half vector; n is the specular exponent; f is the
 //! reflectance, the factor by which the device multiplies colours. f is 0 if the square is below the level of n, a word of the
-//! table ROM(n), since such a dark highlight is invisible. The source is the patent UA 30041, which the patent UA 60139 (Glint
-//! calls it seed 001) cites.
+//! table ROM(n), since such a dark highlight is invisible. f is also 0 if the base of the square is negative, or if c ≤ 0. The
+//! source is the patent UA 30041, which the patent UA 60139 (Glint calls it seed 001) cites.
 
 #[cfg(test)]
 mod tests;

@@ -1,8 +1,9 @@
 //! Distributes the allowed error of an expression among the rounding operations of its plan.
 //!
-//! Each of these operations has guard bits: the number of its fraction bits beyond the finest result. All begin with few. The
-//! operation with the largest share of the error gets one more bit, until every result is within its allowed error. Afterwards
-//! the module removes bits that are not needed.
+//! Each of these operations has guard bits: the number of its fraction bits beyond the finest result. Every operation begins
+//! with few guard bits. The operation with the largest share of the error gets one more bit, until every result is within its
+//! allowed error. If this finds no plan, the module tries the same number of guard bits for every operation. Afterwards it
+//! removes bits that are not needed.
 
 use super::boxes::{BoxError, ResultProof};
 use super::lower::{FoundPolynomials, Guards, PlanStyle, lowered};
@@ -91,7 +92,7 @@ fn grown(
 }
 
 /// Returns the same number of guard bits for all operations, with which every result keeps its allowed error; `None` if no
-/// number is enough. This finds a plan if [`grown`] gives one operation so many bits that a product is too wide.
+/// number is enough. The function finds a plan if [`grown`] gives one operation so many bits that a product is too wide.
 fn equally_many(
     statement: &ExpressionStatement,
     none: &Guards,

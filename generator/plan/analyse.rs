@@ -49,7 +49,7 @@ impl NodeError {
         Self { ideal, error: NOTHING, actual: ideal }
     }
 
-    /// The value of a node without limits. It does not matter if a choice takes its other case.
+    /// The value of a node without limits. The value does not matter if a choice takes its other case.
     const UNKNOWN: Self = Self { ideal: ANYTHING, error: ANYTHING, actual: ANYTHING };
 
     /// Returns whether the value and its error have limits.
@@ -392,8 +392,8 @@ impl ErrorAnalysis<'_> {
         Ok(value)
     }
 
-    /// Returns limits of the hardware's value of a node that follow from the hardware's values of its inputs alone. They may be
-    /// infinite.
+    /// Returns limits of the hardware's value of a node that follow from the hardware's values of its inputs alone. The limits
+    /// may be infinite.
     fn actual(&self, node: &PlanNode, values: &[NodeError]) -> Enclosure {
         let input = |id: NodeId| values[id.0].actual;
         // If the operands have single values, so has each rounding error, which may be 0 by chance. A share counts the largest

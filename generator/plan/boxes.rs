@@ -1,9 +1,9 @@
 //! Proves a bound of the error of a result, over all operands for which the result is promised.
 //!
-//! A box is a range of raw values for each operand: for example, x from 0 to 255 and y from 16 to 31. An analysis with intervals
-//! bounds the error in a box. The search begins with the box of the whole domain, and always divides the box with the largest
-//! error in two. It ends when this error is small enough, when this box is a single combination, or after a given number of
-//! divisions.
+//! A box is a range of raw values for each operand: for example, x from 0 to 255 and y from 16 to 31. An analysis with
+//! intervals bounds the error in a box. The search begins with the box of the whole domain, and always divides the box with the
+//! largest error in two. The search ends when this error is small enough, when this box is a single combination, or after a
+//! given number of divisions.
 //!
 //! A box whose error has no limit counts as the largest. The reason is a part of the formula that may exceed its format in the
 //! box, or a function that may have no value in the box.
@@ -142,7 +142,8 @@ impl<'p> ResultProof<'p> {
         analysis.run(&operands, &mut |values, undecided| visit(&values[node.0], undecided));
     }
 
-    /// Returns the largest error of a value, in units of the last bit of the result. It is infinite if the value has no limits.
+    /// Returns the largest error of a value, in units of the last bit of the result. The error is infinite if the value has no
+    /// limits.
     fn units(&self, value: &NodeError) -> f64 {
         if !value.is_limited() {
             return f64::INFINITY;
@@ -161,7 +162,7 @@ impl<'p> ResultProof<'p> {
 
 /// Facts about a box of operands that decide along which operand the box is divided.
 pub(super) trait BoxScore {
-    /// Returns a number that is smaller the narrower the limits in the box are. It is infinite without limits.
+    /// Returns a number that is smaller the narrower the limits in the box are. The number is infinite without limits.
     fn score(&self) -> f64;
 }
 

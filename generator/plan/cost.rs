@@ -39,8 +39,8 @@ impl ExpressionPlan {
         (0..self.nodes.len()).map(|at| self.cells(NodeId(at))).sum()
     }
 
-    /// Returns an estimate of the number of look-up tables of four inputs that a node takes. It is 0 for an operand, for a
-    /// constant, and for an operation that only selects bits.
+    /// Returns an estimate of the number of look-up tables of four inputs that a node takes. The number is 0 for an operand, a
+    /// constant, an operation that only selects bits, a comparison `a < 0`, and a function whose polynomials are not known yet.
     pub fn cells(&self, id: NodeId) -> f64 {
         let node = self.node(id);
         let width = f64::from(node.format.width());
@@ -110,7 +110,7 @@ fn cells_of_product(a: &PlanNode, b: &PlanNode) -> f64 {
 }
 
 /// Returns an estimate of the number of look-up tables that a function takes in a pipeline, including the operations of its
-/// range reduction. It is infinite if one of these operations has too many bits.
+/// range reduction. The estimate is infinite if one of these operations has too many bits.
 pub(super) fn cells_of_function(function: &TargetFunction, found: &Arc<Piecewise>) -> f64 {
     if found.reduction.is_some() {
         let plan = ExpressionPlan::of_function(function, found);

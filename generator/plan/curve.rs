@@ -152,7 +152,7 @@ impl ExpressionPlan {
     }
 
     /// Adds the nodes of [`Rule::Size`], and returns them: |x|, limited to `bits` bits. `centre` is the raw value from which
-    /// the result of a negative operand is subtracted, or `None` for an even function.
+    /// the result of a negative operand is subtracted, or `None` for an even function. Fails if a node has too many bits.
     fn size(
         &mut self,
         x: NodeId,
@@ -168,7 +168,8 @@ impl ExpressionPlan {
     }
 
     /// Adds the nodes of [`Rule::Quadrants`], and returns them: the distance from the nearest zero of the sine. A quarter turn
-    /// has 2^`bits` steps. `ahead` is the number of quarter turns that are added to the angle.
+    /// has 2^`bits` steps. `ahead` is the number of quarter turns that are added to the angle. Fails if a node has too many
+    /// bits.
     fn angle_in_quadrant(
         &mut self,
         x: NodeId,
@@ -190,7 +191,7 @@ impl ExpressionPlan {
     }
 
     /// Returns the node of the integer `number`, limited to `bits` bits. The integer must be from 0 to 2^`bits`; the value
-    /// 2^`bits` becomes 2^`bits` − 1.
+    /// 2^`bits` becomes 2^`bits` − 1. Fails if a node has too many bits.
     fn limited_to_bits(
         &mut self,
         name: &str,
@@ -210,7 +211,7 @@ impl ExpressionPlan {
 
     /// Adds the nodes of [`Rule::Octaves`], and returns them: the bits below the leading 1 of `x`. If `has_pairs`, one more bit
     /// above them distinguishes the two octaves of a pair. `restores` has the shift and the addend for each number of leading
-    /// zeros. The addends have `frac` fraction bits. If `starts_at_0`, the operand may be 0.
+    /// zeros. The addends have `frac` fraction bits. If `starts_at_0`, the operand may be 0. Fails if a node has too many bits.
     fn word_in_octave(
         &mut self,
         x: NodeId,
@@ -251,7 +252,7 @@ impl ExpressionPlan {
     }
 
     /// Adds the product of `x` and the factor of an exponent, and returns its node. `scale` has the factor and the number of
-    /// low bits that the product drops. Returns `x` itself if `scale` is `None`.
+    /// low bits that the product drops. Returns `x` itself if `scale` is `None`. Fails if a node has too many bits.
     fn exponent_of_two(
         &mut self,
         x: NodeId,
@@ -266,7 +267,7 @@ impl ExpressionPlan {
 
     /// Adds the nodes of [`Rule::Exponent`], and returns them: the fraction of an exponent, and the number of bits of the
     /// shift. This number is the distance of the exponent's integer part from `whole`, and at most `most_places`. `exponent` is
-    /// in units of 2^−`bits`.
+    /// in units of 2^−`bits`. Fails if a node has too many bits.
     fn fraction_of_exponent(
         &mut self,
         exponent: NodeId,
@@ -292,7 +293,7 @@ impl ExpressionPlan {
     }
 
     /// Adds the nodes that restore the result from the table's value `polynomial`, and returns the node of the result. The
-    /// result is rounded to the nearest value with the fraction bits of `format`.
+    /// result is rounded to the nearest value with the fraction bits of `format`. Fails if a node has too many bits.
     fn restored(
         &mut self,
         polynomial: NodeId,

@@ -10,7 +10,7 @@ use super::refusal::PlanRefusal;
 use super::statement::ExpressionStatement;
 
 /// Returns the largest error of each result, in units of its last bit, over every combination of operands for which the result
-/// is promised. It is 0 for a result that is promised for none.
+/// is promised. The error is 0 for a result that is promised for none. The list is empty if the statement has no operands.
 ///
 /// # Errors
 /// Fails if a formula has no value for a combination.

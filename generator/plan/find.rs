@@ -1,4 +1,5 @@
-//! Finds the plan for the formulas of a statement, and proves the error of each result. It caches the plans that it has found.
+//! Finds the plan for the formulas of a statement, and proves the error of each result. The module caches the plans that it has
+//! found, and the refusals.
 
 use std::collections::HashMap;
 use std::sync::{Arc, LazyLock, Mutex};
@@ -72,8 +73,8 @@ pub struct ProvedPlan {
     /// The proven error bound of each result, in units of the result's last bit.
     pub bounds: Vec<f64>,
     /// For each result and each node of `plan`, the node's share in the error of the result, in units of the result's last bit.
-    /// The share is the error that the rounding of this node adds, in the box of operands with the largest error. It is 0 for
-    /// an exact node.
+    /// The share is the error that the rounding of this node adds, in the box of operands with the largest error. The share is
+    /// 0 for an exact node.
     pub shares: Vec<Vec<f64>>,
     /// The method by which the bounds were proved.
     pub proof: ProofKind,
@@ -81,8 +82,8 @@ pub struct ProvedPlan {
 
 type FindResult = Result<Arc<ProvedPlan>, PlanRefusal>;
 
-/// Returns the plan for a statement, with proven error bounds. A plan that was found earlier comes from a cache, without a new
-/// search.
+/// Returns the plan for a statement, with proven error bounds. The same statement gets the same plan or the same refusal again
+/// from a cache, without a new search.
 ///
 /// # Errors
 /// Fails if a formula has no plan, or if no plan keeps the allowed errors. The refusal says why, and how to change the
@@ -132,8 +133,9 @@ fn searched(statement: &ExpressionStatement) -> Result<ProvedPlan, PlanRefusal> 
     Ok(ProvedPlan { statement, plan, whole_functions: whole, bounds, shares, proof })
 }
 
-/// Returns the node of `plan` that has the rounding error of node number `at` of the plan without range reductions. It is the
-/// table of a function with a range reduction, and otherwise the node itself. `renumbered` has the new index of each node.
+/// Returns the node of `plan` that has the rounding error of node number `at` of the plan without range reductions. This node
+/// is the table of a function with a range reduction, and otherwise the node itself. `renumbered` has the new index of each
+/// node.
 fn rounding_node(plan: &ExpressionPlan, renumbered: &[NodeId], at: usize) -> NodeId {
     let first = if at == 0 { 0 } else { renumbered[at - 1].0 + 1 };
     let is_table = |node: &usize| matches!(plan.nodes[*node].operation, Operation::Polynomial(..));

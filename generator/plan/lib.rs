@@ -1,8 +1,8 @@
 //! Plans an expression of several operands as integer operations, and proves the error of its results.
 //!
 //! An [`ExpressionStatement`] has operands, formulas, and the error that each result may have. [`find()`] rewrites the formulas
-//! as an [`ExpressionPlan`], a list of operations on raw values. It chooses the widths so that the errors are kept, and proves
-//! them. The hardware description, the golden model and the proof all read the same plan.
+//! as an [`ExpressionPlan`], a list of operations on raw values. [`find()`] chooses the widths so that the errors are kept, and
+//! proves them. The hardware description, the golden model and the proof all read the same plan.
 //!
 //! ```
 //! use glint_approximate::Outside;

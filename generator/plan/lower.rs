@@ -52,7 +52,7 @@ pub(super) struct Guards {
     pub(super) style: PlanStyle,
 }
 
-/// Choices that the planner makes for a whole plan. It tries several, and takes the smallest plan.
+/// Choices that the planner makes for a whole plan. The planner tries several choices, and takes the smallest plan.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct PlanStyle {
     /// The error that a table of polynomials may have, in units of the last bit of its result.
@@ -71,7 +71,8 @@ impl Guards {
         Self { bits: Vec::new(), style }
     }
 
-    /// Gives the rounding operation number `place` one more fraction bit.
+    /// Gives the rounding operation number `place` one more fraction bit. If the list has no entry for the operation, the
+    /// function first appends entries of 0.
     pub(super) fn add_bit(&mut self, place: usize) {
         if place >= self.bits.len() {
             self.bits.resize(place + 1, 0);
@@ -202,7 +203,7 @@ impl<'s> Lowering<'s> {
     }
 
     /// Returns the node of the result with the index `number`, limited to its stated format if the result saturates. For any
-    /// other result, returns `node` itself.
+    /// other result, returns `node` itself. Fails if a node has too many bits.
     fn saturated(&mut self, number: usize, node: NodeId) -> Result<NodeId, PlanRefusal> {
         let StatedResult { name, width, .. } = &self.statement.results[number];
         let Some(StatedWidth { format, overflow: StatedOverflow::Saturate(_) }) = width else {
@@ -230,7 +231,7 @@ impl<'s> Lowering<'s> {
 
     /// Chooses a number of fraction bits, and returns the node that `make` adds with this number. The number is `frac` plus the
     /// guard bits of the next rounding operation. The operation is counted even if `make` rounds nothing, so that later
-    /// operations keep their numbers.
+    /// operations keep their numbers. Fails if `make` fails.
     fn rounding(
         &mut self,
         frac: i32,
@@ -564,8 +565,8 @@ pub(super) fn has_functions_of_operands(statement: &ExpressionStatement) -> bool
     statement.results.iter().any(|result| result.formula.count(&is_function) > 0)
 }
 
-/// Returns the smallest part on which a formula depends: the formula is a function of the value of this part alone. It is the
-/// formula itself if the formula combines different parts. For example, the core of `1 / sqrt(x + y)` is `x + y`.
+/// Returns the smallest part on which a formula depends: the formula is a function of the value of this part alone. This part
+/// is the formula itself if the formula combines different parts. For example, the core of `1 / sqrt(x + y)` is `x + y`.
 fn core_of(formula: &Expression) -> &Expression {
     let parts = formula.parts();
     let varying: Vec<&Expression> =

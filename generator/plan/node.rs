@@ -28,7 +28,7 @@ pub struct PlanNode {
     /// The rewriting of the formula supplies it, and it may be infinite. For example, the smaller of two numbers divided by the
     /// larger is at most 1.
     pub limits: Enclosure,
-    /// An interval that contains the value that the hardware computes, for the same operands. It may be infinite.
+    /// An interval that contains the value that the hardware computes, for the same operands. The interval may be infinite.
     pub actual_limits: Enclosure,
     /// The index of the rounding operation in the list of numbers of fraction bits that the planner chooses. `None` for an
     /// exact operation.
@@ -123,15 +123,16 @@ pub struct Approximation {
 }
 
 impl Approximation {
-    /// Returns the largest error of the result as a real value, not in units. It is the proven error if the polynomials are
-    /// known, and otherwise the allowed error.
+    /// Returns the largest error of the result as a real value, not in units. The result is the proven error if the polynomials
+    /// are known, and otherwise the allowed error.
     pub fn error(&self) -> f64 {
         let units = self.polynomials.as_ref().map_or(self.function.error, |it| it.bound);
         units * glint_base::fixed::exp2(-(self.function.fraction as i32))
     }
 }
 
-/// Returns a list of references to the nodes that an operation reads. They are mutable if the operation is borrowed mutably.
+/// Returns a list of references to the nodes that an operation reads. The references are mutable if the operation is borrowed
+/// mutably.
 macro_rules! inputs_of {
     ($operation:expr) => {
         match $operation {
@@ -193,9 +194,9 @@ impl Operation {
     }
 }
 
-/// Returns the shifts with which hardware normalises a word of `width` bits, from the largest to the smallest. They are
-/// powers of two below `width`. For example, 8 bits need the shifts 4, 2 and 1, and by pairs 4 and 2. A word of one bit needs
-/// none.
+/// Returns the shifts with which hardware normalises a word of `width` bits, from the largest to the smallest. The shifts are
+/// powers of two below `width`, which must be at least 1. For example, 8 bits need the shifts 4, 2 and 1, and by pairs 4 and 2.
+/// A word of one bit needs none.
 pub fn normalising_shifts(width: u32, by_pairs: bool) -> Vec<u32> {
     let least = if by_pairs { 2 } else { 1 };
     let mut shifts = Vec::new();

@@ -17,8 +17,8 @@ pub struct ExpressionPlan {
     pub nodes: Vec<PlanNode>,
     /// The node of each result, in the order of the statement.
     pub results: Vec<NodeId>,
-    /// For each result the node whose error is proved. It is the node in `results`, except for a result that wraps: then it is
-    /// the node before the high bits are dropped.
+    /// For each result the node whose error is proved. This is the node in `results`, except for a result that wraps: for such
+    /// a result it is the node before the high bits are dropped.
     pub proved: Vec<NodeId>,
 }
 
@@ -104,8 +104,8 @@ impl ExpressionPlan {
 }
 
 /// Methods that add nodes to a plan. Each returns the node of its result, whose format can represent every value that the
-/// ranges of the inputs allow. If the plan already has the same exact operation, they return its node instead. They fail if the
-/// result needs more bits than a net can have.
+/// ranges of the inputs allow. If the plan already has the same exact operation, they return its node instead. The methods fail
+/// if the result needs more bits than a net can have.
 impl ExpressionPlan {
     fn insert(
         &mut self,
@@ -229,7 +229,7 @@ impl ExpressionPlan {
         self.exact(name, Operation::Constant { raw, value }, (raw, raw), frac)
     }
 
-    /// Returns the raw ranges of two nodes, converted to the same number of fraction bits, and this number. It is the larger
+    /// Returns the raw ranges of two nodes, converted to the same number of fraction bits, and this number, which is the larger
     /// one of the two nodes. For example, the raw range 0 to 3 with one fraction bit becomes 0 to 6 if the other node has two.
     fn aligned(&self, a: NodeId, b: NodeId) -> (Interval, Interval, i32) {
         let (a, b) = (self.node(a), self.node(b));
@@ -336,8 +336,8 @@ impl ExpressionPlan {
         self.exact(name, Operation::Choose { condition, cases }, range, frac)
     }
 
-    /// Adds a · 2^`exponent`, and returns its node. It has the same bits as `a`, with another binary point. Returns `a` itself
-    /// if `exponent` is 0.
+    /// Adds a · 2^`exponent`, and returns its node. The node has the same bits as `a`, with another binary point. Returns `a`
+    /// itself if `exponent` is 0. Fails if the node has more than 64 bits.
     pub(super) fn scale(
         &mut self,
         name: &str,
@@ -355,7 +355,7 @@ impl ExpressionPlan {
     }
 
     /// Adds a node with the value of the node `a`, and returns the new node. A result that is an operand itself needs a copy,
-    /// because its register has its own name.
+    /// because its register has its own name. Fails if the node has more than 64 bits.
     pub(super) fn copy(&mut self, name: &str, a: NodeId) -> Result<NodeId, PlanRefusal> {
         let PlanNode { format, range, .. } = *self.node(a);
         self.insert(name, Operation::Scale(a), format, range)
@@ -404,7 +404,7 @@ impl ExpressionPlan {
 
     /// Adds the node `a` with its low bits replaced by a single 1, and returns the new node. `format` must have fewer fraction
     /// bits than `a`, and its last bit is this 1. For example, 0.1011 with a format of two fraction bits becomes 0.11. The
-    /// caller must prove that no value exceeds the format.
+    /// caller must prove that no value exceeds the format. Fails if the node has more than 64 bits.
     pub(super) fn middle(
         &mut self,
         name: &str,
@@ -447,7 +447,7 @@ impl ExpressionPlan {
     }
 
     /// Adds the greatest integer that is not above `a`, and returns its node. `a` must have fraction bits. For example, −1.5
-    /// gives −2.
+    /// gives −2. Fails if the node has more than 64 bits.
     pub(super) fn integer_part(&mut self, name: &str, a: NodeId) -> Result<NodeId, PlanRefusal> {
         let node = self.node(a);
         let (frac, range) = (node.format.frac, node.range);
@@ -455,7 +455,7 @@ impl ExpressionPlan {
     }
 
     /// Adds the integer part and the fraction part of `a`, and returns the two nodes in this order. `a` must have fraction
-    /// bits. For example, −1.25 gives −2 and 0.75.
+    /// bits. For example, −1.25 gives −2 and 0.75. Fails if the node has more than 64 bits.
     pub(super) fn split(&mut self, name: &str, a: NodeId) -> Result<[NodeId; 2], PlanRefusal> {
         let integer = self.integer_part(&format!("{name}_integer"), a)?;
         let frac = self.node(a).format.frac;

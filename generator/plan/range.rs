@@ -146,8 +146,8 @@ pub(super) fn range_of(
     Ok(Enclosure::between(-low, high))
 }
 
-/// Returns a lower limit of the absolute values of a result, for all operands for which it is promised. It is at least 0. For
-/// example, it is 0.5 or a little less for `1 / x` with x from 1 to 2.
+/// Returns a lower limit of the absolute values of a result, for all operands for which it is promised. The limit is at least
+/// 0. For example, it is 0.5 or a little less for `1 / x` with x from 1 to 2.
 ///
 /// # Errors
 /// Fails if the values have no finite limits, or if the result is promised for no operands.

@@ -90,10 +90,10 @@ impl ExpressionPlan {
 
     /// Returns the node whose register stores the value of `node`: `node` itself, or a later node that only scales or shortens it.
     ///
-    /// The search begins at `node`, and goes on to the reader of the present node while there is only one. It passes `Scale` nodes,
-    /// and ends at the first `Narrow` or `Middle` node, which it returns. Before any other reader, and at a result of the plan, it
-    /// returns the present node. A reader `Places` does not count. For example, for a product that a `Scale` and then a `Narrow`
-    /// node follow, it returns the `Narrow` node.
+    /// The search begins at `node`, and goes on to the reader of the present node while there is only one. The search passes
+    /// `Scale` nodes, and ends at the first `Narrow` or `Middle` node, which it returns. Before any other reader, and at a
+    /// result of the plan, it returns the present node. A reader `Places` does not count. For example, for a product that a
+    /// `Scale` and then a `Narrow` node follow, it returns the `Narrow` node.
     fn held_for(&self, node: NodeId) -> NodeId {
         let mut held = node;
         loop {

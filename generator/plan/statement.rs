@@ -114,8 +114,8 @@ impl ExpressionStatement {
 }
 
 impl StatedOperand {
-    /// Returns the value with which results are computed for an operand. It is the nearer end of the domain if the operand is
-    /// outside a domain that clamps. For example, 0.9 becomes 0.5 if the domain ends at 0.5.
+    /// Returns the value with which results are computed for an operand. This value is the nearer end of the domain if the
+    /// operand is outside a domain that clamps. For example, 0.9 becomes 0.5 if the domain ends at 0.5.
     pub fn computed(&self, value: f64) -> f64 {
         match self.outside {
             Outside::Clamp => {
@@ -127,9 +127,9 @@ impl StatedOperand {
         }
     }
 
-    /// Returns the raw value with which results are computed if the operand has the raw value `raw`. It is the nearer end of the
-    /// domain if `raw` is outside a domain that clamps, and otherwise `raw`. For example, 900 becomes 500 if a domain that
-    /// clamps ends at 500.
+    /// Returns the raw value with which results are computed if the operand has the raw value `raw`. The result is the nearer
+    /// end of the domain if `raw` is outside a domain that clamps, and otherwise `raw`. For example, 900 becomes 500 if a
+    /// domain that clamps ends at 500.
     pub fn computed_raw(&self, raw: i64) -> i64 {
         match self.outside {
             Outside::Clamp => raw.clamp(self.domain.0, self.domain.1),

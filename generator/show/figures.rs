@@ -98,7 +98,8 @@ pub struct Figures {
     pub device: String,
     /// The area of the core, without the registers that the measurement adds around it.
     pub area: Area,
-    /// The frequency of the core between the registers that the measurement adds around it. Some targets are not timed.
+    /// The frequency of the core between the registers that the measurement adds around it. The frequency is `None` for a
+    /// target that is not timed, and for a core that does not fit on the chip.
     #[serde(skip_serializing_if = "Option::is_none", default)]
     pub frequency: Option<Frequency>,
     /// The longest path between registers in the run with the median frequency, with the names of the description.
@@ -126,10 +127,10 @@ pub struct Area {
     pub block_rams: Option<u64>,
     /// The number of flip-flops that the core takes.
     pub flip_flops: u64,
-    /// The area of the standard cells as a multiple of a two-input NAND gate's area.
+    /// The area of the standard cells as a multiple of a two-input NAND gate's area; `None` for an FPGA.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub gates: Option<f64>,
-    /// The area of the standard cells in µm².
+    /// The area of the standard cells in µm²; `None` for an FPGA.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub square_micrometres: Option<f64>,
 }
@@ -170,7 +171,8 @@ impl Figures {
         }
     }
 
-    /// Returns the longest path in words. For example, `first 0.4 → second 3.1 → third 7.9 ns`.
+    /// Returns the longest path in words. For example, `first 0.4 → second 3.1 → third 7.9 ns`. Call this function only if the
+    /// path has a point.
     pub fn path_in_words(&self) -> String {
         let steps = self.critical_path.iter().map(|step| format!("{} {:.1}", step.name, step.ns));
         format!("{} ns", Vec::from_iter(steps).join(" → "))

@@ -58,9 +58,8 @@ impl fmt::Display for VerilogSimulator {
 /// `PASS rsqrt: 3210 clocks, no difference` is a verdict.
 ///
 /// # Errors
-/// Fails if the simulator is missing or rejects the sources (Verilator: or warns of them), or if no file is Verilog. Fails if
-/// building and running take more than `limit` together, or if the bench crashes or ends without a verdict. A failing bench is no
-/// error; the outcome says so.
+/// Fails as [`BuiltBench::build`] does. Fails if building and running take more than `limit` together, or if the bench crashes
+/// or ends without a verdict. A failing bench is no error; the outcome says so.
 pub fn run_bench<N: AsRef<str>, C: AsRef<[u8]>>(
     simulator: VerilogSimulator,
     files: &[(N, C)],
@@ -71,7 +70,8 @@ pub fn run_bench<N: AsRef<str>, C: AsRef<[u8]>>(
     run_bench_in(&search, simulator, files, top, limit)
 }
 
-/// Builds and runs a bench as [`run_bench`] does. Looks for the simulator on the search path `search` instead of `PATH`.
+/// Builds and runs a bench as [`run_bench`] does. Looks for the simulator on the search path `search` instead of `PATH`. Fails
+/// as [`run_bench`] does.
 pub(super) fn run_bench_in<N: AsRef<str>, C: AsRef<[u8]>>(
     search: &OsStr,
     simulator: VerilogSimulator,
@@ -102,7 +102,7 @@ impl BuiltBench {
     ///
     /// # Errors
     /// Fails if the simulator is missing or rejects the sources (Verilator: or warns of them), or if building takes more than
-    /// `limit`.
+    /// `limit`. Fails also if no file is Verilog, or if a name contains a directory, begins with a dash, or occurs twice.
     pub fn build<N: AsRef<str>, C: AsRef<[u8]>>(
         simulator: VerilogSimulator,
         files: &[(N, C)],
@@ -165,7 +165,8 @@ impl BuiltBench {
         Ok(Self { simulator, top: top.to_owned(), program, build, dir })
     }
 
-    /// Returns the directory in which the bench runs. It contains the bench's files, and the files that the bench writes.
+    /// Returns the directory in which the bench runs. The directory contains the bench's files, and the files that the bench
+    /// writes.
     pub fn directory(&self) -> &Path {
         self.dir.path()
     }

@@ -10,7 +10,7 @@ use super::sources::YosysSources;
 
 /// Reads Verilog and memory files, pairs of a plain name and contents, and returns the module `top` with everything that it
 /// instantiates. The result is Yosys's JSON object of this module: the cells are under the key `cells`, and the nets under
-/// `netnames`. It has word-level cells, registers and memories. Only logic that nothing reads is optimised away.
+/// `netnames`. The netlist has word-level cells, registers and memories. Only logic that nothing reads is optimised away.
 ///
 /// # Errors
 /// Fails if a file cannot be written, or if Yosys refuses the files, takes longer than `limit`, or writes no netlist.

@@ -39,7 +39,8 @@ pub use file_names::is_verilog;
 pub use lint::lint;
 pub use proof::{PROOF_LIMITS, prove};
 
-/// The time limit for a tool's answer with its version. It is long because a WebAssembly tool is compiled in its first run.
+/// The time limit for a tool's answer with its version. The limit is long because a WebAssembly tool is compiled in its first
+/// run.
 const VERSION_LIMIT: Duration = Duration::from_secs(600);
 /// The longest time until the output of killed processes closes.
 const CLOSING_LIMIT: Duration = Duration::from_secs(1);

@@ -29,7 +29,8 @@ pub fn synthesise(
         .with_context(|| format!("`{}` for {}", family.command, family.title))
 }
 
-/// Returns the commands of Yosys that write the files which [`usage`] reads. They must come after the synthesis in a script.
+/// Returns the commands of Yosys that write the files which [`usage`] reads. The commands must come after the synthesis in a
+/// script.
 pub fn statistics_commands(family: &Family) -> &'static str {
     match family.fabric_product {
         None => "tee -q -o statistics.json stat -json",

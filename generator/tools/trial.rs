@@ -33,8 +33,9 @@ struct Trials {
 }
 
 impl Tool {
-    /// Tests a tool with an input that it must reject. If the tool answers only by its exit status, it also gets an input that it
-    /// must accept. For example, `yosys` gets a false claim, and must print `proof did fail`. Each run may take at most `limit`.
+    /// Tests a tool with an input that it must reject. If the tool answers only by its exit status, it also gets an input that
+    /// it must accept. For example, `yosys` gets a false claim, and must print `proof did fail`. Each run may take at most
+    /// `limit`. For a tool without such a test in `trials.toml`, the function does nothing.
     ///
     /// # Errors
     /// Fails if the tool accepts a wrong input, rejects a correct one, or does not print the expected text. Fails if the tool

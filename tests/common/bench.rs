@@ -1,4 +1,4 @@
-//! A bench that is built once and run several times, with other memories.
+//! Builds a Verilog bench once and runs it several times with changed memory files.
 
 use std::fs;
 

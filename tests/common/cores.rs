@@ -1,4 +1,4 @@
-//! Configurations with their designs, and what is emitted for them.
+//! Loads configurations for tests, builds their cores, and emits their files.
 
 use std::fs;
 use std::path::Path;

@@ -1,4 +1,4 @@
-//! Files of the repository and of temporary directories.
+//! Reads and writes files of the repository and of temporary directories. Each function panics if that fails.
 
 use std::fs;
 use std::path::{Path, PathBuf};

@@ -1,4 +1,4 @@
-//! A host that drives a core in the built-in simulator, by the names of its ports.
+//! Drives a core in the built-in simulator as a host does, by the names of the ports.
 
 use glint::hdl::netlist::{Design, NetId};
 use glint::hdl::sim::Simulator;

@@ -1,4 +1,4 @@
-//! JSON that is what a test takes it for.
+//! Reads JSON values of the type that a test expects. A value of another type panics, and the message shows the value.
 
 use serde_json::{Map, Value};
 

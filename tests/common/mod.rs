@@ -1,4 +1,4 @@
-//! The shared parts of the tests.
+//! Code that the tests in `tests/quick` and `tests/tools` share.
 
 // Each test crate uses a part of this.
 #![allow(dead_code)]

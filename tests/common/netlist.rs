@@ -1,4 +1,4 @@
-//! Netlists from synthesis, and their simulation with models of the family's cells.
+//! Synthesises cores with Yosys, and builds benches that simulate the netlists with models of the family's cells.
 
 use super::Sure;
 use super::files::{json, read};

@@ -1,4 +1,4 @@
-//! Random designs that keep the rules of the netlist.
+//! Makes random designs that keep the rules of a netlist, for tests of the simulator and of the emitted Verilog.
 
 use std::panic::Location;
 

@@ -1,4 +1,4 @@
-//! Files and what is said of them, as text.
+//! Reads test cases from a text: each case is a file, followed by the lines that Glint is expected to print about it.
 
 /// A file, and what is said of it.
 pub struct Case {

@@ -1,4 +1,6 @@
-//! The sample of a long test that runs by default; the commit draws it, so that over time all is covered.
+//! Draws the sample of a long test that a default run executes. The commit decides the sample, so that over time all cases run.
+//!
+//! `GLINT_TESTS=all` runs all cases, and `GLINT_SAMPLE` replaces the commit.
 
 use std::env;
 use std::process::Command;

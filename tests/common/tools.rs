@@ -1,6 +1,4 @@
-//! Outside tools in tests.
-//!
-//! A missing tool fails the test, with the remedy: a test that skips itself proves nothing.
+//! Runs outside tools in tests. A missing tool fails the test with a remedy, because a test that skips itself proves nothing.
 
 use std::env;
 use std::ffi::OsStr;

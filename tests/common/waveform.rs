@@ -1,4 +1,4 @@
-//! Waveforms that are read again.
+//! Reads the variables and the values of a waveform file (VCD).
 
 use std::fs::File;
 use std::io::BufReader;

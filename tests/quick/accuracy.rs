@@ -1,5 +1,8 @@
-//! Stated error bounds: no error measured at random points exceeds them, in any configuration. The proof
-//! over all control operands is recorded in `records/proofs/`, which `tests/quick/proofs.rs` re-checks.
+//! Tests the error bounds of accuracy contracts: no error at random points exceeds the bound, in random configurations of every
+//! device.
+//!
+//! A default run draws a part of the configurations. Proofs over all control operands are recorded in `records/proofs/`, and
+//! `tests/quick/proofs.rs` checks these records.
 
 use std::path::Path;
 

@@ -1,4 +1,8 @@
-//! The blocks of the diagrams: every register, table and operator of the netlist is in one of them, with the inputs that it takes.
+//! Tests the blocks of a block diagram: every register, ROM and operator of the datapath is in exactly one block, and the block
+//! has the inputs that the operator reads.
+//!
+//! A default run draws ten configurations. The run also checks the devices of `examples/` and devices that are composed of
+//! others.
 
 #[allow(dead_code)]
 #[path = "../../examples/fresnel/main.rs"]

@@ -1,5 +1,6 @@
-//! Values worked out by hand, in the files of `by_hand/` (its `README.md` says how they are written), against both
-//! the design in the built-in simulator and the golden model.
+//! Compares values that were worked out by hand with the design in the built-in simulator and with the golden model.
+//!
+//! The values are in the files of `tests/quick/by_hand/`; the `README.md` there describes their format.
 
 use glint::config::{Config, KeyKind, Schema, parse};
 use glint::golden::Model;

@@ -1,5 +1,7 @@
-//! The clocks that the manifest states, for every operand that the ports take: also for operands outside the
-//! domain, which are not what anything is measured at.
+//! Tests the clocks that a manifest states, for all values of the port `shift` and for the extreme values of the other
+//! operands.
+//!
+//! The ports can carry values outside the domain of the contract. The stated clocks must hold for these values too.
 
 use std::collections::BTreeSet;
 

@@ -1,5 +1,7 @@
-//! Every combination of operands of a narrow configuration of each device, clock by clock; and what is
-//! said when one of them differs.
+//! Compares the golden model with the simulation for every combination of operands, in a narrow configuration of each device,
+//! and tests the report of a difference.
+//!
+//! A default run draws a quarter of the combinations.
 
 use std::collections::BTreeSet;
 use std::env;

@@ -1,4 +1,5 @@
-//! Keys that a file does not name follow from those that it does.
+//! Tests that the defaults of keys adapt to the keys that a file states. For example, `exponent.bits = 8` lowers the default of
+//! `domain.exponent_max` to 255.
 
 use glint::config::{Config, Key, KeyKind, Problems, Schema, Value, parse};
 use glint::core::Core;

@@ -1,4 +1,7 @@
-//! Whatever the text, the reader answers with a configuration or with problems that have a place.
+//! Tests the reader of configurations with random texts: it returns a configuration, or problems that each have a message and a
+//! remedy.
+//!
+//! If a problem has a line and a column, the printed report states the same position.
 
 use crate::common::cases;
 use crate::common::cores::device;

@@ -1,4 +1,6 @@
-//! Each mistake in a configuration file: its message, its place and its remedy, word for word.
+//! Tests the mistakes that a configuration file can contain: the message, the position and the remedy of each, word for word.
+//!
+//! Most cases are in `config_problems.txt`.
 
 use std::path::Path;
 

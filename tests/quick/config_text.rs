@@ -1,4 +1,5 @@
-//! Configurations written and read back, and random ones.
+//! Tests that configurations are written as text and read back unchanged, and that random configurations cover the values of
+//! their keys.
 
 use std::collections::BTreeSet;
 

@@ -1,5 +1,5 @@
-//! The datasheets of all configurations: well-formed, complete in themselves, usable without a pointer or colours, and
-//! true to the netlist, the manifest and the formula.
+//! Tests the datasheets of all configurations. The datasheets must be well-formed, need no other file, be usable without a
+//! pointer or colours, and agree with the netlist, the manifest and the formula.
 
 use std::collections::BTreeSet;
 use std::path::Path;

@@ -1,4 +1,7 @@
-//! Devices that are no highlights: unit vectors, their cosines, and the colours that are made of both.
+//! Tests the devices `dot-product`, `normaliser` and `shading`, whose contracts are no highlights, against formulas that are
+//! written out in this file.
+//!
+//! It also tests devices that Glint must refuse, for example a device that never shows its result.
 
 use std::ops::ControlFlow;
 

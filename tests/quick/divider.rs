@@ -1,5 +1,5 @@
-//! The divider, through the built-in simulator: the block in a device of its own, every quotient,
-//! remainder and clock of small operands against integer division.
+//! Tests the divider of the DSL in the built-in simulator: every quotient, remainder and number of clocks for operands of few
+//! bits, against integer division.
 
 use glint::dsl::{Designer, end, loop_while, step, valid};
 use glint::fixed::Format;

@@ -1,4 +1,4 @@
-//! Emission says of every file which modules it defines. The text of the file defines these modules and no others.
+//! Tests that every emitted file has the list of the Verilog modules that its text defines.
 
 use std::collections::BTreeSet;
 

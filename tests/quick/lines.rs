@@ -1,6 +1,7 @@
-//! The devices that walk a scan line, in the built-in simulator: lines of one point and
-//! of 4096, decoder edges, signed angles that wrap around, resets in mid-line; and the drift of the longest
-//! line against the set-up as it was before it was quantised.
+//! Tests the devices that compute the points of a scan line, in the built-in simulator: lines of 1 to 4096 points, the
+//! exponents at which the power changes, angles that wrap, and resets within a line.
+//!
+//! It also bounds how far the results of the longest line drift from the unquantised formula.
 
 use std::f64::consts::FRAC_PI_2;
 

@@ -1,4 +1,4 @@
-//! The quick tests: everything that needs no tool but Glint; CONTRIBUTING.md has its time.
+//! The quick tests, which need no tool but Glint. CONTRIBUTING.md says how long they take.
 //!
 //! Tests with simulators, synthesis, provers or Python are in `tests/tools`.
 

@@ -1,4 +1,4 @@
-//! One multiplier in place of three: the same results, fewer multipliers, more clocks.
+//! Tests keys such as `colour.multipliers = 1`: one multiplier in place of three gives the same results in more clocks.
 
 use glint::core::Core;
 use glint::evidence::comparison::multipliers;

@@ -1,4 +1,5 @@
-//! `operands.buffered`: writes at any time, and no clock between two computations.
+//! Tests the key `operands.buffered`: the host may write operands at any time, and the next computation starts one clock
+//! earlier.
 
 use glint::core::Core;
 use glint::cosim::trial;

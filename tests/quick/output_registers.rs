@@ -1,4 +1,6 @@
-//! `output.registered`: registers behind results that are logic, valid a clock later.
+//! Tests the key `output.registered`: results that are combinational logic get registers and come one clock later.
+//!
+//! Results that are registers already get no second register and come no later.
 
 use glint::core::Core;
 use glint::dsl::{Designer, Step, end, loop_while, step, valid};

@@ -1,5 +1,5 @@
-//! Pages: those of the devices, `docs/devices/`, are as Glint writes them today; those that people write have links that lead
-//! somewhere.
+//! Tests the pages of the repository: the pages in `docs/devices/` are what Glint writes today, and the links on handwritten
+//! pages lead to existing files and headings.
 
 use std::collections::BTreeSet;
 use std::fs;

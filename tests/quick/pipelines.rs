@@ -1,7 +1,7 @@
-//! The structure of pipelines that come with Glint: nothing overtakes anything.
+//! Tests the structure of the shipped pipelines: all registers move together, and logic combines only values of its own stage.
 //!
-//! With the proof by induction that the stages have points where a queue has them, this is why no result is of
-//! another point.
+//! The first test leaves out pipelines with an interval above 1, whose registers load in different slots. Further tests cover
+//! faults in a pipeline and delay lines.
 
 use glint::hdl::netlist::{Driver, NetId, Op, Role};
 use glint::mutate::{self, Faults, MutantVerdict, NetlistFault};

@@ -1,9 +1,8 @@
-//! The recorded proofs of the accuracy contract, `records/proofs/<name>.json`.
+//! Tests the recorded proofs of error bounds, `records/proofs/<name>.json`, against the program of today.
 //!
-//! A proof goes through every place of a contract's sweep, which takes minutes. `glint cosim
-//! --exhaustive --json CONFIG` makes it; here its record is held against the program of today: the
-//! same places, the same error where it is largest, the same colour multipliers, and no larger error in
-//! a part of the places that is spread evenly over them.
+//! A proof visits every place of a contract's sweep, which takes minutes; `glint cosim --exhaustive --json CONFIG` makes the
+//! record. The test compares the record's digest, its number of places and its largest errors. The test visits an evenly spread
+//! part of the places again. A default run draws eight records.
 
 use std::collections::BTreeSet;
 use std::path::Path;

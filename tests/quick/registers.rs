@@ -1,4 +1,5 @@
-//! Registers around a device of one's own.
+//! Tests keys that add registers to a core, with devices that are defined in this file: names that collide in a register map,
+//! pipelines, and golden models that cannot predict the added registers.
 
 use glint::base::key_error::KeyError;
 use glint::config::{self, Config};

@@ -1,4 +1,7 @@
-//! The rooms of the source: which may import which, no circles, and where devices are known by name.
+//! Tests the structure of the source: which folder may import which, that files of a folder do not import each other in a
+//! circle, and that device names occur only in certain folders.
+//!
+//! It also tests that some crates start no thread, no process and no signal handler.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;

@@ -1,4 +1,8 @@
-//! The control ROM of `rough` is table 1 of UA 60139, bit for bit, whatever the configuration.
+//! Tests that the control ROM of `rough` is table 1 of the patent UA 60139, bit for bit, for the configurations with the
+//! patent's microprogram.
+//!
+//! Keys such as `colour.multipliers = 1` add microinstructions; then the ten microinstructions of the patent still set its
+//! control lines as the table does.
 
 use glint::config::{parse, sample};
 use glint::hdl::netlist::{Design, Field};

@@ -1,5 +1,5 @@
-//! A shared multiplier of operands of different signs: what each register takes is the product, whichever
-//! bus the negative operands are on, at once or a word later.
+//! Tests a shared multiplier whose operands have different signs: each register gets the whole product, on whichever input the
+//! negative operands are, loaded at once or one microinstruction later.
 
 use glint::dsl::{Designer, end, hold, step, valid};
 use glint::fixed::Format;

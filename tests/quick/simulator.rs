@@ -1,4 +1,5 @@
-//! Random netlists in the built-in simulator against the interpreter, which evaluates them net by net, as `netlist` documents it.
+//! Compares the built-in simulator with an interpreter that evaluates random netlists net by net, as the module `netlist`
+//! documents the cells.
 
 use glint::hdl::netlist::{Interpreter, Role};
 use glint::hdl::sim::Simulator;

@@ -1,4 +1,5 @@
-//! The model in C is written for every core, pipelines among them; `tests/tools` compiles and runs some.
+//! Tests that Glint writes a model in C for every configuration, pipelines included. `tests/tools` compiles and runs some of
+//! the models.
 
 use rayon::prelude::*;
 use serde_json::Value;

@@ -1,5 +1,7 @@
-//! A run is divided into streams; what it finds depends on its seed and its points alone, and what
-//! differs can be had again, with a waveform.
+//! Tests that the result of a co-simulation depends only on its seed and its number of points, and not on the number of
+//! threads.
+//!
+//! A difference that it finds can be reproduced with its seed, with a waveform.
 
 use std::fs::File;
 

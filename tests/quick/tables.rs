@@ -1,5 +1,7 @@
-//! The tables between markers in README.md and docs/ state today's cores and records. `bash tools/bless` writes them: it sets
-//! `GLINT_BLESS`. A column that only a bench knows stays as it stands.
+//! Tests that the tables between markers in README.md and docs/ agree with the cores and records of today.
+//!
+//! `bash tools/bless` rewrites the tables: it sets the environment variable `GLINT_BLESS`. Columns that only a benchmark
+//! measures stay unchanged.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;

@@ -1,7 +1,7 @@
-//! Keeps comments and names as clear as they are: patterns that make a comment hard to follow must not grow in number.
+//! Counts patterns that make comments hard to follow, and names of types with several meanings. Neither count may grow.
 //!
-//! CONTRIBUTING.md has the rules. For example, "the range of the sum" is clear where "that of the sum" makes the reader search. Whoever
-//! lowers a count lowers its limit here.
+//! CONTRIBUTING.md has the rules. For example, "the range of the sum" is clear, while "that of the sum" makes the reader search
+//! for a noun. Whoever lowers a count should lower its limit in this file.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;

@@ -1,5 +1,6 @@
-//! The largest errors that are known where a proof does not cover all operands, `records/proofs/worst/<name>.json`, and the search
-//! that finds them.
+//! Tests the records of the largest known errors, `records/proofs/worst/<name>.json`, and the search that finds such errors.
+//!
+//! Such a record exists where a proof does not cover all operands.
 
 use crate::common::cores::configuration;
 use crate::common::files::{json, paths};

@@ -1,4 +1,7 @@
-//! The emitted bench: what differs makes it fail, in every simulator, and it says where.
+//! Tests the emitted bench of a small device under Icarus Verilog and Verilator: it passes with right vectors, and fails with a
+//! wrong expected output.
+//!
+//! The bench must print the clock, the microinstruction and the output that differs.
 
 use crate::common::Sure;
 use crate::common::tools::{LIMIT, benched};

@@ -1,4 +1,4 @@
-//! The pages of docs/ as a book: mdBook builds it, and every link in it leads somewhere.
+//! Builds the pages of docs/ as a book with mdBook, and tests that every link in the book leads to a page, a heading or a file.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Component, Path, PathBuf};

@@ -1,4 +1,4 @@
-//! The check of `glint verify` that has Gappa prove the bound of a contract.
+//! Tests the check of `glint verify` that proves the bound of a contract with Gappa.
 
 use std::time::Duration;
 

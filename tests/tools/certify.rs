@@ -1,4 +1,5 @@
-//! Statements for Gappa: proved of the devices as they are, refused of a smaller bound and of faulty hardware.
+//! Tests the statements about error bounds for Gappa: Gappa proves them for the devices as they are, and proves neither a
+//! smaller bound nor the bound of faulty hardware.
 
 #[allow(dead_code)]
 #[path = "../../examples/smoothstep/main.rs"]

@@ -1,6 +1,6 @@
-//! The benches in Python: every one passes, and each of their tests notices a fault.
+//! Tests the emitted benches in Python: every bench passes, and each of its tests notices a fault.
 //!
-//! cocotb 2.1 refuses Verilator 5.006, so that they run under Icarus Verilog.
+//! The benches run under Icarus Verilog only, because cocotb 2.1 refuses Verilator 5.006.
 
 use std::path::Path;
 

@@ -1,4 +1,4 @@
-//! The device of `examples/fresnel`, which no catalogue knows, goes through the whole command line.
+//! Tests the device of `examples/fresnel`, which is not in the catalogue, with the commands of its own command line.
 
 // The example's own source; its `main` is run as a program below.
 #[allow(dead_code)]

@@ -1,5 +1,7 @@
-//! Tests expressions of several operands: every configuration of them that `glint new` knows agrees with its golden model,
-//! and its Verilog passes the bench, as a sequential core, as a pipeline, and as a pipeline with an interval.
+//! Tests the configurations of expressions that `glint new` can print: each agrees with its golden model and passes its bench
+//! in Icarus Verilog, as a sequential core, as a pipeline, and as a pipeline with an interval of 2.
+//!
+//! A default run draws four of them.
 
 use crate::common::bench::Bench;
 use crate::common::cores::{Emitted, assert_agrees, parsed};

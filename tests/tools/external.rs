@@ -1,4 +1,4 @@
-//! Real simulators and synthesis, with a small bench that is right, wrong, or endless.
+//! Tests how the tests run Icarus Verilog, Verilator and Yosys, with a small bench that passes, that fails, or that never ends.
 
 use std::fs;
 use std::time::Duration;

@@ -1,5 +1,6 @@
-//! The families Gowin, Nexus and GateMate: the netlist of a core after synthesis gives the results of the core. What `glint synth`
-//! measures for them is in `synth.rs`.
+//! Tests the families Gowin, Nexus and GateMate: the netlist of a core after synthesis passes the bench of the core.
+//!
+//! `synth.rs` tests what `glint synth` measures for them.
 
 use glint::target::{FAMILIES, Family};
 use glint::tools::VerilogSimulator;

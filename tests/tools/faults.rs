@@ -1,4 +1,4 @@
-//! Faults that are planted in emitted files.
+//! Reads the faults of `faults.txt` and plants them in emitted files.
 
 use std::path::Path;
 

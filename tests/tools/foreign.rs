@@ -1,4 +1,7 @@
-//! Crates outside the workspace that use Glint: by a path to the checkout, and by the packages as they would be published.
+//! Tests crates outside the workspace that use Glint: by a path to the checkout, and by the packages as they would be
+//! published.
+//!
+//! It also tests the crate that `glint new-device` writes.
 
 use std::fs;
 use std::path::PathBuf;

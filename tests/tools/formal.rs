@@ -1,7 +1,7 @@
-//! Formal proof of the handshake: for every configuration the emitted properties are proved by
-//! k-induction, from any state and for all inputs; and faults in the emitted text break the proof.
+//! Tests the formal proofs of the handshake: the emitted properties are proved for every configuration by k-induction, from any
+//! state and for all inputs, and faults in the emitted files break the proof.
 //!
-//! The tasks for SymbiYosys have the same commands and the same depth; it is no part of the tools here.
+//! The emitted tasks for SymbiYosys have the same commands and the same depth; no test runs SymbiYosys.
 
 use std::time::Duration;
 

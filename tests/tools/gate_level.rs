@@ -1,5 +1,7 @@
-//! The bench notices faults in a synthesised netlist: that it passes means something, and so do the models
-//! of its cells. That every netlist passes is in `tests/tools/synthesis.rs`.
+//! Tests that a bench notices faults in a synthesised netlist. Without such a test, a bench that passes, or a model of a cell,
+//! would mean little.
+//!
+//! `tests/tools/synthesis.rs` tests that the netlists of iCE40 and ECP5 pass.
 
 use crate::common::Sure;
 use crate::common::cores::{Emitted, configuration, configuration_with};

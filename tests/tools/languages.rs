@@ -1,4 +1,4 @@
-//! What goes with a core in other languages: VHDL, types of SystemVerilog, and transfers in C and Python.
+//! Tests the files of a core in other languages: the VHDL entity, the types of SystemVerilog, and transfers in C and Python.
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;

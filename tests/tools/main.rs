@@ -1,6 +1,6 @@
 //! The tests that run outside tools: simulators, synthesis, place and route, provers, Python.
 //!
-//! `bash tools/install` installs them. A tool that is missing fails its test.
+//! `bash tools/install` installs the tools. A missing tool fails its test.
 
 #[path = "../common/mod.rs"]
 mod common;

@@ -1,7 +1,7 @@
-//! Registered multipliers: the file for ECP5 does what the portable one does, which every simulator uses.
+//! Tests registered multipliers: the file for ECP5 computes the same as the portable file, which every simulator uses.
 //!
-//! Both stand side by side at all widths, and whole netlists pass the bench of their source. That a difference is
-//! noticed is shown by planting some.
+//! Both files are simulated side by side at all widths, and whole netlists pass the bench of their core. Planted faults must be
+//! noticed.
 
 use crate::common::bench::Bench;
 use crate::common::cores::{Emitted, Files, configuration, configuration_with};

@@ -1,7 +1,7 @@
-//! Faults put into a design or into its Verilog are noticed, or proved to change nothing.
+//! Tests the records of mutation testing in `records/mutation/`: plants a sample of the faults again, in the netlist and in the
+//! Verilog, and compares the verdicts with the record.
 //!
-//! The records in `records/mutation/` hold the score of every device's default configuration, and of its pipeline; here a sample of
-//! them is planted again.
+//! A fault must be noticed, or proved to change nothing, unless the record calls it undecided.
 
 use std::collections::BTreeSet;
 

@@ -1,4 +1,4 @@
-//! The page with Glint as WebAssembly: built, and used in headless Chromium.
+//! Builds the web page that runs Glint as WebAssembly, and tests it in headless Chromium.
 
 use crate::common::files::root;
 use crate::common::tools::ran;

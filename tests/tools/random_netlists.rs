@@ -1,9 +1,8 @@
-//! Random netlists: the emitted Verilog of any checked design computes what the netlist means.
+//! Tests the emitted Verilog of random netlists against an interpreter, which is written from the documentation of
+//! [`glint::hdl::netlist::Op`].
 //!
-//! Devices use a handful of the ways in which cells can meet. Here every cell, sign and width meets every
-//! other, named or not, in either unit; an interpreter written from the documentation of
-//! [`glint::hdl::netlist::Op`] predicts the outputs, Icarus Verilog simulates the text, and both linters
-//! must have nothing to say.
+//! The devices of the catalogue use only a few of the possible combinations of cells. Random netlists combine all cells, signs
+//! and widths. Icarus Verilog simulates the text, and both linters must be silent.
 
 use crate::common::cores::Emitted;
 use crate::common::random_netlist::{Random, SMALL, design};

@@ -1,4 +1,5 @@
-//! The program that recomputes every operand with MPFR: it finds the bound that Glint proved, and notices what is wrong.
+//! Tests the C program that recomputes every operand of a function with MPFR: it finds the bound that Glint proved, and notices
+//! a wrong word or a damaged file.
 
 use std::path::Path;
 

@@ -1,5 +1,5 @@
-//! The JSON Schema of the keys, by validators of others: what Glint accepts, they accept, and what is beside a range or
-//! unknown, they refuse.
+//! Tests the JSON Schema of the keys with two validators: they accept every configuration of the repository, and refuse unknown
+//! keys, keys without a device, and values that are out of range or of a wrong type.
 
 use std::path::Path;
 use std::process::Command;

@@ -1,7 +1,7 @@
-//! The bench that is shipped with a core fails for faults that are easily overlooked.
+//! Tests that the shipped bench of a core fails for faults that are easily overlooked.
 //!
-//! Whoever ports a core, edits a memory or takes another tool relies on it. The faults are planted in the committed
-//! files, one at a time; the share of all faults that the benches notice is in the records in `records/mutation/`.
+//! A user who ports a core, edits a memory or uses another tool relies on this bench. The test plants the faults in the
+//! committed files, one at a time. The records in `records/mutation/` have the share of all faults that the benches notice.
 
 use std::path::Path;
 

@@ -1,5 +1,7 @@
-//! Job arrays: an exhaustive check in parts, of which one is put back and one killed in its middle, joined to the record of
-//! one process; and tasks that fail.
+//! Tests exhaustive checks as Slurm job arrays and under GNU parallel. Although one task is requeued and one is killed, the
+//! merged record equals the record of a single process.
+//!
+//! The test also covers tasks that fail or are cancelled, and wrong arguments.
 
 use std::fs;
 use std::path::{Path, PathBuf};

@@ -1,4 +1,6 @@
-//! The model in C: it compiles without a word, and computes what the golden model computes.
+//! Tests the emitted model in C: it compiles without warnings, and computes the results of the golden model.
+//!
+//! The same holds for the functions in C and Python that set up a line of points.
 
 use std::fmt::Write as _;
 use std::fs;

@@ -1,4 +1,5 @@
-//! `glint synth`: figures that the tools' own tables bear out, and the record in `records/synthesis/`.
+//! Tests `glint synth`: its measurements agree with the delays in the tools' tables and with the records in
+//! `records/synthesis/`.
 
 use std::env;
 use std::ffi::OsString;

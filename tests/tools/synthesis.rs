@@ -1,9 +1,9 @@
-//! Synthesis of configurations by Yosys for iCE40, ECP5 and Xilinx 7: no latch, no warning, ROMs
-//! in block RAM and products in DSP blocks, and no ROM contents lost.
+//! Tests the synthesis of configurations by Yosys for iCE40, ECP5 and Xilinx 7: no latch, no warning, ROMs in block RAM with
+//! all of their contents, and products in DSP blocks. A default run draws five pairs of a configuration and a family.
 //!
-//! The iCE40 and ECP5 netlists, control ROM and all, pass the bench of their source; that a fault in a
-//! netlist is noticed is in `tests/tools/gate_level.rs`. Yosys 0.23 has no model of Xilinx block RAMs; the ones in
-//! their initial values are counted, as in all.
+//! The netlists for iCE40 and ECP5, control ROM included, pass the bench of their core. Yosys 0.23 has no model of Xilinx block
+//! RAMs, so the test counts the ones in their initial values. `tests/tools/gate_level.rs` tests that a fault in a netlist is
+//! noticed.
 
 use std::collections::BTreeSet;
 use std::fs;

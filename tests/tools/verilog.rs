@@ -1,8 +1,8 @@
-//! Check 2: the emitted Verilog under Icarus Verilog and under Verilator.
+//! Tests the emitted Verilog under Icarus Verilog and Verilator: it has no lint warnings, and the bench passes.
 //!
-//! The expected values of a bench are those on which the golden model and the built-in simulator
-//! agree; it compares every output on every clock. That a bench can fail is tested with one wrong
-//! bit in what it expects, and in what the device's ROMs hold.
+//! The golden model and the built-in simulator must agree on the expected values of a bench, and the bench compares every
+//! output on every clock. A bench must fail with one wrong bit in an expected output or in a ROM. Verilator builds two of the
+//! benches by default.
 
 use crate::common::Sure;
 use crate::common::bench::{Bench, with_flipped_bit};

@@ -1,4 +1,5 @@
-//! The video signal of `examples/video`: what a screen would show is the picture of the model, and boards keep its clocks.
+//! Tests the video signal of `examples/video`: the pictures on the simulated screen equal the pictures of the model, and the
+//! boards reach the clocks that the signal needs. A default run draws one signal and one board.
 
 use crate::common::Sure;
 use crate::common::files::root;

@@ -1,4 +1,4 @@
-//! The wheel for Python's installer: the module `glint`, and a `glint` on PATH.
+//! Tests the wheel for Python's installer `pip`: it installs the module `glint` and the program `glint`.
 
 use std::path::Path;
 use std::process::Command;

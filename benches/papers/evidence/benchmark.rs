@@ -1,7 +1,7 @@
-//! "2.3 times faster in software": W against Schlick's function, timed in pairs.
+//! Measures the claim "2.3 times faster in software": times the function W and Schlick's function in pairs.
 //!
-//! Timings differ from run to run and from machine to machine, so they stand apart from everything else:
-//! in `benchmark.json` and in a section of the page that is there only when they were taken.
+//! Timings differ from run to run and from machine to machine. The timings are therefore only in `benchmark.json` and in a
+//! section of the page that exists only with `--benchmark`.
 
 use std::hint::black_box;
 use std::time::Instant;

@@ -1,4 +1,5 @@
-//! The claims ledger: what the seeds say of their functions, what comes out, and under which definition.
+//! Lists the claims of the seeds about their functions, each with Glint's measurement, the definition under which it was
+//! measured, and a verdict.
 
 mod paper;
 mod patent;

@@ -1,4 +1,6 @@
-//! The relative error of a function against `cosⁿγ`, from the peak down to where a definition ends it.
+//! Measures the relative error of a function against `cosⁿγ`, from γ = 0 to the end of a region.
+//!
+//! A region ends at the inflection point of `cosⁿγ`, or where `cosⁿγ` falls to a given level, for example 0.2.
 
 use serde::Serialize;
 

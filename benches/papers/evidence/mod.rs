@@ -1,4 +1,6 @@
-//! The evidence about the claims and the plots of the sources, measured when the program runs; `report.json` is this.
+//! Measures everything that the report shows: the claims and the plots of the sources, and the error curves of the devices.
+//!
+//! `report.json` has the fields of [`Evidence`].
 
 pub mod benchmark;
 pub mod claims;

@@ -1,4 +1,4 @@
-//! All devices in one chart each: error against the exponent, and size against error.
+//! Makes two charts with all devices: the error against the exponent, and the error against the size of the hardware.
 
 use anyhow::{Result, bail};
 

@@ -1,4 +1,4 @@
-//! The report as one HTML page that needs nothing but itself.
+//! Makes the report as one HTML page that needs no other file and no network.
 
 use anyhow::Result;
 use glint_base::template::Template;

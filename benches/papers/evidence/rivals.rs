@@ -1,4 +1,5 @@
-//! "Simpler in hardware": W and Schlick's function, each as the device of the catalogue with its defaults.
+//! Measures the claim "simpler in hardware": synthesises W and Schlick's function, as the devices `cosine-power` and `schlick`
+//! with default keys.
 
 use anyhow::{Context, Result};
 use serde::Serialize;

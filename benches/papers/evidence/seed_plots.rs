@@ -1,4 +1,4 @@
-//! The plots and tables that the captions of the seeds' figures describe, made anew.
+//! Makes the plots and tables that the captions of the seeds' figures describe.
 
 use anyhow::{Context, Result, bail};
 use serde::{Deserialize, Serialize};

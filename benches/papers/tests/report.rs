@@ -1,4 +1,5 @@
-//! The program `papers`: the ledger, the same twice, and a page that needs nothing but itself.
+//! Tests the program `papers`: two runs give the same report, the page needs no other file, and timings are in files of their
+//! own.
 
 #[path = "../evidence/mod.rs"]
 mod evidence;

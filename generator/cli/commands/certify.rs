@@ -312,7 +312,8 @@ fn found(
 /// proved. For example, `red_out_3.g` has statement 3 of the output `red_out`.
 ///
 /// It deletes scripts of an earlier run with more statements, if they still have the name in their first line. A copy under
-/// another name, or an edited script, belongs to the user and stays.
+/// another name, or an edited script, belongs to the user and stays. Fails if a file that Glint did not write is in the way, or
+/// if a file cannot be written or removed.
 fn write(
     directory: &Path,
     config: &str,

@@ -1,5 +1,5 @@
-//! `glint compare`: compares all highlight devices at one exponent n: their errors against cosⁿγ, cells, frequencies and points a
-//! second.
+//! `glint compare`: compares all highlight devices, and the configurations that the user names, at one exponent n: their errors
+//! against cosⁿγ, cells, frequencies and points a second.
 
 mod show;
 
@@ -88,8 +88,8 @@ struct ModelFigures {
     multipliers: Vec<MultiplierSize>,
 }
 
-/// Runs `glint compare`, which compares all highlight devices at one exponent n: their errors against cosⁿγ, cells, frequencies
-/// and points a second. Returns whether every synthesis run succeeded.
+/// Runs `glint compare`, which compares all highlight devices, and the configurations that the user names, at one exponent n:
+/// their errors against cosⁿγ, cells, frequencies and points a second. Returns whether every synthesis run succeeded.
 ///
 /// # Errors
 /// Fails if a configuration has problems, if the exponent is outside the domains of all devices, or if a record cannot be read.

@@ -84,7 +84,7 @@ fn outside(operands: &[Operand], raw: &[i64]) -> Vec<String> {
 }
 
 /// Computes one point, and reports it with every signal of the golden model. `given` has the raw operands that the user gave,
-/// in the order of the contract. Returns true.
+/// in the order of the contract. Returns true. Fails if the device never raises `valid`.
 fn point(
     output: OutputOptions,
     one: &Loaded,
@@ -165,7 +165,7 @@ impl CommandReport for EvaluatedPoint<'_> {
 
 /// Returns the signals of the golden model with their values in the clock of the first result. The golden model of a pipeline
 /// is the model of its sequential core; only its checkpoints, and the signals that the pipeline has too, are returned. The
-/// formats come from the nets of the sequential core.
+/// formats come from the nets of the sequential core. Fails if the device never raises `valid`.
 fn signal_values(one: &Loaded, operands: &[Operand], raw: &[i64]) -> Result<Vec<SignalValue>> {
     let core = &one.core;
     let mut signals = signals(core.device.golden(&core.config), operands, raw)?;

@@ -177,6 +177,7 @@ pub fn all_files(output: OutputOptions, loaded: &[Loaded], with_bench: bool) -> 
 }
 
 /// Makes every file of a configuration, with its test bench if `with_bench` is true. `known` is a cache of chosen computations.
+/// Fails if golden model and simulation differ, or if the files cannot be made.
 fn files(one: &Loaded, known: &ComputationCache, with_bench: bool) -> Result<Made> {
     let vectors = with_bench.then(|| one.core.shipped_vectors_of(known)).transpose();
     let vectors = vectors.with_context(|| format!("`{}`", one.path))?;
@@ -202,7 +203,8 @@ pub fn write(out: &Path, one: &Loaded, files: &OutputFiles, force: bool) -> Resu
     Ok(written)
 }
 
-/// Runs `--check`: reports the files on disk that differ from the generated files, and returns whether all are equal.
+/// Runs `--check`: reports the files on disk that differ from the generated files, and returns whether all are equal. Fails if
+/// a file on disk cannot be read.
 fn compare(output: OutputOptions, out: &Path, loaded: &[Loaded], made: &[Made]) -> Result<bool> {
     let mut all = Vec::new();
     let driver = package::driver();

@@ -45,7 +45,7 @@ struct Inventory<'a> {
 }
 
 impl Inventory<'_> {
-    /// Prints the devices whose pipeline with the longest interval dominates their sequential core. It dominates if the
+    /// Prints the devices whose pipeline with the longest interval dominates their sequential core. A pipeline dominates if the
     /// estimate for ECP5 gives it no more DSP blocks and no lower rate, and an advantage in at least one of both.
     fn print_longest_intervals(&self) {
         let rows: Vec<Option<Vec<String>>> =

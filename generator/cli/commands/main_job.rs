@@ -144,8 +144,8 @@ fn short(path: &str) -> &str {
     name.and_then(|name| name.strip_suffix(".toml")).unwrap_or(path)
 }
 
-/// Returns a sentence with the numbers of configurations that hold, that are outside the contract and that fail. For example,
-/// `19 of 21 hold; 2 FAIL.`
+/// Returns a sentence with the numbers of configurations that hold, that are outside the contract and that fail. A
+/// configuration whose contract states no bound counts only in the total. For example, `19 of 21 hold; 2 FAIL.`
 fn counts(findings: &[MainJobResult]) -> String {
     let (mut hold, mut outside, mut fail) = (0, 0, 0);
     for finding in findings {

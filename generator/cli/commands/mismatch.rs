@@ -133,7 +133,8 @@ pub fn traced(
 }
 
 /// Lets `trace` write a waveform under a temporary name, and renames the file when it is complete. Also writes a view for each
-/// waveform viewer. It leaves an existing view unchanged, because the view may be the user's.
+/// waveform viewer. The function leaves an existing view unchanged, because the view may be the user's. Fails if the waveform
+/// cannot be written. A view that cannot be written causes only a warning.
 fn write<T>(
     one: &Loaded,
     destination: Destination,

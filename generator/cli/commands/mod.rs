@@ -88,8 +88,8 @@ fn paths(named: &[PathBuf]) -> Result<Vec<PathBuf>> {
 
 /// Reads the configurations `named`, or all in `configs/` if it is empty, and builds their designs.
 ///
-/// It fails if a file has problems or a design cannot be built, and reports the problems of all files. It also fails if two
-/// files name the same module, for example `rough`.
+/// The function fails if a file has problems or a design cannot be built, and reports the problems of all files. It also fails
+/// if two files name the same module, for example `rough`.
 fn load(registry: &Registry, named: &[PathBuf]) -> Result<Vec<Loaded>> {
     if named.iter().filter(|path| path.as_path() == Path::new(input::STDIN)).count() > 1 {
         wrong_usage!("standard input, `-`, is read once: name it once");
@@ -218,7 +218,7 @@ impl Loaded {
 
     /// Does the same as [`Loaded::bound`], and warns about a module name with `__`. If the device's own keys are not all at
     /// their defaults, it also prints the contract's remarks on the formula as warnings. For the defaults, the page of the
-    /// catalogue has the remarks.
+    /// catalogue has the remarks. Fails as [`Loaded::bound`] does.
     fn contract(&self) -> Result<()> {
         self.bound()?;
         let config = &self.core.config;

@@ -164,7 +164,7 @@ impl CommandReport for Scored {
     }
 }
 
-/// Prints the names of all faults, and returns true.
+/// Prints the names of all faults of each configuration, or reports them as JSON. Returns true, because nothing is checked.
 fn list(output: OutputOptions, loaded: &[Loaded], faults: &[Faults]) -> Result<bool> {
     let mut list = output.list();
     for (one, faults) in loaded.iter().zip(faults) {

@@ -99,9 +99,9 @@ pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) ->
     Ok(true)
 }
 
-/// Returns a comment about the pipeline with the longest interval, if it dominates the sequential core. It dominates if by the
-/// estimate it has no more DSP blocks and no lower rate, and an advantage in at least one of both. Returns `None` if it does
-/// not dominate, or if the user has chosen an architecture.
+/// Returns a comment about the pipeline with the longest interval, if it dominates the sequential core. The pipeline dominates
+/// if by the estimate it has no more DSP blocks and no lower rate, and an advantage in at least one of both. Returns `None` if
+/// it does not dominate, if the device cannot be a pipeline, or if the user has chosen an architecture.
 fn hint(device: &Device, config: &Config, given: &[String]) -> Option<String> {
     if given.iter().any(|key| key == "architecture") {
         return None;

@@ -109,8 +109,9 @@ fn write(directory: &Path, files: &[(&str, String)]) -> Result<()> {
 /// Checks the name of a new device. For example, `sine-wave` can be a name, and `Sine`, `2x` and `sine--wave` cannot.
 ///
 /// # Errors
-/// Fails if the name does not consist of lower-case letters, digits and single `-`, if it is a reserved word of Verilog, or if
-/// a crate or a device in `registry` already has it.
+/// Fails if the name does not begin with a lower-case letter, or has other characters than lower-case letters, digits and
+/// single `-`. Fails also if the name is a reserved word of Verilog, or if a device in `registry` or a crate that the new crate
+/// uses already has it.
 fn check_name(registry: &Registry, name: &str) -> Result<()> {
     let is_letter = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '-';
     let begins = name.starts_with(|c: char| c.is_ascii_lowercase());

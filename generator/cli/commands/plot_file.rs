@@ -1,4 +1,5 @@
-//! Makes a plot as an SVG file that needs no other file. It has the style sheet, the title and the label of the axis inside.
+//! Makes a plot as an SVG file that needs no other file. The file has the style sheet, the title and the label of the axis
+//! inside.
 
 use anyhow::Result;
 

@@ -211,8 +211,8 @@ fn settings(core: &Core, arguments: &Arguments) -> Result<Settings> {
     })
 }
 
-/// Returns the scene that the options describe. If `coarse` is true, built-in shapes have triangles that are large enough to be
-/// visible. Fails if a mesh or a height map cannot be used.
+/// Returns the scene that the options describe. If `coarse` is true, built-in shapes consist of large triangles, for a device
+/// that computes lines of points. Fails if a mesh or a height map cannot be used.
 fn scene(arguments: &Arguments, coarse: bool) -> Result<Scene> {
     let objects = match &arguments.mesh {
         Some(path) => {

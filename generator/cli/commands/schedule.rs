@@ -50,7 +50,8 @@ pub struct Arguments {
 /// checks nothing.
 ///
 /// # Errors
-/// Fails if a named configuration is sequential, if no configuration is a pipeline, or if a drawing cannot be written.
+/// Fails if a configuration has problems, if a named configuration is sequential, or if no configuration is a pipeline. Fails
+/// also if no pass has the name in `--after`, or if a drawing was edited or cannot be written.
 pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) -> Result<bool> {
     let named = paths(&arguments.configs.paths)?;
     let mut list = output.list();

@@ -119,7 +119,7 @@ struct SetUp {
 ///
 /// # Errors
 /// Fails if the configuration has problems, if an input is unknown, missing or not valid, if an operand would exceed its
-/// domain, or if the CSV file cannot be read.
+/// domain, or if the CSV file cannot be read. Fails also for a device without operands to set up, such as `shading`.
 pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) -> Result<bool> {
     let one = load_one(registry, &registry.schemas(), &arguments.config)?;
     let host = HostInputs::new(&one)?;
@@ -245,7 +245,8 @@ impl<'a> HostInputs<'a> {
         Err(format!("there is no input `{name}` of `{device}`{}", none_of(name, "inputs", &names)))
     }
 
-    /// Returns the input that each column of a CSV file gives, in the form of [`Self::place`].
+    /// Returns the input that each column of a CSV file gives, in the form of [`Self::place`]. Fails if the device has no such
+    /// input.
     fn places(&self, headings: &StringRecord) -> Result<Vec<(usize, Option<usize>)>, String> {
         headings.iter().map(|heading| self.place(heading)).collect()
     }
@@ -385,7 +386,7 @@ impl<'a> HostInputs<'a> {
     }
 
     /// Computes the operands for one row of a CSV file. The cells of the row are added to the inputs `given` on the command
-    /// line; an empty cell gives no value.
+    /// line; an empty cell gives no value. Fails if a cell is not valid, or if the operands cannot be computed.
     fn set_up_row(
         &self,
         given: &Given,

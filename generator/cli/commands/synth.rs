@@ -210,7 +210,7 @@ fn measure<'a>(
 }
 
 /// Measures a core on the target of `flow`. If the cache next to the configuration `path` has the figures under `name` and for
-/// the same Verilog and tools, returns them instead.
+/// the same Verilog and tools, returns them instead. Fails if a tool fails.
 fn figures(
     core: &Core,
     name: &str,

@@ -1,4 +1,4 @@
-//! `glint tune`: finds the smallest configuration of a device whose error stays below a given limit.
+//! `glint tune`: finds the smallest configuration of a device whose error bound is at most a given limit.
 
 mod plot;
 
@@ -83,8 +83,8 @@ pub struct Arguments {
     csv: bool,
 }
 
-/// Runs `glint tune`, which finds the smallest configuration of a device whose error stays below a given limit. Returns true,
-/// because the command checks nothing.
+/// Runs `glint tune`, which finds the smallest configuration of a device whose error bound is at most a given limit. Returns
+/// true, because the command checks nothing.
 ///
 /// # Errors
 /// Fails if an option is not valid, if no configuration reaches the goal, or if a file cannot be written.

@@ -80,7 +80,7 @@ struct WorstReport<'a> {
 }
 
 /// Runs `glint worst`, which searches for the operands with the largest error of an output. Returns whether the errors of all
-/// configurations are within their bounds.
+/// configurations are within their bounds. If a contract states no bound, a finite error is within it.
 ///
 /// # Errors
 /// Fails if a configuration has problems or no output, or if a record cannot be read or written.
@@ -174,7 +174,8 @@ fn climbs(starts: u64) -> String {
 }
 
 /// Returns the file of the record, and the record in this file if it belongs to the same contract. Returns `None` without
-/// `--out`. For example, the record of `configs/rough.toml` is `rough.json` in the directory.
+/// `--out`. For example, the record of `configs/rough.toml` is `rough.json` in the directory. Fails if Glint did not write the
+/// file, or if the file was edited, cannot be written or is no such record.
 fn record(one: &Loaded, arguments: &Arguments) -> Result<Option<(OwnFile, Option<LargestError>)>> {
     let Some(directory) = &arguments.out else { return Ok(None) };
     let name = format!("{}.json", one.core.config.name);

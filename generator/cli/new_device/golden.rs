@@ -30,7 +30,7 @@ pub fn model(config: &Config) -> Box<dyn Model> {
     device(config).model()
 }
 
-/// Returns the contract: the formula, and how far an output is from it at most.
+/// Returns the contract: the formula, and a bound on the error of the output.
 pub fn contract(config: &Config) -> Box<dyn Contract> {
     device(config).contract(Square)
 }
@@ -45,7 +45,7 @@ impl Formula for Square {
     /// Each term is a proved upper limit of an error, in units of the output's last place. Rounding to the nearest is off by half a
     /// unit at most.
     ///
-    /// Leave the method out where you have no proof: `certify` then finds a bound.
+    /// Leave this method out if you have no proof: the command `certify` then finds a bound.
     fn terms(&self) -> Vec<Term> {
         vec![Term { key: "result.fraction", what: "rounding of the result", units: 0.5 }]
     }

@@ -12,7 +12,8 @@ use glint::config::{Key, Schema};
 use glint::registry::Device;
 
 glint::keys! {
-    /// The keys: what the user of the device may choose. `new` writes them into a file, with these sentences.
+    /// The configuration keys, which the user of the device may set. The command `new` writes the keys and their descriptions
+    /// into a configuration file.
     struct Keys {
         operand: u32 = Key::integer("x.fraction", 12, 4..=16, "Fraction bits of x, u0.F."),
         result: u32 = Key::integer("result.fraction", 12, 4..=16, "Fraction bits of the result, u1.F."),
@@ -20,7 +21,7 @@ glint::keys! {
 }
 
 fn schema() -> Schema {
-    // `check` refuses combinations of keys; this device has none to refuse.
+    // `check` reports combinations of keys that the device cannot have. This device can have every combination.
     Schema { device: "parabola", keys: Keys::keys(), check: |_, _| {} }
 }
 

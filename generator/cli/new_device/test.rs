@@ -8,7 +8,8 @@ fn core() -> Result<Core> {
     Core::new(DEVICE, DEVICE.defaults())
 }
 
-/// Every register and every output, on every clock; and no output is further off than the contract says.
+/// Compares every register and every output with the golden model on every clock, and checks that no error exceeds the bound of
+/// the contract.
 #[test]
 fn golden_model_and_hardware_agree() -> Result<()> {
     let core = core()?;
@@ -17,7 +18,7 @@ fn golden_model_and_hardware_agree() -> Result<()> {
     Ok(())
 }
 
-/// 0.5² is 0.25: with 12 fraction bits the integers are 2048 and 1024.
+/// Checks one result: 0.5² is 0.25. With 12 fraction bits, the raw values are 2048 and 1024.
 #[test]
 fn half_of_a_half_is_a_quarter() -> Result<()> {
     let mut outputs = Vec::new();

@@ -1,7 +1,7 @@
 //! Writes new files completely in a temporary directory, and then moves each to its place.
 //!
-//! If a run is killed, the next run generates all files again. Some files may have been moved already and have their new
-//! contents. The manifest, which lists the digests of all others, is moved last.
+//! If a run is killed, some files may have been moved already and have their new contents, and the next run generates all files
+//! again. The manifest, which lists the digests of all other files, is moved last.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -15,7 +15,7 @@ use glint_tools::transient::{self, Directory};
 /// A temporary directory with complete new files, next to the directories to which they will be moved.
 pub struct Staging {
     directory: Directory,
-    /// The files, as [`OutputFile::path`] has them.
+    /// The paths of the files, as in [`OutputFile::path`].
     made: Vec<String>,
 }
 
@@ -23,7 +23,7 @@ impl Staging {
     /// Writes the files of a configuration into a temporary directory below `out`.
     ///
     /// # Errors
-    /// Fails if `out` cannot be written; then nothing is left of it.
+    /// Fails if `out` cannot be written. The temporary directory is then removed.
     pub fn new(out: &Path, files: &[OutputFile]) -> Result<Self> {
         let cannot =
             || format!("cannot write to `{}`; choose another directory with --out", out.display());
@@ -38,12 +38,12 @@ impl Staging {
         Ok(Self { directory, made: files.iter().map(|file| file.path.clone()).collect() })
     }
 
-    /// Deletes the files `stale`, which the configuration no longer asks for, and moves the new ones into their
-    /// places. By then, only files that may be replaced are in these places.
+    /// Deletes the files `stale`, which the configuration no longer needs, and moves the new files to their places. The caller
+    /// must have checked that the files in these places may be replaced.
     ///
     /// # Errors
-    /// Fails if a directory cannot be made, or is a symbolic link; then nothing was changed. Fails if a file cannot be
-    /// moved; then the next run writes the rest.
+    /// Fails if a directory cannot be made, or is a symbolic link; then no file was changed. Fails if a file cannot be deleted
+    /// or moved; then some files are new, and the next run writes the rest.
     pub fn place(self, out: &Path, stale: &[PathBuf]) -> Result<()> {
         for path in &self.made {
             // `rtl_out/<name>/…`
@@ -62,8 +62,7 @@ impl Staging {
             for path in stale {
                 fs::remove_file(path)
                     .with_context(|| format!("cannot delete `{}`", path.display()))?;
-                // The last file takes the directories of the configuration with it. The directories above them must
-                // stay.
+                // With the last file, the directories of the configuration are removed. The directories above them must stay.
                 let parents = path.ancestors().skip(1);
                 let below = parents
                     .take_while(|it| it.strip_prefix(out).is_ok_and(|it| it.iter().count() > 1));
@@ -74,7 +73,8 @@ impl Staging {
     }
 }
 
-/// Moves the files in `staging` into their places. The manifest, which vouches for the others, comes last.
+/// Moves the files in `staging` to their places below `out`, in the order of `made`. The manifest, which has the digests of the
+/// other files, must be the last one. Fails if a file or a directory cannot be deleted, made or moved.
 fn place(out: &Path, staging: &Path, made: &[String]) -> Result<()> {
     for path in made {
         let (new, place) = (staging.join(path), out.join(path));
@@ -86,8 +86,9 @@ fn place(out: &Path, staging: &Path, made: &[String]) -> Result<()> {
     Ok(())
 }
 
-/// Deletes whatever is in the way of a file: a directory in its place, or a file in the place of one of its
-/// directories. For example, a file `rtl_out/rough` must go before `rtl_out/rough/rough.v` can come.
+/// Deletes everything that is in the way of a file: a directory in its place, or a file in the place of one of its directories.
+/// For example, a file `rtl_out/rough` must be deleted before `rtl_out/rough/rough.v` can be written. Fails if a file or a
+/// directory cannot be deleted.
 fn make_room(out: &Path, path: &str) -> Result<()> {
     let cannot = |path: &Path| format!("cannot delete `{}`, which is in the way", path.display());
     let ends = path.match_indices('/').map(|(at, _)| at).skip(1);

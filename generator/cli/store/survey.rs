@@ -1,5 +1,5 @@
-//! Finds the files that are in the directories of a configuration, and decides for each whether Glint wrote it, the user edited
-//! it, or it is foreign.
+//! Finds the files that are in the directories of a configuration. The module decides for each file whether Glint wrote the
+//! file, whether the user edited a file of Glint, or whether the file is foreign, which means that Glint never wrote it.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -16,7 +16,8 @@ use glint_tools::transient::{files_below, relative_name};
 /// The differences between the files in the directories of a configuration and the files that should be there. All lists are
 /// sorted.
 pub struct Survey {
-    /// Names of files that are to be written, replaced, or deleted because Glint wrote them once.
+    /// The paths below `out` of the files that must be written or replaced, and of the files that must be deleted because Glint
+    /// wrote them earlier.
     pub different: Vec<String>,
     /// The paths of files that Glint wrote and somebody edited, and of foreign files in the place of a file to be written.
     pub edited: Vec<PathBuf>,
@@ -43,7 +44,7 @@ impl Survey {
             let wanted = files.iter().any(|file| file.path == relative);
             let below = format!("{relative}/");
             let in_the_way = files.iter().any(|file| file.path.starts_with(&below));
-            // A link to the right text is none of Glint's files all the same: it would be replaced with the others.
+            // A symbolic link to a file with the right text is no file of Glint, and would be replaced with the others.
             if wanted && !path.is_symlink() && !survey.different.contains(&relative) {
                 continue;
             }
@@ -63,7 +64,7 @@ impl Survey {
                 Owner::Other => {}
             }
         }
-        // A directory where a file is to be.
+        // Directories that are in the place of a file.
         let directories =
             files.iter().map(|file| out.join(&file.path)).filter(|path| path.is_dir());
         survey.edited.extend(directories);
@@ -75,15 +76,15 @@ impl Survey {
 
 /// The owner of a file.
 enum Owner {
-    /// As Glint wrote it.
+    /// Glint wrote the file, and nobody edited it.
     Glint,
-    /// Glint wrote it, and somebody edited it.
+    /// Glint wrote the file, and somebody edited it.
     Editor,
-    /// Glint never wrote it.
+    /// Glint never wrote the file. A symbolic link counts as such a file.
     Other,
 }
 
-/// The digests that a manifest holds; none when it is no manifest of Glint's. For example, the manifest
+/// The digests in a manifest; `None` if the file is missing or no manifest of Glint. For example, the manifest
 /// `rtl_out/rough/rough.json` has the digest of `rtl_out/rough/rough.v`.
 struct Digests {
     manifest: String,
@@ -91,12 +92,13 @@ struct Digests {
 }
 
 impl Digests {
-    /// Reads a manifest below `out`.
+    /// Reads a manifest below `out`. A file that is missing, or that is no manifest of Glint, gives no digests.
     fn read(manifest: &Path, out: &Path) -> Self {
         Self { manifest: relative_name(out, manifest), digests: parsed(manifest) }
     }
 
-    /// Returns the owner of the file `relative`, whose path is `path`.
+    /// Returns the owner of a file. `relative` is its path below `out`, and `path` its path on disk. Without a manifest of
+    /// Glint, every file is foreign.
     fn owner(&self, relative: &str, path: &Path) -> Owner {
         let Some(digests) = &self.digests else {
             return Owner::Other;
@@ -123,7 +125,8 @@ fn parsed(manifest: &Path) -> Option<BTreeMap<String, String>> {
     digests.iter().map(|(path, digest)| Some((path.clone(), digest.as_str()?.to_owned()))).collect()
 }
 
-/// Returns the files in the directories of a configuration, at any depth, sorted.
+/// Returns the files in the directories of a configuration, at any depth, sorted. A file in the place of such a directory is
+/// included. Fails if a directory cannot be read.
 fn present(out: &Path, name: &str) -> Result<Vec<PathBuf>> {
     let mut found = Vec::new();
     for directory in directories(out, name) {
@@ -132,7 +135,8 @@ fn present(out: &Path, name: &str) -> Result<Vec<PathBuf>> {
                 found.extend(files_below(&directory).with_context(|| cannot_read(&directory))?);
             }
             Err(error) if error.kind() == ErrorKind::NotFound => {}
-            // A file where the directory should be, unless it is one above that is no directory.
+            // A file is in the place of the directory, or of a directory above. Only a file in the place of the directory
+            // itself exists at this path.
             Err(error) if error.kind() == ErrorKind::NotADirectory => {
                 found.extend(fs::symlink_metadata(&directory).is_ok().then_some(directory));
             }

@@ -92,8 +92,8 @@ pub trait Reflectance: Send + Sync {
     }
 
     /// Returns the control operands that come nearest to the angle `gamma`, in radians from 0 to π/2, and to the specular
-    /// exponent `n`. They are in the order that [`Reflectance::f`] expects. Returns `None` if no operand in the domain represents
-    /// that exponent. `operands` are the operands of the contract.
+    /// exponent `n`. The operands are in the order that [`Reflectance::f`] expects. Returns `None` if no operand in the domain
+    /// represents that exponent. `operands` are the operands of the contract.
     ///
     /// By default the device must have the operands `cos_gamma` and `exponent`; any other operand gets the value of its domain
     /// that is nearest to 0. A device with other operands must override this.
@@ -212,7 +212,7 @@ impl Highlight {
         point
     }
 
-    /// Returns the raw f of result number `index` (from 0) for raw operands. It appends the exact values, as
+    /// Returns the raw f of result number `index` (from 0) for raw operands. The function appends the exact values, as
     /// [`Contract::exact`] gives them, to `exact`, and replaces the contents of `point` by the control operands of that result.
     #[inline]
     pub fn measured(

@@ -97,13 +97,14 @@ impl Reflectance for LyonArithmetic {
         ])
     }
 
-    /// Returns the cosine of the angle between two unit vectors at the distance D: 1 − D²/2, or 0 if that is negative.
+    /// Returns the cosine of the angle between two unit vectors at the distance D: 1 − D²/2, or 0 if that is negative. The
+    /// result is never `None`.
     fn cosine(&self, _: &[Operand], control: &[i64]) -> Option<f64> {
         Some((1.0 - self.exact_distance(control) / 2.0).max(0.0))
     }
 
-    /// Returns every raw D² in the register (a word of D²) with every operand `shift` or `exponent`. They determine f, since
-    /// adders 1 and 2 and multipliers 1 to 3 are exact.
+    /// Returns every raw D² in the register (a word of D²) with every operand `shift` or `exponent`. These two numbers
+    /// determine f, since adders 1 and 2 and multipliers 1 to 3 are exact. The result is never `None`.
     fn sweep(&self) -> Option<Sweep> {
         let most = FARTHEST << self.keys.distance_fraction;
         Some(Sweep::ranges([
@@ -113,7 +114,7 @@ impl Reflectance for LyonArithmetic {
     }
 
     /// Returns the largest error of f over every exact D² that is rounded to the word. The formula falls as D² grows, so the
-    /// error is largest at an end of this interval.
+    /// error is largest at an end of this interval. The result is never `None`.
     #[inline]
     fn sweep_error(&self, place: &[i64]) -> Option<f64> {
         let (operand, word) = (place[0], place[1]);

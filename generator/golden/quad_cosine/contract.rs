@@ -99,7 +99,7 @@ impl Reflectance for QuadCosineArithmetic {
     }
 
     /// Returns every n with every magnitude that multiplier 11 can read, which covers every angle that a line can reach. If the
-    /// surface faces away, the word of ROM 12 and the formula are both 0 for every n.
+    /// surface faces away, the word of ROM 12 and the formula are both 0 for every n. The result is never `None`.
     fn sweep(&self) -> Option<Sweep> {
         let magnitudes = 1i64 << self.keys.angle_multiplied;
         Some(Sweep::ranges([
@@ -109,7 +109,7 @@ impl Reflectance for QuadCosineArithmetic {
     }
 
     /// Returns the largest error over all angles with this magnitude, of either sign. The formula falls from one end of these
-    /// angles to the other, so the error is largest at an end.
+    /// angles to the other, so the error is largest at an end. The result is never `None`.
     fn sweep_error(&self, place: &[i64]) -> Option<f64> {
         let (n, magnitude) = (place[0], place[1]);
         let word = self.cosine_of(n, Some(magnitude), self.root(n));

@@ -67,13 +67,14 @@ impl Reflectance for RoughArithmetic {
     }
 
     /// Returns the raw operands at which cos(γ ± dγ) is largest. If dγ is subtracted, γ becomes dγ; if dγ is added, both become
-    /// 0.
+    /// 0. The result is never `None`.
     fn peak(&self, control: &[i64]) -> Option<Vec<i64>> {
         let deviation = if control[3] == 1 { control[1] } else { self.keys.largest_cosine() };
         Some(vec![deviation, deviation, control[2], control[3]])
     }
 
-    /// Returns every cos γ and every n, with a few values of dγ from the domain and both signs of dγ.
+    /// Returns every cos γ and every n, with a few values of dγ from the domain and both signs of dγ. The result is never
+    /// `None`.
     fn sweep(&self) -> Option<Sweep> {
         let (low, high) = self.keys.cos_dgamma_domain();
         let mut degrees = SWEPT_DEVIATIONS.to_vec();

@@ -104,7 +104,7 @@ impl Lowering<'_> {
 
     /// Returns the node of an angle that is mirrored if `coordinate` is negative. With `scaling`, the mirrored angle is half a
     /// turn minus the angle. Without `scaling`, it is the negative angle. Returns `angle` itself if `coordinate` is never
-    /// negative.
+    /// negative. Fails if a node has too many bits.
     fn mirrored_where_negative(
         &mut self,
         name: &str,

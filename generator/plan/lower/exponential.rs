@@ -50,7 +50,7 @@ fn base_of(function: &Expression) -> Option<Option<Expression>> {
 impl Lowering<'_> {
     /// Returns the node of a logarithm. `function` must be the formula with `x` in the place of its operand, the expression
     /// `core`. Returns `None` if `function` is no logarithm of `x`, if its operand may be 0 or less, or if the largest operand
-    /// is less than `FEW_OCTAVES` times the smallest.
+    /// is less than `FEW_OCTAVES` times the smallest. Fails if a part has too many bits, no finite values, or no rule.
     pub(super) fn logarithm(
         &mut self,
         core: &Expression,
@@ -84,7 +84,8 @@ impl Lowering<'_> {
 
     /// Returns the node of an exponential function. `function` must be the formula with `x` in the place of its operand, the
     /// expression `core`. Returns `None` if `function` is no exponential function, if its exponent extends over less than
-    /// `SHORT_EXPONENTS`, or if the exponent has no fraction bits.
+    /// `SHORT_EXPONENTS`, or if the exponent has no fraction bits. Fails if a part has too many bits, no finite values, or no
+    /// rule.
     pub(super) fn exponential(
         &mut self,
         core: &Expression,

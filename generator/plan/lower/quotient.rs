@@ -64,7 +64,7 @@ impl Lowering<'_> {
 
     /// Returns the node of a dividend divided by a divisor, which is given as a normalised word in `octave`. `largest` must be
     /// the largest absolute value of the quotient. `is_never_larger` must say whether the hardware's dividend is never larger
-    /// than its divisor.
+    /// than its divisor. Fails if a node has too many bits, or if the reciprocal is not finite on the domain of the word.
     pub(super) fn ratio_in_octave(
         &mut self,
         dividend: NodeId,

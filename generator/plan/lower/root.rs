@@ -14,7 +14,7 @@ use crate::refusal::PlanRefusal;
 /// If the largest value of a domain is less than this times the smallest, one table covers the domain.
 pub(super) const FEW_OCTAVES: f64 = 4.0;
 
-/// If a word is always at least 2 to the power of minus this, it is shortened before it is normalised.
+/// A wide word whose values are all at least 2 to the power of 1 minus this number, 2⁻¹¹, is shortened before it is normalised.
 const MOST_OCTAVES_BELOW_1: i32 = 12;
 
 /// Twice the exponent of a power. For example, −1 denotes the exponent −1/2.
@@ -166,7 +166,7 @@ impl Lowering<'_> {
     }
 
     /// Returns the node with 0 in place of its negative values, which come only from rounding. Returns the node itself if it is
-    /// exact or never negative.
+    /// exact or never negative. Fails if a node has too many bits.
     fn without_negative_rounding(&mut self, node: NodeId) -> Result<NodeId, PlanRefusal> {
         let is_negative = self.plan.node(node).range.0 < 0;
         if !is_negative || self.is_exact(node) {
@@ -177,7 +177,8 @@ impl Lowering<'_> {
         self.plan.maximum("not_negative", node, zero)
     }
 
-    /// Returns the node of `places` times the constant `factor`, or `places` itself if the factor is 1.
+    /// Returns the node of `places` times the constant `factor`, or `places` itself if the factor is 1. Fails if a node has too
+    /// many bits.
     fn multiple(&mut self, places: NodeId, factor: i32) -> Result<NodeId, PlanRefusal> {
         if factor == 1 {
             return Ok(places);

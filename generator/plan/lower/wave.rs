@@ -71,7 +71,7 @@ pub(super) struct OctantWaves {
 impl Lowering<'_> {
     /// Returns the node of a sine or a cosine. `function` must be the formula with x in the place of `core`. Returns `None` if
     /// x times a power of two is not the angle in quarter turns, or if a quadrant has fewer than 5 or more than 20 bits of the
-    /// angle.
+    /// angle. Fails if a part has too many bits, no finite values, or no rule.
     pub(super) fn wave(
         &mut self,
         core: &Expression,
@@ -174,8 +174,8 @@ impl Lowering<'_> {
         })
     }
 
-    /// Returns the node of the reduced angle within a quadrant or an octant, a number from 0 to 1. It is `way` if the number of
-    /// the quadrant or octant is even, and 1 − `way` if the number is odd.
+    /// Returns the node of the reduced angle within a quadrant or an octant, a number from 0 to 1. The angle is `way` if the
+    /// number of the quadrant or octant is even, and 1 − `way` if the number is odd. Fails if a node has too many bits.
     fn folded(&mut self, name: &str, is_odd: NodeId, way: NodeId) -> Result<NodeId, PlanRefusal> {
         let one = self.plan.constant("whole", 1, 0)?;
         let back = self.plan.subtract("angle_back", one, way)?;
@@ -183,7 +183,7 @@ impl Lowering<'_> {
     }
 
     /// Returns the node of a table of a sine or a cosine, which `formula` states, for a reduced angle from 0 to 1, both
-    /// included.
+    /// included. Fails if a node has too many bits.
     fn wave_of_angle(
         &mut self,
         name: &str,
@@ -197,7 +197,7 @@ impl Lowering<'_> {
         })
     }
 
-    /// Returns the node of `size`, negated if the bit `is_negative` is 1.
+    /// Returns the node of `size`, negated if the bit `is_negative` is 1. Fails if a node has too many bits.
     fn with_sign(
         &mut self,
         name: &str,

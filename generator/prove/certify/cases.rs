@@ -17,8 +17,8 @@ use glint_rtl::pipeline::{Cell, Graph, NodeId, NodeOp};
 /// The largest number of cases that are examined, including cases that turn out to be impossible.
 const MOST: usize = 4096;
 
-/// Intervals of raw values for some nodes of a computation's graph. They narrow the intervals that follow from the operands
-/// alone.
+/// Intervals of raw values for some nodes of a computation's graph. These intervals narrow the intervals that follow from the
+/// operands alone.
 pub type NodeIntervals = BTreeMap<NodeId, Interval>;
 
 /// A case of a computation: one combination of outcomes of its conditions. For example, one case of a saturation is that the
@@ -132,8 +132,8 @@ enum Decision {
 }
 
 impl Case {
-    /// Computes the intervals of the nodes in `cone`, in order, and stores them in `ranges`. It ends at the first selection
-    /// that is not decided, or at the first node that has no possible value.
+    /// Computes the intervals of the nodes in `cone`, in order, and stores them in `ranges`. The function ends at the first
+    /// selection that is not decided, or at the first node that has no possible value.
     fn follow(&mut self, view: UnrolledComputation, cone: &[NodeId]) -> Decision {
         let graph = view.graph;
         let mut polynomials: BTreeMap<NodeId, RawPolynomial> = BTreeMap::new();

@@ -2,8 +2,8 @@
 //!
 //! A formula with `max`, `min` or `if` becomes several branches, each with conditions under which it applies. For example,
 //! `max(a, b)` has two branches: `a` where a − b ≥ 0, and `b` where a − b ≤ 0. The range of the operands may decide the
-//! condition of an `if`, and then only one branch is left. A function such as `sqrt`, the operator `%` and a variable exponent
-//! have no translation.
+//! condition of an `if`, and then only one branch is left. A function such as `sqrt`, a constant such as `pi`, the operator `%`
+//! and a variable exponent have no translation.
 
 use std::collections::{BTreeMap, HashMap};
 
@@ -253,7 +253,8 @@ fn pairs(
     Ok(pairs)
 }
 
-/// Returns the branches of an operation on two formulas. `make` returns the term of the operation.
+/// Returns the branches of an operation on two formulas. `make` returns the term of the operation. Fails if one of the formulas
+/// has no translation.
 fn operation(
     operands: [&Expression; 2],
     make: fn(RealTermId, RealTermId) -> RealTerm,

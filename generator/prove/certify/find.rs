@@ -2,7 +2,7 @@
 //!
 //! Gappa first answers each statement with an upper bound. A bisection in steps of 1/2048 units then searches a smaller bound
 //! that Gappa proves; a proof during the search may take two seconds. The result is one bound for all statements, or a reason
-//! in words if Gappa finds no bound for a statement. It need not be the smallest bound that is true.
+//! in words if Gappa finds no bound for a statement. A smaller bound may be true.
 
 use std::fs;
 use std::time::Duration;

@@ -136,8 +136,8 @@ impl Task<'_> {
         Ok(())
     }
 
-    /// Returns the hypotheses of a case: the interval of values of each term that is known. It leaves out values that cannot be
-    /// written as a term, which is safe, because a statement with fewer hypotheses is stronger.
+    /// Returns the hypotheses of a case: the interval of values of each term that is known. The function leaves out values that
+    /// cannot be written as a term, which is safe, because a statement with fewer hypotheses is stronger.
     fn presupposed(
         &self,
         case: &Case,

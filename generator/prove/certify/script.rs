@@ -22,7 +22,8 @@ const TRIES: usize = 2_000;
 pub struct GappaScript<'a> {
     /// The terms of hardware and formula.
     pub terms: &'a RealTerms,
-    /// The number of terms that belong to the hardware. They are the first terms of `terms`, before the terms of the formula.
+    /// The number of terms that belong to the hardware. These terms are the first terms of `terms`, before the terms of the
+    /// formula.
     pub hardware_terms: usize,
     /// The variables of the script, with their numbers of fraction bits.
     pub placed: &'a Variables,

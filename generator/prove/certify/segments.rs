@@ -44,7 +44,8 @@ const RIGHT: (&str, &str) = ("1.57079632679489661923", "1.57079632679489661924")
 /// its sum with a word is exact in f64.
 const PLACES: i32 = 42;
 
-/// The name of the angle of a point in a formula. It is no operand, because the operand has only the angle of the first point.
+/// The name of the angle of a point in a formula. The angle is no operand, because the operand has only the angle of the first
+/// point.
 const POINT: &str = "angle of the point";
 
 /// A word of the table, and the interval of the angles that read it, in right angles.

@@ -117,7 +117,7 @@ impl RealTerms {
         self.insert(RealTerm::Number(value), "number")
     }
 
-    /// Returns the term number `id`.
+    /// Returns the term number `id`, which must be a number of this collection.
     pub fn get(&self, id: RealTermId) -> &RealTerm {
         &self.terms[id].0
     }

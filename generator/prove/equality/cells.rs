@@ -1,7 +1,8 @@
 //! Computes the results of Yosys's cells on symbolic terms instead of numbers, as Yosys documents the cells.
 //!
 //! For example, a `$add` cell with the terms a and b has the result a + b. The module knows the cells that occur in the emitted
-//! Verilog. Any other kind of cell is an error, and so is a cell of more than 64 bits, unless it is a multiplexer.
+//! Verilog. Any other kind of cell is an error. So is a cell of more than 64 bits, unless it is a multiplexer, or a cell such
+//! as `$reduce_or` whose result is one bit.
 
 use anyhow::{Context, Result, bail, ensure};
 
@@ -132,7 +133,8 @@ impl WireValues {
     /// says whether A and B are signed. The result has `width` bits, as terms of at most 64 bits, the lowest bits first.
     ///
     /// # Errors
-    /// Fails if the kind is unknown, or if a cell other than `$mux` and `$pmux` is wider than 64 bits.
+    /// Fails if the kind is unknown, or if an input of a reduction or a logical operation such as `$logic_and` has no bits.
+    /// Fails also if another cell than `$mux`, `$pmux`, a reduction or a logical operation has more than 64 bits.
     pub fn cell(
         &self,
         terms: &mut VectorTerms,

@@ -29,8 +29,8 @@ pub struct Counters {
     /// For each slot, which is a clock of the interval from one point to the next, the values of the registers that count the
     /// slots. The list has one entry for each clock of the interval. An entry is an empty map if the interval is 1.
     pub slots: Vec<RegisterValues>,
-    /// For each memory, each of its read ports and each slot, the number of clocks from a write to the read. It is `None` if this
-    /// number is not fixed.
+    /// For each memory, each of its read ports and each slot, the number of clocks from a write to the read. The entry is
+    /// `None` if this number is not fixed.
     delays: Vec<Vec<Vec<Option<usize>>>>,
 }
 

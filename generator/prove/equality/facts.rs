@@ -19,7 +19,7 @@ const WORDS: usize = 16;
 
 /// Returns arithmetic facts about the products and memory words on which the terms `roots` depend. Each fact is a term of one
 /// bit that is always 1. If `parts` is set, the facts also say that a product is the sum of the products of a factor's parts.
-/// This adds new products.
+/// These facts add new products.
 pub fn about(
     terms: &mut VectorTerms,
     roots: &[VectorTermId],

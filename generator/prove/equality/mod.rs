@@ -1,9 +1,9 @@
 //! Proves with an SMT solver that a pipeline and its sequential core compute the same outputs for every point (one set of
 //! operands). [`compare_text`] proves the same of the emitted Verilog of a pipeline and its netlist.
 //!
-//! [`compare`] first simulates both designs at random points. It then executes both netlists symbolically, one clock at a time:
-//! the core from `start` to its results, and the pipeline with one point between arbitrary others. The solver knows products
-//! and memory reads only as uninterpreted functions with some arithmetic facts (`facts`), so a verdict can be "open".
+//! [`compare`] first simulates both designs at random points. [`compare`] then executes both netlists symbolically, one clock
+//! at a time: the core from `start` to its results, and the pipeline with one point between arbitrary others. The solver knows
+//! products and memory reads only as uninterpreted functions with some arithmetic facts (`facts`), so a verdict can be "open".
 
 mod cells;
 mod delays;
@@ -118,7 +118,8 @@ impl fmt::Display for OutputDifference {
 /// # Errors
 /// Fails if `pipeline` is no pipeline, if the designs have different operands, or if the core lacks an output of the pipeline.
 /// Fails also if a design shows no result (the core within 8192 clocks), if a design has a combinational loop, or if the solver
-/// cannot be run.
+/// cannot be run. Fails also if operands decide about `valid` within a microinstruction, or if they decide the next
+/// microinstruction otherwise than by a choice between two.
 pub fn compare(
     sequential: &Design,
     pipeline: &Design,
@@ -351,7 +352,8 @@ impl<'p> PipelineComparison<'p> {
 
     /// Executes the microprogram along one path, until the results are shown or a jump depends on operands. If the results are
     /// shown, the function compares them. At such a jump, it adds the paths that continue to `ways`. For example, a loop whose
-    /// trip count depends on an operand makes a path for each trip count. Fails if the core shows no result within 8192 clocks.
+    /// trip count depends on an operand makes a path for each trip count. Fails if the core shows no result within 8192 clocks,
+    /// or if operands decide about `valid` within a microinstruction.
     fn follow(
         &mut self,
         core: &Execution<'_>,

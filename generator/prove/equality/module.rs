@@ -106,7 +106,7 @@ fn connection(cell: &Value, port: &str) -> Result<Connection> {
     bits(&cell["connections"][port])
 }
 
-/// Returns the bits at a port of a cell; no bits if the cell lacks the port.
+/// Returns the bits at a port of a cell; no bits if the cell lacks the port. Fails if the list of bits is malformed.
 fn optional_connection(cell: &Value, port: &str) -> Result<Connection> {
     match &cell["connections"][port] {
         Value::Null => Ok(Connection::new()),
@@ -123,8 +123,9 @@ impl Module {
     /// Parses a module from Yosys's JSON.
     ///
     /// # Errors
-    /// Fails if the netlist is malformed, or if a register or memory does not change at the rising edge of `clk` only. Fails
-    /// also if a memory has clocked read ports or several write ports, or if the cells form a combinational loop.
+    /// Fails if the netlist is malformed or has no input `clk`, or if a register or memory does not change at the rising edge
+    /// of `clk` only. Fails also if a memory has clocked read ports, several write ports or a first address other than 0, if a
+    /// memory that is never written has undetermined or too wide words, or if the cells form a combinational loop.
     pub fn new(json: &Value) -> Result<Self> {
         let mut module = Self {
             inputs: Vec::new(),
@@ -313,7 +314,7 @@ impl Module {
     /// ports of memories.
     ///
     /// # Errors
-    /// Fails if the module does not know a cell, or if a cell or a port is wider than 64 bits.
+    /// Fails if an input port is wider than 64 bits, or if [`WireValues::cell`] fails for a cell.
     pub fn settle(
         &self,
         terms: &mut VectorTerms,

@@ -66,7 +66,7 @@ pub enum VectorTerm {
 /// The number of bits of a memory address.
 pub const ADDRESS: u32 = 32;
 
-/// A collection of terms. It stores every term once, after the term's operands.
+/// A collection of terms. The collection stores every term once, after the term's operands.
 #[derive(Default)]
 pub struct VectorTerms {
     nodes: Vec<(VectorTerm, u32)>,
@@ -247,8 +247,8 @@ impl VectorTerms {
         self.replace(&HashMap::from([(condition, constant)]), terms);
     }
 
-    /// Replaces the terms that are keys of `by` by their values, everywhere in the expressions `terms`. It does not search the
-    /// replacements themselves.
+    /// Replaces the terms that are keys of `by` by their values, everywhere in the expressions `terms`. The function does not
+    /// search the replacements themselves.
     pub fn replace(
         &mut self,
         by: &HashMap<VectorTermId, VectorTermId>,

@@ -29,7 +29,8 @@ use glint_tools::Tool;
 pub enum TextVerdict {
     /// Every output is the same for every point.
     Equal(TextProof),
-    /// An output of the Verilog differs from the netlist. The text states for which values.
+    /// An output of the Verilog differs from the netlist, or a clock in which the pipeline waits changes a register or a memory
+    /// of the Verilog. The string states the difference and the values of the inputs.
     Different(String),
     /// The solver does not decide the question.
     Open(Open),
@@ -56,7 +57,8 @@ pub struct TextProof {
 /// [`glint_tools::elaborate`] for this Verilog. `limit` is the time limit of all answers of the solver together.
 ///
 /// # Errors
-/// Fails if the design is no pipeline, if the Verilog lacks an output of the netlist, or if the solver cannot be run.
+/// Fails if the design is no pipeline, if the Verilog lacks an output of the netlist or has an output of another width, or if
+/// the solver cannot be run.
 pub fn compare_text(
     design: &Design,
     text: &Value,
@@ -181,7 +183,8 @@ impl TextComparison<'_> {
 
     /// Proves that a clock in the slot either moves all points or changes nothing. A clock that moves no point must change no
     /// register and no memory. A clock that moves the points must do the same as a clock with `out_ready` = 1. With an interval
-    /// of 1, the points move if `in_ready` is 1. With a longer interval, they move if the slot counter counts.
+    /// of 1, the points move if `in_ready` is 1. With a longer interval, they move if the slot counter counts. Ends early if
+    /// the solver does not prove this, or cannot be run.
     fn stays_in_slot(&mut self, slot: usize) -> Result<(), EarlyEnd> {
         let module = self.module;
         let held = self.registers_in_slot(slot);
@@ -280,7 +283,8 @@ impl TextComparison<'_> {
         }
     }
 
-    /// Proves that the outputs of netlist and Verilog are the same in the clock in which the results of a point are shown.
+    /// Proves that the outputs of netlist and Verilog are the same in the clock in which the results of a point are shown. Ends
+    /// early if the solver does not prove this, or cannot be run.
     fn follows_a_point(&mut self) -> Result<(), EarlyEnd> {
         let nets = self.netlist()?;
         let module = self.module;
@@ -361,7 +365,7 @@ impl TextComparison<'_> {
     }
 
     /// Replaces the terms in registers of the Verilog by terms of nets that the solver proves equal. `nets` are the terms of
-    /// the netlist's nets in the same clock. A register without an equal net keeps its term.
+    /// the netlist's nets in the same clock. A register without an equal net keeps its term. Fails if the solver cannot be run.
     fn register(&mut self, held: &mut RegisterContents, nets: &[VectorTermId]) -> Result<()> {
         let known: HashSet<VectorTermId> = nets.iter().copied().collect();
         let cone = self.terms.cone(held.iter().flatten().chain(nets).copied());
@@ -460,7 +464,7 @@ impl TextComparison<'_> {
     /// Asks the solver whether the one-bit terms `wanted` can all be 1. The first question has unknowns in place of the
     /// registers, so that it concerns the logic of one clock alone. If these terms cannot all be 1 for any values of the
     /// registers, they cannot be 1 for the values that the registers have. The second question has these values. The third has
-    /// also the facts about partial products.
+    /// also the facts about partial products. Fails if the solver cannot be run.
     fn ask(&mut self, wanted: &[VectorTermId]) -> Result<SolverAnswer> {
         let mut of_one_clock = wanted.to_vec();
         self.terms.replace(&self.unknown_registers, &mut of_one_clock);
@@ -477,8 +481,8 @@ impl TextComparison<'_> {
     }
 
     /// Finds values of the unknowns for which all `wanted` terms are 1, and describes in words the two terms that then differ.
-    /// It tries 24 sets of random values, and the values `found` by the solver. Returns `None` if some `wanted` term is 0 for
-    /// each of them.
+    /// The function tries 24 sets of random values, and the values `found` by the solver. Returns `None` if some `wanted` term
+    /// is 0 for each of them.
     fn difference(
         &self,
         wanted: &[VectorTermId],

@@ -42,7 +42,7 @@ impl PipelineComparison<'_> {
     }
 
     /// Stores in `divided` how the product a·b follows from the pipeline's product c·d, if a follows from c and b from d.
-    /// Returns whether both do.
+    /// Returns whether both do. Fails if the solver cannot be run.
     fn by_parts(&mut self, [a, b]: [VectorTermId; 2], [c, d]: [VectorTermId; 2]) -> Result<bool> {
         let (Some(first), Some(second)) = (self.made(a, c)?, self.made(b, d)?) else {
             return Ok(false);
@@ -53,6 +53,7 @@ impl PipelineComparison<'_> {
     }
 
     /// Returns how `factor` follows from `of`, a factor of the pipeline, or `None` if the solver does not prove that it does.
+    /// Fails if the solver cannot be run.
     fn made(&mut self, factor: VectorTermId, of: VectorTermId) -> Result<Option<Factor>> {
         if self.same(factor, of)? {
             return Ok(Some(Factor::Same));
@@ -64,7 +65,7 @@ impl PipelineComparison<'_> {
     }
 
     /// Returns whether the solver proves that two terms are equal for all operands. Terms that differ at random values are not
-    /// asked about.
+    /// asked about. Fails if the solver cannot be run.
     fn same(&mut self, one: VectorTermId, other: VectorTermId) -> Result<bool> {
         if one == other || !agree(&self.terms, one, other) {
             return Ok(one == other);

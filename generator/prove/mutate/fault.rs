@@ -65,7 +65,7 @@ pub enum Site {
 /// A fault in a netlist: one change at one place, with a name. For example, bit 3 of the net `adder15` stuck at 0.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NetlistFault {
-    /// The name of the fault, which no other fault of the design has. It is made of names in the design:
+    /// The name of the fault, which no other fault of the design has. The name is made of names in the design:
     /// `adder15[3]:stuck-at-0`. A fault of a ROM names the word: `coefficient@1005[2]` is a bit of word 1005, and
     /// `coefficient@1004,1005` swaps two words.
     pub id: String,
@@ -143,8 +143,8 @@ impl Faults {
         self.0.push(NetlistFault { id, kind, site });
     }
 
-    /// Adds three faults for each bit of a net. Constants and renamed nets have no such faults. For example, a net `adder15` of
-    /// 4 bits has 12 such faults, from `adder15[0]:stuck-at-0` to `adder15[3]:inverted`.
+    /// Adds three faults for each bit of a net. Constants, renamed nets and undriven nets have no such faults. For example, a
+    /// net `adder15` of 4 bits has 12 such faults, from `adder15[0]:stuck-at-0` to `adder15[3]:inverted`.
     fn bits(&mut self, id: NetId, net: &Net) {
         if matches!(net.driver, Driver::Constant(_) | Driver::Undriven | Driver::Op(Op::Relabel(_)))
         {

@@ -25,7 +25,7 @@ impl NetlistFault {
     }
 }
 
-/// Returns a copy of the design without the comments on nets and ROMs. It is cheaper to copy for each fault.
+/// Returns a copy of the design without the comments on nets and ROMs. This copy is cheaper to copy for each fault.
 pub(super) fn bare(design: &Design) -> Design {
     let mut bare = design.clone();
     for rom in &mut bare.roms {
@@ -65,7 +65,8 @@ fn at_fault(design: &mut Design, sound: NetId, bit: u32, how: BitChange) -> Driv
     })
 }
 
-/// Plants a fault in bit `bit` of a net: in the data of a register, in what the design reads from a port, or in the net itself.
+/// Plants a fault in bit `bit` of a net. For a register, the fault is in its data and its reset value; for an input port, it is
+/// in the value that the design reads from the port; for any other net, it is in the net itself.
 fn plant_bit(design: &mut Design, net: NetId, bit: u32, how: BitChange) {
     match design.net(net).driver.clone() {
         // The checks compare the register's output, so the fault is in the value that the register takes.

@@ -1,8 +1,8 @@
 //! Plants faults one at a time in the netlist of a core, and finds the verdict on each: caught by a check, proved equivalent,
 //! or undecided.
 //!
-//! For each fault, the module tries in turn a short test, the proofs, the default test, and directed tests. It ends with the
-//! first that decides. In addition it finds whether the shipped bench notices the fault.
+//! For each fault, the module tries in turn a short test, the proofs, the default test, and directed tests. The module ends
+//! with the first check that decides. In addition it finds whether the shipped bench notices the fault.
 
 use std::sync::OnceLock;
 
@@ -22,8 +22,8 @@ use glint_core::cosim::{Lockstep, Mismatch};
 use glint_golden::Model;
 use glint_rtl::netlist::{Design, RomId};
 
-/// The number of points of the short test, which runs first. They are the first points of the default test's first stream, so a
-/// difference in them is a difference in the default test.
+/// The number of points of the short test, which runs first. These points are the first points of the default test's first
+/// stream, so a difference in them is a difference in the default test.
 const FIRST_POINTS: u64 = 256;
 
 /// The number of results of a longer test, and its seed. The longer test is searched for reads of words that the default test
@@ -32,7 +32,7 @@ const BEYOND_POINTS: u64 = 1_000_000;
 const BEYOND_SEED: u64 = 2;
 
 /// Plants each of the faults in turn, runs the checks on the mutant (the design with the fault), and returns the verdicts, in
-/// the order of `faults`. It calls `progress` after each fault.
+/// the order of `faults`. The function calls `progress` after each fault.
 ///
 /// # Errors
 /// Fails if a mutant cannot be simulated, or if golden model and fault-free simulation disagree. The message may have the id of
@@ -119,7 +119,8 @@ impl Bench<'_> {
     }
 
     /// Searches for a point at which the mutant of a pipeline differs from the fault-free pipeline, and confirms it with the
-    /// golden model. Without such a point, or for a sequential core, the verdict is `Undecided`.
+    /// golden model. Without such a point, or for a sequential core, the verdict is `Undecided`. Fails if the mutant cannot be
+    /// simulated.
     fn searched(&self, mutant: &Design) -> Result<MutantVerdict> {
         let Some(beside) = &self.beside else {
             return Ok(MutantVerdict::Undecided);
@@ -131,7 +132,8 @@ impl Bench<'_> {
     }
 
     /// Returns the first difference in a short part of the default test, or `None` if there is no difference. If words of a
-    /// table are faulty, the part consists of the streams that read these words, because the fault can show only there.
+    /// table are faulty, the part consists of the streams that read these words, because the fault can show only there. Fails
+    /// if the mutant cannot be simulated.
     fn first_look(&self, mutant: &Design, site: &Site) -> Result<Option<Mismatch>> {
         let looks = match self.words(site) {
             Some(_) => self.places(site),
@@ -141,7 +143,7 @@ impl Bench<'_> {
     }
 
     /// Returns the first difference in some streams, or `None` if there is no difference. Each stream is a seed and the number
-    /// of results to compare.
+    /// of results to compare. Fails if the mutant cannot be simulated.
     fn shown(&self, mutant: &Design, streams: Vec<(u64, u64)>) -> Result<Option<Mismatch>> {
         for (seed, points) in streams {
             let mismatch = self.lockstep(mutant, seed)?.run_alone(points)?.mismatch;
@@ -152,8 +154,9 @@ impl Bench<'_> {
         Ok(None)
     }
 
-    /// Runs a mutant whose faulty table words are read only for a few operands, with these operands fixed. It then tries all
-    /// operands if they have few enough bits. If no combination differs for any of the words, the verdict is `Equivalent`.
+    /// Runs a mutant whose faulty table words are read only for a few operands, with these operands fixed. The function then
+    /// tries all operands if they have few enough bits. If no combination differs for any of the words, the verdict is
+    /// `Equivalent`. Fails if the mutant cannot be simulated.
     fn directed(
         &self,
         mutant: &Design,
@@ -200,7 +203,8 @@ impl Bench<'_> {
     }
 
     /// Returns the control operands of computations that read a word, one list of raw values by name for each. The computations
-    /// are part of the default test, or of a longer test if the default test does not read the word.
+    /// are part of the default test, or of a longer test if the default test does not read the word. Fails if the longer test
+    /// cannot be run.
     fn readings(&self, rom: RomId, word: usize) -> Result<Vec<OperandValues>> {
         let design = &self.sound;
         let mut readings: Vec<OperandValues> = self.tested.operands(design, rom, word).collect();
@@ -216,7 +220,8 @@ impl Bench<'_> {
     }
 
     /// Returns the first difference in the streams of a longer test that read a word, if the default test does not read it.
-    /// Returns `None` for a sequential core, whose operand registers give directed operands for the word instead.
+    /// Returns `None` for a sequential core, whose operand registers give directed operands for the word instead. Fails if the
+    /// mutant cannot be simulated.
     fn beyond_shows(&self, mutant: &Design, rom: RomId, word: usize) -> Result<Option<Mismatch>> {
         if self.latency == 0 || !self.tested.places(rom, word).is_empty() {
             return Ok(None);

@@ -18,7 +18,7 @@ pub const TOLERATED: f64 = 0.01;
 /// a longer bench notices.
 pub const GOAL_TEXT: f64 = 0.98;
 
-/// The share of inverted bits, in the upper half of table words, that the shipped bench should notice. It counts only
+/// The share of inverted bits, in the upper half of table words, that the shipped bench should notice. The share counts only
 /// inversions that some check notices, so words that are never read do not count.
 pub const GOAL_MEMORY: f64 = 0.95;
 

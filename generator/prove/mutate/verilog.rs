@@ -175,7 +175,8 @@ impl VerilogText {
     /// core.
     ///
     /// # Errors
-    /// Fails if `iverilog`, `vvp`, `verilator` or `yosys` is missing, or if golden model and simulation differ.
+    /// Fails if `iverilog`, `vvp`, `verilator` or `yosys` is missing, if golden model and simulation differ, or if the files
+    /// cannot be made.
     pub fn of(core: &Core) -> Result<Self> {
         TOOLS.iter().try_for_each(|tool| Tool::find(tool).map(drop))?;
         let name = &core.config.name;
@@ -221,12 +222,13 @@ impl VerilogText {
         text
     }
 
-    /// Returns all files of the configuration, without any fault.
+    /// Returns the fault-free files: the Verilog of the modules, and their benches and vectors. [`VerilogText::of_wrappers`]
+    /// also has the proofs of the wrappers.
     pub fn files(&self) -> &[OutputFile] {
         &self.files
     }
 
-    /// Returns all files of the configuration, with the fault planted in one of the Verilog files.
+    /// Returns the same files as [`VerilogText::files`], with the fault planted in one of the Verilog files.
     pub fn planted(&self, fault: &TextFault) -> Vec<OutputFile> {
         let mut text = String::new();
         for (number, line) in self.files[fault.file].contents.lines().enumerate() {
@@ -266,11 +268,12 @@ impl VerilogText {
     }
 
     /// Plants each of the faults in turn, and returns the verdicts on it, in the order of `faults`. `limit` is the time limit
-    /// of each run of a tool. It calls `progress` after each fault.
+    /// of each run of a tool. The function calls `progress` after each fault.
     ///
     /// # Errors
-    /// Fails if Verilator is missing, does not start, or does not end within `limit`; or if Yosys is missing. The message has
-    /// the id of the fault.
+    /// Fails if Verilator is missing, does not start, or does not end within `limit`; or if Yosys is missing. A missing Icarus
+    /// Verilog is no error: the verdict of every fault is then [`TextMutantVerdict::Lint`]. The message has the id of the
+    /// fault.
     pub fn run(
         &self,
         faults: &[TextFault],
@@ -328,7 +331,7 @@ impl VerilogText {
     }
 
     /// Returns the verdict of the benches on a mutant. If both benches pass, it also returns the built shipped bench, whose
-    /// directory has all files; otherwise `None`.
+    /// directory has all files; otherwise `None`. Fails if Icarus Verilog cannot build the longer bench.
     fn benches(
         &self,
         mutant: &[OutputFile],

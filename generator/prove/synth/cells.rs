@@ -35,7 +35,7 @@ impl CellLibrary {
     /// Reads a cell library.
     ///
     /// # Errors
-    /// Fails if the library is missing or cannot be read; the message says how to get it.
+    /// Fails if the library is missing or cannot be read. If it is missing, the message says how to install it.
     pub fn read(path: &Path) -> Result<Self> {
         if !path.is_file() {
             bail!(

@@ -43,7 +43,7 @@ pub struct Flow {
     yosys: Tool,
     /// nextpnr and icetime, or OpenSTA; empty if only the area is measured.
     others: Vec<Tool>,
-    /// The cell library, for a target of standard cells.
+    /// The cell library, for a target of standard cells; `None` for an FPGA.
     library: Option<CellLibrary>,
     versions: Vec<String>,
 }
@@ -127,7 +127,8 @@ impl Flow {
         }
     }
 
-    /// Measures the area of a core and, for each seed, its frequency and its longest path. It calls `done` after each step.
+    /// Measures the area of a core and, for each seed, its frequency and its longest path. The function calls `done` after each
+    /// step.
     ///
     /// # Errors
     /// Fails if a tool fails, takes longer than its limit, or does not report a figure. Fails also if the timing analysis

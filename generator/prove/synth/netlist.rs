@@ -79,7 +79,7 @@ impl Netlist {
     }
 
     /// Checks that timing analysis includes the delay of every DSP block, which is every cell of the kind `kind`. `timed` gets
-    /// the name and the value of a parameter of such a cell. It returns whether the tool times a cell with this value.
+    /// the name and the value of a parameter of such a cell. `timed` returns whether the tool times a cell with this value.
     ///
     /// # Errors
     /// Fails at the first parameter for which `timed` returns false. `why` gets a text such as `REG_INPUTA_CLK is CLK0`, and
@@ -156,7 +156,7 @@ fn known(design: &Design) -> BTreeMap<&str, (u8, String)> {
 }
 
 /// Returns the name of a net in its module, without the names of instances and without the number of a bit. For example,
-/// `core.datapath.product[3]` is `product`.
+/// `core.datapath.product[3]` is `product`. A net outside the core gives an empty text.
 fn own_name(name: &str) -> &str {
     let inside = name.strip_prefix(CORE).and_then(|rest| rest.strip_prefix('.')).unwrap_or("");
     let units = ["control.", "datapath."];

@@ -29,8 +29,8 @@ pub struct Recipe {
     pub prepare: fn(&Workspace, &Netlist) -> Result<()>,
 }
 
-/// Measures the area of a core alone, and the frequency of the core in its harness for each seed, as a recipe says. It calls
-/// `done` after synthesis and after each seed.
+/// Measures the area of a core alone, and the frequency of the core in its harness for each seed, as a recipe says. The
+/// function calls `done` after synthesis and after each seed.
 ///
 /// # Errors
 /// Fails if a tool fails, takes too long or reports no frequency, or if the recipe's `prepare` fails.

@@ -1,8 +1,9 @@
 //! Defines how nextpnr-nexus measures a core on the FPGA family Nexus: its options, the requested frequency, and the
 //! preparation of its input files.
 //!
-//! nextpnr-nexus knows the delay of every kind of cell, so the module checks no cell. The preparation writes the locations of the
-//! pins. It also disconnects the grounded carry input of the first cell of a carry chain, which nextpnr-nexus refuses.
+//! nextpnr-nexus knows the delay of every kind of cell, so the module checks no cell. The preparation writes the locations of
+//! the pins. The preparation also disconnects the grounded carry input of the first cell of a carry chain, which nextpnr-nexus
+//! refuses.
 
 use std::collections::BTreeSet;
 

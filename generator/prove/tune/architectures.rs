@@ -135,9 +135,10 @@ fn pipeline(device: &Device, base: &Config, target: Target, interval: u32) -> Re
     Architecture::new(core, target)
 }
 
-/// Returns the sequential core of a configuration, and then its pipelines from the longest interval to 1. It leaves out a
-/// pipeline if a pipeline with a shorter interval has no more multipliers, unless its interval is `kept`. For example,
-/// `cosine-power` has the intervals 8, 4, 3, 2 and 1: with 5, 6 and 7 it needs two multipliers, as with 4.
+/// Returns the sequential core of a configuration, and then its pipelines from the longest interval to 1. The function leaves
+/// out a pipeline if a pipeline with a shorter interval has no more multipliers. A pipeline with the interval `kept` is never
+/// left out. For example, `cosine-power` has the intervals 8, 4, 3, 2 and 1: with 5, 6 and 7 it needs two multipliers, as with
+/// 4.
 ///
 /// # Errors
 /// Fails if the configuration makes no sequential core, or no pipeline. The message then has the reason for the shortest

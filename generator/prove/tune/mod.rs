@@ -79,11 +79,11 @@ pub struct TuningGoal {
     pub target: Target,
     /// The cost that the search minimises, such as the number of look-up tables.
     pub objective: Objective,
-    /// The lowest acceptable clock frequency in MHz, by the estimate.
+    /// The lowest acceptable clock frequency in MHz, by the estimate; `None` allows every clock.
     pub clock: Option<f64>,
-    /// The lowest acceptable rate in million points a second, by the estimate of the clock.
+    /// The lowest acceptable rate in million points a second, by the estimate of the clock; `None` allows every rate.
     pub rate: Option<f64>,
-    /// The largest acceptable number of DSP blocks.
+    /// The largest acceptable number of DSP blocks; `None` sets no limit.
     pub most_dsps: Option<u64>,
 }
 
@@ -97,8 +97,9 @@ const ARCHITECTURE: [&str; 2] = ["architecture", "pipeline.interval"];
 /// Searches for the configuration with the smallest cost that meets `goal`. The search is local, so a smaller configuration may
 /// exist.
 ///
-/// `base` has the keys that are part of the user's question. The search changes the other keys, except the keys in `fixed`. It
-/// also tries pipelines if a rate is wanted or DSP blocks are limited, and `fixed` does not contain the architecture. Such a
+/// `base` has the keys that are part of the user's question. The search changes the other keys, except the keys in `fixed`. The
+/// search also tries pipelines if the goal has a rate or a limit of DSP blocks, and the target is an FPGA family. The search
+/// tries no pipeline if `fixed` contains `pipeline.interval`, or contains `architecture` and `base` is sequential. Such a
 /// pipeline accepts a point (a set of operands) as seldom as the goal allows, so that several products can share a multiplier.
 /// `progress` is called with the number of configurations that were evaluated.
 ///
@@ -144,9 +145,10 @@ pub fn tune(
     Ok(Answer { best, front, free, looked_at })
 }
 
-/// Returns the pipelines that [`tune`] tries, the longest interval first. The list is empty if the goal has neither a rate nor
-/// a limit of DSP blocks, if the target is no FPGA family, or if `fixed` forbids another architecture. For example, a clock of
-/// 50 MHz and a rate of 10 million points a second allow the intervals 5, 4, 3, 2 and 1.
+/// Returns the pipelines that [`tune`] tries, the longest interval first. For example, a clock of 50 MHz and a rate of 10
+/// million points a second allow the intervals 5, 4, 3, 2 and 1. The list is empty if the goal has neither a rate nor a limit
+/// of DSP blocks, if the target is no FPGA family, or if the rate exceeds the clock. The list is also empty if `fixed` contains
+/// `pipeline.interval`, or contains `architecture` and `base` is sequential.
 fn pipelines(device: &Device, base: &Config, fixed: &[&str], goal: &TuningGoal) -> Vec<Config> {
     let Some(family) = goal.target.family() else { return Vec::new() };
     if goal.rate.is_none() && goal.most_dsps.is_none() {

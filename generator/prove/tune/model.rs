@@ -22,7 +22,7 @@ pub struct Features {
     /// The number of bits of muxes, for each input beyond the first. For example, a mux of 3 inputs of 8 bits counts 16.
     pub mux: f64,
     /// The number of bits of gates. A reduction counts a third of its operand's bits, and an equality a third of the bits of
-    /// both operands.
+    /// both operands. Inverters do not count.
     pub logic: f64,
     /// The number of bits of the ROMs that are made of look-up tables, divided by 16.
     pub rom: f64,
@@ -54,7 +54,7 @@ fn family(target: Target) -> &'static Family {
 }
 
 impl Cost {
-    /// Estimates the cost of a design on a target.
+    /// Estimates the cost of a design on a target. For standard cells, the estimate is the one for ECP5.
     pub fn new(design: &Design, target: Target) -> Self {
         let family = family(target);
         let features = Features::new(design, target);
@@ -117,7 +117,7 @@ pub fn area(target: Target, luts: f64, dsps: u64, block_rams: u64) -> f64 {
 }
 
 impl Features {
-    /// Counts the features of a design on a target.
+    /// Counts the features of a design on a target. For standard cells, the counts are the ones for ECP5.
     pub fn new(design: &Design, target: Target) -> Self {
         let family = family(target);
         let mut sum = Self::default();

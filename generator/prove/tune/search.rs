@@ -1,8 +1,8 @@
 //! Searches for the configuration with the smallest cost whose error, clock, rate and DSP blocks meet a goal.
 //!
-//! The search moves from a configuration to a neighbour, which has another value of one key. It first moves toward the goal
-//! until the goal is met, and then to smaller configurations that still meet it. At the end it also tries changes of two keys.
-//! The result may be a local minimum.
+//! The search moves from a configuration to a neighbour, which has another value of one key. The search first moves toward the
+//! goal until the goal is met, and then to smaller configurations that still meet it. At the end it also tries changes of two
+//! keys. The result may be a local minimum.
 
 use std::cmp::Ordering;
 use std::collections::BTreeMap;
@@ -45,9 +45,9 @@ impl Candidate {
 pub struct Answer {
     /// The configuration with the smallest cost that was found and meets the goal.
     pub best: Candidate,
-    /// The Pareto front, by rising error: the configurations for which no other has both a smaller error and a smaller cost. It
-    /// covers only configurations that the search has evaluated and that have the wanted clock, rate and DSP blocks. Their
-    /// errors may exceed the limit.
+    /// The Pareto front, by rising error: the configurations for which no other has both a smaller error and a smaller cost.
+    /// The front covers only configurations that the search has evaluated and that have the wanted clock, rate and DSP blocks.
+    /// Their errors may exceed the limit.
     pub front: Vec<Candidate>,
     /// The keys of the configuration (parameters such as bit widths) that the search was allowed to change.
     pub free: Vec<&'static str>,
@@ -130,8 +130,8 @@ impl<'a> Search<'a> {
         Ok(self.smallest(found))
     }
 
-    /// Returns the candidate of a configuration, or `None` if the configuration makes no design with the same interface. It
-    /// computes a candidate once, and then takes it from the cache.
+    /// Returns the candidate of a configuration, or `None` if the configuration makes no design with the same interface. The
+    /// function computes a candidate once, and later takes the candidate from the cache.
     fn look(&self, config: &Config) -> Option<Candidate> {
         let text = config.to_toml(self.space.schema());
         if let Some(known) = self.lock_seen().get(&text) {
@@ -178,8 +178,8 @@ impl<'a> Search<'a> {
         self.goal.most_dsps.is_none_or(|most| candidate.cost.dsps <= most)
     }
 
-    /// Returns the clock that a candidate needs for the goal, in MHz. It is infinite if a rate is wanted and the candidate
-    /// never shows a result. For example, 2 million points a second at 10 clocks a point need 20 MHz.
+    /// Returns the clock that a candidate needs for the goal, in MHz. The clock is infinite if a rate is wanted and the
+    /// candidate never shows a result. For example, 2 million points a second at 10 clocks a point need 20 MHz.
     fn wanted_mhz(&self, candidate: &Candidate) -> f64 {
         let of_rate = match (self.goal.rate, candidate.clocks) {
             (Some(rate), Some(clocks)) => rate * clocks,

@@ -1,8 +1,8 @@
 //! Finds the keys that `glint tune` may change, and the steps from a configuration to its neighbours.
 //!
-//! A key is free if no value that is tried for it changes the ports of the core or its formula. The number of microinstructions
-//! must stay the same too, unless the search may make slower cores. The keys of the tables `domain` and `function` are never
-//! free, because they are part of the user's question.
+//! A key is free if no value that is tried for it changes the ports of the core or its formula, and each makes a design. The
+//! number of microinstructions must stay the same too, unless the search may make slower cores. The keys of the tables `domain`
+//! and `function` are never free, because they are part of the user's question.
 //!
 //! A step gives one free key a value next to its own. For example, the integer 8 becomes 7, 9, 6, 10, 4 or 12.
 
@@ -20,8 +20,8 @@ const STEPS: [i64; 3] = [1, 2, 4];
 /// The tables of keys that define the computation and its domain.
 const STATEMENT: [&str; 2] = ["domain", "function"];
 
-/// The number of points at which formulas are compared. They are drawn like the points of a test: at most of them the formula
-/// is neither 0 nor flat.
+/// The number of points at which formulas are compared. The points are drawn like the points of a test: at most of them the
+/// formula is neither 0 nor flat.
 const POINTS: u32 = 600;
 
 /// The configuration keys of a device that `glint tune` may change when it searches for better configurations: the core keeps its
@@ -55,7 +55,9 @@ impl SearchSpace {
         Ok(space)
     }
 
-    /// Returns whether a key has other values, and none of these values changes the interface of the core.
+    /// Returns whether a key has other values, and every one of these values makes a design with the same interface of the
+    /// core. Values that the schema refuses do not count. Returns `false` for the keys of the tables `domain` and `function`,
+    /// and for a key whose value is a number with a fraction.
     fn is_free(&self, device: &Device, base: &Config, key: &Key) -> bool {
         let (table, _) = key.table_and_leaf();
         if STATEMENT.contains(&table) {
@@ -77,8 +79,8 @@ impl SearchSpace {
         true
     }
 
-    /// Returns whether a core has the same ports and the same formula as the base configuration. It must also have the same
-    /// number of microinstructions, unless `slower` was set for this search space.
+    /// Returns whether a core has the same ports and the same formula as the base configuration. The core must also have the
+    /// same number of microinstructions, unless `slower` was set for this search space.
     pub fn holds(&self, design: &Design, contract: &dyn Contract) -> bool {
         let own = &self.outside;
         own.ports == ports(design)
@@ -110,7 +112,7 @@ impl SearchSpace {
         moves
     }
 
-    /// Returns the configuration with some values replaced, or `None` if the device refuses the result or if a replaced key
+    /// Returns the configuration with some values replaced, or `None` if the schema refuses the result or if a replaced key
     /// does not apply.
     pub fn with(&self, config: &Config, values: &[(&'static str, Value)]) -> Option<Config> {
         with(&self.schema, config, values)
@@ -226,7 +228,8 @@ fn alternatives(key: &Key, value: &Value) -> Vec<Value> {
 }
 
 /// Returns the values next to `value` that lie in the key's range. For example, the integer 8 has the neighbours 7, 9, 6, 10, 4
-/// and 12. The list `[6, 6]` has `[5, 6]`, `[7, 6]`, `[6, 5]`, `[6, 7]`, `[6, 6, 6]` and `[6]`.
+/// and 12. The list `[6, 6]` has `[5, 6]`, `[7, 6]`, `[6, 5]`, `[6, 7]`, `[6, 6, 6]` and `[6]`. A choice or a flag has all its
+/// other values. A number with a fraction has none.
 fn neighbours(kind: &KeyKind, value: &Value) -> Vec<Value> {
     match (kind, value) {
         (KeyKind::Integer { min, max }, Value::Integer(value)) => {

@@ -19,7 +19,8 @@ use glint_golden::{Contract, Sweep};
 /// The number of results that lockstep compares: without full effort, and with it.
 const POINTS: [u64; 2] = [TEST_POINTS, 100 * TEST_POINTS];
 
-/// The largest number of evaluations of the golden model in the check of the bound without full effort. They take some seconds.
+/// The largest number of evaluations of the golden model in the check of the bound without full effort. These evaluations take
+/// some seconds.
 const EVALUATIONS: u64 = 1 << 28;
 
 /// The approximate number of evaluations of `f` that are repeated for a recorded proof.
@@ -114,7 +115,8 @@ fn lockstep(subject: &CheckSubject<'_>, progress: &(dyn Fn(u64) + Sync)) -> Resu
 }
 
 /// Checks that the golden model is within the error bound of the formula in f64, for every combination of operands that the
-/// contract's sweep lists. A long check is replaced by its record, if one exists, and a part of the record is computed again.
+/// contract's sweep lists. A long check is replaced by its record, and a part of the record is computed again. Without a
+/// record, a long check is not run. A contract that states no bound has no such check.
 pub const CONTRACT: Check = Check {
     id: "contract",
     title: "Golden model against the formula",
@@ -149,7 +151,8 @@ fn record(subject: &CheckSubject<'_>) -> Result<Option<Record>> {
 }
 
 /// Runs the exhaustive check of the bound and returns its finding. If the check is long, it returns the finding of a record of
-/// the check, and repeats a part of the evaluations. Without such a record, the verdict is [`CheckVerdict::NotRun`].
+/// the check, and repeats a part of the evaluations. Without such a record, the verdict is [`CheckVerdict::NotRun`]. Fails if a
+/// record cannot be read, or if the check cannot be run.
 fn contract(subject: &CheckSubject<'_>, progress: &(dyn Fn(u64) + Sync)) -> Result<Finding> {
     let contract = subject.core.contract.as_ref();
     if !contract.bound().is_stated() {
@@ -215,7 +218,8 @@ fn without_record(subject: &CheckSubject<'_>, evaluations: u64) -> Finding {
     Finding { complete_with: Some(command), ..Finding::without(CheckVerdict::NotRun, why) }
 }
 
-/// Compares golden model and netlist clock by clock for every combination of operands, if the operands have few enough bits.
+/// Compares golden model and netlist clock by clock for every combination of operands. The check does not apply if the operands
+/// have too many bits for this.
 pub const CLOCKS: Check = Check {
     id: "clocks",
     title: "Golden model against simulation, every operand",
@@ -247,7 +251,8 @@ pub const CLOCKS: Check = Check {
 };
 
 /// Plants faults in the netlist of a sequential core, one at a time, and checks that the comparison with the golden model
-/// notices them. If more than 1 % of the faults are undecided, the verdict is [`CheckVerdict::Undecided`].
+/// notices them. Without full effort it plants at most 2048 faults. If more than 1 % of the faults are undecided, the verdict
+/// is [`CheckVerdict::Undecided`]. The check does not apply to a pipeline.
 pub const MUTATION: Check = Check {
     id: "mutation",
     title: "Faults in the netlist",

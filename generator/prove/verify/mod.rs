@@ -155,10 +155,12 @@ pub struct Finding {
     /// The path of a record that replaces a part of the work; `None` if the check did all the work itself.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub record: Option<String>,
-    /// The command that would run the parts that were left out; `None` if nothing was left out.
+    /// The command that would run a check that was left out or not run, or that reached its time limit. It is `None` in every
+    /// other case, and if the check knows no such command. A check that did a part of its work names the rest in `open`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub complete_with: Option<String>,
-    /// The failures, each with a command that reproduces it.
+    /// The failures, each as a text: for example, the seed, the clock and the signal of a difference, or the output of the tool
+    /// that failed. Empty unless the verdict is [`CheckVerdict::Failed`].
     #[serde(rename = "faults")]
     pub failures: Vec<String>,
 }
@@ -308,7 +310,8 @@ pub struct CheckAnswer {
     pub question: &'static str,
     /// The files or structures that the check read: [`Check::reads`].
     pub reads: &'static str,
-    /// The versions of the outside tools that the check used; empty if a tool is missing, or if the check needs none.
+    /// The versions of the outside tools that the check used; empty if a tool is missing, if the check was left out, or if it
+    /// needs no tool.
     pub tools: Vec<String>,
     /// The finding of the check: its verdict and reasons.
     #[serde(flatten)]
@@ -331,7 +334,8 @@ pub struct CheckTime {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Conclusion {
-    /// Every check that applies to the configuration ran, and every checked property holds.
+    /// Every check that applies to the configuration ran, and every checked property holds. A second proof of a fact may be
+    /// [`CheckVerdict::Unconfirmed`].
     Verified,
     /// Checks were left out on purpose. Every other check ran, and every checked property holds.
     InPart,

@@ -32,7 +32,8 @@ const POINTS: [u64; 2] = [200, 20_000];
 /// Without full effort, the time limit for writing the statements for Gappa, and for proving one of them.
 const STATEMENT: Duration = Duration::from_secs(10);
 
-/// Without full effort, the time limit of the solver for the proof that a pipeline equals its sequential core.
+/// Without full effort, the time limit of the solver for each of two proofs: that a pipeline equals its sequential core, and
+/// that its Verilog equals its netlist.
 const EQUAL: Duration = Duration::from_secs(300);
 
 /// The version of cocotb that the benches in Python are written for.
@@ -41,8 +42,9 @@ const COCOTB_VERSION: &str = "2.1.0";
 /// The number of results of a bench around a netlist.
 const GATE_POINTS: u64 = 40;
 
-/// Lets Gappa prove the error bound of the contract of a sequential core. A statement that Gappa does not prove makes the check
-/// unconfirmed, and not failed, because another check shows the bound too. A pipeline has no such check.
+/// Lets Gappa prove the error bound of the contract of a sequential core. If the statements cannot be written, or Gappa does
+/// not prove one in time, the check is unconfirmed. The check is not failed, because another check shows the bound too. A
+/// pipeline has no such check.
 pub const CERTIFICATE: Check = Check {
     id: "certificate",
     title: "Proof of the error bound",
@@ -269,8 +271,8 @@ pub const VERILATOR: Check = Check {
     run: |subject, _, _| bench(subject, VerilogSimulator::Verilator),
 };
 
-/// Simulates the emitted Verilog with each shipped bench, for 200 results, or 20 000 with full effort. Fails if a simulator
-/// cannot be run.
+/// Simulates the emitted Verilog with each shipped bench, for 200 results, or 20 000 with full effort. Fails if golden model
+/// and netlist differ, or if the simulator cannot be run.
 fn bench(subject: &CheckSubject<'_>, simulator: VerilogSimulator) -> Result<Finding> {
     let (core, effort) = (subject.core, subject.effort);
     let points = POINTS[usize::from(effort.full)];
@@ -360,7 +362,7 @@ pub const FORMAL: Check = Check {
     },
 };
 
-/// Runs the emitted benches in Python with cocotb. They know the core only from its manifest.
+/// Runs the emitted benches in Python with cocotb. The benches know the core only from its manifest.
 pub const COCOTB: Check = Check {
     id: "cocotb",
     title: "Emitted Verilog driven from Python",

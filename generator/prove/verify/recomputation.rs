@@ -1,10 +1,10 @@
 //! Checks the error bound with a generated C program that computes every combination of operands. The program evaluates the
-//! formulas with MPFR and with the C library, and not with Glint's arithmetic. It compares them with the results of the core's
-//! C model.
+//! formulas with MPFR and with the C library, and not with Glint's arithmetic. The program compares the formulas with the
+//! results of the core's C model.
 //!
-//! For example, the program for `x / y` with operands of 12 bits compares 2^24 results with the formula in about a second. It
-//! uses MPFR only if doubles, with a margin for their rounding, cannot decide. Too many combinations are left out without
-//! `--full`.
+//! For example, the program for `x / y` with operands of 12 bits compares 2^24 results with the formula in about a second. The
+//! program uses MPFR only if doubles, with a margin for their rounding, cannot decide. Too many combinations are left out
+//! without `--full`.
 
 use std::fs;
 use std::path::Path;
@@ -102,7 +102,8 @@ impl ProgramCompiler<'_> {
         Ok((run.status.success(), run.output))
     }
 
-    /// Returns whether the compiler can compile a program that includes MPFR, so that MPFR is installed.
+    /// Returns whether the compiler can compile a program that includes MPFR, so that MPFR is installed. Fails if the compiler
+    /// cannot be run, or reaches the time limit.
     fn has_mpfr(&self) -> Result<bool> {
         let probe = "#include <mpfr.h>\nint main(void) { return 0; }\n";
         fs::write(self.dir.join("probe.c"), probe)

@@ -47,9 +47,9 @@ struct Better {
     bound: Bound,
 }
 
-/// Returns changes of configuration keys that reduce the error bound of a core. If the core violates its accuracy contract,
-/// the changes are enough to keep it, if at most 40 steps find such changes. Otherwise only one key changes: the one that
-/// reduces the bound most. Returns `None` if no change of one key reduces the bound.
+/// Returns changes of configuration keys that reduce the error bound of a core. If the core violates its accuracy contract, the
+/// changes are enough to keep it, if at most 40 steps find such changes. Otherwise only one key changes: among the smallest
+/// steps that help any key, the key that reduces the bound most. Returns `None` if no change of one key reduces the bound.
 pub fn of(core: &Core) -> Option<Advice> {
     let (device, bound) = (&core.device, core.contract.bound());
     let first = better(device, &core.config, &bound)?;
@@ -147,8 +147,9 @@ fn changes(
     changes
 }
 
-/// Returns the keys that the bound depends on, each with the values that differ from its own by `step`. These are the keys that
-/// the terms of the bound name, and the choices and flags in the tables of these keys.
+/// Returns the keys that the bound depends on, each with the values that differ from its own by `step`. A key counts if a term
+/// of the bound names it, or if it is a choice or a flag in the table of such a key. Keys of the table `domain`, and keys that
+/// do not apply, are left out.
 fn candidates(
     schema: &Schema,
     config: &Config,
@@ -181,7 +182,7 @@ fn table_of(key: &str) -> &str {
 }
 
 /// Returns the values that differ from `value` by `step`. For example, the integer 8 and the step 2 give 6 and 10. A choice or
-/// a flag gives all its other values.
+/// a flag gives all its other values. A list gives each list in which one entry differs by `step`. Any other value gives none.
 fn neighbours(kind: &KeyKind, value: &Value, step: i64) -> Vec<Value> {
     match (kind, value) {
         (_, Value::Integer(value)) => [value - step, value + step].map(Value::Integer).to_vec(),

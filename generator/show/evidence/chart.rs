@@ -89,8 +89,8 @@ pub struct Chart {
 }
 
 impl Chart {
-    /// Returns about `rows` evenly spread indices into [`Chart::places`], the first and the last among them. For
-    /// example, 5 rows of 101 places are 0, 25, 50, 75 and 100.
+    /// Returns about `rows` evenly spread indices into [`Chart::places`], the first and the last among them. For example, 5
+    /// rows of 101 places are 0, 25, 50, 75 and 100, and 1 row is 0 alone. The chart must have places.
     pub fn rows(&self, rows: usize) -> Vec<usize> {
         let last = self.places.len().saturating_sub(1);
         let mut chosen: Vec<usize> =
@@ -101,13 +101,14 @@ impl Chart {
 }
 
 /// Returns `steps + 1` evenly spaced values from `low` to `high`. For example, 4 steps from 0 to 2 are 0, 0.5, 1, 1.5 and 2.
+/// `steps` must be at least 1; 0 steps give NaN.
 pub fn even(low: f64, high: f64, steps: u32) -> Vec<f64> {
     (0..=steps).map(|step| low + (high - low) * f64::from(step) / f64::from(steps)).collect()
 }
 
 /// Returns the integers from `low` to `high` that are spaced evenly on a logarithmic axis, about `per_decade` of them for each
 /// power of ten. `low` and `high` are among them. For example, 1 to 1000 with 4 for each power of ten begins with 1, 2, 3, 6
-/// and 10.
+/// and 10. `low` must be at least 1, and less than `high`.
 pub fn exponents(low: u32, high: u32, per_decade: u32) -> Vec<u32> {
     let value = |step: u32| {
         let value = f64::from(low) * libm::pow(10.0, f64::from(step) / f64::from(per_decade));

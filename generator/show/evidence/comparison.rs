@@ -53,8 +53,8 @@ pub struct Accuracy {
     /// The error of the device's formula in f64, at the quantised operands, against `cosⁿ` of the angle that these operands
     /// denote.
     pub formula: Spread,
-    /// The error of quantising the operands: `cosⁿ` of the angle that the quantised operands denote, against `cosⁿγ`. It is 0
-    /// if a contract does not tell that angle ([`Highlight::cosine`]); the formula's error then includes it.
+    /// The error of quantising the operands: `cosⁿ` of the angle that the quantised operands denote, against `cosⁿγ`. The error
+    /// is 0 if a contract does not tell that angle ([`Highlight::cosine`]); the formula's error then includes it.
     pub operands: Spread,
     /// The error of the fixed-point arithmetic: the reflectance f that the hardware computes, against the formula at the
     /// quantised operands.

@@ -40,7 +40,8 @@ pub struct DeviceCurves {
     pub summary: String,
     /// The proven bound on the error of an output, in output units.
     pub bound_units: f64,
-    /// The largest value of a colour operand. An error of `f` multiplied by it is an error in output units.
+    /// The largest value of a colour operand; 0 for a device without colours. An error of `f` multiplied by this value is an
+    /// error in output units.
     pub largest_colour: f64,
     /// The largest errors for each exponent; empty if no operands of the device denote γ and n.
     pub exponents: Vec<AtExponent>,
@@ -74,14 +75,15 @@ struct AtAngle {
     fixed_point: f64,
 }
 
-/// Measures the error curves of a device in its default configuration. It calls `done` after each of [`STEPS`] steps.
+/// Measures the error curves of a device in its default configuration. The function calls `done` after each of [`STEPS`] steps.
 pub fn device(device: &Device, done: &(dyn Fn() + Sync)) -> DeviceCurves {
     let config = device.defaults();
     let contract = (device.contract)(&config);
     configuration(device, contract.as_ref(), done)
 }
 
-/// Measures the error curves of a configuration of a device, given its contract. It calls `done` after each of [`STEPS`] steps.
+/// Measures the error curves of a configuration of a device, given its contract. The function calls `done` after each of
+/// [`STEPS`] steps.
 pub fn configuration(
     device: &Device,
     contract: &dyn Contract,
@@ -138,9 +140,9 @@ fn places() -> Vec<f64> {
     even(0.0, REACH, PLACES)
 }
 
-/// Returns the signed error of the formula at each position of [`places`], and the largest fixed-point error near the
-/// position. Both errors are NaN for angles beyond 90°, at which there is no highlight. For example, the curve of n = 2 ends
-/// at √n·γ = 2.2. Returns `None` if the operands cannot represent `n`.
+/// Returns the signed error of the formula at each position of [`places`], and the largest fixed-point error near the position.
+/// Both errors are NaN for angles beyond 90°, at which there is no highlight. For example, the curve of n = 2 ends at √n·γ =
+/// 2.2. Returns `None` if the device is no highlight, or if its operands cannot represent `n`.
 fn over_angle(contract: &dyn Contract, n: f64) -> Option<Vec<AtAngle>> {
     let highlight = contract.highlight()?;
     let half = REACH / f64::from(PLACES) / 2.0;

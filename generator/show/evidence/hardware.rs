@@ -37,8 +37,8 @@ pub struct FamilyUsage {
     pub block_rams: u64,
 }
 
-/// Returns the number of cells that a core takes on each of the FPGA families [`COMPARED`], in their order. It calls `done`
-/// after each family, so that a caller can show progress.
+/// Returns the number of cells that a core takes on each of the FPGA families [`COMPARED`], in their order. The function calls
+/// `done` after each family, so that a caller can show progress.
 ///
 /// # Errors
 /// Fails if synthesis fails.

@@ -27,7 +27,9 @@ pub struct SynthesisRecord<F = Figures> {
     pub device: String,
     /// A digest that identifies the core: [`glint_core::core::Core::core_digest`].
     pub core: String,
-    /// The number of clocks from one `start` to the next. It is 1 for a pipeline that takes a point every clock.
+    /// The number of clocks for each point: the clocks from one `start` to the next, divided by the number of results between
+    /// them. The number is 1 for a pipeline that takes a point every clock, and may be a fraction for a device that computes
+    /// lines.
     pub clocks_per_point: f64,
     /// The measurements, one for each target.
     pub targets: Vec<F>,

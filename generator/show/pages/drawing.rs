@@ -34,7 +34,7 @@ pub enum Item {
     },
     /// A line of text.
     Text {
-        /// The class of the text in the style sheet. It also decides the alignment.
+        /// The class of the text in the style sheet. The class also decides the alignment.
         class: &'static str,
         /// The horizontal position at which the text starts, is centred or ends, as its class says.
         x: i32,

@@ -62,7 +62,7 @@ fn cell(value: f64, scale: AxisScale) -> String {
     }
 }
 
-/// Returns an error in scientific notation, without its sign. For example, 0.00123 is `1.2e−3`.
+/// Returns a number in scientific notation with one digit after the point. For example, 0.00123 is `1.2e−3`, and 0 is `0`.
 pub fn scientific(value: f64) -> String {
     match value {
         0.0 => "0".to_owned(),

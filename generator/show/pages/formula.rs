@@ -8,7 +8,7 @@ use super::markup::html;
 /// The functions that may have an exponent after the name, such as `cos^2(x)`. Parentheses around a single name are not shown.
 const FUNCTIONS: [&str; 4] = ["cos", "sin", "tan", "log"];
 
-/// The words that may occur between formulas. They are shown as text.
+/// The words that may occur between formulas. The page shows these words as text.
 const PROSE: [&str; 10] =
     ["by", "where", "stretched", "if", "for", "with", "when", "and", "or", "otherwise"];
 
@@ -115,7 +115,8 @@ impl<'a> FormulaReader<'a> {
         Some(found)
     }
 
-    /// Parses relations with words of [`PROSE`] between them, up to a comma, a semicolon or the end.
+    /// Parses relations with words of [`PROSE`] between them, up to a comma, a semicolon or the end. Returns `None` if the
+    /// parser does not understand the text.
     fn clause(&mut self) -> Option<String> {
         let mut clause = String::new();
         let mut after_relation = false;
@@ -137,7 +138,7 @@ impl<'a> FormulaReader<'a> {
         (!clause.is_empty()).then_some(clause)
     }
 
-    /// Parses sums with relations such as `=` and `<=` between them.
+    /// Parses sums with relations such as `=` and `<=` between them. Returns `None` if the parser does not understand the text.
     fn relation(&mut self) -> Option<String> {
         let mut relation = self.sum()?;
         while let Some(sign) = self.sign(&["=", "<", ">", "<=", ">="]) {
@@ -153,7 +154,8 @@ impl<'a> FormulaReader<'a> {
         Some(relation)
     }
 
-    /// Parses products with `+`, `-` and `+-` between them. A minus may precede the first one.
+    /// Parses products with `+`, `-` and `+-` between them. A minus may precede the first one. Returns `None` if the parser
+    /// does not understand the text.
     fn sum(&mut self) -> Option<String> {
         let mut sum = match self.sign(&["-"]) {
             Some(_) => "<mo>−</mo>".to_owned(),
@@ -172,7 +174,7 @@ impl<'a> FormulaReader<'a> {
     }
 
     /// Parses products and quotients from left to right. The whole product before a `/` is the numerator. For example, `a * b /
-    /// c` is a fraction with a·b above c.
+    /// c` is a fraction with a·b above c. Returns `None` if the parser does not understand the text.
     fn product(&mut self) -> Option<String> {
         let mut product = self.power()?;
         while let Some(sign) = self.sign(&["*", "/"]) {
@@ -185,7 +187,8 @@ impl<'a> FormulaReader<'a> {
         Some(product.mathml)
     }
 
-    /// Parses a base with an optional exponent, or one of [`FUNCTIONS`] with its argument.
+    /// Parses a base with an optional exponent, or one of [`FUNCTIONS`] with its argument. Returns `None` if the parser does
+    /// not understand the text.
     fn power(&mut self) -> Option<FormulaPart> {
         let name = self.peek().filter(|name| FUNCTIONS.contains(name));
         let Some(name) = name else {
@@ -227,7 +230,8 @@ impl<'a> FormulaReader<'a> {
         Some(FormulaPart::new(format!("{name}<mo>&#x2061;</mo>{argument}")))
     }
 
-    /// Parses a number, a name, a function call, or an expression in parentheses.
+    /// Parses a number, a name, a function call, or an expression in parentheses. Returns `None` if the parser does not
+    /// understand the text.
     fn atom(&mut self) -> Option<FormulaPart> {
         let token = self.peek()?;
         if token == "(" {
@@ -244,7 +248,7 @@ impl<'a> FormulaReader<'a> {
         }))
     }
 
-    /// Parses a number or a name.
+    /// Parses a number or a name. Returns `None` for any other token.
     fn single(&mut self) -> Option<FormulaPart> {
         let token = self.next()?;
         let first = token.chars().next()?;
@@ -255,7 +259,8 @@ impl<'a> FormulaReader<'a> {
         is_name.then(|| FormulaPart::new(name(token)))
     }
 
-    /// Parses parentheses with one expression, or with several and commas between them.
+    /// Parses parentheses with one expression, or with several and commas between them. Returns `None` if the parser does not
+    /// understand the text.
     fn parentheses(&mut self) -> Option<FormulaPart> {
         self.sign(&["("])?;
         let mut inside = self.sum()?;

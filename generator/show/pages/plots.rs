@@ -156,8 +156,8 @@ fn ends(axis: &ChartAxis) -> Option<(f64, f64)> {
 }
 
 /// Finds the series with one value. Returns for each the index of the series, its position, and whether its name is left of the
-/// point. The name is on the side of the point with more room. It is on the other side if the name of a point just above is in
-/// the way.
+/// point. The name is on the side of the point with more room. The name is on the other side if the name of a point just above
+/// is in the way.
 fn points(chart: &Chart) -> Vec<(usize, (f64, f64), bool)> {
     let mut places: Vec<(usize, (f64, f64))> = Vec::new();
     for (at, series) in chart.series.iter().enumerate() {

@@ -19,7 +19,8 @@ pub struct Camera {
 /// The user's settings of the camera. Settings that are left out follow from the size of the scene.
 #[derive(Clone, Copy, Debug)]
 pub struct View {
-    /// The position of the camera in the scene.
+    /// The position of the camera in the scene. The default is the nearest position, in front of the scene and a little above,
+    /// from which all objects are visible.
     pub eye: Option<Vector>,
     /// The point at which the camera looks. The default is the middle of the scene.
     pub target: Option<Vector>,

@@ -7,7 +7,7 @@ use anyhow::{Result, bail, ensure};
 
 use super::vector::Vector;
 
-/// The largest number of triangles of a mesh. It keeps indices in 32 bits and memory in gigabytes.
+/// The largest number of triangles of a mesh. This limit keeps indices in 32 bits and memory in gigabytes.
 pub const MOST_TRIANGLES: usize = 20_000_000;
 
 /// The default angle, in degrees, beyond which an edge of a mesh without normals is drawn as sharp.
@@ -57,13 +57,13 @@ pub struct RawCorner {
 }
 
 impl Mesh {
-    /// Makes a mesh of positions, normals, texture coordinates and triangles. It leaves out triangles without area, and
-    /// counts them in `degenerate`. Every index of a corner must exist; otherwise the function panics.
+    /// Makes a mesh of positions, normals, texture coordinates and triangles. The function leaves out triangles without area,
+    /// and counts them in `degenerate`. Every index of a corner must exist; otherwise the function panics.
     ///
     /// A corner without a normal, or with a normal of length 0, gets a mean normal. The function averages the normals of the
-    /// triangles that meet at the corner's position, weighted by their areas. It includes only triangles that are connected
-    /// to the corner's own triangle there by edges of at most `crease` degrees. For example, a cube without normals keeps its
-    /// edges of 90 degrees at a `crease` of 40, and looks round at 90.
+    /// triangles that meet at the corner's position, weighted by their areas. The mean includes only triangles that are
+    /// connected to the corner's own triangle there by edges of at most `crease` degrees. For example, a cube without normals
+    /// keeps its edges of 90 degrees at a `crease` of 40, and looks round at 90.
     ///
     /// # Errors
     /// Fails if no triangle has an area, or if there are more than 20 million triangles. Fails if a number is not finite, or if
@@ -123,7 +123,7 @@ impl Mesh {
         Ok(Self { degenerate: all - kept.len(), triangles, positions, normals, textures })
     }
 
-    /// Returns the position of each corner of a triangle.
+    /// Returns the positions of the three corners of the triangle with the index `triangle`, in the order of the file.
     #[inline]
     pub fn corners(&self, triangle: usize) -> [Vector; 3] {
         self.triangles[triangle].map(|corner| self.positions[corner.position as usize])
@@ -238,8 +238,8 @@ fn creased_normals(
     found
 }
 
-/// Returns the representative of the group that contains `at` (union-find): the smallest member of the group. It shortens the
-/// path from `at` to the representative.
+/// Returns the representative of the group that contains `at` (union-find): the smallest member of the group. The function
+/// shortens the path from `at` to the representative.
 fn root(group: &mut [usize], at: usize) -> usize {
     let mut root = at;
     while group[root] != root {

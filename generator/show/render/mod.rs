@@ -1,8 +1,8 @@
 //! Renders pictures whose specular highlights are bit-exact results of a device.
 //!
-//! The host is the software around the device. It computes visibility, normals, half vectors, and the ambient and diffuse
-//! light in f64. An [`Engine`] computes the specular term of every sample and light, point by point or along lines of points.
-//! A device that takes normals as operands, such as `shading`, also computes the ambient and diffuse light of a lit surface.
+//! The host is the software around the device. The host computes visibility, normals, half vectors, and the ambient and diffuse
+//! light in f64. An [`Engine`] computes the specular term of every sample and light, point by point or along lines of points. A
+//! device that takes normals as operands, such as `shading`, also computes the ambient and diffuse light of a lit surface.
 //!
 //! The same picture has the same bytes on every machine, because `libm` computes the transcendental functions. The bytes depend
 //! neither on the engine nor on the number of threads.
@@ -57,7 +57,8 @@ pub const FIELD: f64 = 30.0;
 /// The default exponent n of a picture. A device whose domain does not contain it gets the nearest exponent of its domain.
 const EXPONENT: i64 = 80;
 
-/// The approximate number of points that the renderer passes to the engine at once. It always passes whole rows of pixels.
+/// The approximate number of points that the renderer passes to the engine at once. The renderer always passes whole rows of
+/// pixels.
 const PORTION: usize = 1 << 18;
 
 /// The settings for rendering a picture.
@@ -75,8 +76,8 @@ pub struct Settings {
     pub background: Vector,
     /// Whether to render also Blinn's function cosⁿγ in f64, for comparison.
     pub compare: bool,
-    /// The names and values of operands that have the same value at every point. They must include the operands that a scene
-    /// cannot supply.
+    /// The names and values of operands that have the same value at every point. The list must include the operands that a
+    /// scene cannot supply.
     pub operands: Vec<(String, f64)>,
 }
 
@@ -172,8 +173,8 @@ pub fn check(settings: &Settings, scene: &Scene) -> Result<()> {
     Ok(())
 }
 
-/// Renders a scene. It calls `progress` with the number of finished rows of pixels, several times up to the height of the
-/// picture. The highlights are results of `engine`, for example the golden model or a simulation of the Verilog.
+/// Renders a scene. The function calls `progress` with the number of finished rows of pixels, several times up to the height of
+/// the picture. The highlights are results of `engine`, for example the golden model or a simulation of the Verilog.
 ///
 /// # Errors
 /// Fails if [`check`] does, if the camera is at the point at which it looks, if a scene cannot supply an operand, or if the
@@ -258,8 +259,8 @@ struct Portions<'a> {
 }
 
 impl Portions<'_> {
-    /// Computes the highlights of some rows of samples, and adds the finished rows of pixels to the picture. The number of
-    /// rows must be a multiple of the number of samples along a pixel.
+    /// Computes the highlights of some rows of samples, and adds the finished rows of pixels to the picture. The number of rows
+    /// must be a multiple of the number of samples along a pixel. Fails if the engine fails.
     fn add(&mut self, rows: &[Shaded], compare: bool) -> Result<()> {
         let mut points = Points::new(self.feed.operand_count());
         for row in rows {

@@ -1,7 +1,8 @@
 //! Reads the geometry of a mesh from a file in Wavefront's OBJ format.
 //!
-//! The reader takes vertices, normals, texture coordinates and faces. It ignores everything else, such as groups, materials and
-//! curves. It reports a mistake with its line number. Corners with and without normals may be mixed in one file.
+//! The reader takes vertices, normals, texture coordinates and faces. The reader ignores everything else, such as groups,
+//! materials and curves. The reader reports a mistake with its line number. Corners with and without normals may be mixed in
+//! one file.
 
 use anyhow::{Context, Result, anyhow, bail, ensure};
 
@@ -54,8 +55,8 @@ impl ObjReader {
         Ok(())
     }
 
-    /// Adds a face of n corners as a fan of n − 2 triangles. For example, the face 1 2 3 4 is the triangles 1 2 3 and 1
-    /// 3 4.
+    /// Adds a face of n corners as a fan of n − 2 triangles. For example, the face 1 2 3 4 is the triangles 1 2 3 and 1 3 4.
+    /// Fails if a corner is not valid, or if there are fewer than three.
     fn face<'a>(&mut self, words: impl Iterator<Item = &'a str>) -> Result<()> {
         let corners: Vec<RawCorner> = words
             .map(|word| {
@@ -68,7 +69,8 @@ impl ObjReader {
         Ok(())
     }
 
-    /// Reads a corner: `v`, `v/vt`, `v//vn` or `v/vt/vn`. For example, `3//1` has vertex 3 and normal 1.
+    /// Reads a corner: `v`, `v/vt`, `v//vn` or `v/vt/vn`. For example, `3//1` has vertex 3 and normal 1. Fails if an index is
+    /// no integer or denotes no entry so far, or if there are more than two `/`.
     fn corner(&self, word: &str) -> Result<RawCorner> {
         let mut parts = word.split('/');
         let position = parts.next().unwrap_or_default();
@@ -87,7 +89,8 @@ impl ObjReader {
     }
 }
 
-/// Returns the first `N` words as finite numbers.
+/// Returns the first `N` words as finite numbers. Fails if there are fewer than `N` words, or if one of them is no finite
+/// number.
 fn numbers<'a, const N: usize>(
     what: &str,
     mut words: impl Iterator<Item = &'a str>,

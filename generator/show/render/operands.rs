@@ -158,7 +158,8 @@ impl Feed {
     /// device, for messages.
     ///
     /// # Errors
-    /// Fails if a picture cannot supply an operand, or if the device lacks the colour operands or their outputs.
+    /// Fails if a picture cannot supply an operand, or if the device lacks the colour operands or their outputs. Fails also if
+    /// a device that computes lines lacks an operand of a line, such as `delta_zeta`.
     pub fn new(device: &str, contract: &dyn Contract) -> Result<Self> {
         Self::with(device, contract, &[])
     }
@@ -301,8 +302,8 @@ impl Feed {
         operands.find(|operand| operand.0 == wanted).copied()
     }
 
-    /// Returns the operand values for a point with the exponent `exponent` as real numbers, before they are quantised. They
-    /// are in the order of the device's operands. A colour of full strength gives the largest value of its operand.
+    /// Returns the operand values for a point with the exponent `exponent` as real numbers, before they are quantised. The
+    /// values are in the order of the device's operands. A colour of full strength gives the largest value of its operand.
     pub fn values<'a>(&'a self, point: &'a Point, exponent: u32) -> impl Iterator<Item = f64> + 'a {
         let split = self.takes_deviation();
         self.operands.iter().map(move |&(quantity, format, (_, high))| match quantity {
@@ -351,7 +352,7 @@ impl Feed {
     }
 
     /// Returns the value of the amplitude operand for a white light of full strength: the largest value of the operand's
-    /// domain. It is 0 if the device has no such operand.
+    /// domain. The result is 0 if the device has no such operand.
     pub fn full(&self) -> f64 {
         let full = self.find(OperandMeaning::Amplitude);
         full.map_or(0.0, |(_, format, (_, most))| format.to_f64(i128::from(most)))
@@ -363,8 +364,8 @@ impl Feed {
         if self.takes(OperandMeaning::Exponent) { 1.0 } else { line.stretch() }
     }
 
-    /// Returns the operand values for a line of points as real numbers, before they are quantised. They are in the order of
-    /// the device's operands. Angles are in right angles.
+    /// Returns the operand values for a line of points as real numbers, before they are quantised. The values are in the order
+    /// of the device's operands. Angles are in right angles.
     pub fn line_values<'a>(&'a self, line: &'a LineParameters) -> impl Iterator<Item = f64> + 'a {
         let stretch = self.stretch(line);
         self.operands.iter().map(move |(quantity, ..)| match quantity {

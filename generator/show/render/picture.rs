@@ -1,4 +1,5 @@
-//! Defines pictures with 8 bits for each colour channel. It joins, captions and compares pictures, and writes them as PNG.
+//! Defines pictures with 8 bits for each colour channel. The module joins, captions and compares pictures, and writes them as
+//! PNG.
 
 use anyhow::{Context, Result};
 use noto_sans_mono_bitmap::{FontWeight, RasterHeight, get_raster, get_raster_width};
@@ -33,7 +34,7 @@ impl Picture {
         Self { width, pixels: Vec::new() }
     }
 
-    /// Returns the number of pixel rows in the picture.
+    /// Returns the number of pixel rows in the picture. The width must not be 0.
     pub fn height(&self) -> u32 {
         (self.pixels.len() / self.width as usize) as u32
     }
@@ -60,7 +61,8 @@ impl Picture {
         captioned
     }
 
-    /// Joins pictures of the same height side by side.
+    /// Joins pictures side by side, the first one on the left. All pictures must have the height of the first one. An empty
+    /// list gives a picture without pixels.
     pub fn beside(pictures: &[&Self]) -> Self {
         let mut all = Self::new(pictures.iter().map(|picture| picture.width).sum());
         for row in 0..pictures.first().map_or(0, |picture| picture.height()) as usize {

@@ -13,7 +13,7 @@ pub struct Scene {
     pub objects: Vec<Object>,
     /// The lights, which are so far away that their directions are the same everywhere.
     pub lights: Vec<Light>,
-    /// The height map that tilts the normals of all objects.
+    /// The height map that tilts the normals of all objects; `None` for smooth surfaces.
     pub relief: Option<Relief>,
 }
 
@@ -141,7 +141,7 @@ impl Scene {
     }
 }
 
-/// Returns a ball, or the triangles of a `coarse` one.
+/// Returns a ball, or the triangles of a `coarse` one. Fails if the mesh cannot be made.
 fn ball(middle: Vector, radius: f64, coarse: bool) -> Result<Shape> {
     if coarse {
         Ok(Shape::Mesh(shapes::ball(middle, radius, [64, 32])?))

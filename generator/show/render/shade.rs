@@ -20,7 +20,7 @@ use glint_core::cosim::batch::Points;
 pub struct Material {
     /// The share of the ambient light, which is white and has the strength of one light.
     pub ambient: f64,
-    /// The share of each light that is reflected diffusely. It is multiplied by the cosine of the light's angle.
+    /// The share of each light that is reflected diffusely. The share is multiplied by the cosine of the light's angle.
     pub diffuse: f64,
     /// The specular coefficient k_s: the share of each light that the highlight reflects. The reflectance f from the device
     /// multiplies it.
@@ -133,7 +133,8 @@ impl Shader<'_> {
         Ok(shaded)
     }
 
-    /// Shades neighbouring samples of a row on one triangle or ball, and appends them to `shaded`.
+    /// Shades neighbouring samples of a row on one triangle or ball, and appends them to `shaded`. Fails if the operands of a
+    /// line cannot be computed, or if the device cannot represent them.
     fn surfaces(&self, surfaces: &[SurfacePoint], shaded: &mut Shaded) -> Result<()> {
         let lines = match self.feed.longest() {
             None => Vec::new(),
@@ -198,7 +199,8 @@ impl Shader<'_> {
     /// each light the indices of the first results of these three lines. A light that falls on none of the samples has no
     /// lines.
     ///
-    /// [`Arc`] computes the operands from the normals and half vectors at both ends.
+    /// [`Arc`] computes the operands from the normals and half vectors at both ends. Fails if the operands of a line cannot be
+    /// computed, or if the device cannot represent them.
     fn lines(&self, surfaces: &[SurfacePoint], points: &mut Points) -> Result<Vec<[usize; 3]>> {
         let (Some(first), Some(last)) = (surfaces.first(), surfaces.last()) else {
             return Ok(Vec::new());

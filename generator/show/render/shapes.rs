@@ -43,8 +43,8 @@ pub fn ball(middle: Vector, radius: f64, steps: [u32; 2]) -> Result<Mesh> {
     })
 }
 
-/// Makes a vase around the y axis with belly, neck and lip, open at the top. It reaches from y = −1 to y = 1. `steps` are the
-/// numbers of steps around the axis and along the wall.
+/// Makes a vase around the y axis with belly, neck and lip, open at the top. The vase reaches from y = −1 to y = 1. `steps` are
+/// the numbers of steps around the axis and along the wall.
 ///
 /// # Errors
 /// Fails if [`Mesh::new`] fails.
@@ -75,7 +75,7 @@ fn vase_radius(height: f64) -> f64 {
 
 /// Makes a mesh whose corners are the values of `at` at evenly spaced (u, v) from 0 to 1. `steps` are the numbers of steps
 /// along u and v. If `closed` is set for a direction, `at` must repeat in it, and the last corners are the same as the first
-/// ones.
+/// ones. Fails if [`Mesh::new`] fails.
 fn grid(steps: [u32; 2], closed: [bool; 2], at: impl Fn(f64, f64) -> Vector) -> Result<Mesh> {
     let [columns, rows] = steps;
     let mut positions = Vec::new();

@@ -50,7 +50,7 @@ pub struct Raster {
 }
 
 impl Raster {
-    /// Makes a raster with this number of samples.
+    /// Makes a raster with this number of columns and rows of samples, which cover the field of view of `camera`.
     pub fn new(columns: usize, rows: usize, camera: &Camera) -> Self {
         Self { columns, rows, half: camera.half() }
     }
@@ -276,7 +276,8 @@ impl Planes {
 }
 
 /// Returns the depth at which a ray enters a ball, as a multiple of the ray; `None` if the ray misses the ball. For example,
-/// the ray (0, 0, −1) enters a ball of radius 2 around (0, 0, −5) at 3.
+/// the ray (0, 0, −1) enters a ball of radius 2 around (0, 0, −5) at 3. The depth is negative if the ray enters the ball behind
+/// the eye.
 #[inline]
 fn meet_ball(ray: Vector, middle: Vector, radius: f64) -> Option<f64> {
     let square = ray.dot(ray);

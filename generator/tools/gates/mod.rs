@@ -43,9 +43,9 @@ pub fn netlist(
     sources.text(NETLIST)
 }
 
-/// Returns the files of a test bench around a netlist, as pairs of a name and contents. They are the `sources` of the device and
-/// its test bench without the files named in `rtl`, the netlist, and the models of the family's cells. For example, for the core
-/// `rsqrt` the file `rsqrt_datapath.v` is removed, and `netlist.v` is added.
+/// Returns the files of a test bench around a netlist, as pairs of a name and contents. The files are the `sources` of the
+/// device and its test bench without the files named in `rtl`, the netlist, and the models of the family's cells. For example,
+/// for the core `rsqrt` the file `rsqrt_datapath.v` is removed, and `netlist.v` is added.
 ///
 /// # Errors
 /// Fails if Yosys's directory does not contain the models, or if the family has no models.

@@ -105,8 +105,8 @@ pub fn kill_own_descendants(deadline: Instant) {
 #[cfg(not(unix))]
 pub fn kill_own_descendants(_deadline: Instant) {}
 
-/// Kills the processes that `list` returns. It stops them all first, so that they start no further processes meanwhile, and lists
-/// again until no new process appears.
+/// Kills the processes that `list` returns. The function first stops all of them, so that they start no further processes
+/// meanwhile, and lists again until no new process appears.
 #[cfg(unix)]
 fn kill_all(list: impl Fn() -> Vec<i32>) {
     use rustix::process::{Pid, Signal, kill_process};

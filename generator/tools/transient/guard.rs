@@ -41,7 +41,7 @@ kill -KILL $all
 for child in $children; do kill -KILL "-$child"; done
 "#;
 
-/// The pipe to the shell that guards the children. It is `None` before the first child, and on a system without a shell.
+/// The pipe to the shell that guards the children. The pipe is `None` before the first child, and on a system without a shell.
 pub struct Guard(Option<ChildStdin>);
 
 impl Guard {

@@ -20,7 +20,8 @@ const LOCK: &str = "glint.lock";
 
 static SWEEP: Once = Once::new();
 
-/// A temporary directory. It is deleted with its contents when the value is dropped, or when the process is interrupted.
+/// A temporary directory. The directory is deleted with its contents when the value is dropped, or when the process is
+/// interrupted.
 #[derive(Debug)]
 pub struct Directory {
     made: Option<TempDir>,
@@ -48,8 +49,8 @@ impl Directory {
         Self::made(&place, FOR_TOOLS)
     }
 
-    /// Makes a directory in `parent`, for files that are moved from it into `parent` later. It first deletes the directories that
-    /// killed processes have left there.
+    /// Makes a directory in `parent`, for files that are moved from it into `parent` later. The function first deletes the
+    /// directories that killed processes have left there.
     ///
     /// # Errors
     /// Fails if the directory cannot be made.

@@ -1,4 +1,5 @@
-//! `compare`: figures that are computed here a second time.
+//! Tests `glint compare`: the test computes the errors, clocks and bits of several devices a second time and compares them with
+//! the output.
 
 use serde_json::{Value, json};
 

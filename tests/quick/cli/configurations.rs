@@ -1,4 +1,5 @@
-//! Configurations that are no text or no files.
+//! Tests configuration files that Glint cannot read: a file that is not UTF-8, a pipe, a device such as `/dev/zero`, and a file
+//! without read permission.
 
 use std::fs;
 

@@ -1,4 +1,5 @@
-//! `cosim`: the three simulators, the waveform, and exhaustive checks in parts.
+//! Tests `glint cosim`: the two external simulators, waveform files, the report of a difference, and exhaustive checks that are
+//! divided into shards, killed and resumed.
 
 use std::collections::BTreeSet;
 

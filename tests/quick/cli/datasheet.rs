@@ -1,4 +1,4 @@
-//! `datasheet`: the timing diagram for WaveDrom.
+//! Tests the WaveDrom file of `glint datasheet`: all lanes have the same length, and every `=` has its value.
 
 use serde_json::Value;
 

@@ -1,4 +1,5 @@
-//! The commands of pages run, with the configurations that stand before them; the book has every page.
+//! Runs the commands on the pages `docs/composing.md` and `docs/tutorial.md`, with the configurations that these pages show.
+//! The module also tests that `docs/SUMMARY.md` lists every page.
 
 use std::collections::BTreeSet;
 

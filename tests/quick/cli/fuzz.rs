@@ -1,5 +1,5 @@
-//! Arguments drawn at random: the program answers each with an exit code of its own, writes nothing
-//! outside the directory in which it runs, and ends.
+//! Tests the command line with random arguments: the program ends with the exit code 0, 1 or 2 and writes nothing outside its
+//! directory. A failure prints a message; with `--json`, a failure with code 1 prints JSON.
 
 use std::time::{Duration, Instant};
 

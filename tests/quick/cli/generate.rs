@@ -1,4 +1,4 @@
-//! `generate` and the main job, when all is well and when foreign files stand in the way.
+//! Tests `glint generate` and the main job: the files that they write, symbolic links, and names that they refuse.
 
 use crate::common::json::Json;
 use crate::workspace::{COSINE_POWER, Workspace};

@@ -1,4 +1,6 @@
-//! Ctrl-C in the middle of every command that starts tools or takes long: no process stays, no temporary file.
+//! Tests that Ctrl-C ends the commands that start tools or take long, and leaves neither a process nor a temporary file.
+//!
+//! The tests also cover a killed program, an ignored signal, and the saved state of an exhaustive check.
 #![cfg(target_os = "linux")]
 
 use std::collections::BTreeMap;

@@ -1,5 +1,7 @@
-//! The command line as a user meets it: the built program, in a directory of its own; messages, exit
-//! codes, and what is in the directory afterwards. What a few lines of text can say is in `transcripts/`.
+//! Tests the command line as a user sees it: runs the built program in a temporary directory, and checks messages, exit codes
+//! and files.
+//!
+//! Tests that are only a list of commands with their output are text files in `transcripts/`.
 
 mod compare;
 mod configurations;

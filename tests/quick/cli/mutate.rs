@@ -1,4 +1,5 @@
-//! `mutate`: the names of faults, scores and records.
+//! Tests `glint mutate`: the list of faults, the scores, the record, and that Glint does not overwrite a record that somebody
+//! edited.
 
 use crate::common::json::Json;
 use crate::workspace::{COSINE_POWER, Workspace};

@@ -1,4 +1,4 @@
-//! Output that cannot be written: the previous one stays byte for byte.
+//! Tests output that cannot be written, for example to a full disk: the files from before the run stay byte for byte the same.
 #![cfg(unix)]
 
 use std::fs;

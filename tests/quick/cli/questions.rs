@@ -1,4 +1,4 @@
-//! `eval`, `list`, `-V`: every device of the catalogue.
+//! Tests `glint eval`, `glint list`, `glint new` and `-V`, most of them with every device of the catalogue.
 
 use glint::registry::Registry;
 

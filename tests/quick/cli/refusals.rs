@@ -1,4 +1,4 @@
-//! Files that are refused, and arguments of all kinds: an exit code from 0 to 2, never a panic.
+//! Tests that the program refuses wrong files and wrong arguments with an exit code from 0 to 2, and never panics.
 
 use std::ffi::OsString;
 

@@ -1,4 +1,8 @@
-//! `glint render`: pictures, and everything that may be wrong with what they are made of.
+//! Tests `glint render`: the pixels of its pictures, the agreement of its engines, and the messages about unusable meshes and
+//! height maps.
+//!
+//! Among other things it repeats the commands of `docs/images/README.md` and compares the pictures with the files of the
+//! repository.
 
 use std::fs;
 use std::io::Cursor;

@@ -1,4 +1,5 @@
-//! `glint schedule`: the clock of a target, and constraints.
+//! Tests the clock that `glint schedule` shows: without `pipeline.clock_mhz`, it follows the target. The emitted constraints
+//! state the same clock, or `package.clock_mhz` if the file has this key.
 
 use crate::common::json::Json;
 use crate::workspace::Workspace;

@@ -1,4 +1,5 @@
-//! `glint setup`: the way through `eval` to the line of a picture.
+//! Tests `glint setup`: its operands, passed through `glint eval`, give the pixels of a line that the test computes from the
+//! geometry.
 
 use std::fs::{self, File};
 

@@ -1,6 +1,7 @@
-//! Runs of the program as files: what stands in a directory, commands, and what comes of each.
+//! Runs the test cases of `transcripts/`: text files with the files of a directory, commands, and their expected output and
+//! exit code.
 //!
-//! `transcripts/README.md` has the form.
+//! `transcripts/README.md` describes the format of these files.
 #![cfg(unix)]
 
 use std::fs;

@@ -1,4 +1,4 @@
-//! `verify`: page and record, the same whenever they are made.
+//! Tests `glint verify`: two runs give the same record and the same page, except for the timings.
 
 use crate::common::json::Json;
 use crate::workspace::Workspace;

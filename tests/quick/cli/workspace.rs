@@ -1,4 +1,4 @@
-//! A directory in which the program is run.
+//! Provides a temporary directory in which a test runs the built program, and the result of such a run.
 
 use std::collections::BTreeMap;
 use std::ffi::OsStr;

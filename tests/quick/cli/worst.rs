@@ -1,4 +1,5 @@
-//! `worst`: the largest error that is found.
+//! Tests `glint worst`: the error that it finds is within the bound, and `glint eval` shows the same output at the operands of
+//! this error.
 
 use serde_json::Value;
 

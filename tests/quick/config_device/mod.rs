@@ -1,4 +1,7 @@
-//! A device that exists only as a schema: every kind of key, and a condition between two.
+//! Defines the schemas of two devices for tests of configurations: `lamp` has most types of keys and conditions between keys,
+//! `mirror` has one key.
+//!
+//! No hardware belongs to these schemas.
 
 use glint::config::{Config, Key, Problems, Schema};
 

@@ -1,4 +1,4 @@
-//! Mistakes of descriptions that use others.
+//! Tests mistakes in descriptions that use other devices as parts.
 
 use super::{BYTE, Found, finish};
 use glint::dsl::{Designer, Signal, end, step, valid};

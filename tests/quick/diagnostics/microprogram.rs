@@ -1,4 +1,4 @@
-//! Mistakes in microprograms: order and ends of microinstructions, selections, `valid`, jumps and loops.
+//! Tests mistakes in microprograms: the order and the end of microinstructions, selections, `valid`, jumps and loops.
 
 use glint::dsl::{Designer, Signal, StepSetting, end, jump_if, loop_while, next, step, valid};
 use glint::fixed::{Format, Overflow, Rounding};

@@ -1,4 +1,5 @@
-//! Every mistake that a description can make, with the message that names signals and source line.
+//! Tests the mistakes that a device's description can contain: each has a message that names the signals and the source line,
+//! and a code.
 
 mod instances;
 mod microprogram;

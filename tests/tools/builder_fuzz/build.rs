@@ -1,4 +1,4 @@
-//! Descriptions drawn at random: calls of the builder, right ones and wrong ones.
+//! Draws random descriptions: lists of calls of the DSL, without mistakes or with some.
 
 use glint::base::diagnostic::Diagnostics;
 use glint::dsl::{Designer, Register, Signal, StepSetting, end, jump_if, loop_while, step, valid};

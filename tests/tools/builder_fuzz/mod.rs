@@ -1,5 +1,7 @@
-//! Whatever is asked of the builder, it answers with a design that can be simulated and written, or with
-//! diagnostics that have a location; and what it accepts, the tools accept.
+//! Tests the DSL with random descriptions: it returns a design that can be simulated and emitted, or diagnostics with a message
+//! and a source line.
+//!
+//! Verilator, Icarus Verilog and Yosys must accept the emitted Verilog of a sample of right descriptions.
 
 mod build;
 

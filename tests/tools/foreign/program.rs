@@ -1,5 +1,5 @@
-//! A program outside Glint's workspace: the device of `examples/fresnel`, the catalogue's `function`, and a device of which `function`
-//! is a part. `tests/tools/foreign.rs` makes a crate of it.
+//! A program outside Glint's workspace, with three devices: the device of `examples/fresnel`, the catalogue's `function`, and
+//! `root`, which has `function` as a part. `tests/tools/foreign.rs` makes a crate of it.
 
 #[allow(dead_code)]
 #[path = "fresnel/main.rs"]

@@ -1,4 +1,5 @@
-//! The module for LiteX in systems that LiteX builds, with the Verilog simulated.
+//! Tests the module for LiteX: LiteX builds systems with a core, and the Verilog of these systems computes the right results in
+//! simulation.
 
 use std::path::Path;
 

@@ -1,5 +1,5 @@
-//! The files for vendors' tools: Tcl against stand-ins for their commands, IP-XACT against its schema and the
-//! Verilog, FuseSoC's targets, and ROM contents in the Verilog.
+//! Tests the files for vendors' tools: Tcl scripts with stand-ins for the tools' commands, IP-XACT against its schema and the
+//! Verilog, FuseSoC's targets, and ROM contents inside the Verilog.
 
 use std::fs;
 use std::path::Path;

@@ -1,4 +1,5 @@
-//! Faults in the text of wrappers: lint, a shipped bench or a proof notices all but those that change nothing.
+//! Tests faults in the text of wrappers: lint, a shipped bench or a proof notices each of them, except the faults listed as
+//! harmless in `harmless.txt`. A default run draws four faults for each wrapper's configuration.
 
 use std::time::Duration;
 

@@ -1,4 +1,4 @@
-//! The claims of seed 002, the paper on W.
+//! Measures the claims of seed 002, the paper about the function W.
 
 use std::f64::consts::{FRAC_PI_2, PI};
 

@@ -1,4 +1,4 @@
-//! The claims of seed 000, the patent of `quad-cosine`.
+//! Measures the claims of seed 000, the patent of the device `quad-cosine`.
 
 use super::super::measure;
 use super::{

@@ -1,4 +1,4 @@
-//! The claims of seed 001, the patent of `rough`.
+//! Measures the claims of seed 001, the patent of the device `rough`.
 
 use super::{Claim, Measured, Verdict, claim, found, holds_if, plain};
 use glint::core::Core;

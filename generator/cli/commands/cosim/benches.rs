@@ -94,7 +94,8 @@ impl CommandReport for BenchReport<'_> {
 }
 
 /// Emits a bench with `points` results, and runs it in an external simulator. The expected outputs are values on which golden
-/// model and built-in simulator agree. If the bench fails, also writes a waveform.
+/// model and built-in simulator agree. If the bench fails, also writes a waveform. Fails if the files cannot be made, or if the
+/// simulator is missing, refuses the bench or reaches the time limit.
 fn bench(
     one: &Loaded,
     which: VerilogSimulator,

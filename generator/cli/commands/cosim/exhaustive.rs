@@ -29,12 +29,13 @@ const WORTH_SHARING: Duration = Duration::from_secs(60);
 const CORES: [u32; 3] = [1, 16, 1000];
 
 /// Runs `glint cosim --exhaustive`: measures the errors at all operands, and compares them with the bound of the accuracy
-/// contract. It also compares model and hardware clock by clock for every combination of operands, if there are not too many.
-/// Returns whether everything holds.
+/// contract. The command also compares model and hardware clock by clock for every combination of operands, if there are not
+/// too many. Returns whether everything holds.
 ///
 /// # Errors
-/// Fails if a configuration has problems, if the file of `--resume` belongs to another check or is damaged, or if a signal has
-/// interrupted the check.
+/// Fails if a configuration has problems, if the values of `--values` are not valid, if the file of `--resume` belongs to
+/// another check or is damaged, or if a signal has interrupted the check. `--resume` with several configurations is wrong
+/// usage.
 pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) -> Result<bool> {
     let loaded = load(registry, &arguments.configs.paths)?;
     if arguments.resume.is_some() && loaded.len() != 1 {
@@ -82,7 +83,8 @@ pub fn read(path: &Path) -> Result<Option<ShardState>> {
 }
 
 /// Runs the job until the shard is done, and saves the state in `file` every few seconds, if a file is given. After a signal,
-/// it saves the state and fails with [`Failure::Interrupted`].
+/// it saves the state and fails with [`Failure::Interrupted`]. Fails also if the design cannot be simulated, or if the state
+/// cannot be saved.
 fn prove(
     output: OutputOptions,
     job: &Job<'_>,

@@ -13,7 +13,7 @@ use crate::report::CommandReport;
 use crate::{OutputOptions, failure, tables};
 use glint_golden::Contract;
 
-/// The result of a point. It is overwritten for each point, to avoid new allocations.
+/// The result of a point. The value is overwritten for each point, to avoid new allocations.
 #[derive(Default)]
 struct PointResult {
     operands: Vec<i64>,

@@ -76,8 +76,8 @@ pub fn missing(contract: &dyn Contract, given: &[Option<i64>]) -> Vec<String> {
 /// with 8 fraction bits.
 ///
 /// # Errors
-/// Fails if the text is not a number, if the number exceeds the format, or if it is a fraction and the format has only
-/// integers. The message names the operand.
+/// Fails if the text is not a number, if the number exceeds the format or has more than 63 bits, or if it is a fraction and the
+/// format has only integers. The message names the operand.
 pub fn named_value(operand: &Operand, text: &str) -> Result<i64, String> {
     value(operand, text).map_err(|why| format!("operand `{}`: {why}", operand.name))
 }

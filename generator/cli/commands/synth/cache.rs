@@ -10,7 +10,7 @@ use crate::destination;
 use glint_base::input;
 use glint_prove::synth::{Figures, Target};
 
-/// The folder next to the configuration file. It may be deleted at any time.
+/// The folder next to the configuration file. The folder may be deleted at any time.
 const FOLDER: &str = ".glint";
 
 /// The folder with the measurements, one file for each configuration and target. For example, `.glint/rough.ecp5.json`. If a

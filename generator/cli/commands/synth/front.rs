@@ -18,7 +18,7 @@ use glint_show::evidence::chart::{Chart, ChartAxis, Series};
 struct MeasuredArchitecture {
     architecture: Architecture,
     figures: Figures,
-    /// The rate in million points per second, at the median frequency. It is 0 if the core does not fit the chip.
+    /// The rate in million points per second, at the median frequency. The rate is 0 if the core does not fit the chip.
     rate: f64,
     /// The area in look-up tables, in which DSP blocks and block RAMs count as look-up tables too.
     area: f64,

@@ -10,7 +10,8 @@ use glint_show::evidence::chart::{Chart, ChartAxis, Series};
 /// Returns the plot as the text of an SVG file that needs no other file.
 ///
 /// # Errors
-/// Fails if the Pareto front of the search has fewer than two configurations, since these give no line.
+/// Fails if the Pareto front of the search has fewer than two configurations or an error of 0, since these give no line. Fails
+/// also if the plotting library fails.
 pub fn plot(answer: &Answer, arguments: &Arguments) -> Result<String> {
     let is_best = |candidate: &&Candidate| candidate.config == answer.best.config;
     let (Some(first), Some(last)) = (answer.front.first(), answer.front.last()) else {

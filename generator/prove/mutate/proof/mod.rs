@@ -62,7 +62,8 @@ impl<'a> Prover<'a> {
         }
     }
 
-    /// Returns whether the induction over clocks proves the fault at `site` equivalent.
+    /// Returns whether the induction over clocks proves the fault at `site` equivalent. A fault that changes a reset is never
+    /// proved by induction.
     fn by_induction(&self, site: &Site) -> bool {
         if self.changes_reset(site) {
             return false;
@@ -122,8 +123,8 @@ impl<'a> Prover<'a> {
     }
 }
 
-/// Returns, for each microinstruction, a mask for each net: the bits that are compared in this microinstruction. They are the
-/// bits of outputs and of predicted registers, and in a pipeline also of checkpoints.
+/// Returns, for each microinstruction, a mask for each net: the bits that are compared in this microinstruction. The compared
+/// bits are the bits of outputs and of predicted registers, and in a pipeline also of checkpoints.
 fn compared_bits(design: &Design, length: usize) -> Vec<Vec<u64>> {
     let mut always: Vec<NetId> = design.outputs().map(|port| port.net).collect();
     for register in &design.registers {

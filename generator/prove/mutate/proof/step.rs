@@ -20,7 +20,7 @@ pub(super) struct Order<'a> {
     order: Vec<NetId>,
     /// For each net, the first net with the same driver, and so with the same value.
     same: Vec<NetId>,
-    /// The register with the number of the microinstruction; none in a pipeline that takes a point every clock.
+    /// The register with the number of the microinstruction; `None` in a pipeline that takes a point every clock.
     counter: Option<RegId>,
     /// For a pipeline whose interval is longer than 1: the interval of raw values of each net over all slots. Otherwise empty.
     in_all_slots: Vec<Interval>,

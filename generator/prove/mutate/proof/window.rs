@@ -1,9 +1,9 @@
 //! Proves a fault equivalent by trying every combination of values on the nets around it.
 //!
-//! A window is a part of the netlist. It reaches forward from the fault over some cells, at most to registers, ROMs and
-//! outputs. It reaches backward to a minimum cut: the fewest bits that determine the window. The proof tries every value in the
-//! intervals of these nets, at most 2^22 combinations. For example, the window of an inverted bit may end at an AND that masks
-//! the bit.
+//! A window is a part of the netlist. The window reaches forward from the fault over some cells, at most to registers, ROMs and
+//! outputs. The window reaches backward to a minimum cut: the fewest bits that determine the window. The proof tries every
+//! value in the intervals of these nets, at most 2^22 combinations. For example, the window of an inverted bit may end at an
+//! AND that masks the bit.
 
 use std::borrow::Cow;
 use std::collections::{BTreeMap, BTreeSet};
@@ -30,8 +30,8 @@ type LanesByNet = Vec<Option<Box<NetLanes>>>;
 /// The largest number of combinations that are tried, as a power of two.
 const BITS: u32 = 22;
 
-/// The distance between the chunks of combinations that are tried one after the other. It is prime, so that all chunks are
-/// tried. It is large, because neighbouring combinations tend to give the same answer.
+/// The distance between the chunks of combinations that are tried one after the other. The distance is prime, so that all
+/// chunks are tried. The distance is large, because neighbouring combinations tend to give the same answer.
 const STRIDE: u64 = 40_009;
 
 /// A prover for one design that tries every combination of values in a window, a small part of the netlist around a fault.
@@ -104,8 +104,9 @@ impl<'a> Windows<'a> {
         })
     }
 
-    /// Proves a fault equivalent: returns whether no combination of values in the window around it lets the fault change a value
-    /// outside.
+    /// Proves a fault equivalent: returns whether no combination of values in the window around the fault lets the fault change
+    /// a value outside. Returns `false` if this is not proved. A fault in a register, an input, an enable, a reset or the
+    /// control ROM is never proved here; a fault in words of another ROM that are never read always is.
     pub(super) fn proves(&self, site: &Site) -> bool {
         match site {
             Site::Words(rom, words) if *rom != self.design.control.rom => {

@@ -48,7 +48,8 @@ pub struct PageInputs<'a> {
 pub const FORMATS: &str = "Formats: `uI.F` is unsigned, `sI.F` two's complement, with I integer bits (a sign bit apart) \
                            and F fraction bits; the value of a signal is its integer times 2⁻ᶠ.";
 
-/// Returns the name of the source, such as a patent, whose figure numbers the blocks.
+/// Returns a sentence about the numbers of the blocks: whether the figure of the source document, such as a patent, numbers
+/// them.
 pub fn numbering(design: &Design) -> &'static str {
     if design.nets.iter().any(|net| net.block.is_some()) {
         "In order of their numbers in the source's figure; those without a number are ours."
@@ -65,7 +66,8 @@ pub fn format_text(format: Format) -> String {
     }
 }
 
-/// Returns a sentence with the configuration key that would reduce the error bound most. It is empty if no key would.
+/// Returns a sentence with the changes of keys in [`PageInputs::advice`], which reduce the error bound. The sentence is empty
+/// without advice.
 pub fn limit(inputs: &PageInputs) -> String {
     match &inputs.advice {
         Some(advice) => format!("The key that helps most: {advice}."),
@@ -73,7 +75,7 @@ pub fn limit(inputs: &PageInputs) -> String {
     }
 }
 
-/// Returns sentences about the error bound and the evidence for it.
+/// Returns sentences about the error bound and the evidence for it. If the contract states no bound, the text says so.
 pub fn accuracy(contract: &dyn Contract, backing: &Backing) -> String {
     let bound = contract.bound();
     if !bound.is_stated() {
@@ -231,8 +233,8 @@ pub fn fields(design: &Design) -> TextTable {
     table.without_empty("lines")
 }
 
-/// Returns a table of the microprogram as the source patents print theirs: a row for each microinstruction, a column for each
-/// control line.
+/// Returns a table of the microprogram as the source patents print theirs: a row for each microinstruction, and a column for
+/// each field of the control word. A cell has the bits of the field, for example `0 1`.
 pub fn microprogram(design: &Design) -> TextTable {
     let fields = facts::fields(design);
     let mut headings = String::new();
@@ -395,7 +397,8 @@ pub fn example(contract: &dyn Contract, example: &WorkedExample) -> TextTable {
     table
 }
 
-/// Returns a table of the device's keys. Keys that every device has are listed only if they are not at their defaults.
+/// Returns a table of the device's keys. Keys that every device has are listed only if they are not at their defaults. A key
+/// that does not apply has the value `–`.
 pub fn keys(schema: &Schema, config: &Config) -> TextTable {
     let mut table = TextTable::of("key | value | accepts | what it governs");
     let mut keys: Vec<&Key> = schema.keys.iter().collect();

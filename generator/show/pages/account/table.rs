@@ -28,8 +28,9 @@ pub struct TextTable {
 }
 
 impl TextTable {
-    /// Makes a table without rows from its headings, which are separated by `|`. A heading with a colon at its end belongs to a
-    /// column of numbers. For example, `port | bits:` has a column of words and a column of numbers.
+    /// Makes a table without rows from its headings, which are separated by `|` with a space on each side. A heading with a
+    /// colon at its end belongs to a column of numbers. For example, `port | bits:` has a column of words and a column of
+    /// numbers.
     pub fn of(headings: &str) -> Self {
         let column = |heading: &'_ str| match heading.strip_suffix(':') {
             Some(heading) => Column { heading: heading.to_owned(), align: Align::Right },

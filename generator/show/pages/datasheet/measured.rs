@@ -11,9 +11,9 @@ const NONE: &str = "–";
 /// The measurements of a core as the datasheet prints them.
 pub struct RecordView {
     pub table: TableView,
-    /// The longest path on each target: the name of the target, and the path as text.
+    /// The longest path on each target that was timed: the name of the chip or cell library, and the path as text.
     pub paths: Vec<(String, String)>,
-    /// The targets on which no frequency was measured: the name of each, and the reason.
+    /// The targets on which no frequency was measured: the name of the chip, and the reason.
     pub untimed: Vec<(String, String)>,
     pub tools: String,
 }
@@ -42,9 +42,9 @@ impl RecordView {
     }
 }
 
-/// Returns the measurement on one FPGA, with its frequency and its rate, for the summary at the head of the datasheet. The
-/// FPGA is `target` if the record has it, otherwise the FPGA with the most points per second. For example, a pipeline for
-/// ECP5 shows its numbers on ECP5, even if another FPGA is faster.
+/// Returns the measurement on one FPGA, with its frequency and its rate, for the summary at the head of the datasheet. The FPGA
+/// is `target` if the record has it, otherwise the FPGA with the most points per second. For example, a pipeline for ECP5 shows
+/// its numbers on ECP5, even if another FPGA is faster. Returns `None` if the record has no frequency of an FPGA.
 pub fn leading<'r>(
     record: &'r SynthesisRecord,
     target: Option<&str>,

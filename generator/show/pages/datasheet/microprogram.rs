@@ -1,5 +1,5 @@
-//! Makes the datasheet's table of the microprogram in the form that the patents use. It has a row for each microinstruction and
-//! a column for each control line.
+//! Makes the datasheet's table of the microprogram in the form that the patents use. The table has a row for each
+//! microinstruction and a column for each control line.
 
 use crate::pages::account;
 use crate::pages::markup::html;
@@ -19,7 +19,8 @@ pub struct Microprogram {
 pub struct FieldView {
     /// The name of the field.
     pub name: String,
-    /// For each control line of the field, its number in the source's figure, or else its bit in the control word.
+    /// For each control line of the field, its number in the source's figure. If the figure numbers no line of any field, it is
+    /// the bit in the control word. If the figure numbers only other fields, it is `–`.
     pub lines: Vec<String>,
 }
 

@@ -90,10 +90,10 @@ pub fn steps(synthesis: bool) -> usize {
     curves::STEPS + 1 + if synthesis { COMPARED.len() } else { 0 }
 }
 
-/// Makes the datasheet of a core. It calls `done` after each step of work, so that a caller can show progress.
+/// Makes the datasheet of a core. The function calls `done` after each step of work, so that a caller can show progress.
 ///
 /// # Errors
-/// Fails if a simulated computation of the device never ends, or if synthesis fails.
+/// Fails if a simulated computation of the device never ends, if synthesis fails, or if a picture or a chart cannot be drawn.
 pub fn datasheet(subject: &Subject, done: &(dyn Fn() + Sync)) -> Result<Datasheet> {
     let core = subject.core;
     let contract = core.contract.as_ref();

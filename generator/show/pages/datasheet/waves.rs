@@ -1,6 +1,6 @@
 //! Records the waveform of one computation, or of several points in a pipeline, with the built-in simulator.
 //!
-//! A waveform has one lane for each signal. It can be written as JSON for the drawing tool WaveDrom.
+//! A waveform has one lane for each signal. A waveform can be written as JSON for the drawing tool WaveDrom.
 
 use anyhow::Result;
 use serde_json::{Value, json};
@@ -43,7 +43,7 @@ pub struct Waves {
 pub struct Lane {
     /// The name of the signal.
     pub name: String,
-    /// The number in the source's figure of the block that drives the signal.
+    /// The number in the source's figure of the block that drives the signal; `None` if the figure has no such number.
     pub number: Option<u16>,
     /// The style in which the lane is drawn.
     pub shape: LaneStyle,
@@ -93,7 +93,7 @@ impl Waves {
     }
 
     /// Records the waveform of a pipeline: the handshake, the operands while `in_valid` is 1, and the results while `out_valid`
-    /// is 1.
+    /// is 1. Fails if the simulation never shows the results.
     fn points(core: &Core) -> Result<Self> {
         let design = &core.design;
         let groups: [&[Role]; 6] = [
@@ -136,8 +136,8 @@ impl Waves {
         Ok(Self::cut(design, "points through the pipeline", clocks.len(), lanes))
     }
 
-    /// Records the waveform of a core with a microprogram: the handshake, the microinstruction, the architectural registers,
-    /// and the results of one computation.
+    /// Records the waveform of a core with a microprogram: the handshake, the microinstruction, the architectural registers
+    /// that change, and the results of one computation. Fails if the computation never ends.
     fn computation(core: &Core) -> Result<Self> {
         let design = &core.design;
         let Handshake { start, busy, valid, done, .. } = design.handshake()?;
@@ -172,8 +172,8 @@ impl Waves {
         Self { name: design.name.clone(), pipelined, what, clocks: shown, lanes }
     }
 
-    /// Returns the number of the first clock in which the signal `name` is 1. Returns `None` if the signal is not recorded, or
-    /// never 1.
+    /// Returns the number of the first clock in which the signal `name` is 1, among the clocks that the diagram shows. Returns
+    /// `None` if the signal is not recorded, or is 1 in none of these clocks.
     pub fn first(&self, name: &str) -> Option<u32> {
         let lane = self.lanes.iter().find(|lane| lane.name == name)?;
         let at = lane.values.iter().position(|value| value.as_deref() == Some("1"))?;
@@ -285,7 +285,7 @@ fn clock_lane(clocks: usize) -> Lane {
     }
 }
 
-/// Returns the style for a signal of this format.
+/// Returns the style for a signal of this format: a bit, or a bus if the format has more bits than one.
 fn shape(format: Format) -> LaneStyle {
     if format.width() == 1 { LaneStyle::Bit } else { LaneStyle::Bus }
 }
@@ -337,9 +337,9 @@ fn text(format: Format, bits: u64) -> String {
     }
 }
 
-/// Returns the numbers of the clocks that the diagram shows of a computation with `clocks` clocks, in ascending order. It shows
-/// all clocks of a computation with at most 40 clocks, and otherwise the first 24 and the last 8. For example, it shows the
-/// clocks 0 to 23 and 92 to 99 of 100 clocks.
+/// Returns the numbers of the clocks that the diagram shows of a computation with `clocks` clocks, in ascending order. The
+/// diagram shows all clocks of a computation with at most 40 clocks, and otherwise the first 24 and the last 8. For example,
+/// the diagram shows the clocks 0 to 23 and 92 to 99 of 100 clocks.
 fn shown(clocks: usize) -> Vec<usize> {
     match clocks {
         0..=MOST => (0..clocks).collect(),

@@ -34,7 +34,7 @@ pub struct DiagramBox {
     pub control: String,
     /// The text that appears when the pointer is on the box.
     pub title: String,
-    /// The stage of the box in a pipeline; `None` for a port.
+    /// The stage of the box in a pipeline; `None` for a port, and for every box of a sequential core.
     pub stage: Option<usize>,
 }
 
@@ -183,7 +183,8 @@ impl<'a> GraphBuilder<'a> {
         }
     }
 
-    /// Adds the output ports: the results and the handshake. It leaves out `in_ready`, which carries no data of a point.
+    /// Adds the output ports: the results and the handshake. The function leaves out `in_ready`, which carries no data of a
+    /// point.
     fn outputs(&mut self, control: Option<usize>) {
         for port in self.design.outputs().filter(|port| port.role != Role::InReady) {
             let at = self.port(port.net, BoxForm::Output);

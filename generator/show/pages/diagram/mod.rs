@@ -24,7 +24,8 @@ const LINE: i32 = 14;
 /// The space above, and below, the text in a box.
 const PADDING: i32 = 6;
 
-/// The largest number of characters of a caption on one line. A longer caption takes two lines.
+/// The largest number of characters of a caption on one line. A longer caption has a line for each of its parts, which are
+/// separated by ` · `.
 const LONG: usize = 17;
 
 /// The smallest distance between two pins of a box.

@@ -77,7 +77,7 @@ pub struct Routes {
 }
 
 impl Routes {
-    /// Returns the vertical position of the topmost wire.
+    /// Returns the vertical position of the topmost wire, or `f64::MAX` without wires.
     pub fn top(&self) -> f64 {
         let mut top = f64::MAX;
         for piece in self.nets.iter().flat_map(|net| &net.pieces) {
@@ -86,7 +86,7 @@ impl Routes {
         top
     }
 
-    /// Returns the vertical position of the lowest wire.
+    /// Returns the vertical position of the lowest wire, or 0 without wires. Positions grow downward.
     pub fn bottom(&self) -> f64 {
         let mut bottom: f64 = 0.0;
         for piece in self.nets.iter().flat_map(|net| &net.pieces) {
@@ -127,7 +127,8 @@ pub fn lanes(graph: &DiagramGraph, back: &[bool]) -> Vec<Vec<usize>> {
     lanes
 }
 
-/// Routes the wires between the boxes of a placement.
+/// Routes the wires between the boxes of a placement. `bodies` are the positions of the boxes, and `lanes` the lanes that the
+/// function [`lanes`] returns for each box.
 pub fn routes(
     graph: &DiagramGraph,
     placement: &Placement,
@@ -167,8 +168,8 @@ struct Router<'a> {
 }
 
 impl Router<'_> {
-    /// Returns the y coordinate of a box's output. It is in the middle of the box and its lanes, where the layout begins the
-    /// wires.
+    /// Returns the y coordinate of a box's output. The output is in the middle of the box and its lanes, where the layout
+    /// begins the wires.
     fn out(&self, at: usize) -> f64 {
         let body = &self.bodies[at];
         self.placement.middle[at].clamp(body.upper + EDGE, body.lower - EDGE)

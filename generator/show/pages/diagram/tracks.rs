@@ -5,8 +5,8 @@
 /// The smallest distance at which two parallel lines do not seem to touch, in units of the drawing.
 const NEAR: f64 = 5.0;
 
-/// The cost of two wires that would lie upon each other, as a number of crossings. It exceeds the crossings that occur in a
-/// gap.
+/// The cost of two wires that would lie upon each other, as a number of crossings. This cost exceeds the crossings that occur
+/// in a gap.
 const OVERLAP: usize = 1000;
 
 /// The side of the gap between two columns at which a wire enters or leaves the gap.

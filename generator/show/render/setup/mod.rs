@@ -76,7 +76,7 @@ impl std::error::Error for Error {}
 pub struct Arc {
     /// θ₁, the angle between the normal N₁ and the half vector H₁ at the start of the line.
     pub theta_1: f64,
-    /// θ₂, the angle between the normal N₂ and the half vector H₂ at the end of the line. It is also the angle between N₁ and
+    /// θ₂, the angle between the normal N₂ and the half vector H₂ at the end of the line. θ₂ is also the angle between N₁ and
     /// H₂′.
     pub theta_2: f64,
     /// γ, the angle by which the half vector turns from the start H₁ to the end H₂′ of the line; less than π.
@@ -84,8 +84,8 @@ pub struct Arc {
     /// P·cos θ₁ = (cos θ₂ − cos θ₁·cos γ)/sin γ, from which λ follows; 0 for γ = 0. θ₁ and θ₂ are the angles between normal and
     /// half vector at the two ends of the line.
     pub rise: f64,
-    /// λ, the angle by which the half vector must turn from its start H₁ to the point of its circle that is nearest to the normal
-    /// N₁. It is `arctan P` for cos θ₁ > 0.
+    /// λ, the angle by which the half vector must turn from its start H₁ to the point of its circle that is nearest to the
+    /// normal N₁. λ is `arctan P` for cos θ₁ > 0.
     pub lambda: f64,
     /// A = cos θ₁/cos λ, the largest cosine between the normal N₁ and any half vector on the circle.
     pub peak: f64,
@@ -153,13 +153,13 @@ impl Arc {
         Ok(Self { theta_1, theta_2, gamma, rise, lambda, peak })
     }
 
-    /// Returns cos δ, the cosine between normal and half vector, at the part `t` of the line, 0 … 1. It is A·cos ζ. It is
-    /// negative if the surface faces away, except that it is 0 for γ = 0.
+    /// Returns cos δ, the cosine between normal and half vector, at the part `t` of the line, 0 … 1. The cosine is A·cos ζ. The
+    /// cosine is negative if the surface faces away, except that it is 0 for γ = 0.
     pub fn cosine(&self, t: f64) -> f64 {
         self.peak * libm::cos(t * self.gamma - self.lambda)
     }
 
-    /// Returns P = (cos θ₂ − cos θ₁·cos γ)/(cos θ₁·sin γ), whose arctangent is λ. It is infinite or not a number for cos θ₁ = 0.
+    /// Returns P = (cos θ₂ − cos θ₁·cos γ)/(cos θ₁·sin γ), whose arctangent is λ. P is infinite or not a number for cos θ₁ = 0.
     pub fn p(&self) -> f64 {
         self.rise / libm::cos(self.theta_1)
     }

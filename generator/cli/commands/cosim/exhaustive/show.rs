@@ -85,6 +85,7 @@ impl CommandReport for ProofReport<'_> {
 }
 
 /// Returns the first combination for which model and hardware differ, and writes its waveform. Returns `None` if they agree.
+/// Fails if the design cannot be simulated, or if the waveform cannot be written.
 fn found(
     one: &Loaded,
     job: &Job<'_>,
@@ -180,8 +181,8 @@ fn as_json(
     value
 }
 
-/// Returns a difference as JSON. It has the keys of a difference in a random run, but `seed` is null, and `combination`,
-/// `clock_of_computation` and `operands` are added.
+/// Returns a difference as JSON. The object has the keys of a difference in a random run, but `seed` is null, and
+/// `combination`, `clock_of_computation` and `operands` are added.
 fn mismatch_json((difference, reproducer): &(Difference, Reproducer)) -> Value {
     let mut value = reproducer.json(&difference.mismatch);
     let operands: BTreeMap<&str, String> = difference

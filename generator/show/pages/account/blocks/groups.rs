@@ -204,8 +204,8 @@ impl<'a> Groups<'a> {
         found
     }
 
-    /// Returns the nets from which a net is made: the operands of its cell, the data of a register or the address of
-    /// a table.
+    /// Returns the nets from which a net is made: the operands of its cell, the data of a register or the address of a ROM. A
+    /// port, a constant or the control ROM gives none.
     pub fn operands(&self, id: NetId) -> Vec<NetId> {
         match &self.design.net(id).driver {
             Driver::Op(op) => op.operands(),
@@ -327,9 +327,9 @@ impl<'a> Groups<'a> {
         operands
     }
 
-    /// Returns whether the sources of `operand` meet inside the block whose output is `head`, so that no joint is drawn. This
-    /// is so if the block itself is one of the sources, or if the gates at which the sources meet belong to the same
-    /// statement of the description as the block.
+    /// Returns whether the sources of `operand` meet inside the block whose output is `head`, so that no joint is drawn. The
+    /// sources meet inside if the block itself is one of the sources, or if the gates at which the sources meet belong to the
+    /// same statement of the description as the block.
     pub fn is_part(&self, operand: NetId, head: NetId) -> bool {
         if self.sources[operand.index()].contains(&head) {
             return true;
@@ -425,7 +425,8 @@ impl<'a> Groups<'a> {
     }
 }
 
-/// Returns whether a net is a register, a table or an operator, or is shown because the source numbers or documents it.
+/// Returns whether a net of the datapath is a register, a ROM or an operator, or is shown because the source numbers or the
+/// description documents it. A register of a pipeline is not, because it only delays a value.
 fn is_cell(design: &Design, id: NetId, net: &Net, figure: bool) -> bool {
     if net.partition != Partition::Datapath {
         return false;

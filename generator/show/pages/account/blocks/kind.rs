@@ -88,7 +88,8 @@ pub const MULTIPLIER: usize = 0;
 pub const ADDER: usize = 1;
 pub const MUX: usize = 4;
 
-/// Returns the index in [`OPERATORS`] of the operator that drives a net.
+/// Returns the index in [`OPERATORS`] of the operator that drives a net, or `None` if no such operator drives it. For example,
+/// an adder gives 1.
 pub fn operator(driver: &Driver) -> Option<usize> {
     match driver {
         Driver::Op(Op::Mul(..)) => Some(MULTIPLIER),

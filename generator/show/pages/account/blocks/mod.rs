@@ -1,8 +1,9 @@
 //! Finds the blocks of a datapath, which pages list and the block diagram draws.
 //!
-//! A block is the hardware of one statement in the device's description, for example a rounding with its limits, a tree of muxes,
-//! or a product in parts. Every register, ROM and operator of the netlist is in exactly one block. Wiring, and gates with one
-//! signal, belong to the connection between two blocks. In a pipeline, a register belongs to the block whose value it delays.
+//! A block is the hardware of one statement in the device's description, for example a rounding with its limits, a tree of
+//! muxes, or a product in parts. Every register, ROM and operator of the datapath is in exactly one block. Wiring, and gates
+//! with one signal, belong to the connection between two blocks. In a pipeline, a register belongs to the block or the operand
+//! port whose value it delays, and the registers of the handshake are in no block.
 
 mod groups;
 mod kind;
@@ -70,7 +71,7 @@ pub struct Block {
     pub inputs: Vec<NetId>,
     /// For a mux, the select inputs: a field of the control word, or blocks.
     pub selected_by: Vec<NetId>,
-    /// The comment of the description on the block, one line. It may be empty.
+    /// The comment of the description on the block, one line. The comment may be empty.
     pub doc: String,
     /// The nets of the registers, ROMs and operators inside the block.
     pub cells: Vec<NetId>,
@@ -413,7 +414,8 @@ impl<'a> Blocks<'a> {
         &self.groups.sources[net.index()]
     }
 
-    /// Returns the number of the first and of the last pipeline stage that contains operators of the block.
+    /// Returns the number of the first and of the last pipeline stage that contains operators of the block. A block without
+    /// operators has the stage of its output. A sequential core gives 0 and 0.
     pub fn stages(&self, block: &Block) -> (usize, usize) {
         let design = self.design;
         let Some(pipeline) = &design.pipeline else { return (0, 0) };
