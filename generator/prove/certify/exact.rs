@@ -12,6 +12,9 @@ use glint_base::fixed::exp2;
 use glint_formula::{Comparison, Expression, Function, Kind, Literal, Operator};
 use glint_golden::Operand;
 
+/// The largest exponent of a power that has a translation.
+const MOST_EXPONENT: f64 = 1000.0;
+
 /// One branch of a contract's formula that has conditions, such as `if x < 0`: a term, and the conditions under which this term
 /// is the formula's value. The terms `at_least` must not be negative, and the terms `at_most` must not be positive.
 #[derive(Clone, Debug, Default)]
@@ -155,6 +158,7 @@ pub fn untranslated(function: Function) -> String {
 ///
 /// # Errors
 /// Fails if the formula has a part without a translation, an unknown operand or table, or an exponent that varies in this case.
+/// A number that no `f64` represents, such as 0.1, has no translation. A power needs a natural exponent, or the base 2.
 pub fn branches(
     formula: &Expression,
     setting: &FormulaContext,
@@ -167,7 +171,12 @@ pub fn branches(
         return Ok(unconditional(variable_of(name, variable, power, setting, terms)));
     }
     match &formula.kind {
-        Kind::Number(literal) => Ok(unconditional(terms.number(literal.nearest()))),
+        Kind::Number(literal) if literal.is_exact() => {
+            Ok(unconditional(terms.number(literal.nearest())))
+        }
+        Kind::Number(literal) => {
+            Err(format!("the number `{}` is no binary fraction: it has no translation", literal.digits()))
+        }
         Kind::Operand(name) => Ok(unconditional(operand(name, setting, terms)?)),
         Kind::Word(rom, place) => Ok(unconditional(word(rom, place, setting, terms)?)),
         Kind::Constant(name, _) => Err(format!("the constant `{name}` has no translation")),
@@ -183,8 +192,12 @@ pub fn branches(
         Kind::Binary(Operator::Power, base, exponent) => {
             let exponent =
                 constant(exponent, setting).ok_or("a power with an exponent that varies")?;
-            if let Some(base) = constant(base, setting) {
-                return Ok(unconditional(terms.number(libm::pow(base, exponent))));
+            if let Some(power) = scaling(constant(base, setting), exponent) {
+                return Ok(unconditional(terms.number(power)));
+            }
+            let is_natural = exponent.fract() == 0.0 && (0.0..=MOST_EXPONENT).contains(&exponent);
+            if !is_natural {
+                return Err(format!("a power with the exponent {exponent} has no translation"));
             }
             let mut found = branches(base, setting, terms)?;
             for branch in &mut found {
@@ -350,16 +363,27 @@ fn variable_of(
     }
 }
 
+/// Returns `base` to the power `exponent` if `base` is 2 and `exponent` is an integer from −1000 to 1000, because an `f64`
+/// represents such a power exactly. Returns `None` for any other power. For example, 2 to the power −14 is 2⁻¹⁴.
+fn scaling(base: Option<f64>, exponent: f64) -> Option<f64> {
+    let is_power_of_two =
+        base == Some(2.0) && exponent.fract() == 0.0 && exponent.abs() <= MOST_EXPONENT;
+    is_power_of_two.then(|| exp2(exponent as i32))
+}
+
 /// Returns the value of a number or operand with a single value in this case. Returns `None` for any other formula.
 fn constant(formula: &Expression, setting: &FormulaContext) -> Option<f64> {
     let (low, high) = known_range(formula, setting)?;
     if low == high { Some(low) } else { None }
 }
 
-/// Returns the smallest and the largest value of a number or an operand in this case. Returns `None` for any other formula.
+/// Returns the smallest and the largest value of a number or an operand in this case. Returns `None` for any other formula, and
+/// for a number that no `f64` represents, such as 0.1.
 fn known_range(formula: &Expression, setting: &FormulaContext) -> Option<(f64, f64)> {
     match &formula.kind {
-        Kind::Number(literal) => Some((literal.nearest(), literal.nearest())),
+        Kind::Number(literal) if literal.is_exact() => {
+            Some((literal.nearest(), literal.nearest()))
+        }
         Kind::Operand(name) => setting.ranges.get(name).copied(),
         _ => None,
     }
@@ -451,4 +475,39 @@ fn exact_value(terms: &RealTerms, term: &RealTerm) -> Option<f64> {
 fn is_exact_sum(a: f64, b: f64) -> bool {
     let sum = a + b;
     sum - a == b && sum - b == a
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glint_formula::parse;
+
+    /// Returns the error message for a formula of the operand `x`, or `None` if the formula has a translation.
+    fn error(text: &str) -> Option<String> {
+        let variables = HashMap::from([("x".to_owned(), ("x".to_owned(), 0))]);
+        let ranges = HashMap::from([("x".to_owned(), (0.0, 1.0))]);
+        let words = HashMap::new();
+        let setting =
+            FormulaContext { variables: &variables, ranges: &ranges, words: &words, operands: &[] };
+        let formula = parse(text).expect("a formula");
+        branches(&formula, &setting, &mut RealTerms::default()).err()
+    }
+
+    /// A translation must have the value of the formula, because Gappa proves the bound of the translation.
+    #[test]
+    fn only_exact_numbers_and_natural_powers_are_translated() {
+        for text in ["x ** 3", "x ** 0", "0.5 * x", "2 ** -14 * x", "3 ** 2 * x", "1e0 - x"] {
+            assert_eq!(error(text), None, "{text}");
+        }
+        for (text, part) in [
+            ("x ** 0.5", "the exponent 0.5"),
+            ("x ** 1001", "the exponent 1001"),
+            ("3 ** -1 * x", "the exponent -1"),
+            ("2 ** 0.5 * x", "the exponent 0.5"),
+            ("0.1 * x", "the number `0.1`"),
+        ] {
+            let message = error(text);
+            assert!(message.as_deref().is_some_and(|it| it.contains(part)), "{text}: {message:?}");
+        }
+    }
 }
