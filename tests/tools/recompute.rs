@@ -91,7 +91,7 @@ fn a_wrong_word_is_noticed() {
     let wrong = format!("{}{:x}{}", &text[..at], digit ^ 1, &text[at + 1..]);
     put(&memory, &wrong);
     let (accepts, words) = said(dir.path());
-    assert!(!accepts && words.ends_with("word 1 is not that of the model"), "{words}");
+    assert!(!accepts && words.ends_with("word 1 differs from the model"), "{words}");
 
     // The model has the wrong word, too.
     let model = dir.path().join("software/f/f_model.c");
@@ -129,7 +129,7 @@ fn a_damaged_word_is_no_number() {
         put(&memory, text.replacen(&word, &damaged, 1));
         let (accepts, words) = said(dir.path());
         assert!(
-            !accepts && words.ends_with(&format!("is no hexadecimal number: {damaged}")),
+            !accepts && words.ends_with(&format!("is not a hexadecimal number: {damaged}")),
             "{words}"
         );
     }

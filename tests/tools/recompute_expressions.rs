@@ -196,7 +196,7 @@ fn a_wrong_word_is_noticed() {
     put(&memory, format!("{}{wrong}{}", &text[..at], &text[at + word.len()..]));
     let (code, output) = run(dir.path(), "rtl_out/f");
     assert_eq!(code, Some(1), "{output}");
-    assert!(output.ends_with("is not that of the model\n"), "{output}");
+    assert!(output.ends_with("differs from the model\n"), "{output}");
 
     // The model has the wrong word, too.
     let literal = |word: &str| format!("0x{}u", word.trim_start_matches('0'));
