@@ -28,9 +28,7 @@ pub fn describe(d: &Designer, config: &Config) {
     let octave = d.pipeline("octave", normalised.zeros).doc("number of leading zeros of cos gamma");
     let mantissa = normalised.word.bits(0, Format::unsigned(bits as i32 - 1, 0));
     let u = d.not("distance_next", mantissa);
-    let u = d
-        .pipeline("distance", u)
-        .doc("1.0 - cos gamma * 2^octave - 1 ulp, from 0 to one half");
+    let u = d.pipeline("distance", u).doc("1.0 - cos gamma * 2^octave - 1 ulp, from 0 to one half");
     decay::describe(d, config, cos_gamma, Decay::Logarithm, Distance { u, octave: Some(octave) });
 }
 

@@ -43,9 +43,10 @@ pub fn describe(d: &Designer, config: &Config) {
     let second = d
         .bus("second", operand_select, [zeta, base, accumulator.q()])
         .doc("second operand of the multiplier");
-    let product = d
-        .shared_mul("product", &first, &second)
-        .doc_on(Topic::Microprogram, "the shared product; its number of fraction bits depends on the operands");
+    let product = d.shared_mul("product", &first, &second).doc_on(
+        Topic::Microprogram,
+        "the shared product; its number of fraction bits depends on the operands",
+    );
     let rounding_f = keys.f.rounding;
     let distance =
         d.narrow("distance", product.of(complement, zeta), f, rounding_f, Overflow::Saturate);

@@ -62,17 +62,19 @@ pub fn describe<'d>(
     let small = d
         .register("decay_small", Format::BIT)
         .doc("1 if the decay is below 1/4 and has more fraction bits");
-    let halvings =
-        d.register("halvings", keys.halvings(of)).doc("n*decay: the number of halvings from 1.0 to f");
+    let halvings = d
+        .register("halvings", keys.halvings(of))
+        .doc("n*decay: the number of halvings from 1.0 to f");
     let operand_select = d.select("operand_select", &["decay", "power"]);
     let first =
         d.bus("first", operand_select, [way, factor.q()]).doc("first operand of the multiplier");
     let second = d
         .bus("second", operand_select, [ratio.q(), exponent])
         .doc("second operand of the multiplier");
-    let product = d
-        .shared_mul("product", &first, &second)
-        .doc_on(Topic::Microprogram, "the shared product; its number of fraction bits depends on the operands");
+    let product = d.shared_mul("product", &first, &second).doc_on(
+        Topic::Microprogram,
+        "the shared product; its number of fraction bits depends on the operands",
+    );
     // The product is below 2.0, because the decay is.
     let decay = product.of(way, ratio.q());
     let decay = d.narrow("decay", decay, keys.decay_format(), Rounding::Truncate, Overflow::Wrap);
@@ -100,15 +102,20 @@ pub fn describe<'d>(
     let rounded = exponential::halved(d, "exp2", exp2.q(), places, f.frac, keys.f.rounding);
     let reflectance = d.register("reflectance", f).doc("f");
     reflectance.takes(ends(d, cos_gamma, rounded));
-    let _ = d.output("f_out", reflectance.q()).doc("the reflectance f, for multipliers outside the core");
+    let _ = d
+        .output("f_out", reflectance.q())
+        .doc("the reflectance f, for multipliers outside the core");
 
     let outputs = colours.results(reflectance.q(), keys.f.output_rounding);
 
     let names = ["polynomial_select", "factor_of_offset", "offset_of_step", "polynomial_product"];
     let multiplier = StepMultiplier::new(d, names, &[&ratio, &exp2], &[]);
     let horner = |it: &PolynomialDatapath<'d, '_>, k: usize, name: &str| {
-        let what =
-            if k == 0 { "all coefficients".to_owned() } else { format!("coefficients from {k} on") };
+        let what = if k == 0 {
+            "all coefficients".to_owned()
+        } else {
+            format!("coefficients from {k} on")
+        };
         step(&format!("{name} <- {what}"), multiplier.step(it, k))
     };
     let mut steps = vec![step("distance <- 1 - cos gamma", [])];

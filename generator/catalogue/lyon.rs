@@ -59,8 +59,9 @@ pub fn describe(d: &Designer, config: &Config) {
     let format = Format::unsigned(1, f.frac);
     let value = d.narrow("beta_distance", scaled.value, format, rounding_f, Overflow::Saturate);
     let base = base(d, value.doc("beta*D^2, with as many fraction bits as f"), f);
-    let operand =
-        d.mux("multiplier4_operand", [base, accumulator.q()]).doc("the number that multiplier 4 squares");
+    let operand = d
+        .mux("multiplier4_operand", [base, accumulator.q()])
+        .doc("the number that multiplier 4 squares");
     let multiplier4 = d.mul("multiplier4", operand.out(), operand.out()).block(4);
     accumulator.takes(d.narrow("square", multiplier4, f, rounding_f, Overflow::Saturate));
     let outputs = colours.results(accumulator.q(), keys.f.output_rounding);
@@ -101,7 +102,10 @@ fn distance_in_turn<'d>(
     let zero = d.raw_constant("no_sum", 0, sum.format());
     let addend = d.mux("addend", [zero, sum.q()]).doc("the sum of the squares before");
     let multiplier1 = d.mul("multiplier1", component.out(), component.out()).block(1);
-    let adder1 = d.add("adder1", multiplier1, addend.out()).block(1).doc("the sum of squares, at the end D^2");
+    let adder1 = d
+        .add("adder1", multiplier1, addend.out())
+        .block(1)
+        .doc("the sum of squares, at the end D^2");
     // As in `rounded_distance`, the interval of a sum does not consider that squares are not negative.
     let (rounding, overflow) = (Rounding::Truncate, Overflow::Wrap);
     sum.takes(d.narrow("sum_next", adder1, sum.format(), rounding, overflow));

@@ -42,13 +42,18 @@ pub fn describe(d: &Designer, config: &Config) {
 
     let width = 2 * fraction + 4;
     let (word, places) = by_pairs(d, sum.q().read_as(integer(width)));
-    let mantissa = d.register("mantissa", integer(width)).doc("the sum of squares, scaled to 1.0 ... 4.0");
+    let mantissa =
+        d.register("mantissa", integer(width)).doc("the sum of squares, scaled to 1.0 ... 4.0");
     mantissa.takes(word);
-    let shift = d.register("shift", places.format()).doc("number of pairs of leading zeros of the sum of \
-                                                          squares");
+    let shift = d.register("shift", places.format()).doc(
+        "number of pairs of leading zeros of the sum of \
+                                                          squares",
+    );
     shift.takes(places);
 
-    let root = d.register("inverse", Format::unsigned(1, inverse)).doc("1/sqrt of the scaled sum of squares");
+    let root = d
+        .register("inverse", Format::unsigned(1, inverse))
+        .doc("1/sqrt of the scaled sum of squares");
     root.takes(inverse_root(d, mantissa.q(), address, inverse));
 
     let shifted = shifted(d, component.out(), shift.q(), fraction);

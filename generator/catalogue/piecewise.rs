@@ -333,9 +333,7 @@ fn table<'d>(
         };
         let doc = match part.len() {
             1 => "coefficient of the polynomial of a segment",
-            _ => {
-                "coefficients of the polynomial of a segment, the constant term in the top bits"
-            }
+            _ => "coefficients of the polynomial of a segment, the constant term in the top bits",
         };
         let rom = d.rom(&name, address, format, &words, tables.synchronous).doc(doc);
         for (k, format) in part.clone().zip(formats) {

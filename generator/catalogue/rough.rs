@@ -142,10 +142,10 @@ pub fn describe(d: &Designer, config: &Config) {
         .block(9)
         .doc("second operand of multiplier 10")
         .held();
-    let product = d
-        .shared_mul("multiplier10", &mux8, &mux9)
-        .block(10)
-        .doc_on(Topic::Microprogram, "the shared product; its number of fraction bits depends on the operands");
+    let product = d.shared_mul("multiplier10", &mux8, &mux9).block(10).doc_on(
+        Topic::Microprogram,
+        "the shared product; its number of fraction bits depends on the operands",
+    );
     let overflow = if formats.patent { Overflow::Wrap } else { Overflow::Saturate };
     let (rounding_products, rounding_result) = (formats.product_rounding, formats.result_rounding);
     let cos_cos = product.of(cos_gamma, cos_dgamma);

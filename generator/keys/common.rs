@@ -178,7 +178,11 @@ pub fn intensity_fraction(default: i64) -> Key {
 
 /// Makes the key `output.rounding`, the rounding of the colour outputs to integers.
 pub fn output_rounding() -> Key {
-    Key::rounding("output.rounding", "nearest", "Rounding mode of the colour outputs, which are integers.")
+    Key::rounding(
+        "output.rounding",
+        "nearest",
+        "Rounding mode of the colour outputs, which are integers.",
+    )
 }
 
 /// Makes the key `angle.fraction`, the number of fraction bits of an angle along a scan line, with the default `default`.

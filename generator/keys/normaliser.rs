@@ -30,8 +30,13 @@ pub(super) fn address() -> Key {
 
 /// Makes the key `inverse.fraction`, the number of fraction bits of the inverse root that the table gives.
 pub(super) fn inverse() -> Key {
-    Key::integer("inverse.fraction", 20, 6..=24, "Number of fraction bits R of the inverse root, whose format \
-                                                  is u1.R.")
+    Key::integer(
+        "inverse.fraction",
+        20,
+        6..=24,
+        "Number of fraction bits R of the inverse root, whose format \
+                                                  is u1.R.",
+    )
 }
 
 /// Returns the schema of the device `normaliser`: its configuration keys, and the check of their combinations.

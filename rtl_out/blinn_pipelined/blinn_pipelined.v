@@ -1,4 +1,4 @@
-// blinn_pipelined: Specular intensity by Blinn's function itself, a point a clock
+// blinn_pipelined: Specular intensity by Blinn's function itself, one point per clock
 //
 // out = colour * cos(gamma)^n
 //

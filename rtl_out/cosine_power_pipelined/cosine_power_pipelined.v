@@ -1,4 +1,5 @@
-// cosine_power_pipelined: Specular intensity by the cosine-power function, m = 16, a point a clock
+// cosine_power_pipelined: Specular intensity by the cosine-power function, m = 16, one point per
+// clock
 //
 // out = colour * (n/16 * (cos(gamma) - 1) + 1)^16
 //

@@ -1,4 +1,4 @@
-// gauss_pipelined: Specular intensity by a Gaussian of the angle, a point a clock
+// gauss_pipelined: Specular intensity by a Gaussian of the angle, one point per clock
 //
 // out = colour * exp(-n * gamma^2 / 2)
 //

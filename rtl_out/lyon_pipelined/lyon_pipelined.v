@@ -1,4 +1,4 @@
-// lyon_pipelined: Specular intensity from a difference vector, power 16, a point a clock
+// lyon_pipelined: Specular intensity from a difference vector, power 16, one point per clock
 //
 // out = colour * max(0, 1 - beta*D^2)^16, beta = 2^shift/(2*16), D = N - H
 //

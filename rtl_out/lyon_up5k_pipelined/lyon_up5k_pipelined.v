@@ -1,4 +1,4 @@
-// lyon_up5k_pipelined: Specular intensity from a difference vector, power 16, a point every 2
+// lyon_up5k_pipelined: Specular intensity from a difference vector, power 16, one point per 2
 // clocks
 //
 // out = colour * max(0, 1 - beta*D^2)^16, beta = 2^shift/(2*16), D = N - H

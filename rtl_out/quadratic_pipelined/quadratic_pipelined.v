@@ -1,5 +1,5 @@
-// quadratic_pipelined: Specular intensity by a parabola in cos(gamma), minimax coefficients, a
-// point a clock
+// quadratic_pipelined: Specular intensity by a parabola in cos(gamma), minimax coefficients, one
+// point per clock
 //
 // out = colour * max(0, c + a(n) * (c^2 - c)), c = cos(gamma)
 //

@@ -1,4 +1,4 @@
-// rough_pipelined: Specular intensity of a rough surface, a point a clock
+// rough_pipelined: Specular intensity of a rough surface, one point per clock
 //
 // out = colour * (n/2 * (cos(gamma +- dgamma) - 1) + 1)^2
 //

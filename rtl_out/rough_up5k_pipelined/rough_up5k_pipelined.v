@@ -1,4 +1,4 @@
-// rough_up5k_pipelined: Specular intensity of a rough surface, a point every 3 clocks
+// rough_up5k_pipelined: Specular intensity of a rough surface, one point per 3 clocks
 //
 // out = colour * (n/2 * (cos(gamma +- dgamma) - 1) + 1)^2
 //

@@ -1,4 +1,4 @@
-// rsqrt_pipelined: 1 / sqrt(x), by piecewise polynomials, a point a clock
+// rsqrt_pipelined: 1 / sqrt(x), by piecewise polynomials, one point per clock
 //
 // result = 1 / sqrt(x)
 //

@@ -1,4 +1,4 @@
-// schlick_pipelined: Specular intensity by Schlick's function, a point a clock
+// schlick_pipelined: Specular intensity by Schlick's function, one point per clock
 //
 // out = colour * cos(gamma) / (n - n * cos(gamma) + cos(gamma))
 //

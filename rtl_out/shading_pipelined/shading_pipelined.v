@@ -1,5 +1,5 @@
-// shading_pipelined: The colour of a point: a normal, a light, a half vector, a material, a point a
-// clock
+// shading_pipelined: The colour of a point: a normal, a light, a half vector, a material, one point
+// per clock
 //
 // out = ambient + diffuse*min(1, max(0, N.L)) + specular*f(c), c = min(1, max(0, N.H)), f(c) =
 // max(0, n/16*(c - 1) + 1)^16 where c > 0, else 0

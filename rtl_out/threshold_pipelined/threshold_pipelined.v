@@ -1,5 +1,5 @@
-// threshold_pipelined: Specular intensity by a parabola's square, above a level of visibility, a
-// point a clock
+// threshold_pipelined: Specular intensity by a parabola's square, above a level of visibility, one
+// point per clock
 //
 // out = colour * f, f = max(0, n/2 * (cos(gamma) - 1) + 1)^2; 0 where f < ROM(n)
 //

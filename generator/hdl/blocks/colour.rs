@@ -78,8 +78,7 @@ impl<'d> Colours<'d> {
         let d = self.designer;
         let operands = self.channels.iter().map(|channel| channel.operand.q());
         let colour = d.mux("colour", operands).doc("the colour that is multiplied by f");
-        let product =
-            d.mul("colour_product", f, colour.out()).doc("the output before rounding");
+        let product = d.mul("colour_product", f, colour.out()).doc("the output before rounding");
         let narrowed =
             d.narrow("colour_rounded", product, self.format, rounding, Overflow::Saturate);
         let mut steps = Vec::new();
@@ -116,9 +115,8 @@ impl<'d> Colours<'d> {
         let d = self.designer;
         for channel in &self.channels {
             let Channel { name, operand, blocks } = channel;
-            let mut product = d
-                .mul(&format!("{name}_product"), f, operand.q())
-                .doc("the output before rounding");
+            let mut product =
+                d.mul(&format!("{name}_product"), f, operand.q()).doc("the output before rounding");
             let exact =
                 if staged { d.pipeline(&format!("{name}_product_held"), product) } else { product };
             let rounded = intensity_name(name);

@@ -93,14 +93,15 @@ impl<'d> Divider<'d> {
             .doc("the quotient; each step shifts in one bit");
         let most = i128::from(quotient_bits) - 1;
         let last = d.raw_constant(&part("last"), most, Format::holding(0, most, 0));
-        let remaining = d.down_counter(&part("remaining"), last).doc("quotient bits after the next one");
+        let remaining =
+            d.down_counter(&part("remaining"), last).doc("quotient bits after the next one");
 
         let doubled = remainder.q().shift_left(1).with_fraction(frac);
-        let trial =
-            d.sub(&part("trial"), doubled, held.q()).doc("negative if the divisor exceeds the remainder");
+        let trial = d
+            .sub(&part("trial"), doubled, held.q())
+            .doc("negative if the divisor exceeds the remainder");
         let negative = trial.bit(trial.format().width() - 1);
-        let bit =
-            d.not(&part("bit"), negative).doc("the next quotient bit: 1 if the divisor fits");
+        let bit = d.not(&part("bit"), negative).doc("the next quotient bit: 1 if the divisor fits");
         let left = d.choose(&part("left"), bit, [doubled, trial]);
         let stepped = cut(&part("stepped"), left);
         let source = d.mux(&part("source"), [dividend, stepped]);
@@ -115,7 +116,9 @@ impl<'d> Divider<'d> {
             source,
             dividend,
             stepped,
-            more: d.any(&part("more"), remaining.q()).doc("1 if the next quotient bit is not the last"),
+            more: d
+                .any(&part("more"), remaining.q())
+                .doc("1 if the next quotient bit is not the last"),
         }
     }
 

@@ -77,11 +77,13 @@ impl<'d> Line<'d> {
         let mut length = d
             .operand("length", Format::unsigned(length_bits, 0))
             .doc("number of intervals: the number of points minus 1");
-        let mut angle =
-            d.register("angle", format).doc("angle of the current point, in right angles; wraps around");
+        let mut angle = d
+            .register("angle", format)
+            .doc("angle of the current point, in right angles; wraps around");
         let mut sum =
             d.add_modulo("next_angle", angle.q(), delta.q(), None).doc("angle of the next point");
-        let mut next = d.mux("angle_source", [start.q(), sum]).doc("angle of the first point, or of the next");
+        let mut next =
+            d.mux("angle_source", [start.q(), sum]).doc("angle of the first point, or of the next");
         let mut intervals = d.down_counter("intervals", length.q()).doc("intervals that remain");
         if let Some(blocks) = blocks {
             let OperandBlocks { inputs, register } = blocks.delta;

@@ -75,7 +75,10 @@ impl<'d> Squarings<'d> {
         let mut steps = vec![step(&format!("{name} <- base^2"), of_base)];
         if let Some(remaining) = self.counter {
             let one = self.designer.raw_constant("one_left", 1, remaining.q().format());
-            let more = self.designer.less("more", one, remaining.q()).doc("1 if this is not the last squaring");
+            let more = self
+                .designer
+                .less("more", one, remaining.q())
+                .doc("1 if this is not the last squaring");
             let square = format!("{name} <- {name}^2");
             let settings = again.into_iter().chain([
                 register.load(),

@@ -401,7 +401,10 @@ impl Designer {
         let taken = self.add_named("operands_load", Format::BIT, taken);
         self.set_doc(taken, "start, if it is accepted");
         self.set_doc(self.start, "starts a computation if not busy, or in the last clock of one");
-        self.set_doc(self.idle, "1 while start is accepted: not busy, or the last clock of a computation");
+        self.set_doc(
+            self.idle,
+            "1 while start is accepted: not busy, or the last clock of a computation",
+        );
         self.inner.borrow_mut().taken = Some(taken);
     }
 

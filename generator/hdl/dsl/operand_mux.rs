@@ -124,9 +124,7 @@ impl Designer {
         let op = Op::Mux { select: signed.out.bit(low).id(), inputs };
         let range = (0, format.max_raw());
         let amount = self.add_net(&format!("{name}_excess"), format, range, Driver::Op(op), true);
-        let amount = self
-            .signal(amount)
-            .doc("correction of the product for a negative operand");
+        let amount = self.signal(amount).doc("correction of the product for a negative operand");
         (out, Some(Excess { amount, low }))
     }
 }

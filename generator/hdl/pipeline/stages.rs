@@ -28,8 +28,8 @@ pub fn assemble(
     let notes = sequential.about.notes.iter();
     let about = About {
         title: match interval {
-            1 => format!("{}, a point a clock", sequential.about.title),
-            clocks => format!("{}, a point every {clocks} clocks", sequential.about.title),
+            1 => format!("{}, one point per clock", sequential.about.title),
+            clocks => format!("{}, one point per {clocks} clocks", sequential.about.title),
         },
         notes: notes.filter(|note| note.topic == Topic::Device).cloned().collect(),
         ..sequential.about.clone()
@@ -163,7 +163,12 @@ impl StageBuilder<'_> {
 
     /// Makes the input ports, and reserves the names of the output ports.
     fn ports(&mut self, unrolled: &Unrolled, options: &Options) {
-        self.port("rst_n", 1, Role::Reset, "reset, active low: discards all points in the pipeline");
+        self.port(
+            "rst_n",
+            1,
+            Role::Reset,
+            "reset, active low: discards all points in the pipeline",
+        );
         self.port("in_valid", 1, Role::InValid, "the operands are valid");
         for (at, &operand) in unrolled.operands.iter().enumerate() {
             let net = self.sequential.net(operand).clone();
@@ -315,8 +320,11 @@ impl StageBuilder<'_> {
         let bits = usize::BITS - last.leading_zeros();
         let format = Format::unsigned(bits as i32, 0);
         let slot = self.net(self.free("slot".to_owned()), 1, format, Driver::Undriven);
-        self.documented(slot, "counts clocks modulo the interval: a point leaves stage s in slot s modulo the \
-                               interval");
+        self.documented(
+            slot,
+            "counts clocks modulo the interval: a point leaves stage s in slot s modulo the \
+                               interval",
+        );
         self.pipeline.handshake.push(slot);
         self.pipeline.slot = Some(slot);
         let first = self.is_slot(slot, 0);

@@ -29,8 +29,7 @@ fn control(design: &Design) -> Vec<String> {
     ];
     if design.control.overlaps {
         lines.push(
-            "    assert (idle == (!busy || done));  // start is accepted only then"
-                .to_owned(),
+            "    assert (idle == (!busy || done));  // start is accepted only then".to_owned(),
         );
     }
     lines.push("end".to_owned());

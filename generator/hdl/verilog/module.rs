@@ -501,7 +501,10 @@ impl<'a> Builder<'a> {
         }
         let net =
             statement(4, &format!("wire {} = &{{{}}};", self.naming.unused, parts.join(", ")));
-        writer::section("Unused: bits that nothing reads, for example those that a narrower format drops.", net)
+        writer::section(
+            "Unused: bits that nothing reads, for example those that a narrower format drops.",
+            net,
+        )
     }
 }
 

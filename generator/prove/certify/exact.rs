@@ -174,9 +174,10 @@ pub fn branches(
         Kind::Number(literal) if literal.is_exact() => {
             Ok(unconditional(terms.number(literal.nearest())))
         }
-        Kind::Number(literal) => {
-            Err(format!("the number `{}` is no binary fraction: it has no translation", literal.digits()))
-        }
+        Kind::Number(literal) => Err(format!(
+            "the number `{}` is no binary fraction: it has no translation",
+            literal.digits()
+        )),
         Kind::Operand(name) => Ok(unconditional(operand(name, setting, terms)?)),
         Kind::Word(rom, place) => Ok(unconditional(word(rom, place, setting, terms)?)),
         Kind::Constant(name, _) => Err(format!("the constant `{name}` has no translation")),
@@ -381,9 +382,7 @@ fn constant(formula: &Expression, setting: &FormulaContext) -> Option<f64> {
 /// for a number that no `f64` represents, such as 0.1.
 fn known_range(formula: &Expression, setting: &FormulaContext) -> Option<(f64, f64)> {
     match &formula.kind {
-        Kind::Number(literal) if literal.is_exact() => {
-            Some((literal.nearest(), literal.nearest()))
-        }
+        Kind::Number(literal) if literal.is_exact() => Some((literal.nearest(), literal.nearest())),
         Kind::Operand(name) => setting.ranges.get(name).copied(),
         _ => None,
     }
