@@ -1,8 +1,8 @@
-//! Builds hardware for cosines of angles: it takes the magnitude of a signed angle and addresses a table of cosᵏ. The
-//! devices of scan lines, such as `quad-cosine`, use it.
+//! Builds hardware for cosines of angles. The hardware takes the magnitude of a signed angle and addresses a table of cosᵏ. The
+//! devices of scan lines, such as `quad-cosine`, use this hardware.
 //!
-//! Angles are in right angles, so 90° is 1.0. A signed angle is therefore outside −90° … 90° exactly if its integer bits
-//! differ from its sign. The fraction bits of its magnitude address a table without any conversion.
+//! Angles are in right angles, so 90° is 1.0. A signed angle is therefore in the range −90° ≤ angle < 90° exactly if all its
+//! integer bits equal its sign bit. The fraction bits of its magnitude address a table without any conversion.
 
 use crate::dsl::{Designer, Signal};
 use glint_base::fixed::{Format, Overflow, Rounding, exp2};
@@ -16,8 +16,9 @@ pub struct Folded<'d> {
     pub within: Signal<'d>,
 }
 
-/// Returns the magnitude of a signed `angle` with `fraction` fraction bits. The angle must have at least as many fraction bits.
-/// For example, in `s1.4` the raw angles 5 and −6 both have the magnitude 5.
+/// Returns the magnitude of a signed `angle` with `fraction` fraction bits, and a bit that tells whether the magnitude is
+/// meaningful ([`Folded`]). The angle must have `fraction` fraction bits or more. For example, in `s1.4` the raw angles 5 and −6
+/// both have the magnitude 5.
 ///
 /// The magnitude of a negative angle is the complement of its bits, which needs no adder. It is smaller than the exact magnitude
 /// by up to one unit in the last place, as truncation makes a positive angle smaller too.
@@ -84,7 +85,8 @@ pub fn cosine_power_table(power: u32, bits: i32, fraction: i32) -> Vec<i128> {
 }
 
 /// Returns the comments of a table from [`cosine_power_table`]: for each word, the angle at which its step begins. For example,
-/// word 1 of 2048 for the square has the comment `cos^2, 0.044 degrees`.
+/// word 1 of 2048 for the square has the comment `cos^2, 0.044 degrees`. The last comment ends with `and on`, because the last
+/// word also serves all larger angles.
 pub fn step_comments(power: u32, bits: i32) -> Vec<String> {
     let steps = 1u32 << bits;
     let mut comments = Vec::new();

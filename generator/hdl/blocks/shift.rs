@@ -39,14 +39,16 @@ pub struct Normalised<'d> {
 /// Shifts `x` to the left until its top bit is 1, and returns the shifted bits and the number of places.
 ///
 /// Each row of muxes gives one bit of the number, so the number needs no encoder. If `x` is 0, the shifted bits are zeros, and
-/// all bits of the number are 1. For example, 22 in 8 bits has 3 leading zeros and becomes 176.
+/// all bits of the number are 1. A signal of one bit is not shifted, and the number is always 0. For example, 22 in 8 bits has 3
+/// leading zeros and becomes 176.
 #[track_caller]
 pub fn normalise<'d>(d: &'d Designer, name: &str, x: Signal<'d>) -> Normalised<'d> {
     normalise_in_steps(d, name, x, 1)
 }
 
 /// Shifts `x` to the left by pairs of places until one of its two top bits is 1. Returns the shifted bits and the number of
-/// pairs. For example, 22 in 8 bits has one pair of leading zeros and becomes 88. If `x` is 0, all bits of the number are 1.
+/// pairs. For example, 22 in 8 bits has one pair of leading zeros and becomes 88. If `x` is 0, all bits of the number are 1. A
+/// signal of one or two bits is not shifted, and the number is always 0.
 #[track_caller]
 pub fn normalise_by_pairs<'d>(d: &'d Designer, name: &str, x: Signal<'d>) -> Normalised<'d> {
     normalise_in_steps(d, name, x, 2)

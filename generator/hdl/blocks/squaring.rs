@@ -1,5 +1,5 @@
 //! Writes the microinstructions that raise a register to a power of two by repeated squaring. The devices `lyon` and
-//! `cosine-power` use it.
+//! `cosine-power` use these microinstructions.
 //!
 //! The first squaring has its own microinstruction, since its operand is the base and not the register. One more microinstruction
 //! squares the register itself; a counter repeats it. The device provides the multiplier and the muxes in front of it.
@@ -12,7 +12,8 @@ use glint_base::fixed::Format;
 pub struct Squarings<'d> {
     designer: &'d Designer,
     counter: Option<Counter<'d>>,
-    /// The mux for the start value of the counter, and its input for the squarings; `None` if the counter counts only squarings.
+    /// The mux for the start value of the counter, and its input for the squarings; `None` if the counter counts only squarings,
+    /// or if there is only one squaring.
     start: Option<(Mux<'d>, Signal<'d>)>,
 }
 

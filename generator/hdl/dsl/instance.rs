@@ -31,8 +31,9 @@ pub struct Instance<'d> {
 }
 
 impl<'d> Instance<'d> {
-    /// Returns the result of the part with the name `output`. A register stores the result until the part computes again. Reports
-    /// a mistake if the part has no such result, and returns a constant 0 of one bit.
+    /// Returns the result of the part with the name `output`. A register stores the result until the part computes again. If the
+    /// part has no such result, reports a mistake and returns a constant 0 of one bit. Returns the same constant if the part
+    /// itself had mistakes, which have been reported already.
     #[track_caller]
     pub fn out(&self, output: &str) -> Signal<'d> {
         let outputs = self.outputs.as_deref().unwrap_or_default();
@@ -55,8 +56,9 @@ impl Designer {
     /// registers. A description with parts calls [`Designer::dataflow`] instead of writing a microprogram.
     ///
     /// Reports a mistake if the names in `operands` differ from the part's operands, or if a signal does not fit its operand's
-    /// format. Reports a mistake if another part has the same name. Reports the mistakes of the part itself. A part must raise
-    /// `valid` by a microinstruction, for one result, and must not wait for `start`.
+    /// format. Reports a mistake if another part has the same name, or if parts are nested more than 8 deep. Reports the mistakes
+    /// of the part itself. A part must raise `valid` by a microinstruction, for one result, and must not wait for `start`;
+    /// otherwise this function reports a mistake.
     ///
     /// ```
     /// use glint_rtl::dsl::{Designer, end, step, valid};
@@ -154,7 +156,8 @@ impl Designer {
     }
 
     /// Makes the microprogram from the parts: it executes them in the order of their instances, and then loads the outputs into
-    /// registers. All logic between the parts must be combinational.
+    /// registers. All logic between the parts must be combinational: [`Designer::finish`] reports a mistake for a register or a
+    /// synchronous ROM outside the parts that loads on every clock.
     #[track_caller]
     pub fn dataflow(&self) {
         self.register_outputs();
@@ -180,8 +183,8 @@ impl Designer {
     }
 }
 
-/// Returns a mistake for each register and synchronous memory outside the parts. Such a register takes a clock for which the
-/// microprogram of a dataflow does not wait.
+/// Returns a mistake for each synchronous memory outside the parts, and for each register outside the parts that loads on every
+/// clock. The microprogram of a dataflow does not wait for the clock that such a register or memory takes.
 fn delayed(inner: &mut Inner) -> Vec<Diagnostic> {
     let Inner { design, placed, .. } = inner;
     let mut delayed: Vec<NetId> = Vec::new();
@@ -293,7 +296,7 @@ impl<'d> InstanceBuilder<'d, '_> {
     }
 
     /// Returns the driver of a net in the surrounding design, given its driver in the part. Nets of registers and memories get
-    /// their drivers when these are added.
+    /// their drivers when the registers and memories are added.
     fn placed_driver(&self, driver: &Driver) -> Driver {
         match driver {
             Driver::Op(op) => Driver::Op(op.map(|id| self.nets[id])),
@@ -332,8 +335,8 @@ impl<'d> InstanceBuilder<'d, '_> {
         }
     }
 
-    /// Appends the microinstructions of this part. The last microinstruction of the previous part (or of the idle device) gets
-    /// the setting that loads the operands.
+    /// Appends the microinstructions of this part. The last microinstruction of the previous part gets the setting that loads
+    /// this part's operands. For the first part, this is the microinstruction `operands`, which follows `idle`.
     fn program(&self, load: FieldId, location: SourceLocation) {
         let (d, control) = (self.designer, &self.design.control);
         let named = |at: usize| format!("{}: {}", self.name, control.microprogram[at].name);

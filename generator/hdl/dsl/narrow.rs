@@ -1,5 +1,5 @@
 //! Converts a signal to a narrower format, with stated rounding and overflow. No other operation of the description language
-//! rounds or saturates.
+//! rounds. Only operands with limits (`operand_clamped`) saturate as well.
 
 use std::panic::Location;
 

@@ -62,9 +62,9 @@ impl Designer {
     /// differ in select lines, number of inputs or registers behind them.
     ///
     /// If only one of the muxes has negative inputs, the multiplier takes the bits of that mux below its sign as an unsigned
-    /// number. Each factor then has one bit less than in a product of signed numbers, which may save DSP blocks. For example, 18
-    /// bits fit and 19 do not. For a negative operand, this product is too large by the other operand at the weight of the sign.
-    /// [`SharedProduct::of`] subtracts that amount.
+    /// number. Each factor then has one bit less than in a product of signed numbers, which may save DSP blocks. For example, a
+    /// factor of 18 bits fits a DSP block of ECP5, and a factor of 19 bits does not. For a negative operand, this product is too
+    /// large by the other operand at the weight of the sign. [`SharedProduct::of`] subtracts that amount.
     #[track_caller]
     pub fn shared_mul<'d>(
         &'d self,
@@ -139,8 +139,8 @@ impl<'d> OperandMux<'d> {
         StepSetting::pick_of(self.designer, self.field, &self.name, input, &self.inputs)
     }
 
-    /// Adds a register `<name>_held` behind the mux, which loads on every clock. It has the operand that the previous
-    /// microinstruction selected.
+    /// Adds a register `<name>_held` behind the mux, which loads on every clock. The register contains the operand that the
+    /// previous microinstruction selected.
     ///
     /// A microprogram selects the operands in one microinstruction, and loads the product in the next one under the same
     /// selection ([`hold`](super::hold)). The mux then takes time of the first clock, and the multiplier has the second clock to

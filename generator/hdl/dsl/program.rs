@@ -127,7 +127,8 @@ pub fn next() -> StepSetting {
 }
 
 /// Returns the setting that repeats this microinstruction until `start` is high. The device is not busy meanwhile.
-/// Microinstruction 0 always waits, with or without this setting.
+/// Microinstruction 0 always waits, with or without this setting. [`Designer::finish`] reports a mistake if another
+/// microinstruction has this setting and the operands have buffers.
 #[track_caller]
 pub fn wait_for_start() -> StepSetting {
     StepSetting::sequence(SettingKind::WaitForStart)
@@ -149,7 +150,8 @@ pub fn jump_if(condition: Signal<'_>, to: &str) -> StepSetting {
     loop_while(condition, to)
 }
 
-/// Returns the setting that ends the computation. The device raises `done` in this microinstruction, and is idle after it.
+/// Returns the setting that ends the computation. The device raises `done` in this microinstruction, and is idle after it. If the
+/// operands have buffers and `start` is high in this clock, the next computation begins at once instead.
 #[track_caller]
 pub fn end() -> StepSetting {
     StepSetting::sequence(SettingKind::End)
@@ -246,8 +248,8 @@ pub(crate) fn assemble(d: &Designer, program: &MicroprogramSource) {
     sequencer.build(d, microinstructions, program.location);
 }
 
-/// Returns whether a setting belongs to another designer, and reports each such setting. The numbers in it would mean other nets
-/// and fields in this designer.
+/// Returns whether a setting belongs to another designer, and reports each such setting. The numbers of nets and fields in such a
+/// setting would mean other nets and fields in this designer.
 fn foreign(d: &Designer, steps: &[Step]) -> bool {
     let own = origin(d);
     let settings = steps.iter().flat_map(|step| step.settings.iter().map(move |it| (step, it)));
@@ -271,8 +273,9 @@ fn foreign(d: &Designer, steps: &[Step]) -> bool {
     any
 }
 
-/// Returns the rule for the microinstruction after `step`. Reports a mistake if its settings state two different rules. Reports a
-/// mistake if a jump leads to an unknown name or has a condition of several bits.
+/// Returns the rule for the microinstruction after `step`. Reports a mistake if the settings of `step` state two different rules.
+/// Reports a mistake if a jump leads to an unknown name or has a condition of several bits, or if `step` waits for `start`
+/// although the operands have buffers.
 fn sequence(d: &Designer, steps: &[Step], step: &Step) -> Sequence {
     let mut found: Option<(Sequence, SourceLocation)> = None;
     let own = &step.name;

@@ -1,5 +1,5 @@
-//! Builds registers, operands, flags, counters and select lines. Their methods return the settings by which microinstructions
-//! control them.
+//! Adds registers, operands, flags, counters and select lines to a description. A method such as [`Register::load`] returns the
+//! setting by which a microinstruction controls the register.
 
 use super::{Designer, Signal, StepSetting};
 use crate::netlist::{self, Driver, FieldId, FieldKind, NetId, Op, RegisterKind, Role};
@@ -9,7 +9,8 @@ use glint_base::interval::Interval;
 
 impl Designer {
     /// Adds an operand: the input port `name`, its write strobe `<name>_write` and the register `<name>_reg`. A write while the
-    /// device is busy is ignored. After [`Designer::buffer_operands`], a write loads a buffer instead, at any time.
+    /// device is busy is ignored. After [`Designer::buffer_operands`], a write at any time loads a buffer `<name>_buffer`
+    /// instead.
     #[track_caller]
     pub fn operand(&self, name: &str, format: Format) -> InputOperand<'_> {
         self.operand_port(name, format, |port| port)
@@ -56,7 +57,7 @@ impl Designer {
         })
     }
 
-    /// Makes a two-input mux whose result stays within `range`, as the caller knows.
+    /// Makes a two-input mux whose result is declared to stay within `range`. The caller must guarantee this.
     #[track_caller]
     fn chosen_within<'d>(
         &'d self,
@@ -166,8 +167,8 @@ impl Designer {
 
     /// Adds a counter that counts down, with the fields `<name>_load` and `<name>_count`. Its format is the format of `start`.
     ///
-    /// A microinstruction that sets the first field loads the value of `start`; one that sets the second subtracts one. If a
-    /// microinstruction sets both, the counter is loaded. Below 0 the counter wraps around.
+    /// A microinstruction that sets `<name>_load` loads the value of `start`; a microinstruction that sets `<name>_count`
+    /// subtracts one. If a microinstruction sets both fields, the counter is loaded. Below 0 the counter wraps around.
     #[track_caller]
     pub fn down_counter<'d>(&'d self, name: &str, start: Signal<'d>) -> Counter<'d> {
         let start = self.own(start);
@@ -211,7 +212,8 @@ pub struct InputOperand<'d> {
 }
 
 impl<'d> InputOperand<'d> {
-    /// Returns the output of the operand register: the value that the user has written.
+    /// Returns the output of the operand register: the value that the user has written, limited if [`Designer::operand_clamped`]
+    /// made the operand. If the operands have buffers, it is the value at the latest accepted `start`.
     pub fn q(self) -> Signal<'d> {
         self.q
     }

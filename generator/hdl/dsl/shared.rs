@@ -59,7 +59,7 @@ impl Designer {
         self.add_net(&name, format, range, driver, false)
     }
 
-    /// Runs `act`, and gives all nets and ROMs that it adds the source location `location`.
+    /// Runs `act`, and gives all nets and ROMs that `act` adds the source location `location`. Returns the result of `act`.
     pub(crate) fn located<T>(&self, location: SourceLocation, act: impl FnOnce() -> T) -> T {
         let own = self.with(|inner| (inner.design.nets.len(), inner.design.roms.len()));
         let made = act();

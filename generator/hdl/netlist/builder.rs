@@ -1,4 +1,4 @@
-//! Adds nets, registers and ROMs to a design. The description language and the pipeline builder use it.
+//! Adds nets, registers and ROMs to a design. The description language and the pipeline builder call these functions.
 
 use super::{
     About, Control, Design, Driver, Net, NetId, NetlistRegister, NetlistRom, Partition, RegId,

@@ -1,5 +1,5 @@
 //! Finds the delay lines of a pipeline: chains of registers that only pass a value on to a later stage. The Verilog may replace
-//! them by memories.
+//! delay lines by memories.
 
 use std::collections::BTreeMap;
 
@@ -54,7 +54,9 @@ impl Design {
     ///
     /// A memory returns the same value for each point as the registers would, however often the enable stops the pipeline. After
     /// a reset, which drops all points, a memory begins with its first word again. The side channel stays in registers, because
-    /// the proof by induction follows its value from stage to stage. Registers inside a multiplier stay registers too.
+    /// the proof by induction follows its value from stage to stage. Registers inside a multiplier stay registers too. Among
+    /// values that travel between the same two stages, a value whose registers have another enable than the first one's also
+    /// stays in registers.
     pub fn delay_lines(&self) -> Vec<DelayLine> {
         let Some(pipeline) = &self.pipeline else { return Vec::new() };
         let Some(memory) = pipeline.delay_memory else { return Vec::new() };

@@ -102,8 +102,8 @@ impl<'a> Interpreter<'a> {
         Ok(Self { design, order: design.levelise()?, values: vec![[0]; design.nets.len()] })
     }
 
-    /// Applies the bit patterns of all input ports, in the order of the ports, and evaluates every net. Registers and synchronous
-    /// ROMs keep their outputs.
+    /// Applies the bit patterns of all input ports, in the order of the ports, and evaluates every net. Bits above the width of a
+    /// port are ignored. Registers and synchronous ROMs keep their outputs.
     pub fn settle(&mut self, inputs: &[u64]) {
         let design = self.design;
         for (port, &bits) in design.inputs().zip(inputs) {

@@ -332,7 +332,8 @@ pub struct Design {
     pub control: Control,
     /// The facts about the stages of a pipeline; `None` for any other design.
     pub pipeline: Option<Pipeline>,
-    /// Warnings about logic on which no output depends, and about choices that no microinstruction makes.
+    /// Warnings about logic on which no output depends, about muxes that always pass the same input, and about choices that no
+    /// microinstruction makes.
     pub warnings: Vec<Diagnostic>,
 }
 

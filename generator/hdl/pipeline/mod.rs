@@ -43,7 +43,8 @@ pub use unroll::{
 /// The goal with which Glint divides a computation into pipeline stages: a clock frequency or a number of stages.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Goal {
-    /// The pipeline must reach this clock frequency in MHz, with as few register bits as possible.
+    /// The pipeline must reach this clock frequency in MHz, with as few stages as possible, and then with as few register bits as
+    /// possible.
     ClockMhz(f64),
     /// The pipeline must have this number of stages, with as high a clock frequency as possible.
     Stages(usize),
@@ -98,7 +99,8 @@ pub fn pass_results(
 /// # Errors
 /// Fails if the microprogram cannot be unrolled into a computation without loops; the error has the source line. Fails if the
 /// requested clock, number of stages, interval, rate or number of multipliers cannot be reached. The error then states the
-/// nearest value that can be reached.
+/// nearest value that can be reached. Fails if the options give a rate without a clock frequency, or if the solver finds no
+/// schedule; these errors state no nearest value.
 pub fn pipeline(sequential: &Design, options: &Options) -> Result<Design, PipelineError> {
     let mut results = pass_results(sequential, options)?;
     let Some(PassResult { computation, .. }) = results.pop() else {

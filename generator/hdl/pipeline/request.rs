@@ -76,7 +76,8 @@ impl<'a> Request<'a> {
         }
     }
 
-    /// Returns the schedule with exactly `stages` stages.
+    /// Returns the schedule with exactly `stages` stages. Fails if `stages` is more than useful, or fewer than memories and
+    /// multipliers need, or if the solver finds no schedule.
     fn in_stages(
         &self,
         problems: &ScheduleProblem<'_>,

@@ -19,8 +19,8 @@ use glint_base::target::{Registered, Timing};
 /// A schedule for a pipeline: the stage of every node of the computation's graph, and the clock period that the stages reach.
 #[derive(Clone, Debug)]
 pub struct Schedule {
-    /// The stage of each node of the computation's graph. It is meaningless for constants and for nodes on which no result
-    /// depends.
+    /// The stage of each node of the computation's graph. It is meaningless for constants, for extensions that are no results,
+    /// and for nodes on which no result depends.
     pub stage: Vec<usize>,
     /// The number of register rows from the operands to the results, which is the latency in clocks.
     pub latency: usize,
@@ -668,7 +668,7 @@ impl<'a> ScheduleProblem<'a> {
     }
 
     /// Returns the nodes to which the schedule must assign a stage, each after its operands: all nodes on which a result depends,
-    /// except constants and extensions.
+    /// except constants, and except extensions that are no results.
     pub fn live(&self) -> &[NodeId] {
         &self.live
     }

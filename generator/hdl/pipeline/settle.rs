@@ -68,7 +68,7 @@ fn run(graph: &Graph, id: NodeId) -> Option<(NodeId, u32, u32)> {
 }
 
 /// Returns a node that equals `id` whenever the condition `over` is 0. The search passes through wiring to an inner choice
-/// between a value and a constant. If its condition must be 0 when `over` is 0, the value replaces the choice.
+/// between a value and a constant. If the condition of this choice must be 0 whenever `over` is 0, the value replaces the choice.
 fn below(graph: &mut Graph, id: NodeId, over: NodeId) -> NodeId {
     let node = graph.node(id).clone();
     if let Some((inner, rest, _)) = limit(graph, id) {

@@ -32,7 +32,8 @@ pub struct Unrolled {
     pub graph: Graph,
     /// The nets of the design's operand ports, in the order of the ports. `Cell::Operand` has positions in this list.
     pub operands: Vec<NetId>,
-    /// The results: the net of each output port, with the node of its value in the graph.
+    /// The results: the nets of output ports, each with the node of its value in the graph. The outputs of the handshake are not
+    /// among them, except in the graph of a `Cycle`, which has all outputs.
     pub results: Vec<(NetId, NodeId)>,
     /// The microinstructions in the order in which the computation executes them.
     pub steps: Vec<UnrolledStep>,
@@ -45,8 +46,9 @@ pub struct UnrolledStep {
     pub address: usize,
     /// The number of earlier executions of the same microinstruction in this computation.
     pub visit: usize,
-    /// The values of the architectural registers while the microinstruction is executed, each as a node of the computation's
-    /// graph. (The golden model predicts these registers.) A register without a known value is left out.
+    /// The values of the operand registers and the architectural registers while the microinstruction is executed, each as a node
+    /// of the computation's graph. (The golden model predicts these registers.) A register that no earlier microinstruction has
+    /// loaded has a node with an unknown value.
     pub registers: Vec<(RegId, NodeId)>,
 }
 
@@ -61,7 +63,8 @@ struct Executor<'a> {
     iterations: Iterations,
     unrolled: Unrolled,
     visits: Vec<usize>,
-    /// The results, each as the net of an output port and the node of its value. `None` until a microinstruction sets `valid`.
+    /// The results, each as the net of a result or status port and the node of its value. `None` until a microinstruction sets
+    /// `valid`.
     shown: Option<Vec<(NetId, NodeId)>>,
 }
 
@@ -69,10 +72,10 @@ struct Executor<'a> {
 /// loops. The description language must have accepted the design.
 ///
 /// # Errors
-/// Fails if a loop has no bound, or one that depends on more than 16 bits, or if the computation takes more than 4096 clocks.
-/// Fails if the microprogram ends or waits for `start` before it sets `valid`, or if `valid` depends on a signal. Fails if a
-/// microinstruction under a condition sets `valid`. Fails if a result depends on a value that an earlier computation has left in
-/// a register.
+/// Fails if no bound of a loop is found because its condition depends on more than 16 bits, or if the computation takes more than
+/// 4096 clocks. Fails if the microprogram ends or waits for `start` before it sets `valid`, or if `valid` depends on a signal.
+/// Fails if a microinstruction under a condition sets `valid`. Fails if a result depends on a value that an earlier computation
+/// has left in a register.
 pub fn unroll(design: &Design) -> Result<Unrolled, Diagnostics> {
     run(design, Iterations::OneByOne).map_err(|diagnostic| Diagnostics(vec![diagnostic]))
 }
@@ -82,8 +85,9 @@ pub fn unroll(design: &Design) -> Result<Unrolled, Diagnostics> {
 /// for this is that the iterations are alike and that a few bits determine their number.
 ///
 /// # Errors
-/// Fails if a loop has no bound, or one that depends on more than 16 bits, or if the computation takes more than 4096 clocks.
-/// Fails if the microprogram does not set `valid` at a fixed place, or if a result depends on an earlier computation.
+/// Fails if no bound of a loop is found because its condition depends on more than 16 bits, or if the computation takes more than
+/// 4096 clocks. Fails if the microprogram does not set `valid` at a fixed place, or if a result depends on an earlier
+/// computation.
 pub fn unroll_in_powers(design: &Design) -> Result<Unrolled, Diagnostics> {
     unroll_for_pipeline(design).map_err(|diagnostic| Diagnostics(vec![diagnostic]))
 }
@@ -122,8 +126,8 @@ fn run(design: &Design, iterations: Iterations) -> Result<Unrolled, Diagnostic> 
     Ok(executor.unrolled)
 }
 
-/// Executes the microprogram of a design up to the clock with the results. Returns the execution, and for each output port its
-/// net and the node of its value.
+/// Executes the microprogram of a design up to the clock with the results. Returns the execution, and the net of each result or
+/// status port with the node of its value.
 fn executed(
     design: &Design,
     iterations: Iterations,

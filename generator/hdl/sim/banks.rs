@@ -10,8 +10,8 @@ use crate::sim::program::{
 /// The width of a narrow slot in bits.
 const NARROW: u32 = u32::BITS;
 
-/// Gives every value of the compiler, which has a slot of 64 bits there, a slot in one of the two banks. Inserts conversions
-/// before instructions that work on slots of both banks.
+/// Gives every value a slot in one of the two banks; in `compiler`, every value has a slot of 64 bits. Inserts conversions before
+/// instructions that work on slots of both banks.
 ///
 /// Within a bank, slots are numbered in the order in which they are computed.
 pub(super) fn divide(

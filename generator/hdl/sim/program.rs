@@ -13,7 +13,8 @@ pub(super) type Slot = u32;
 
 /// A set of sources, with one bit for each source. A *source* is a value that changes outside settling: an input port, or a value
 /// that the edge writes. Each field of the control word is a source too, because most fields stay the same from one control word
-/// to the next. If there are more than 64 sources, several share a bit.
+/// to the next. If there are too many input ports, or too many values that the edge writes, several share a bit. A field for
+/// which no bit is left is no source.
 pub(super) type Sources = u64;
 
 /// A computation within one bank: the slot `to` from the slots `a`, `b` and so on, which have smaller numbers.

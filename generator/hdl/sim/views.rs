@@ -1,5 +1,5 @@
-//! Writes files for the waveform viewers GTKWave and Surfer. They show each net in its module or stage, and GTKWave shows numbers
-//! with their binary points.
+//! Writes files for the waveform viewers GTKWave and Surfer. With such a file, a viewer lists each port and each named net under
+//! its module or pipeline stage. GTKWave also shows numbers with their binary points.
 
 use std::fmt::Write;
 

@@ -13,8 +13,8 @@ use crate::netlist::{DelayLine, NetId};
 const TITLE: &str =
     "Delay lines: what nothing reads for several stages goes through small memories";
 
-/// The number of words of a delay line's memory, and the net that enables its steps. It is `None` if the line steps on every
-/// clock.
+/// The number of words of a delay line's memory, and the net that enables the steps of the delay line. The net is `None` if the
+/// delay line steps on every clock.
 type Pace = (usize, Option<NetId>);
 
 /// Returns the Verilog section that instantiates the delay lines, with one instance for all lines of the same length and enable.

@@ -1,7 +1,7 @@
 //! Writes the cells of a netlist as Verilog expressions, such as `a + b` for a sum.
 //!
-//! The operands of every cell have the same width as the result, so that no context can extend or truncate a carry. As an
-//! exception, a product is only written as the whole right-hand side of a net of its full width. The carry into an adder is
+//! The operands of a sum or a difference have the same width as the result, so that no context can extend or truncate a carry. As
+//! an exception, a product is only written as the whole right-hand side of a net of its full width. The carry into an adder is
 //! extended to the adder's width. Operands of products and comparisons are written with `$signed` or `$unsigned` if necessary.
 
 use super::bits::{BitRun, Bits};
@@ -46,8 +46,8 @@ impl<'a> Expressions<'a> {
         self.names.fresh(wish)
     }
 
-    /// Returns the right-hand side of the assignment that drives a net, such as `a + b`. For a register, a ROM or an input, it is
-    /// the name of the net.
+    /// Returns the right-hand side of the assignment that drives a net, such as `a + b`. For a register, a ROM, an input, or a
+    /// mux of more than two inputs, it is the name of the net.
     pub fn driver(&mut self, id: NetId) -> String {
         match &self.plan.design.net(id).driver {
             Driver::Op(op) => self.cell(id, op),

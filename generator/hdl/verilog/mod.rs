@@ -32,7 +32,8 @@ use plan::Plan;
 /// (`.mem`) for `$readmemh` and `$readmemb`.
 ///
 /// # Errors
-/// Fails if [`Design::verify_structure`] finds mistakes, with these mistakes, or if a word of a ROM does not fit the ROM.
+/// Fails if [`Design::verify_structure`] finds mistakes; the error lists them. Fails if the words of the control ROM are not as
+/// wide as all fields together.
 pub fn files(design: &Design) -> Result<Vec<(String, String)>> {
     let (plan, naming) = (Plan::new(design)?, Naming::new(design));
     let origin = Origin { regenerate: "", timing: &HandshakeTiming::default() };

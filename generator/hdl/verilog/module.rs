@@ -162,7 +162,7 @@ impl<'a> Builder<'a> {
     }
 
     /// Returns a list with the Verilog lines of each declared cell, each memory and each registered multiplier of the module. It
-    /// leaves out the cells that drive a net for which `wanted` returns false.
+    /// leaves out every cell, memory and multiplier whose output net `wanted` rejects.
     pub(super) fn items(&mut self, wanted: &dyn Fn(NetId) -> bool) -> Vec<Vec<String>> {
         let design = self.plan.design;
         let mut items = Vec::new();

@@ -4,7 +4,7 @@
 //! The registers that carry state from one point to the next are called the *walk*, for example the register with the current
 //! angle. The module proves by induction that every point is the same function of the operands and the walk. It also proves that
 //! the first point loads functions of the operands into the walk, and every other point one function of the walk and the
-//! operands. A design for which the proof fails is refused.
+//! operands. If the proof fails, `unroll_line` returns an error.
 
 use super::{Clock, Executor, Iterations, State, Unrolled};
 use crate::netlist::{Design, NetId, RegisterKind, Role, Sequence};
@@ -45,7 +45,8 @@ pub struct WalkRegister {
 /// # Errors
 /// Fails if the design has no output `valid`, or if `valid` follows no microinstruction within 12 clocks. Fails if the
 /// microprogram has no first point that is computed once and before all others. Fails if two points differ in the function that
-/// loads the walk or in the results, or if another microinstruction changes the walk.
+/// loads the walk or in the results, or if another microinstruction changes the walk. Fails if a result depends on a register or
+/// a memory word that an earlier computation has left.
 pub fn unroll_line(design: &Design) -> Result<UnrolledLine, Diagnostics> {
     let executor = Executor::new(design, Iterations::OneByOne);
     LineUnroller { executor }.line().map_err(|diagnostic| Diagnostics(vec![diagnostic]))
@@ -253,8 +254,8 @@ fn successors(design: &Design, at: usize) -> Vec<usize> {
     }
 }
 
-/// Returns every path through the microprogram that begins at one of the microinstructions `from` and has `clocks` steps, which
-/// is one microinstruction more than `clocks`.
+/// Returns every path through the microprogram that begins at one of the microinstructions `from` and takes `clocks` clocks to
+/// its last microinstruction. Each path therefore has `clocks` + 1 microinstructions.
 fn paths(design: &Design, from: &[usize], clocks: usize) -> Vec<Vec<usize>> {
     let mut paths: Vec<Vec<usize>> = from.iter().map(|&at| vec![at]).collect();
     for _ in 0..clocks {
