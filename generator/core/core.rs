@@ -1,7 +1,7 @@
 //! Defines [`Core`]: a configuration of a device, with the netlist and the accuracy contract that Glint builds from it.
 //!
-//! Its methods make everything else from the configuration: Verilog and other files, digests, timing, bench vectors, and the jobs
-//! of co-simulation and exhaustive checks.
+//! The methods of [`Core`] make everything else from the configuration: Verilog and other files, digests, timing, bench vectors,
+//! and the jobs of co-simulation and exhaustive checks. For example, [`Core::files`] returns every emitted file.
 
 use std::path::Path;
 
@@ -35,7 +35,7 @@ const BENCH_POINTS: u64 = 64;
 /// The largest number of results of a line among these computations.
 const BENCH_LINE: i64 = 6;
 
-/// The number of random points at the beginning of the emitted bench of a pipeline, which takes one in every clock.
+/// The number of random points at the beginning of the emitted bench of a pipeline.
 const PIPELINE_POINTS: u64 = 2000;
 
 /// The seed of the random inputs of emitted test benches.
@@ -108,21 +108,22 @@ impl Core {
         Ok(Self { device, config, design, contract })
     }
 
-    /// Returns a digest that identifies this configuration and the version of Glint: SHA-256 of the TOML text, in hexadecimal.
+    /// Returns a digest that identifies this configuration and the version of Glint: SHA-256 of the version and the TOML text, in
+    /// hexadecimal.
     pub fn digest(&self) -> String {
         let text = self.config.to_toml(&(self.device.schema)());
         package::digest(format!("{}\n{text}", env!("CARGO_PKG_VERSION")).as_bytes())
     }
 
-    /// Returns a digest that identifies the contract in a record of a proof: SHA-256 in hexadecimal. It covers the name of the
-    /// device, and its own keys that are not at their defaults. A key that is added to the device later does not change the
-    /// digest while it is at its default.
+    /// Returns a digest that identifies the contract in a record of a proof: SHA-256 in hexadecimal. The digest covers the name
+    /// of the device, and those keys of this device alone that apply and are not at their defaults. Keys that all devices share
+    /// do not change the digest. A key that is added to the device later does not change the digest while it is at its default.
     pub fn contract_digest(&self) -> String {
         self.digest_of((self.device.schema)().keys.iter())
     }
 
-    /// Returns the evidence for the contract's bound. `proofs` is the directory of records; a device of the catalogue needs
-    /// none.
+    /// Returns the evidence for the contract's bound. `proofs` is the directory of records; a device whose bound is proved in the
+    /// catalogue needs no record.
     ///
     /// # Errors
     /// Fails if a record cannot be read, or does not fit the contract.
@@ -228,7 +229,7 @@ impl Core {
     /// Returns a worked example: one computation with the values of all operands and outputs.
     ///
     /// # Errors
-    /// Fails if a simulated computation does not finish within 65 536 clocks.
+    /// Fails if a simulated computation does not finish within 65 536 clocks, or never raises `valid`.
     pub fn example(&self) -> Result<WorkedExample> {
         trial::example(&self.design, self.contract.as_ref())
     }
@@ -237,7 +238,7 @@ impl Core {
     /// length. Returns `None` if the device computes single points, or if the numbers are no linear functions.
     ///
     /// # Errors
-    /// Fails if a simulated computation does not finish within 65 536 clocks.
+    /// Fails if a simulated computation does not finish within 65 536 clocks, or never raises `valid`.
     pub fn line(&self) -> Result<Option<LineClocks>> {
         trial::line(&self.design, self.contract.as_ref())
     }
@@ -246,7 +247,7 @@ impl Core {
     /// `points` results in all. The golden model and the simulated netlist agree on the outputs.
     ///
     /// # Errors
-    /// Fails if golden model and simulation differ.
+    /// Fails as [`Core::lockstep`] does, or if golden model and simulation differ.
     pub fn vectors(&self, points: u64, seed: u64) -> Result<Vectors> {
         self.lockstep(seed)?.record(points, &[])
     }
@@ -285,8 +286,8 @@ impl Core {
     /// the contents of the ROMs.
     ///
     /// # Errors
-    /// Fails if the contract is neither a formula of one operand nor a list of formulas with conditions, or if there are more
-    /// than 2^32 combinations of operands.
+    /// Fails if the contract is neither a formula of one operand nor a list of formulas with conditions. Fails if the operands of
+    /// such a list have more than 2^32 combinations, if a result wraps, or if the core has no C model.
     pub fn recomputation(&self) -> Result<OutputFiles> {
         let asked = Surroundings { software: true, recomputation: true, ..Surroundings::default() };
         let inputs = EmitInputs {

@@ -107,8 +107,9 @@ pub struct Worst {
 /// A signal on which golden model and hardware differ.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mismatch {
-    /// The seed of the stream. An undivided run with this seed, such as [`Lockstep::trace`](super::Lockstep::trace), has the
-    /// same inputs from the first clock on. In a run of all combinations, the number of the combination instead.
+    /// The seed of the stream. An undivided run with this seed, such as [`Lockstep::trace`](super::Lockstep::trace), has the same
+    /// inputs from the first clock on. In a run of all combinations, the number of the combination instead. In a run of recorded
+    /// inputs, 0.
     pub seed: u64,
     /// The number of rising clock edges of the stream, from power-up to the difference.
     pub clock: u64,

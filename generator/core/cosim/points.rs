@@ -192,9 +192,10 @@ impl<'a> PointSource<'a> {
         low.wrapping_add(lengths[0].min(lengths[1]) as i64)
     }
 
-    /// Returns a random raw value for operand number `at`. Half of the values are arbitrary bit patterns of the operand's
-    /// format, and the others are drawn by [`PointSource::one`]. If the device is no highlight, a quarter of the values lie
-    /// outside the domain, mostly just outside, where a core may saturate.
+    /// Returns a random raw value for operand number `at`. Half of the values are arbitrary bit patterns of the operand's format,
+    /// and the others are drawn by [`PointSource::one`]. For a device that is no highlight, a quarter of the values are drawn
+    /// outside the domain instead, mostly just outside, where a core may saturate; this does not apply if the domain is the whole
+    /// format.
     pub fn any(&self, random: &mut Random, at: usize) -> i64 {
         let Operand { format, domain: (low, high), .. } = self.operands[at];
         let (least, most) = (format.min_raw() as i64, format.max_raw() as i64);

@@ -2,9 +2,9 @@
 //!
 //! At a random point (one set of operands), the roundings rarely all err in the same direction. The search starts from random
 //! points and changes one operand, or a pair of operands with fraction bits, by powers of two while the error grows. For a
-//! highlight it first climbs the error of `f`, and then the error of an output, with the worst colour. Around the points with
-//! the largest errors it tries every value of each pair of operands, since rounding makes the last steps too irregular to
-//! climb. Its result is a lower bound of the true maximum, not a proof.
+//! highlight it first climbs the error of `f`, and then the error of an output, with the worst colour. Around the points with the
+//! largest errors it tries all nearby values of each pair of operands, since rounding makes the last steps too irregular to
+//! climb. The largest error that the search finds is a lower bound of the true maximum, not a proof.
 
 use rayon::prelude::*;
 
@@ -47,8 +47,8 @@ pub struct Reached {
 }
 
 impl Reached {
-    /// Returns the largest error of an output at raw operands, in the order of `Contract::operands`. Returns `None` if the
-    /// contract has no output.
+    /// Returns the largest error of an output in the first result of a computation with raw operands, in the order of
+    /// `Contract::operands`. Returns `None` if the contract has no output.
     pub fn at(contract: &dyn Contract, operands: Vec<i64>) -> Option<Self> {
         let (mut raw, mut exact) = (Vec::new(), Vec::new());
         contract.results(&operands, 0, &mut raw);
@@ -188,8 +188,9 @@ impl<'a> Climber<'a> {
         control
     }
 
-    /// Tries all values of each pair of operands around the given control operands, moves to the largest error, and repeats
-    /// this there until the error no longer grows. Returns all operands of the largest error.
+    /// Tries all nearby values of each pair of operands around the given control operands, moves to the largest error, and
+    /// repeats this there until the error no longer grows. For a device that is no highlight, it stops after about 65536
+    /// combinations. Returns all operands of the largest error.
     fn look_around(&self, mut operands: Vec<i64>) -> Vec<i64> {
         let highlight = self.contract.highlight();
         let terms = self.contract.bound().terms;

@@ -1,5 +1,5 @@
-//! Writes example instances of a core and its wrappers in Verilog, with a wire for each port, for the user to copy.
-//! Datasheets show them.
+//! Writes example instances of a core and its wrappers in Verilog, with a wire for each port, for the user to copy. Datasheets
+//! show these examples.
 
 use anyhow::Result;
 

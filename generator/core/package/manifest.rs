@@ -108,7 +108,8 @@ fn file_names(files: &OutputFiles) -> serde_json::Map<String, Value> {
 /// Returns the text of the manifest, with the digests of all `others`: the files of the configuration except the manifest.
 ///
 /// # Errors
-/// Fails if a number is not finite, because JSON cannot represent it.
+/// Fails if the configuration asks for streams and the core has no operands or no results. Fails if an operand or a result of the
+/// contract has no port.
 pub fn contents(job: &EmitJob, others: &OutputFiles) -> Result<String> {
     let EmitJob { design, inputs, naming, .. } = *job;
     let about = &design.about;

@@ -38,8 +38,8 @@ const CORNER_LENGTH: i64 = 2;
 
 /// The candidates from which the computations of a test bench are chosen.
 pub struct Pool {
-    /// Computations in which every operand that determines `f` is at an end of its domain. If this gives few enough
-    /// computations, also at an end of its format.
+    /// Computations in which every operand that determines `f` is at an end of its domain. If this gives few enough computations,
+    /// also at an end of its format. There are at most 128 of these computations.
     pub corners: Vec<Vec<i64>>,
     /// Random computations. The search for a test bench records all features that they exercise.
     pub drawn: Vec<Vec<i64>>,

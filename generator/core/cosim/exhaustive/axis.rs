@@ -66,8 +66,8 @@ fn range(item: &str) -> Option<(i64, i64, usize)> {
 }
 
 /// Returns the contract's sweep: the operand values that an exhaustive check visits. The values in `others` replace the
-/// contract's own values of the same operand. If they leave out a part of a range, `omits` in the returned sweep names the
-/// operand.
+/// contract's own values of the same operand. If these values leave out a part of a range, `omits` in the returned sweep names
+/// the operand.
 ///
 /// # Errors
 /// Fails if an operand is named twice, if the contract's sweep does not have it, or if a value is outside the operand's domain.

@@ -14,7 +14,7 @@ use glint_golden::{Axis, Contract, Sweep, Values};
 /// The number of operand combinations in a block. A block takes some milliseconds.
 pub const BLOCK: u64 = 1 << 17;
 
-/// The number of places that are timed, and the approximate number of places of [`Places::glimpse`].
+/// The number of places that are timed, and the smallest number of places of [`Places::glimpse`], unless there are fewer.
 const SAMPLE: u64 = 4096;
 
 /// The largest error among some operand combinations, and the first combination with this error.
@@ -148,8 +148,8 @@ impl<'a> Places<'a> {
         self.error_at(&self.place(number))
     }
 
-    /// Returns the errors for some combinations, about 4096, that are spread evenly over all. Callers use them as a
-    /// fingerprint of the golden model.
+    /// Returns the errors for 4096 to 8191 combinations that are spread evenly over all, or for all combinations if there are
+    /// fewer. Callers use them as a fingerprint of the golden model.
     pub fn glimpse(&self) -> Vec<f64> {
         let step = (self.count() / SAMPLE).max(1);
         (0..self.count()).step_by(step as usize).map(|place| self.error(place)).collect()

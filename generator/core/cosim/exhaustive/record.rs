@@ -44,9 +44,9 @@ pub struct Record {
 /// The largest error of `f` in a record.
 #[derive(Clone, Copy, Debug, Deserialize)]
 pub struct RecordedPeak {
-    /// The absolute error of `f`, without a unit.
+    /// The absolute error of `f`, without a unit. For a device that is no highlight, the error of an output in units.
     pub error: f64,
-    /// The error of `f` in output units, for the largest colour.
+    /// The error of `f` in output units, for the largest colour. For a device that is no highlight, the same as `error`.
     pub units: f64,
     /// The number of the operand combination with this error.
     place: u64,

@@ -1,6 +1,6 @@
 //! Runs the golden model of the sequential core for one point (one set of operands).
 //!
-//! It returns the results, and the register values that a pipeline must show at its checkpoints.
+//! The module returns the results, and the register values that a pipeline must show at its checkpoints.
 
 use anyhow::{Result, bail};
 

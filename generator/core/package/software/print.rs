@@ -26,7 +26,8 @@ pub fn taken() -> Names {
     Names::new(TAKEN.split_ascii_whitespace())
 }
 
-/// Returns the name of a structure's member for a port: the port's name, changed if it is a reserved word of C.
+/// Returns the name of a structure's member for a port: the port's name, with a number added if C or the generated code uses this
+/// name. For example, `int` becomes `int_2`.
 pub fn field(port: &str) -> String {
     taken().fresh(port)
 }

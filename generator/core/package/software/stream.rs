@@ -1,7 +1,7 @@
 //! Generates `<name>_stream.h` and `<name>_stream.py`: functions that pack operands into the bytes of an AXI4-Stream, and unpack
 //! results.
 //!
-//! A program uses them to fill and to read the memory of a DMA engine that feeds the core's stream wrapper.
+//! A program uses these functions to fill and to read the memory of a DMA engine that feeds the core's stream wrapper.
 
 use anyhow::Result;
 use glint_base::fill;
@@ -99,7 +99,7 @@ impl Bytes {
 /// Adds the C header and the Python file that pack and unpack the transfers of the streams.
 ///
 /// # Errors
-/// Fails if a template fails.
+/// Fails if the core has no operands or no results, or if a template fails.
 pub fn files(job: &EmitJob, files: &mut OutputFiles) -> Result<()> {
     let (name, regenerate) = (job.name(), job.regenerate());
     let (sent, received) = (Transfer::sent(job)?, Transfer::received(job)?);

@@ -30,7 +30,7 @@ struct BenchRegister {
 /// runs to its end.
 ///
 /// # Errors
-/// Fails if the core lacks its handshake.
+/// Fails if the core lacks its handshake, operands or results, or if a template fails.
 pub fn files(job: &EmitJob, vectors: &Vectors, files: &mut OutputFiles) -> Result<()> {
     let (design, name) = (job.design, job.name());
     let points = points(design, vectors)?;
