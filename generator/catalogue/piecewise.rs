@@ -1,8 +1,9 @@
 //! Builds the hardware of a piecewise polynomial: a table of coefficients, and Horner's rule with one product and one sum in
 //! each step.
 //!
-//! The devices `function`, `expression`, `blinn` and `gauss` use it. The position of the operand within its domain addresses the
-//! table, which gives the coefficients of the operand's segment. One multiplier serves all polynomials of a device.
+//! The devices `function`, `expression`, `blinn` and `gauss` use this hardware. The position of the operand within its domain
+//! addresses the table, which gives the coefficients of the operand's segment. One multiplier serves all polynomials of a device;
+//! if the device is a pipeline, each step can get its own multiplier.
 
 use std::ops::Range;
 
@@ -61,7 +62,8 @@ impl<'d> StepMultiplier<'d> {
         settings
     }
 
-    /// Returns the product of a pair of factors. The factors must be known to [`StepMultiplier::new`].
+    /// Returns the product of a pair of factors. If the device has several products, the pair must be one of the pairs that
+    /// [`StepMultiplier::new`] received.
     pub fn product(&self, [first, second]: [Signal<'d>; 2]) -> Signal<'d> {
         match &self.shared {
             Some((_, product)) => product.of(first, second),
@@ -70,7 +72,7 @@ impl<'d> StepMultiplier<'d> {
     }
 
     /// Returns the setting with which a microinstruction selects a pair of factors for the multiplier. Returns `None` if the
-    /// multiplier has only one product.
+    /// device has only one product, which needs no selection.
     pub fn pick(&self, [first, _]: [Signal<'d>; 2]) -> Option<StepSetting> {
         let (factors, _) = self.shared.as_ref()?;
         Some(factors.pick(first))
