@@ -15,8 +15,9 @@ pub struct Schema {
     /// The device's own keys, in the order in which a written file shows them. The keys that every device shares
     /// ([`super::shared_keys`]) are not among them.
     pub keys: Vec<Key>,
-    /// Checks the conditions between keys. It gets configurations in which every value is inside its own range, in any
-    /// combination, and must not panic. It reports each violated condition under the key that the user should change.
+    /// Checks the conditions between keys. The function gets configurations in which every value is inside its own range, in any
+    /// combination, and must not panic. The function must report each violated condition under the key that the user should
+    /// change.
     pub check: fn(&Config, &mut Problems),
 }
 
@@ -47,6 +48,8 @@ pub struct Key {
     /// default, so that digests of older configurations stay valid.
     pub joined_later: bool,
     /// The range from which random configurations draw an integer, if larger values would make a configuration too slow to test.
+    /// The default of a key with such a range is never adjusted to other keys. `None` if random configurations draw from the
+    /// whole range.
     pub drawn: Option<(i64, i64)>,
 }
 
@@ -88,7 +91,7 @@ pub enum KeyKind {
     /// A finite number between two limits, both included. If `or_zero` is true, the number may also be 0. A file may write the
     /// number as an integer.
     Number { min: f64, max: f64, or_zero: bool },
-    /// One of several texts. If all of them are decimal integers, a file writes an integer.
+    /// One of several texts. A file writes an option that is a decimal integer without quotes, for example `power = 16`.
     Choice(&'static [&'static str]),
     /// `true` or `false`.
     Flag,
@@ -229,7 +232,7 @@ impl Key {
     }
 
     /// Sets the range from which random configurations draw the integer, because larger values take long to test. Both ends are
-    /// included.
+    /// included. The default of the key is then never adjusted to other keys.
     pub fn drawn(self, min: i64, max: i64) -> Self {
         Self { drawn: Some((min, max)), ..self }
     }
