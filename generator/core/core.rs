@@ -60,7 +60,8 @@ impl Core {
     /// Fails in these cases:
     /// - The description has mistakes.
     /// - The pipeline cannot be made.
-    /// - A result depends on an earlier computation, or no output shows it.
+    /// - A result depends on an earlier computation, the golden model never shows a result, or the formula gives a wrong number
+    ///   of values.
     /// - The constraints ask for a faster clock than the pipeline was scheduled for.
     /// - The configuration sets `package.rom_style`, and no ROM of the core can have such an attribute.
     /// - The configuration asks for a program that recomputes results, and the contract does not allow one; see

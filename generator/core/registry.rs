@@ -155,8 +155,8 @@ impl Device {
     /// Checks that the contract can describe the results of the device.
     ///
     /// # Errors
-    /// Fails if [`Contract::check`] fails, for example because the golden model never shows a result. Fails also if results
-    /// depend on values that an earlier computation left, or if no output shows them.
+    /// Fails if [`Contract::check`] fails, for example because the golden model never shows a result, or because the formula
+    /// gives too few values. Fails also if results depend on values that an earlier computation left.
     pub fn check_contract(
         &self,
         config: &Config,

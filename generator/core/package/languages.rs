@@ -21,7 +21,8 @@ use glint_rtl::verilog::text::{Names, ascii, comment, constant_name, literal};
 /// Adds the VHDL file and the SystemVerilog file, if the configuration asks for them.
 ///
 /// # Errors
-/// Fails if a template fails.
+/// Fails if a template fails, or if the configuration asks for streams and a package of SystemVerilog, and the core has no
+/// operands or no results.
 pub fn files(job: &EmitJob, tops: &[Top], files: &mut OutputFiles) -> Result<()> {
     if job.inputs.around.vhdl {
         let text = vhdl(job, tops)?;
