@@ -38,7 +38,7 @@ impl Identity {
     }
 }
 
-/// A range reduction: it maps an operand of the large domain to a number with `bits` bits, at which the polynomial is
+/// A range reduction, which maps an operand of the large domain to a number with `bits` bits, at which the polynomial is
 /// evaluated.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Reduction {

@@ -52,8 +52,8 @@ pub struct Segments {
 pub struct SegmentOffset {
     /// The index of the segment's word in the table.
     pub word: usize,
-    /// The distance of the operand from the middle of the segment, in units of 2^−[`Segments::rest`] of the segment's length.
-    /// It lies from −1/2 to below 1/2 of the length; in the overhang it is 1/2 or more.
+    /// The distance of the operand from the middle of the segment, in units of 2^−[`Segments::rest`] of the segment's length. The
+    /// distance lies from −1/2 to below 1/2 of the length; in the overhang the distance is 1/2 of the length or more.
     pub offset: i64,
 }
 

@@ -1,9 +1,9 @@
 //! Finds the table of coefficients for given segments. The coefficients are so narrow that no single bit width can be smaller
 //! while the result of every operand stays within the allowed error.
 //!
-//! The search rounds the coefficients one after the other, the highest first. After each coefficient it subtracts the part of
-//! the function that the hardware computes from the coefficients so far, and fits the rest again. The constant comes last:
-//! every operand of a segment allows an interval of constants, and the constant is taken from the intersection of these
+//! The search rounds the coefficients one after the other, the highest first. After each coefficient, the search subtracts the
+//! part of the function that the hardware computes from the coefficients so far, and fits the rest again. The constant comes
+//! last: every operand of a segment allows an interval of constants, and the constant is taken from the intersection of these
 //! intervals.
 
 use rayon::prelude::*;

@@ -135,16 +135,16 @@ pub struct PolynomialDatapath<'d, 'p> {
     coefficients: Vec<Signal<'d>>,
     /// The offset of the operand from the middle of its segment, shortened to the bits that each step multiplies.
     offsets: Vec<Signal<'d>>,
-    /// The registers of the partial sums. Register k has the sum of the terms from coefficient k on, so that the first has the
-    /// whole polynomial.
+    /// The registers of the partial sums. Register k has the sum of the terms from coefficient k on, so that the first register
+    /// has the whole polynomial.
     registers: Vec<Register<'d>>,
 }
 
 impl<'d, 'p> PolynomialDatapath<'d, 'p> {
     /// Makes the table, and the registers of the partial sums. `registers` are the names of these registers, starting with the
-    /// register of the whole polynomial. The names of other nets begin with `prefix`. `number` is the position of the operand
-    /// in its domain, an integer of [`glint_approximate::Segments::number_bits`] bits. It must be stable while the sums are
-    /// loaded, and one clock earlier if the table is read at the rising clock edge.
+    /// register of the whole polynomial. The names of other nets begin with `prefix`. `number` is the position of the operand in
+    /// its domain, an integer of [`glint_approximate::Segments::number_bits`] bits. `number` must be stable while the sums are
+    /// loaded, and also one clock earlier if the table is read at the rising clock edge.
     pub fn new(
         d: &'d Designer,
         prefix: &str,

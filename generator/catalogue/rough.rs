@@ -261,8 +261,8 @@ fn exact_sums<'d>(
 /// Builds adder 15, n/2 and adder 16 as in the patent. All numbers are fractions modulo 1.0, so that a missing carry replaces
 /// each "− 1". The low bit of n is dropped.
 ///
-/// The patent contradicts itself about the second input of adder 31: it is all ones in the claim and in the description, and
-/// zeros in the summary. This circuit uses ones.
+/// The patent contradicts itself about the second input of adder 31: the input is all ones in the claim and in the description,
+/// and zeros in the summary. This circuit uses ones.
 fn patent_sums<'d>(
     d: &'d Designer,
     negative: Signal<'d>,

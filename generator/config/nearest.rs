@@ -5,8 +5,8 @@
 /// letter in shorter words. Otherwise returns the first candidate that begins with `word`, if `word` has more than two bytes.
 /// Returns `None` if there is no such candidate, or if `word` has more than 100 bytes.
 ///
-/// The comparison ignores case and the difference between `-` and `_`. If several candidates are equally similar, the first one
-/// is returned.
+/// The comparison ignores case and the difference between `-` and `_`. If several candidates are equally similar, the function
+/// returns the first of these candidates.
 pub fn nearest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     let fold = |text: &str| text.to_lowercase().replace('-', "_");
     // A longer word is no misspelling, and the time of the comparison grows with the square of the length.

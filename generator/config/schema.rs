@@ -22,7 +22,7 @@ pub struct Schema {
 }
 
 impl Schema {
-    /// Returns the default name of the Verilog module. It is the name of the device with `_` for `-`. If this is a Verilog
+    /// Returns the default name of the Verilog module: the name of the device with `_` for `-`. If this name is a Verilog
     /// keyword, `my_` is added at its front. For example, a device `table` would have the module `my_table`.
     pub fn module(&self) -> String {
         let name = self.device.replace('-', "_");
@@ -152,8 +152,8 @@ impl Key {
         Self::new(name, KeyKind::Number { min, max, or_zero: true }, Value::Number(0.0), doc)
     }
 
-    /// Makes a key whose value is one of several texts. The default must be one of them. If all of them are decimal integers,
-    /// such as `["2", "4"]`, a file writes an integer, and [`Config::integer`] reads it as one.
+    /// Makes a key whose value is one of several texts. The default must be one of these texts. If all texts are decimal
+    /// integers, such as `["2", "4"]`, a file must write an integer, and [`Config::integer`] returns this integer.
     pub fn choice(
         name: &'static str,
         default: &'static str,

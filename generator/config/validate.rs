@@ -308,8 +308,8 @@ fn check(schema: &Schema, draft: &Draft, problems: &mut Problems) {
     problems.extend(found);
 }
 
-/// Returns the message about a key that the user did not give. It begins with the key's value, and says that this is the
-/// default.
+/// Returns the message about a key that the user did not give. The message begins with the key's value, and says that this value
+/// is the default.
 fn of_default(key: &Key, draft: &Draft, message: &str) -> String {
     let value = draft.config.value(key.name).toml();
     format!("`{}` = {value}, its default, since it is not given: {message}", key.name)

@@ -159,7 +159,7 @@ impl Serialize for TableEntry {
 
 /// The values of all keys of one device. A configuration that [`super::read()`], [`super::parse()`], [`super::sample()`] or
 /// [`Config::from_values`] returns is valid: every value is in the range of its key, and the device accepts the combination.
-/// [`Config::defaults`] and [`Config::set`] do not check this.
+/// [`Config::defaults`] and [`Config::set`] do not check these conditions.
 ///
 /// In a valid configuration, keys that do not apply (see [`super::Key::condition`]) have their defaults.
 #[derive(Clone, Debug, PartialEq)]

@@ -27,9 +27,10 @@ pub const TEST_POINTS: u64 = 100_000;
 /// The seed of the random inputs of the default test.
 pub const TEST_SEED: u64 = 1;
 
-/// The number of random computations at the beginning of the bench that is emitted with a sequential core. They use everything
-/// that the handshake allows, such as writes while the core is busy. For a device with lines, random lines are computed until
-/// they have this number times [`BENCH_LINE`] results. The bench of a pipeline has [`PIPELINE_POINTS`] points instead.
+/// The number of random computations at the beginning of the bench that is emitted with a sequential core. These computations use
+/// everything that the handshake allows, such as writes while the core is busy. For a device with lines, random lines are
+/// computed until they have this number times [`BENCH_LINE`] results. The bench of a pipeline has [`PIPELINE_POINTS`] points
+/// instead.
 const BENCH_POINTS: u64 = 64;
 
 /// The largest number of results of a line among these computations.
@@ -135,9 +136,9 @@ impl Core {
         Backing::of_records(proofs, &self.contract_digest(), self.contract.as_ref())
     }
 
-    /// Returns a digest that identifies this core, whatever its name: SHA-256 in hexadecimal. It covers the same keys as
+    /// Returns a digest that identifies this core, whatever its name: SHA-256 in hexadecimal. The digest covers the same keys as
     /// [`Core::contract_digest`], and the keys that all devices share, such as the architecture. Keys of the tables `interface`
-    /// and `package` do not change it, because they concern only wrappers and packages around the core.
+    /// and `package` do not change the digest, because these keys concern only wrappers and packages around the core.
     pub fn core_digest(&self) -> String {
         let schema = (self.device.schema)();
         self.digest_of(schema.all_keys().filter(|key| {
@@ -158,9 +159,9 @@ impl Core {
         package::digest(text.as_bytes())
     }
 
-    /// Returns a digest that identifies an exhaustive check of this configuration: SHA-256 in hexadecimal. It covers the
-    /// configuration, the sweep, the sources of the code that takes part, and the errors at some operand combinations. The
-    /// errors also reveal a changed golden model in another crate. The digest is the same on every machine.
+    /// Returns a digest that identifies an exhaustive check of this configuration: SHA-256 in hexadecimal. The digest covers the
+    /// configuration, the sweep, the sources of the code that takes part, and the errors at some operand combinations. The errors
+    /// also reveal a changed golden model in another crate. The digest is the same on every machine.
     pub fn fingerprint(&self, sweep: &Sweep) -> String {
         let contract = self.contract.as_ref();
         let places = [Places::of_sweep(contract, sweep.clone()), Places::of_colours(contract)];
@@ -192,8 +193,8 @@ impl Core {
         Lockstep::new(design, model, self.contract.as_ref(), seed)
     }
 
-    /// Returns the exhaustive check of this core. It checks the error bound and, if the operands have few bits, compares model
-    /// and hardware clock by clock for every combination of operands.
+    /// Returns the exhaustive check of this core. The check tests the error bound and, if the operands have few bits, compares
+    /// model and hardware clock by clock for every combination of operands.
     ///
     /// # Errors
     /// Fails if golden model, design and contract do not have the same signals, operands and outputs.

@@ -1,9 +1,9 @@
 //! Declares the configuration keys of the devices `blinn` and `gauss`, and computes their tables of polynomials.
 //!
 //! Both devices compute f = 2^(−n·decay(c)), where c = cos γ and n is the specular exponent. The decay is −log₂ c in `blinn` and
-//! γ²/(2 ln 2) in `gauss`. Both have two tables of polynomials. One table gives the ratio of the decay to the distance 1 − c, and
-//! the other table gives 2^−x. In `blinn`, the first table gives the ratio for the mantissa m of the cosine, from 1/2 to 1,
-//! instead of c.
+//! γ²/(2 ln 2) in `gauss`. Both devices have two tables of polynomials. One table gives the ratio of the decay to the distance 1
+//! − c, and the other table gives 2^−x. In `blinn`, the first table gives the ratio for the mantissa m of the cosine, from 1/2 to
+//! 1, instead of c.
 
 use std::sync::Arc;
 

@@ -1,6 +1,6 @@
 //! Declares the configuration keys of the device `function`, and finds the piecewise polynomial for its function.
 //!
-//! The keys state a function of one operand x, as a formula such as `1 / sqrt(x)` or as samples (measured points). They also
+//! The keys state a function of one operand x, as a formula such as `1 / sqrt(x)` or as samples (measured points). The keys also
 //! state the domain and the allowed error.
 
 use std::sync::Arc;

@@ -35,7 +35,7 @@ glint_config::keys! {
 }
 
 impl Keys {
-    /// Returns the number of fraction bits of the coefficient a(n). It is 0 for the scheme `Taylor`, whose coefficients are
+    /// Returns the number of fraction bits of the coefficient a(n). Returns 0 for the scheme `Taylor`, whose coefficients are
     /// integers.
     pub fn coefficient_fraction(&self) -> u32 {
         if self.scheme == Scheme::Minimax { self.fraction } else { 0 }

@@ -51,7 +51,7 @@ impl Histogram {
     }
 
     /// Returns the share of results whose `f` is neither 0 nor in the class `1`, as a number from 0 to 1. Results outside the
-    /// domain count in the total. It is 0 if there are no results.
+    /// domain count in the total. Returns 0 if there are no results.
     pub fn share_inside(&self) -> f64 {
         let inside: u64 = self.counts[1..CLASSES.len() - 2].iter().sum();
         inside as f64 / self.counts.iter().sum::<u64>().max(1) as f64

@@ -1,4 +1,4 @@
-//! Runs instances of one design side by side in the lanes of one simulator. This is faster than one simulator for each instance.
+//! Runs instances of one design side by side in the lanes of one simulator, which is faster than one simulator for each instance.
 //!
 //! The caller gives each instance the operands of a computation, and reads its results from the same lane.
 

@@ -86,10 +86,10 @@ impl<'a> Lockstep<'a> {
         self
     }
 
-    /// Compares random computations until `points` results were compared, or until model and hardware differ. It uses all
-    /// threads of rayon's pool, and returns the outcome of all streams.
+    /// Compares random computations until `points` results were compared, or until model and hardware differ. The function uses
+    /// all threads of rayon's pool, and returns the outcome of all streams.
     ///
-    /// It calls `progress` now and then with the number of results since the last call.
+    /// The function calls `progress` now and then with the number of results since the last call.
     ///
     /// # Errors
     /// Fails if the design cannot be simulated, or if its signals do not settle in a clock. A difference between model and
@@ -113,8 +113,8 @@ impl<'a> Lockstep<'a> {
         Ok(self.outcome(records.into_iter().flatten()))
     }
 
-    /// Runs streams in one simulator; the first of them has number `first` in the run. It stops early if an earlier stream
-    /// differs, and then returns the streams as far as they ran.
+    /// Runs streams in one simulator; the first of them has number `first` in the run. The function stops early if an earlier
+    /// stream differs, and then returns the streams as far as they ran.
     fn group<const L: usize>(
         &self,
         courses: impl IntoIterator<Item = Course>,

@@ -7,8 +7,8 @@ use glint_base::fixed::{Format, MAX_WIDTH, exp2};
 use glint_golden::{Contract, Output, nearer};
 use glint_rtl::netlist::{Design, NetId};
 
-/// Measures the errors of a contract's outputs against the formula in f64. It reads the outputs from the values of the signals
-/// that a run of the co-simulation compares, one result at a time, and keeps the largest error.
+/// Measures the errors of a contract's outputs against the formula in f64. The outputs come from the values of the signals that a
+/// run of the co-simulation compares, one result at a time. The struct keeps the largest error.
 pub(super) struct Measure<'a> {
     pub(super) contract: &'a dyn Contract,
     /// The outputs, in the order of the contract.

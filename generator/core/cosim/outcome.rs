@@ -93,7 +93,7 @@ impl Outcome {
 /// The largest error of an output against the formula, and its operands.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Worst {
-    /// The error in output units. It is infinite if the formula has no value at the operands.
+    /// The error in output units; infinite if the formula has no value at the operands.
     pub units: f64,
     /// The error in units, multiplied by the largest bound of any output and divided by the bound of this output. Errors of
     /// different outputs are compared by it.
@@ -142,7 +142,7 @@ pub(super) struct StreamRecord {
     pub(super) worst: Option<Worst>,
     pub(super) histogram: Histogram,
     pub(super) mismatch: Option<Mismatch>,
-    /// The control operands of the latest result, and the formula's values for it. They are kept here to avoid new allocations.
+    /// The control operands of the latest result, and the formula's values for it. Both are stored here to avoid new allocations.
     pub(super) point: Vec<i64>,
     pub(super) exact: Vec<[f64; 2]>,
 }

@@ -1,4 +1,5 @@
-//! Replays recorded inputs of a design clock by clock. After the last recorded clock, it starts again with the first.
+//! Replays recorded inputs of a design clock by clock. After the last recorded clock, the replay starts again with the first
+//! recorded clock.
 
 use std::sync::Arc;
 

@@ -2,9 +2,9 @@
 //!
 //! At a random point (one set of operands), the roundings rarely all err in the same direction. The search starts from random
 //! points and changes one operand, or a pair of operands with fraction bits, by powers of two while the error grows. For a
-//! highlight it first climbs the error of `f`, and then the error of an output, with the worst colour. Around the points with the
-//! largest errors it tries all nearby values of each pair of operands, since rounding makes the last steps too irregular to
-//! climb. The largest error that the search finds is a lower bound of the true maximum, not a proof.
+//! highlight, the search first climbs the error of `f`, and then the error of an output, with the worst colour. Around the points
+//! with the largest errors, the search tries all nearby values of each pair of operands, since rounding makes the last steps too
+//! irregular to climb. The largest error that the search finds is a lower bound of the true maximum, not a proof.
 
 use rayon::prelude::*;
 
@@ -35,7 +35,7 @@ const BATCH: u64 = 1 << 10;
 /// An error that the search has found, with its operands and its output.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Reached {
-    /// The absolute error in output units. It is infinite if the formula has no value at the operands.
+    /// The absolute error in output units; infinite if the formula has no value at the operands.
     pub units: f64,
     /// The raw operands, in the order of `Contract::operands`.
     pub operands: Vec<i64>,
@@ -82,8 +82,8 @@ pub fn steps(starts: u64) -> u64 {
 }
 
 /// Searches from `starts` random points and returns the largest error that it finds. Returns `None` if `starts` is 0, or if the
-/// contract has no output. The result depends on `seed` but not on the number of threads. The function calls `progress` after
-/// each start. It then tries the neighbours of the operands with the largest errors, and calls `progress` after each of these
+/// contract has no output. The result depends on `seed` but not on the number of threads. After the starts, the function tries
+/// the neighbours of the operands with the largest errors. The function calls `progress` after each start and after each of these
 /// searches.
 pub fn worst(
     contract: &dyn Contract,

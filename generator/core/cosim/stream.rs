@@ -87,7 +87,8 @@ impl Stream {
     }
 
     /// Returns whether the stream has ended: because its course is complete, or because a signal differs. A pipeline goes on
-    /// after a difference until the combinations that it took earlier are finished, because an earlier one may differ too.
+    /// after a difference until the combinations that it took earlier are finished, because an earlier combination may differ
+    /// too.
     pub(super) fn ended(&self) -> bool {
         match (&self.course, &self.seen.mismatch) {
             (Course::Combinations { .. }, Some(found)) => {
@@ -156,8 +157,8 @@ impl Stream {
         self.source.inputs()
     }
 
-    /// Returns whether the latest inputs neither start, write nor reset anything. It is known only for the random inputs of a
-    /// core, and false for all others.
+    /// Returns whether the latest inputs neither start, write nor reset anything. Returns false for inputs other than the random
+    /// inputs of a core with a microprogram.
     #[inline]
     pub(super) fn is_idle(&self) -> bool {
         matches!(&self.source, Source::Stimulus(stimulus) if stimulus.is_idle())
@@ -250,8 +251,8 @@ impl Stream {
         });
     }
 
-    /// Counts the result that the model of a core predicts after the latest clock, if there is one, and measures its error. It
-    /// does nothing for a pipeline.
+    /// Counts the result that the model of a core predicts after the latest clock, if there is one, and measures its error. The
+    /// function does nothing for a pipeline.
     #[inline]
     pub(super) fn note(&mut self, binding: &Binding) {
         if let Host::Core(core) = &mut self.host {

@@ -1,7 +1,7 @@
 //! Runs single computations of a design in the built-in simulator, and records facts for manifests and pages.
 //!
-//! The runs measure the clocks between `start`, `valid` and `done`. They also give a worked example, a recording of chosen nets,
-//! and a list of computations by which users can check the device without a model.
+//! The runs measure the clocks between `start`, `valid` and `done`. The runs also give a worked example, a recording of chosen
+//! nets, and a list of computations by which users can check the device without a model.
 
 use anyhow::{Context, Result, ensure};
 
@@ -15,7 +15,7 @@ use glint_golden::{Contract, Highlight, Operand};
 use glint_rtl::netlist::{self, Design, HandshakeTiming, NetId};
 use glint_rtl::sim::Simulator;
 
-/// The number of clocks after which a computation counts as one that never ends.
+/// The number of clocks after which a computation counts as a computation that never ends.
 const LIMIT: u32 = 1 << 16;
 
 /// The number of sample computations in [`computations`]. The first of them are corners of the domain.
@@ -196,9 +196,9 @@ pub fn line(design: &Design, contract: &dyn Contract) -> Result<Option<LineClock
     Ok(Some(LineClocks { length: name, last_valid, done, next_start }))
 }
 
-/// Simulates one computation, and returns it as a worked example: the values of all operands and outputs. [`typical`] chooses
-/// the operands; for a highlight, `f` is mostly between 0.4 and 0.8. If the computation has several results, `outputs` has the
-/// outputs of the first one, and `results` has all.
+/// Simulates one computation, and returns it as a worked example: the values of all operands and outputs. [`typical`] chooses the
+/// operands; for a highlight, `f` is mostly between 0.4 and 0.8. If the computation has several results, `outputs` has the
+/// outputs of the first result, and `results` has the outputs of all results.
 ///
 /// # Errors
 /// Fails if the design cannot be simulated or does not belong to the contract. Fails if the computation does not end within
@@ -277,9 +277,8 @@ pub fn typical(contract: &dyn Contract, given: &[Option<i64>]) -> Vec<i64> {
     values
 }
 
-/// Lowers the operands of a line that change `f` only after the first point, such as a step, until `f` in the middle of the
-/// line is large enough. It must be at least a quarter of `f` at the first point. The function does nothing if the device
-/// computes no lines.
+/// Lowers the operands of a line that change `f` only after the first point, such as a step, until `f` in the middle of the line
+/// is at least a quarter of `f` at the first point. The function does nothing if the device computes no lines.
 fn slow_down(
     contract: &dyn Contract,
     highlight: &Highlight,

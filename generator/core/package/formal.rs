@@ -281,8 +281,8 @@ fn bounded_view(
     }
 }
 
-/// Returns the clocks of `valid` and `done`, and the number of clocks from one start to the next. The latter is at least one
-/// more than the clock of `done`. Returns `None` if one of these numbers depends on the data.
+/// Returns the clocks of `valid` and `done`, and the number of clocks from one start to the next. This last number is at least
+/// one more than the clock of `done`. Returns `None` if one of these numbers depends on the data.
 fn exact(timing: &HandshakeTiming) -> Option<([u32; 2], u32)> {
     let (valid, done) = (timing.start_to_valid?, timing.start_to_done?);
     // The next computation may start in the clock of `done`, but the age counts every computation to its last clock.

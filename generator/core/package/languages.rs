@@ -116,7 +116,7 @@ fn vhdl(job: &EmitJob, tops: &[Top]) -> Result<String> {
     })
 }
 
-/// Returns the declarations with a semicolon behind each except the last, as VHDL separates ports and generics.
+/// Returns the declarations with a semicolon behind each declaration except the last, as VHDL separates ports and generics.
 fn listed(mut declarations: Vec<String>) -> Vec<String> {
     let last = declarations.len().saturating_sub(1);
     declarations.iter_mut().take(last).for_each(|line| line.push(';'));

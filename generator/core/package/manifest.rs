@@ -19,8 +19,8 @@ use crate::observation::{Computation, ContractFacts, Quantity};
 use glint_rtl::netlist::HandshakeTiming;
 use glint_rtl::netlist::{Design, Pipeline, RegId};
 
-/// The version of the manifest's structure, for programs that read it. It is increased when a name is renamed, moved, or gets
-/// another meaning, and not when a name is added.
+/// The version of the manifest's structure, for programs that read it. The version is increased when a name is renamed, moved, or
+/// gets another meaning, and not when a name is added.
 const SCHEMA: u32 = 1;
 
 #[derive(Serialize)]

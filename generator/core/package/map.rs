@@ -17,7 +17,7 @@ use glint_rtl::verilog::text::ascii;
 /// The number of bits of a register.
 const WORD: u32 = 32;
 
-/// The number of bus registers with constant contents. They have the lowest addresses of a core's register map.
+/// The number of bus registers with constant contents. These registers have the lowest addresses of a core's register map.
 pub const CONSTANTS: u32 = 4;
 
 /// The word address of the control register, the first that software can write. [`INTERRUPT_ENABLE`] and [`INTERRUPT_PENDING`]
@@ -87,8 +87,8 @@ impl BusRegister {
     }
 }
 
-/// The placement of a port of the core (an operand or a result) in bus registers, the lowest bits first. For example, an
-/// operand of 40 bits takes two registers, the first with 32 bits and the second with 8.
+/// The placement of a port of the core (an operand or a result) in bus registers, the lowest bits first. For example, an operand
+/// of 40 bits takes two registers, the first register with 32 bits and the second register with 8 bits.
 #[derive(Clone, Debug)]
 pub struct PortPlacement {
     /// The name of the port.
@@ -337,9 +337,9 @@ fn of_results(results: &[PortPlacement], design: &Design) -> Vec<BusRegister> {
     }]
 }
 
-/// Returns the bus registers of a port that shares no register with another port. `access` says how software can access
-/// them. A port of more than 32 bits has several registers, named `<port>_0`, `<port>_1` and so on, with the lowest bits in
-/// the first.
+/// Returns the bus registers of a port that shares no register with another port. `access` says how software can access them. A
+/// port of more than 32 bits has several registers, named `<port>_0`, `<port>_1` and so on, with the lowest bits in the first
+/// register.
 fn own(port: &PortPlacement, access: Access, doc: &str) -> Vec<BusRegister> {
     let mut registers = Vec::new();
     for (number, part) in port.parts.iter().enumerate() {

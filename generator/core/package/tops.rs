@@ -47,7 +47,8 @@ pub struct TopPort {
 pub struct Top {
     /// The name of the module.
     pub module: String,
-    /// The end of the module's name, after the name of the core and `_`. For example, `axis`; it is empty for the core itself.
+    /// The end of the module's name, after the name of the core and `_`. For example, `axis`; the end is empty for the core
+    /// itself.
     pub suffix: &'static str,
     /// The kind of interface that the module has to the system.
     pub face: Face,

@@ -70,10 +70,10 @@ impl<'d> Colours<'d> {
         Self { designer, format, channels: vec![Channel { name: "intensity", operand, blocks }] }
     }
 
-    /// Adds outputs that one multiplier computes one after the other, and returns the microinstructions for that, one for each
-    /// output. Each output is a register with `f` times the operand, rounded by `rounding` and saturated to the operand's width.
-    /// The register is named `<colour>_intensity`, or `intensity_rounded` for the operand `amplitude`. `f` must not change until
-    /// the last output is loaded.
+    /// Adds outputs that one multiplier computes one after the other, and returns the microinstructions that compute them, one
+    /// for each output. Each output is a register with `f` times the operand, rounded by `rounding` and saturated to the
+    /// operand's width. The register is named `<colour>_intensity`, or `intensity_rounded` for the operand `amplitude`. `f` must
+    /// not change until the last output is loaded.
     #[must_use]
     #[track_caller]
     pub fn outputs_in_turn(&self, f: Signal<'d>, rounding: Rounding) -> Vec<Step> {

@@ -9,8 +9,8 @@ use glint_base::fixed::Format;
 /// An angle, mapped to the first quadrant: |sin| of the angle is the sine of `way`, and the sine is negative if `negative` is 1.
 #[derive(Clone, Copy)]
 pub struct Quadrant<'d> {
-    /// The distance of the angle from the nearer zero of the sine, in steps of the angle's format. It is less than a quarter
-    /// turn.
+    /// The distance of the angle from the nearer zero of the sine, in steps of the angle's format. The distance is less than a
+    /// quarter turn.
     pub way: Signal<'d>,
     /// A bit that is 1 if the sine is negative.
     pub negative: Signal<'d>,

@@ -13,8 +13,8 @@ use glint_base::fixed::{Format, Overflow, Rounding, exp2};
 pub struct Segmentation {
     /// The number C of bits of the operand.
     pub operand_bits: u32,
-    /// For each range j, the number k_j of bits that select a segment. It must be from 2 to C−2j. A range with k_j = 6 has 48
-    /// segments: three quarters of 2^6, because the lowest quarter belongs to the next ranges.
+    /// For each range j, the number k_j of bits that select a segment. This number must be from 2 to C−2j. A range with k_j = 6
+    /// has 48 segments: three quarters of 2^6, because the lowest quarter belongs to the next ranges.
     pub segments: Vec<u32>,
 }
 
@@ -29,8 +29,8 @@ struct EntryBlock {
     base: u32,
 }
 
-/// One entry of the table: the value at the start of its segment, and the rise over the segment. Both are raw values in the
-/// formats of [`SegmentedFormats`]. For example, with 8 fraction bits a base of 128 is 0.5.
+/// One entry of the table: the value at the start of its segment, and the rise over the segment. Both numbers are raw values in
+/// the formats of [`SegmentedFormats`]. For example, with 8 fraction bits a base of 128 is 0.5.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Entry {
     /// The value at the start of the segment, as a raw value with S fraction bits.
@@ -113,8 +113,8 @@ impl Segmentation {
         blocks
     }
 
-    /// Returns the number of lower bits of u that the slope multiplies, in the range with the most. It is at least 1, even if
-    /// every segment has one value.
+    /// Returns the number of lower bits of u that the slope multiplies, in the range with the most such bits. Returns at least 1,
+    /// even if every segment has one value.
     fn rest_bits(&self) -> u32 {
         self.blocks().iter().map(|block| block.bits - block.prefix).max().unwrap_or(0).max(1)
     }

@@ -5,8 +5,8 @@
 use crate::dsl::{Designer, Signal};
 use glint_base::fixed::Format;
 
-/// Divides `x` by 2^`places`, and rounds down to the fraction bits that `x` has. This is a barrel shifter, with one row of muxes
-/// for each bit of `places`.
+/// Divides `x` by 2^`places`, and rounds down to the fraction bits that `x` has. The hardware is a barrel shifter, with one row
+/// of muxes for each bit of `places`.
 ///
 /// `x` must be unsigned, and `places` an unsigned integer. For example, 13 in `u4.0` by 2 places gives 3.
 #[track_caller]

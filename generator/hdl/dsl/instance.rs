@@ -1,5 +1,5 @@
-//! Instantiates a hardware description within another one, as a *part* whose operands are signals of the surrounding description.
-//! For example, `shading` instantiates `dot-product`.
+//! Instantiates a hardware description within another description, as a *part* whose operands are signals of the surrounding
+//! description. For example, `shading` instantiates `dot-product`.
 //!
 //! The nets, registers and memories of the part are added to the surrounding design, with the name of the instance in front. The
 //! parts run one after the other, in the order of their instances. A part has no ports, sequencer or handshake of its own.
@@ -155,9 +155,9 @@ impl Designer {
         )
     }
 
-    /// Makes the microprogram from the parts: it executes them in the order of their instances, and then loads the outputs into
-    /// registers. All logic between the parts must be combinational: [`Designer::finish`] reports a mistake for a register or a
-    /// synchronous ROM outside the parts that loads on every clock.
+    /// Makes the microprogram from the parts. The microprogram executes the parts in the order of their instances, and then loads
+    /// the outputs into registers. All logic between the parts must be combinational: [`Designer::finish`] reports a mistake for
+    /// a register or a synchronous ROM outside the parts that loads on every clock.
     #[track_caller]
     pub fn dataflow(&self) {
         self.register_outputs();
@@ -233,7 +233,7 @@ fn unfit(design: &Design) -> Option<String> {
     None
 }
 
-/// Adds a finished design to another one as a part.
+/// Adds a finished design to another design as a part.
 struct InstanceBuilder<'d, 'p> {
     designer: &'d Designer,
     name: &'p str,

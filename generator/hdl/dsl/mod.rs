@@ -120,7 +120,7 @@ pub struct Designer {
     inner: RefCell<Inner>,
     /// The number of this designer, which distinguishes its handles from the handles of another designer.
     serial: u64,
-    /// The number of descriptions that contain this one as a part, one inside the other; 0 for a whole device.
+    /// The number of descriptions that contain this description as a part, one inside the other; 0 for a whole device.
     depth: u32,
     start: NetId,
     idle: NetId,

@@ -120,7 +120,8 @@ pub fn valid() -> StepSetting {
     StepSetting::sequence(SettingKind::Valid)
 }
 
-/// Returns the setting that continues with the microinstruction at the next address. It is the default.
+/// Returns the setting that continues with the microinstruction at the next address. Every microinstruction except
+/// microinstruction 0, which waits for `start`, continues in this way without such a setting.
 #[track_caller]
 pub fn next() -> StepSetting {
     StepSetting::sequence(SettingKind::Next)
@@ -135,7 +136,7 @@ pub fn wait_for_start() -> StepSetting {
 }
 
 /// Returns the setting that jumps back to the microinstruction named `to` while the bit `condition` is 1, and otherwise continues
-/// with the next one. A microinstruction of the loop must be able to change the condition, so that the loop ends.
+/// with the next microinstruction. A microinstruction of the loop must be able to change the condition, so that the loop ends.
 #[track_caller]
 pub fn loop_while(condition: Signal<'_>, to: &str) -> StepSetting {
     let kind = SettingKind::LoopWhile { condition: condition.id(), to: to.to_owned() };
@@ -143,7 +144,7 @@ pub fn loop_while(condition: Signal<'_>, to: &str) -> StepSetting {
 }
 
 /// Returns the setting that jumps ahead to the microinstruction named `to` if the bit `condition` is 1, and otherwise continues
-/// with the next one. For example, a jump skips a loop that may run zero times.
+/// with the next microinstruction. For example, a jump skips a loop that may run zero times.
 #[track_caller]
 pub fn jump_if(condition: Signal<'_>, to: &str) -> StepSetting {
     // The sequencer treats a jump ahead like a jump back.

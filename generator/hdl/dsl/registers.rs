@@ -110,7 +110,7 @@ impl Designer {
     /// Adds a register that certain microinstructions load; its field is `<name>_load`. For example, the register `reg11_cos_cos`
     /// of `rough` has the field `reg11_cos_cos_load`. The description must connect its input by [`Register::takes`].
     ///
-    /// The register has no reset. It must not have the name of an operand, because both would have a net `<name>_load`.
+    /// The register has no reset. The register must not have the name of an operand, because both would have a net `<name>_load`.
     #[track_caller]
     pub fn register(&self, name: &str, format: Format) -> Register<'_> {
         let field = self.add_field(&format!("{name}_load"), 1, FieldKind::Enable);
@@ -202,8 +202,8 @@ impl Designer {
     }
 }
 
-/// An operand of a device: a value that the user writes before a computation. It consists of an input port, a write strobe and a
-/// register.
+/// An operand of a device: a value that the user writes before a computation. An operand consists of an input port, a write
+/// strobe and a register.
 #[derive(Clone, Copy)]
 pub struct InputOperand<'d> {
     port: Signal<'d>,

@@ -529,7 +529,8 @@ impl Designer {
     }
 
     /// Returns `a` as a net of exactly `format`, which must have the same binary point. If the format cannot represent the range
-    /// of `a`, the upper bits are dropped. This is harmless for an operand of a sum whose result fits the format.
+    /// of `a`, the upper bits are dropped. The loss of these bits is harmless for an operand of a sum whose result fits the
+    /// format.
     #[track_caller]
     pub(crate) fn resized(&self, a: Signal<'_>, format: Format) -> NetId {
         let a = self.own(a);

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 
 use super::{Design, Driver, NetId, Op, Pipeline, RegId};
 
-/// A delay line of a pipeline: registers that carry values from one stage to a later one, with no reader in between. All its
+/// A delay line of a pipeline: registers that carry values from one stage to a later stage, with no reader in between. All its
 /// values travel between the same two stages.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct DelayLine {
@@ -24,7 +24,7 @@ pub struct DelayLine {
 pub struct Delayed {
     /// The net with the value that enters the delay line, the data input of its first register.
     pub data: NetId,
-    /// The registers that the value passes, one for each stage. Only the last one has a reader besides the next register.
+    /// The registers that the value passes, one for each stage. Only the last register has a reader besides the next register.
     pub registers: Vec<RegId>,
 }
 
@@ -37,7 +37,8 @@ impl DelayLine {
 }
 
 impl Delayed {
-    /// Returns the registers that a memory replaces: all that the value passes except the last one, from which the value is read.
+    /// Returns the registers that a memory replaces: all registers that the value passes except the last register, from which the
+    /// value is read.
     pub fn passed(&self) -> &[RegId] {
         &self.registers[..self.registers.len() - 1]
     }
@@ -94,9 +95,9 @@ impl Design {
         lines
     }
 
-    /// Returns the number of the register that follows register `at` in a delay line. It is the only reader of register `at`,
-    /// with the same enable. Returns `None` if another net reads register `at`, or if one of the registers has a reset. Returns
-    /// `None` if register `at` belongs to the side channel or is inside a multiplier.
+    /// Returns the number of the register that follows register `at` in a delay line. This next register is the only reader of
+    /// register `at`, and has the same enable. Returns `None` if another net reads register `at`, or if one of the registers has
+    /// a reset. Returns `None` if register `at` belongs to the side channel or is inside a multiplier.
     fn next_of_line(
         &self,
         pipeline: &Pipeline,

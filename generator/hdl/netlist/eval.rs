@@ -86,7 +86,7 @@ pub fn cell<'a, Operand: Copy, const N: usize>(
     }
 }
 
-/// A simple simulator of a design. It stores the state of registers and ROMs, and evaluates one net after another.
+/// A simple simulator of a design. The interpreter stores the state of registers and ROMs, and evaluates one net after another.
 pub struct Interpreter<'a> {
     design: &'a Design,
     order: Vec<NetId>,

@@ -244,8 +244,8 @@ impl Graph {
         }
     }
 
-    /// Returns whether the mux `select ? limit : value` is superfluous because `value` never exceeds the constant `limit`. This
-    /// is so if `limit` is a power of two, and `select` is the bit of `value` with this weight.
+    /// Returns whether the mux `select ? limit : value` is superfluous because `value` never exceeds the constant `limit`.
+    /// Returns true if `limit` is a power of two, and `select` is the bit of `value` with this weight.
     fn is_kept(&self, value: NodeId, select: NodeId, limit: u64) -> bool {
         let (low, high) = self.node(value).range;
         let Cell::Op(NodeOp::Slice { of, low: bit }) = self.node(select).cell else { return false };

@@ -13,9 +13,9 @@ use crate::netlist::Design;
 pub enum IntervalGoal {
     /// The interval itself, in clocks.
     Clocks(usize),
-    /// The largest interval with at least this rate, in million points a second, at the requested clock. It is never larger than
-    /// the number of clocks that the sequential core takes for a point. For example, 26 million points a second at 130 MHz allow
-    /// an interval of 5 clocks.
+    /// The largest interval with at least this rate, in million points a second, at the requested clock. The interval is never
+    /// larger than the number of clocks that the sequential core takes for a point. For example, 26 million points a second at
+    /// 130 MHz allow an interval of 5 clocks.
     Rate(f64),
     /// The smallest interval that needs at most this number of multipliers.
     Multipliers(usize),

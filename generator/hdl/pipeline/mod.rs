@@ -80,8 +80,8 @@ pub struct Options {
     pub delays: Delays,
 }
 
-/// Returns the computation of a pipeline before the passes and after each of them, in the order of the passes. The first entry
-/// is the unrolled microprogram, and Glint schedules the last one.
+/// Returns the computation of a pipeline before the passes and after each of them, in the order of the passes. The first entry is
+/// the unrolled microprogram, and Glint schedules the last entry.
 ///
 /// # Errors
 /// Fails if the microprogram cannot be unrolled; the error has its source line.

@@ -19,8 +19,8 @@ use glint_base::target::{Registered, Timing};
 /// A schedule for a pipeline: the stage of every node of the computation's graph, and the clock period that the stages reach.
 #[derive(Clone, Debug)]
 pub struct Schedule {
-    /// The stage of each node of the computation's graph. It is meaningless for constants, for extensions that are no results,
-    /// and for nodes on which no result depends.
+    /// The stage of each node of the computation's graph. An entry is meaningless for constants, for extensions that are no
+    /// results, and for nodes on which no result depends.
     pub stage: Vec<usize>,
     /// The number of register rows from the operands to the results, which is the latency in clocks.
     pub latency: usize,
@@ -74,21 +74,21 @@ pub struct ScheduleProblem<'a> {
     kinds: Vec<ProductGroup>,
 }
 
-/// The timing of a node that gets its value at a rising edge. It is a word of a block memory, a product in the register of a
-/// multiplier, or a product of a shared multiplier.
+/// The timing of a node that gets its value at a rising edge. Such a node is a word of a block memory, a product in the register
+/// of a multiplier, or a product of a shared multiplier.
 #[derive(Clone, Copy, Debug)]
 struct ClockedNode {
     /// The time from the operands to the rising edge in nanoseconds, as far as it exceeds the path to an ordinary register.
     operands: f64,
     /// The delay of the logic between two registers that the operands pass afterwards, in nanoseconds: the multiplier behind its
-    /// operand registers. It is 0 without such logic.
+    /// operand registers. The delay is 0 without such logic.
     inside: f64,
     /// The number of stage boundaries from the operands to the node: 2 for a shared multiplier, otherwise 1.
     apart: usize,
 }
 
-/// Returns the clock frequency for a `period` in nanoseconds, in MHz to one decimal. It is rounded down, so that the stated clock
-/// can be reached. For example, 7 ns give 142.8 MHz.
+/// Returns the clock frequency for a `period` in nanoseconds, in MHz to one decimal. The frequency is rounded down, so that the
+/// stated clock can be reached. For example, 7 ns give 142.8 MHz.
 pub fn megahertz(period: f64) -> f64 {
     (10_000.0 / period).floor() / 10.0
 }
@@ -178,7 +178,7 @@ fn node_timing(
 
 impl<'a> ScheduleProblem<'a> {
     /// Makes the scheduling problem for the nodes of `graph` on which `results` depend. `interval` is the number of clocks from
-    /// one point to the next. `registered` has the delays of multipliers with output registers; it is `None` if products do not
+    /// one point to the next. `registered` has the delays of multipliers with output registers, or is `None` if products do not
     /// use these registers.
     pub fn new(
         graph: &'a Graph,
@@ -285,8 +285,8 @@ impl<'a> ScheduleProblem<'a> {
         }
     }
 
-    /// Returns the schedule that reaches a clock period in nanoseconds. It has as few stages as possible, and among these
-    /// schedules the fewest register bits.
+    /// Returns the schedule that reaches a clock period in nanoseconds. The schedule has as few stages as possible, and among all
+    /// such schedules the fewest register bits.
     ///
     /// # Errors
     /// Fails if an operation takes longer than the period, or if the solver fails.
@@ -344,8 +344,8 @@ impl<'a> ScheduleProblem<'a> {
         self.latency(&differences, &self.taken(&differences))
     }
 
-    /// Returns the number of rows of pipeline registers that must lie between the operands of node `user` and its value. It is 0
-    /// for combinational logic, 1 for a word of a block memory or a product with a register, and 2 for a product of a shared
+    /// Returns the number of rows of pipeline registers that must lie between the operands of node `user` and its value. Returns
+    /// 0 for combinational logic, 1 for a word of a block memory or a product with a register, and 2 for a product of a shared
     /// multiplier.
     pub fn apart(&self, user: NodeId) -> usize {
         match self.clocked[user.index()] {
@@ -374,7 +374,7 @@ impl<'a> ScheduleProblem<'a> {
     }
 
     /// Returns the constraints of a clock period in nanoseconds: for each pair of dependent nodes the least difference of their
-    /// stages. They are sorted, and each pair occurs once.
+    /// stages. The constraints are sorted, and each pair occurs once.
     fn differences(&self, period: f64) -> Vec<StageDifference> {
         let most = period - self.target.register + 1e-9;
         let mut differences = Vec::new();
@@ -477,8 +477,8 @@ impl<'a> ScheduleProblem<'a> {
         taken
     }
 
-    /// Returns the last stage that a node may have. It is 0 for an operand, because operands are available from the beginning. It
-    /// is `latency` − 1 for any other node, because a register row follows the results.
+    /// Returns the last stage that a node may have. Returns 0 for an operand, because operands are available from the beginning.
+    /// Returns `latency` − 1 for any other node, because a register row follows the results.
     fn last_stage(&self, id: usize, latency: usize) -> usize {
         if matches!(self.graph.nodes[id].cell, Cell::Operand(_)) { 0 } else { latency - 1 }
     }

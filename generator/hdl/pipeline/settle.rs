@@ -8,8 +8,8 @@ use super::graph::{Cell, Graph, Label, NodeId, NodeOp};
 use glint_base::fixed::Format;
 
 /// Returns a node with the value of node `id`. If `id` is a mux `over ? most : rest` with a constant `most`, the returned mux
-/// bypasses inner muxes of this kind in `rest`. It bypasses those whose condition must be 0 if the new condition is 0. Returns
-/// `id` itself if the node is no mux of this kind.
+/// bypasses those inner muxes of this kind in `rest` whose condition must be 0 if the new condition is 0. Returns `id` itself if
+/// the node is no mux of this kind.
 pub fn settled(graph: &mut Graph, id: NodeId) -> NodeId {
     let node = graph.node(id).clone();
     let Some((over, rest, most)) = limit(graph, id) else { return id };

@@ -43,8 +43,8 @@ fn product(
     }
 }
 
-/// Returns terms whose sum is the product of `a` and `b`. It is one term if the target's multipliers take the factors or if a
-/// special case applies.
+/// Returns terms whose sum is the product of `a` and `b`. There is only one term if the target's multipliers take the factors or
+/// if a special case applies.
 fn parts(
     graph: &mut Graph,
     target: &Timing,
@@ -106,8 +106,8 @@ fn below_the_highest(
     graph.op(NodeOp::Extend(whole), format, label)
 }
 
-/// Returns `a` and `b` in an order in which the first factor is signed and never negative, and the second has bits besides its
-/// sign. Returns `None` if no order of `a` and `b` has this form.
+/// Returns `a` and `b` in an order in which the first factor is signed and never negative, and the second factor has bits besides
+/// its sign. Returns `None` if no order of `a` and `b` has this form.
 fn with_a_sign(graph: &Graph, [a, b]: [NodeId; 2]) -> Option<[NodeId; 2]> {
     let positive = |id: NodeId| graph.node(id).format.signed && graph.node(id).range.0 >= 0;
     let factors = if positive(a) { [a, b] } else { [b, a] };

@@ -234,13 +234,14 @@ impl<'a> Executor<'a> {
         }
     }
 
-    /// Executes every iteration but the first of the loop from address `to` to address `last`, and returns the state after them.
-    /// `condition` says whether the second iteration takes place; `state` is the state after the first one. The number of
-    /// iterations must have a bound for any values of `free`, the register contents before the last microinstruction of the first
-    /// iteration.
+    /// Executes every iteration but the first of the loop from address `to` to address `last`, and returns the state after these
+    /// iterations. `condition` says whether the second iteration takes place; `state` is the state after the first iteration. The
+    /// number of iterations must have a bound for any values of `free`, the register contents before the last microinstruction of
+    /// the first iteration.
     ///
-    /// Registers on which the loop's condition depends go from iteration to iteration as if every iteration took place. This does
-    /// no harm, because an iteration counts only if all iterations before it took place, and it saves muxes for a counter.
+    /// Registers on which the loop's condition depends go from iteration to iteration as if every iteration took place. This
+    /// simplification saves muxes for a counter, and does no harm, because an iteration counts only if all iterations before it
+    /// took place.
     fn iterations(
         &mut self,
         mut state: State,
@@ -290,10 +291,10 @@ impl<'a> Executor<'a> {
         }
     }
 
-    /// Unrolls a loop whose number of iterations depends on an operand. It becomes blocks of 8, 4, 2 and 1 iterations, with fewer
-    /// or more blocks for other numbers. The number of `conditions` that are 1 is the number of further iterations after `first`,
-    /// the state behind the first iteration. One bit of this number enables each block. `counters` marks the registers that count
-    /// iterations; their values in the returned state are wrong.
+    /// Unrolls a loop whose number of iterations depends on an operand. The loop becomes blocks of 8, 4, 2 and 1 iterations, with
+    /// fewer or more blocks for other numbers. The number of `conditions` that are 1 is the number of further iterations after
+    /// `first`, the state behind the first iteration. One bit of this number enables each block. `counters` marks the registers
+    /// that count iterations; their values in the returned state are wrong.
     ///
     /// Returns `None` if an iteration depends on these registers or changes a memory's output, or if there are fewer than four
     /// conditions. Returns `None` if the number depends on several nodes or on more than 6 bits.

@@ -95,8 +95,8 @@ struct Steady<'a> {
     holds: Vec<bool>,
     /// The registers, each with the net that it loads and the thresholds of its load.
     registers: Vec<(RegId, NetId, Thresholds)>,
-    /// The estimated delays from the operand registers to the steady nets that may be computed later than in clock 0. They are in
-    /// hundredths of a nanosecond, in ascending order, and include 0.
+    /// The estimated delays from the operand registers to the steady nets that may be computed later than in clock 0. The delays
+    /// are in hundredths of a nanosecond, in ascending order, and include 0.
     places: Vec<u32>,
 }
 
@@ -214,8 +214,8 @@ impl<'a> Steady<'a> {
         [self.places[first], self.places[second], 0]
     }
 
-    /// Returns whether a register follows `net` for a reader in clock `by`. It does if a register may follow the net, and if the
-    /// net is computed in an earlier clock than `by`.
+    /// Returns whether a register follows `net` for a reader in clock `by`. Returns true if a register may follow the net, and if
+    /// the net is computed in an earlier clock than `by`.
     fn is_cut(&self, net: NetId, by: usize, places: CutPlaces) -> bool {
         self.holds[net.index()] && by > clock(self.thresholds[net.index()], places)
     }
@@ -274,8 +274,8 @@ impl<'a> Steady<'a> {
     }
 }
 
-/// Notes a reader with the thresholds `by`. `earliest` becomes the smaller of both for each entry; it is `None` before the first
-/// reader.
+/// Notes a reader with the thresholds `by`. For each entry, `earliest` becomes the smaller of its number and the number in `by`.
+/// `earliest` is `None` before the first reader.
 fn note_reader(earliest: &mut Option<Thresholds>, by: Thresholds) {
     let known = earliest.unwrap_or([u32::MAX; 3]);
     *earliest = Some(std::array::from_fn(|at| known[at].min(by[at])));

@@ -1,5 +1,6 @@
 //! Distributes the values of a compiled design over two banks of memory with slots of 32 and of 64 bits, and inserts conversions
-//! between the banks. Most values fit into 32 bits, and a vector of the processor holds twice as many of them.
+//! between the banks. Most values fit into 32 bits, and a vector of the processor holds twice as many 32-bit values as 64-bit
+//! values.
 
 use crate::sim::compiler::{Compiler, Ordered};
 use crate::sim::program::{

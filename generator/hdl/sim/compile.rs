@@ -219,9 +219,9 @@ impl<'a> Compiler<'a> {
         Some(self.stable(slot, written))
     }
 
-    /// Returns a slot that has the value of `a` from before the edge. This is a copy if the edge has already written `a`, which
-    /// is then in `written`. All registers of a design change at the same time, but the simulator writes them one after the
-    /// other.
+    /// Returns a slot that has the value of `a` from before the edge. The returned slot is a copy if the edge has already written
+    /// `a`, which is then in `written`. All registers of a design change at the same time, but the simulator writes them one
+    /// after the other.
     fn stable(&mut self, a: Slot, written: &HashSet<Slot>) -> Slot {
         if written.contains(&a) { self.emit(&[a], |to| Instruction::Copy { to, a }) } else { a }
     }

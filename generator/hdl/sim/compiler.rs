@@ -28,7 +28,7 @@ pub(super) struct Ordered {
 /// The compiler's state. All slots are 64 bits wide here; `banks` divides them into two banks later.
 pub(super) struct Compiler<'a> {
     pub(super) design: &'a Design,
-    /// For each slot, the set of [`Sources`] on which it depends within one clock. It is empty for constants.
+    /// For each slot, the set of [`Sources`] on which the slot depends within one clock. The set is empty for constants.
     pub(super) sources: Vec<Sources>,
     /// The number of sources that are input ports.
     input_sources: u32,

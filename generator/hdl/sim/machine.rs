@@ -483,7 +483,7 @@ fn read(words: &[u64], span: Span, address: u64) -> u64 {
 }
 
 /// Stores the chosen slot's value in each lane of `to`. The number in `select` chooses among `choices`; a number beyond the last
-/// choice selects the last one.
+/// choice selects the last choice.
 #[inline(always)]
 fn mux<W: LaneWord, const LANES: usize>(
     slots: &mut [[W; LANES]],

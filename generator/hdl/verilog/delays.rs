@@ -18,7 +18,7 @@ const TITLE: &str =
 type Pace = (usize, Option<NetId>);
 
 /// Returns the Verilog section that instantiates the delay lines, with one instance for all lines of the same length and enable.
-/// The list is empty if the pipeline has no delay lines.
+/// The section is empty if the pipeline has no delay lines.
 pub fn section(builder: &mut Builder<'_>, naming: &Naming) -> Vec<String> {
     let plan = builder.plan;
     let mut paces: BTreeMap<Pace, Vec<&DelayLine>> = BTreeMap::new();

@@ -22,11 +22,12 @@ pub struct Constant {
     pub bits: u64,
     /// The number of bits of the constant.
     pub width: u32,
-    /// The comment behind the localparam: the constant's value as text. It is empty if the bit pattern itself is the value.
+    /// The comment behind the localparam: the constant's value as text. The comment is empty if the bit pattern itself is the
+    /// value.
     pub note: String,
 }
 
-/// A writer of the Verilog expressions for one module. It collects the constants that the expressions use.
+/// A writer of the Verilog expressions for one module. The writer collects the constants that the expressions use.
 pub struct Expressions<'a> {
     plan: &'a Plan<'a>,
     names: Names,
@@ -69,8 +70,8 @@ impl<'a> Expressions<'a> {
         }
     }
 
-    /// Returns the Verilog text that reads a net within a larger expression. It is a name, a selection, a concatenation, or a
-    /// cell in parentheses, such as `(a + b)`.
+    /// Returns the Verilog text that reads a net within a larger expression: a name, a selection, a concatenation, or a cell in
+    /// parentheses, such as `(a + b)`.
     pub fn operand(&mut self, id: NetId) -> String {
         if let Some(constant) = self.constant(id) {
             return constant;

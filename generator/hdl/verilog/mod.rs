@@ -28,8 +28,8 @@ use interface::Interface;
 use naming::Naming;
 use plan::Plan;
 
-/// Returns the files for a design as pairs of file name and text. They are the Verilog modules (`.v`), and the contents of ROMs
-/// (`.mem`) for `$readmemh` and `$readmemb`.
+/// Returns the files for a design as pairs of file name and text: the Verilog modules (`.v`), and the contents of ROMs (`.mem`)
+/// for `$readmemh` and `$readmemb`.
 ///
 /// # Errors
 /// Fails if [`Design::verify_structure`] finds mistakes; the error lists them. Fails if the words of the control ROM are not as

@@ -158,8 +158,8 @@ impl<'a> Plan<'a> {
         }
     }
 
-    /// Returns the bits of the net `operand` that a reader uses in the Verilog. These are all bits, unless the reader is a slice,
-    /// a field of the control word or the address of a ROM.
+    /// Returns the bits of the net `operand` that a reader uses in the Verilog. A reader uses all bits, unless the reader is a
+    /// slice, a field of the control word or the address of a ROM.
     pub fn operand_bits(&self, reader: Reader, operand: NetId) -> Bits {
         let bits = &self.bits[operand.index()];
         match reader {
@@ -263,8 +263,8 @@ impl<'a> Plan<'a> {
         }
     }
 
-    /// Finds the cells that the Verilog writes. It leaves out cells without a name from the description that no written cell,
-    /// register or ROM reads.
+    /// Finds the cells that the Verilog writes. The function leaves out cells without a name from the description that no written
+    /// cell, register or ROM reads.
     fn find_live(&mut self, order: &[NetId]) {
         let mut live = vec![false; self.design.nets.len()];
         // The search starts from registers and ROMs, since no cell is known to be written yet.
@@ -342,7 +342,7 @@ impl<'a> Plan<'a> {
         }
     }
 
-    /// Returns whether a net of a pipeline is wiring of at most three pieces that is not declared. It must have no comment,
+    /// Returns whether a net of a pipeline is wiring of at most three pieces that is not declared. The net must have no comment,
     /// unless the register behind it carries the same value and shows the comment.
     fn is_plain(&self, id: NetId, bits: &Bits) -> bool {
         const MOST_PIECES: usize = 3;
@@ -401,8 +401,8 @@ impl<'a> Plan<'a> {
         self.repeats = repeats;
     }
 
-    /// Returns the comment that the Verilog shows at the declaration of a net. It is empty if the net only repeats a value of an
-    /// earlier pipeline stage.
+    /// Returns the comment that the Verilog shows at the declaration of a net. The comment is empty if the net only repeats a
+    /// value of an earlier pipeline stage.
     pub fn remark(&self, id: NetId) -> String {
         if self.repeats.contains(&id) { String::new() } else { remark(self.design, id) }
     }

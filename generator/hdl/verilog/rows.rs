@@ -4,7 +4,7 @@ use super::plan::Plan;
 use super::text::{COLUMNS, annotated, range};
 use crate::netlist::{Design, NetId};
 
-/// Returns the texts with a comma after each except the last. For example, `a` and `b` become `a,` and `b`.
+/// Returns the texts with a comma after each text except the last. For example, `a` and `b` become `a,` and `b`.
 pub fn separated(mut texts: Vec<String>) -> Vec<String> {
     let last = texts.len().saturating_sub(1);
     for text in texts.iter_mut().take(last) {

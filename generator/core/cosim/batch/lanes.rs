@@ -16,7 +16,7 @@ use crate::cosim::instances::Instances;
 use glint_golden::Contract;
 use glint_rtl::netlist::{Design, NetId, Role};
 
-/// The number of clocks after which a computation counts as one that never ends.
+/// The number of clocks after which a computation counts as a computation that never ends.
 const LIMIT: u64 = 1 << 16;
 
 /// An [`Engine`] that simulates the design with rust_hdl: one simulator for each thread, with an instance of the design in each
@@ -58,8 +58,8 @@ struct Team {
     instances: Instances<LANES>,
     /// The number of clocks from a point to its result, if the design is a pipeline; otherwise `None`.
     latency: Option<u64>,
-    /// The output `in_ready` of a pipeline, which says that it takes a point. It has the same value in all instances. `None` if
-    /// the design has no such port.
+    /// The output `in_ready` of a pipeline, which is 1 if the pipeline takes a point. The output has the same value in all
+    /// instances. `None` if the design has no such port.
     in_ready: Option<NetId>,
 }
 

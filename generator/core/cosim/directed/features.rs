@@ -87,8 +87,8 @@ impl Watch {
         }
     }
 
-    /// Returns the number of features, in all brightness classes together. It reserves 64 features in each class for everything
-    /// that is observed. Reads of ROM words are not counted.
+    /// Returns the number of features, in all brightness classes together. The function reserves 64 features in each class for
+    /// everything that is observed. Reads of ROM words are not counted.
     pub fn count(&self) -> usize {
         64 * CLASSES * self.watched.len()
     }

@@ -5,15 +5,15 @@
 //! computations, simulates them, and chooses some of them:
 //!
 //! - For each ROM word that any computation reads, and each bit in the upper half of the word: one computation whose results
-//!   change if the bit is inverted. If the pool has no such computation, the module searches near the computations that read
-//!   the word. For a device that computes a line of points, and reads a word in each clock, it chooses a line that reads the
+//!   change if the bit is inverted. If the pool has no such computation, the module searches near the computations that read the
+//!   word. For a device that computes a line of points, and reads a word in each clock, the module chooses a line that reads the
 //!   word. If all this takes too many clocks, only every second word has such a computation, or every third, and so on.
 //! - For a highlight device that computes lines: one line of the largest length in the contract's domain, but of at most 4095
 //!   intervals.
 //! - Every combination of the smallest and the largest values of the operands that determine `f`, but at most the first 128
 //!   combinations.
-//! - For each bit of each net, each input of a mux and each outcome of a comparison: some computations that exercise it with
-//!   large results, some with small results and some with results of 0.
+//! - For each bit of each net, each input of a mux and each outcome of a comparison: some computations that exercise this bit,
+//!   input or outcome with large results, some with small results and some with results of 0.
 //!
 //! The choice depends neither on time nor on threads: the same design always gets the same computations.
 
@@ -192,9 +192,9 @@ fn class(contract: &dyn Contract, shown: &OutputTrace) -> usize {
     class
 }
 
-/// Adds candidates to `chosen`, always the one that exercises the most missing features per clock. It leaves out a candidate with
-/// which all chosen computations would exceed [`MOST_CLOCKS`], and ends when no other candidate adds a missing feature. Features
-/// from number `words` on are ROM words, which must be read once; `count` is the number of all features.
+/// Adds candidates to `chosen`, always the candidate that exercises the most missing features per clock. The function leaves out
+/// a candidate with which all chosen computations would exceed [`MOST_CLOCKS`], and ends when no other candidate adds a missing
+/// feature. Features from number `words` on are ROM words, which must be read once; `count` is the number of all features.
 fn choose(candidates: &[PoolComputation], words: usize, count: usize, chosen: &mut Vec<usize>) {
     let mut coverage = FeatureCoverage { wanted: vec![TIMES; count], clocks: 0 };
     coverage.wanted[words..].fill(1);

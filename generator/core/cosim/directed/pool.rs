@@ -1,7 +1,7 @@
 //! Draws the candidates from which `directed` chooses the computations of a test bench.
 //!
-//! The pool depends only on the device's contract. It has the corners of the domain, random computations, computations that read
-//! ROM words, and long lines for devices that compute lines of points.
+//! The pool depends only on the device's contract. The pool has the corners of the domain, random computations, computations that
+//! read ROM words, and long lines for devices that compute lines of points.
 
 use crate::cosim::{PointSource, Random};
 use glint_golden::{Contract, Highlight};
@@ -9,10 +9,11 @@ use glint_golden::{Contract, Highlight};
 /// The number of random computations in [`Pool::drawn`], drawn in the same way as the points of the default test.
 const DRAWN: usize = 1024;
 
-/// The number of random computations in [`Pool::readers`] of a device without lines. They are drawn in three ways, in turn. One
-/// third is drawn evenly, and reads words far from the peak of the highlight. One third is near the ends of the domains, at
-/// distances of every magnitude, since tables have a word for each octave of the distance. One third has operands from anywhere
-/// in their formats, moved near the peak. In all three, the other operands are chosen such that the result is not 0.
+/// The number of random computations in [`Pool::readers`] of a device without lines. These computations are drawn in three ways,
+/// in turn. One third is drawn evenly, and reads words far from the peak of the highlight. One third is near the ends of the
+/// domains, at distances of every magnitude, since tables have a word for each octave of the distance. One third has operands
+/// from anywhere in their formats, moved near the peak. In all three ways, the other operands are chosen such that the result is
+/// not 0.
 const SHOWN: usize = 3840;
 
 /// An operand without fraction bits gets one point for each of its values, and points at the edges of the highlight, if it has

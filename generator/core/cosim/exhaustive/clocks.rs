@@ -1,9 +1,9 @@
 //! Compares every register and every output with the golden model at every clock, for every combination of operands.
 //!
-//! This is feasible only for devices whose operands have at most 26 bits in total; a device of full width is checked through a
-//! narrow configuration. The combinations are numbered and divided into blocks. Each lane of a simulator runs some consecutive
-//! combinations from power-up on, and each computation begins with the register values of the previous one. The result does not
-//! depend on the order of the blocks.
+//! This check is feasible only for devices whose operands have at most 26 bits in total; a device of full width is checked
+//! through a narrow configuration. The combinations are numbered and divided into blocks. Each lane of a simulator runs some
+//! consecutive combinations from power-up on, and each computation begins with the register values of the previous computation.
+//! The result does not depend on the order of the blocks.
 
 use std::fmt;
 use std::io::Write;
@@ -34,7 +34,7 @@ const BLOCK: u64 = RUN * LANES as u64;
 /// The progress of a shard, which is one machine's part of the check of all combinations.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Steps {
-    /// The number of finished blocks. They are the first blocks of the shard.
+    /// The number of finished blocks, which are the first blocks of the shard.
     pub done: u64,
     /// The number of the first combination for which model and hardware differ; `None` if they agree so far. After a
     /// difference, the shard counts as done, and later combinations are not checked.
@@ -111,7 +111,7 @@ impl<'a> Clocks<'a> {
         }
     }
 
-    /// Returns a phrase about the cases that the check does not cover. It says why the combinations are not run, or which
+    /// Returns a phrase about the cases that the check does not cover. The phrase says why the combinations are not run, or which
     /// inputs only random tests cover.
     pub fn omits(&self) -> String {
         match self.count() {
@@ -129,7 +129,7 @@ impl<'a> Clocks<'a> {
         }
     }
 
-    /// Returns the number of blocks into which the combinations are divided. It is 0 if there are too many combinations.
+    /// Returns the number of blocks into which the combinations are divided. Returns 0 if there are too many combinations.
     pub fn blocks(&self) -> u64 {
         self.count().div_ceil(BLOCK)
     }
@@ -144,8 +144,8 @@ impl<'a> Clocks<'a> {
     }
 
     /// Checks the blocks with the given numbers on all threads of rayon's pool; the numbers must be in ascending order. Returns
-    /// the number of the first combination for which model and hardware differ, or `None` if they always agree. It calls
-    /// `progress` with the number of combinations in each finished block.
+    /// the number of the first combination for which model and hardware differ, or `None` if they always agree. The function
+    /// calls `progress` with the number of combinations in each finished block.
     ///
     /// # Errors
     /// Fails if the design cannot be simulated, or if its signals do not settle in a clock.
@@ -197,8 +197,8 @@ impl<'a> Clocks<'a> {
         })
     }
 
-    /// Writes a waveform, in the VCD format, that ends with the difference in combination number `place`. It begins with clock
-    /// `from`, counted from the power-up of the simulated instance.
+    /// Writes a waveform, in the VCD format, that ends with the difference in combination number `place`. The waveform begins
+    /// with clock `from`, counted from the power-up of the simulated instance.
     ///
     /// # Errors
     /// Fails as [`Clocks::difference`] does, or if the file cannot be written.

@@ -20,7 +20,7 @@ const SAMPLE: u64 = 4096;
 /// The largest error among some operand combinations, and the first combination with this error.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Peak {
-    /// The absolute error. It is infinite if the formula has no value for the operands.
+    /// The absolute error; infinite if the formula has no value for the operands.
     #[serde(deserialize_with = "or_infinite")]
     pub error: f64,
     /// The number of the operand combination, by the numbering of [`Places`].
@@ -143,7 +143,8 @@ impl<'a> Places<'a> {
     }
 
     /// Returns the error for combination `number`: the absolute error of `f`, the error of an output in units, or the rounding
-    /// error of a product, depending on the kind of these places. It is infinite if the formula has no value there.
+    /// error of a product, depending on the kind of these places. The error is infinite if the formula has no value for the
+    /// operands.
     pub fn error(&self, number: u64) -> f64 {
         self.error_at(&self.place(number))
     }
@@ -217,8 +218,9 @@ impl<'a> Places<'a> {
         peak
     }
 
-    /// Measures the errors for all combinations in the given blocks on all threads of rayon's pool, and returns the largest.
-    /// Returns [`Peak::NONE`] without blocks. It calls `progress` with the number of combinations in each finished block.
+    /// Measures the errors for all combinations in the given blocks on all threads of rayon's pool, and returns the largest
+    /// error. Returns [`Peak::NONE`] without blocks. The function calls `progress` with the number of combinations in each
+    /// finished block.
     pub fn check(
         &self,
         blocks: impl IntoParallelIterator<Item = u64>,

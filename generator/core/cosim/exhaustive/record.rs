@@ -3,8 +3,8 @@
 //! An exhaustive check computes the error of a device for every combination of operand values that its contract lists. The
 //! digest of the contract in a record tells to which configuration the record belongs.
 //!
-//! Glint does not simply trust a record. It computes the error again at the operands with the largest error in the record, and
-//! compares it with the recorded error ([`Record::proves`]).
+//! Glint does not simply trust a record. [`Record::proves`] computes the error again at the operands with the largest error in
+//! the record, and compares the result with the recorded error.
 
 use std::path::{Path, PathBuf};
 
@@ -25,14 +25,14 @@ pub struct Record {
     axes: Vec<RecordedAxis>,
     /// The number of combinations at which the check computed `f`, or the outputs of a device that is no highlight.
     pub evaluations: u64,
-    /// The number of products of a word `f` with a colour that the check computed. It is 0 for a device that is no highlight.
+    /// The number of products of a word `f` with a colour that the check computed; 0 for a device that is no highlight.
     pub colour_products: u64,
     /// The largest error of `f`. For a device that is no highlight, the largest error of an output, in units.
     pub f: RecordedPeak,
     /// The largest error of a colour multiplier, in output units.
     colour_units: f64,
-    /// The upper bound that the check gives for the error of an output, in output units. It is the error of `f` for the largest
-    /// colour plus the largest rounding error of a product with a colour.
+    /// The upper bound that the check gives for the error of an output, in output units: the error of `f` for the largest colour
+    /// plus the largest rounding error of a product with a colour.
     pub together: f64,
     /// Whether the contract's bound held for all operands.
     pub holds: bool,
@@ -89,8 +89,8 @@ struct Report {
 }
 
 impl Record {
-    /// Returns the record for the contract with this digest, from the JSON files in `directory`. Returns `None` if the
-    /// directory does not exist, or has no such record. It ignores files that are no records.
+    /// Returns the record for the contract with this digest, from the JSON files in `directory`. Returns `None` if the directory
+    /// does not exist, or has no such record. The function ignores files that are no records.
     ///
     /// # Errors
     /// Fails if the directory or a file in it cannot be read, if a record is damaged, or if the record leaves out a part of the
@@ -109,8 +109,8 @@ impl Record {
         Ok(None)
     }
 
-    /// Returns the sweep of the recorded check: the operand values that it visited. It has at least the values of the
-    /// contract's own sweep.
+    /// Returns the sweep of the recorded check: the operand values that the check visited. The sweep has at least the values of
+    /// the contract's own sweep.
     pub fn sweep(&self, contract: &dyn Contract) -> Sweep {
         let axes = self.axes.iter().map(RecordedAxis::axis).collect();
         Sweep { axes, omits: contract.sweep().omits }
@@ -164,7 +164,7 @@ impl Record {
     /// Computes a part of the recorded check again and compares it with the record. The part is about `places` evenly spread
     /// operand combinations, the combination with the largest error, and all products with colours. `places` must not be 0.
     /// Returns the number of combinations at which it computed `f`, and a sentence for each difference from the record; no
-    /// sentence means that the record holds. It calls `progress` with the number of evaluations in each finished block.
+    /// sentence means that the record holds. The function calls `progress` with the number of evaluations in each finished block.
     pub fn recheck(
         &self,
         contract: &dyn Contract,

@@ -128,7 +128,7 @@ impl<'a> Printer<'a> {
     }
 
     /// Returns whether the expression of a value still has the same value after C statements have assigned new values to
-    /// registers and memories. This is so if the value is constant or has a C variable of its own.
+    /// registers and memories. Returns true if the value is constant or has its own C variable.
     pub fn is_settled(&self, id: NodeId) -> bool {
         self.locals.contains_key(&id) || self.graph.constant_of(id).is_some()
     }

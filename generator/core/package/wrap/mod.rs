@@ -87,8 +87,8 @@ fn core_wire(design: &Design, port: &Port) -> String {
     format!("wire {} core_{};", range(net.format.width()), net.name).replace("  ", " ")
 }
 
-/// Returns Verilog for the stub, the module that replaces the core in a proof. It lets the solver choose any values for the
-/// results and status bits of the stub in each clock.
+/// Returns Verilog for the stub, the module that replaces the core in a proof. This Verilog lets the solver choose any values for
+/// the results and status bits of the stub in each clock.
 fn stub_free(design: &Design) -> Vec<String> {
     let mut lines = Vec::new();
     for port in &design.ports {

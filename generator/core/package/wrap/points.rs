@@ -155,8 +155,9 @@ fn streamed<'a>(rows: impl Iterator<Item = PortValues<'a>>) -> Option<Vec<BenchP
     Some(done)
 }
 
-/// Returns the input file of the wrapper's bench: for each computation a word with all operands, each padded to whole bytes.
-/// The padding bits are zeros for one computation and ones for the next, because the wrapper must ignore them.
+/// Returns the input file of the wrapper's bench: for each computation a word with all operands, each padded to whole bytes. The
+/// padding bits are alternately zeros for one computation and ones for the next computation, because the wrapper must ignore
+/// these bits.
 pub fn sent(points: &[BenchPoint], operands: &Transfer) -> String {
     let mut text = String::new();
     for (number, point) in points.iter().enumerate() {

@@ -1,5 +1,5 @@
 //! Generates `<name>_axis.v` for a core with a microprogram: a wrapper that takes operands from one AXI4-Stream and puts results
-//! on another. The module also generates the formal properties of the wrapper.
+//! on another AXI4-Stream. The module also generates the formal properties of the wrapper.
 
 use anyhow::{Context, Result};
 use glint_base::fill;

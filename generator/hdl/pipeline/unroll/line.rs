@@ -2,9 +2,9 @@
 //! to the next.
 //!
 //! The registers that carry state from one point to the next are called the *walk*, for example the register with the current
-//! angle. The module proves by induction that every point is the same function of the operands and the walk. It also proves that
-//! the first point loads functions of the operands into the walk, and every other point one function of the walk and the
-//! operands. If the proof fails, `unroll_line` returns an error.
+//! angle. The module proves by induction that every point is the same function of the operands and the walk. The module also
+//! proves that the first point loads functions of the operands into the walk, and that every other point loads the same function
+//! of the walk and the operands. If the proof fails, `unroll_line` returns an error.
 
 use super::{Clock, Executor, Iterations, State, Unrolled};
 use crate::netlist::{Design, NetId, RegisterKind, Role, Sequence};
@@ -16,8 +16,8 @@ use glint_base::diagnostic::{Diagnostic, Diagnostics};
 /// The largest number of clocks between the microinstruction that writes a point and the clock with the point's results.
 const MOST_DELAY: usize = 12;
 
-/// A computation with several results, such as the points of a scan line. It consists of a graph that computes the first point,
-/// and of the registers from which each later point is computed.
+/// A computation with several results, such as the points of a scan line. The struct has a graph that computes the first point,
+/// and the registers from which each later point is computed.
 #[derive(Debug)]
 pub struct UnrolledLine {
     /// The graph that computes the first point. Later points differ only in the registers of the walk, which carry state from
@@ -212,7 +212,7 @@ impl LineUnroller<'_> {
     }
 
     /// Executes all microinstructions of `path` but the last, from `state` on. Returns the answer of `ask` in the clock of the
-    /// last one.
+    /// last microinstruction.
     fn at_end<T>(
         &mut self,
         state: &State,
